@@ -282,7 +282,7 @@ mod tests {
     #[test]
     fn bytes_decode_as_in_python() {
         type Rows = [(&'static str, &'static str); 9];
-        // Expected values from struct.unpack with "<" and ">" and b, B, h, H, i, I, f.
+        // The expected values come from struct.unpack in Python with "<" and ">" and b, B, h, H, i, I, f.
         let table: [(&[u8], Rows); 4] = [
             (
                 &[0xDB, 0x0F, 0x49, 0x40],

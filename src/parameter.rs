@@ -94,9 +94,9 @@ pub trait ParameterGroup: Default {
 /// }
 /// ```
 ///
-/// Each line has a field, its type, its default, a key and [`ParameterValues`]. For a form, the label of the entry follows, with
-/// an example after `like` if the default says little. A line without a key declares a field that is not a parameter.
-/// The value of a key preceded by `secret` is neither displayed nor stored.
+/// Each line has a field, its type, its default, a key and [`ParameterValues`]. If the parameter has a form entry, the
+/// label of the entry follows, with an example after `like` if the default is not helpful. A line without a key
+/// declares a field that is not a parameter. The value of a key preceded by `secret` is neither displayed nor stored.
 #[macro_export]
 macro_rules! parameters {
     (@hint $values:expr, $default:expr) => {

@@ -1,4 +1,4 @@
-//! The devices: one folder each, with all of its code.
+//! The devices. Each one has a folder that contains all of its code.
 
 pub mod biss;
 pub mod hiperdrive;

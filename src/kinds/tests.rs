@@ -56,7 +56,7 @@ fn typing_errors(name: &str) -> Vec<String> {
         .collect()
 }
 
-/// Issue 22.17: of 393 misspelt names, 153 were accepted.
+/// Issue 22.17: previously, 153 of 393 misspelt names were accepted.
 #[test]
 fn misspelt_names_in_ready_made_profiles_are_reported() {
     let mut misspelt = 0;
@@ -77,7 +77,7 @@ fn misspelt_names_in_ready_made_profiles_are_reported() {
     assert!(misspelt >= 393, "{misspelt}");
 }
 
-/// Issue 22.17: the ready-made profiles of schema 1 open, and one saved profile of each kind from that time.
+/// Issue 22.17: the ready-made profiles of schema 1, and a saved profile of each kind from that time, can be opened.
 #[test]
 fn schema_1_profiles_can_be_opened() {
     let files = profiles_in("tests/fixtures/schema-1");
@@ -109,7 +109,7 @@ fn ready_made_profiles_parse() {
             assert_eq!((document.device(), document.emit()), (kind, text), "as the program writes it");
             count += 1;
         }
-        // For SSI, each family with factory settings, and one more.
+        // For SSI, there is one profile for each family with factory settings, and one more.
         let expected = match kind {
             "ssi" => 12,
             "interbus" => 2,

@@ -47,7 +47,8 @@ pub fn measure_timer_step(clock: &dyn Clock) -> Duration {
         clock.sleep_until(began + SHORT_SLEEP);
         clock.now().duration_since(began)
     };
-    // The first sleep may begin just before a tick. Of the others, the least counts: a busy computer makes some longer.
+    // The first sleep may begin just before a tick, so it is ignored. The shortest of the others is used, because a
+    // busy computer makes some of them longer.
     sleep();
     (0..4).map(|_| sleep()).min().unwrap_or_default()
 }

@@ -79,10 +79,10 @@ pub trait ByteLink: Send {
         None
     }
 
-    /// Restores the state of the far side that must not outlive the session, such as the supply of the device.
+    /// Restores any state at the remote end that must not outlive the session, such as the supply of the device.
     ///
     /// # Errors
-    /// Returns an error if the connection was lost or the far side rejects the request.
+    /// Returns an error if the connection was lost or the remote end rejects the request.
     fn restore_state(&mut self) -> Result<(), LinkError> {
         Ok(())
     }

@@ -119,8 +119,8 @@ mod tests {
     use crate::link::RealClock;
     use std::net::TcpListener;
 
-    /// Each of a hundred checks would wait for a system tick of up to ten milliseconds without polling, which takes a
-    /// second in total.
+    /// Without polling, each of a hundred short waits would last until the next system tick, up to ten milliseconds,
+    /// which is a second in total.
     #[test]
     fn polling_does_not_wait_and_short_waits_are_short() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();

@@ -332,7 +332,7 @@ mod tests {
     fn packets_of_other_senders_are_dropped_and_a_closed_port_is_tolerated() {
         let (target, mut packets, clock) = pair();
         let to = ("127.0.0.1", packets.port());
-        // All of 127/8 is this computer.
+        // All addresses in 127/8 belong to this computer.
         if let Ok(other) = UdpSocket::bind("127.0.0.2:0") {
             other.send_to(b"stray", to).unwrap();
         }

@@ -33,12 +33,12 @@ impl FaultParser {
         value.parse()
     }
 
-    /// Returns an empty string. Faults have no unit.
+    /// Returns an empty string, because faults have no unit.
     pub fn unit(&self) -> &'static str {
         ""
     }
 
-    /// Returns `false`. Faults are not numbers.
+    /// Returns `false`, because faults are not numbers.
     pub fn is_decimal(&self) -> bool {
         false
     }

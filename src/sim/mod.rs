@@ -21,7 +21,7 @@ use std::net::SocketAddrV4;
 use crate::units::{CharacterFormat, Moment};
 
 /// A virtual device on a serial line. Its owner drives it, for example a link in this process, a pseudo-terminal or a
-/// TCP server. Moments do not run backwards: a moment before the latest known one is replaced by that one.
+/// TCP server. Time never runs backwards: a moment before the latest known one is replaced with the latest one.
 pub trait ByteDevice: Send {
     /// Receives bytes that the host has passed to its UART at `now`. They follow any bytes still in transmission and
     /// take one character time each.
@@ -42,7 +42,7 @@ pub trait ByteDevice: Send {
     fn connect(&mut self, now: Moment);
 }
 
-/// A virtual device that also receives datagrams. Moments are those of a [`ByteDevice`].
+/// A virtual device that also receives datagrams. Moments have the same meaning as for a [`ByteDevice`].
 pub trait DatagramDevice: Send {
     /// Handles a packet received at `now`.
     fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]);

@@ -2,8 +2,8 @@
 //! errors. It is deterministic: the same settings, changes and sample numbers yield the same voltages, regardless of
 //! the block sizes requested. This module uses no clock, thread or device.
 //!
-//! The model is that of Heydemann (Applied Optics 20, 3382). See section 7 of the project's sine/cosine reference. With
-//! θ as the true angle, the cosine channel is R·cos θ + p, and the sine channel is R·sin(θ − α)/r + q. Both tracks have
+//! The model is from Heydemann (Applied Optics 20, 3382). See section 7 of the project's sine/cosine reference. With θ
+//! as the true angle, the cosine channel is R·cos θ + p, and the sine channel is R·sin(θ − α)/r + q. Both tracks have
 //! the same shape a quarter of a period apart, so a third harmonic h results in cos θ − h·cos 3θ and sin θ + h·sin 3θ.
 //!
 //! Angles are integer fractions of a turn, and times are whole nanoseconds. No error accumulates over time.

@@ -16,8 +16,8 @@ fn near(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
 }
 
-/// Section 7: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°. One period in 360 samples: 1 rev/min of one period is
-/// 6°/s.
+/// Reference section 7 with R = 0.5, p = 0.02, q = −0.03, r = 1.05 and α = 3°. One period has 360 samples, because 1
+/// rev/min with one period per revolution is 6°/s.
 #[test]
 fn samples_match_section_7() {
     let source = source(Settings {
@@ -40,7 +40,7 @@ fn samples_match_section_7() {
         (360, 0.520000, -0.054922),
     ];
     for (degree, cosine, sine) in cases {
-        // 16 666 667 ns per sample: 20 parts in 10⁹ more than a degree.
+        // A sample takes 16 666 667 ns, so it exceeds a degree by 20 parts in 10⁹.
         near(wires.cosine_v()[degree], cosine, 1e-6);
         near(wires.sine_v()[degree], sine, 1e-6);
         assert_eq!((wires.refsin_v[degree], wires.refcos_v[degree]), (2.5, 2.5));
@@ -56,13 +56,13 @@ fn any_range_of_samples_is_reproducible_after_days() {
     let part = source.samples_from(1234, 500).unwrap();
     assert_eq!(part.sin_v, whole.sin_v[1234..1734]);
     assert_eq!(part.refcos_v, whole.refcos_v[1234..1734]);
-    // Ten days at 100 kHz, by whole numbers from the start.
+    // Ten days at 100 kHz. The expected values are calculated in whole numbers from the start.
     let days = 86_400_000_000;
     assert_eq!(source.time(days).unwrap(), SampleTime::from_nanoseconds(864_000_000_000_000));
     let turn = 1_234_567_i128 * 10_000 * i128::from(days) % 60_000_000_000_000;
     let late = source.samples_from(days, 1).unwrap();
     near(late.reference_deg[0], 360.0 * turn as f64 / 6e13, 1e-9);
-    // Ten days are whole periods of 8 kHz and 50 Hz: the added signals are zero, and noise is 0.5 mV.
+    // Ten days are a whole number of periods of 8 kHz and 50 Hz, so the added signals are zero. The noise is 0.5 mV.
     let angle = TAU * (turn * 1024 % 60_000_000_000_000) as f64 / 6e13;
     near(late.sine_v()[0], 0.5 * angle.sin(), 0.003);
     source.change_settings(days, settings.validate().unwrap());
@@ -71,7 +71,7 @@ fn any_range_of_samples_is_reproducible_after_days() {
 
 #[test]
 fn settings_change_at_a_sample_and_the_angle_is_continuous() {
-    // 60 rev/min at 1000 samples per second: 0.36° per sample.
+    // 60 rev/min at 1000 samples per second is 0.36° per sample.
     let slow = Settings { rate_hz: 1_000.0, ..silence_duration() };
     let mut source = source(slow.clone());
     let fast = Settings { speed_rpm: -600.0, rate_hz: 10_000.0, offset_cosine_v: 0.1, ..slow };
@@ -83,10 +83,11 @@ fn settings_change_at_a_sample_and_the_angle_is_continuous() {
     }
     assert_eq!(source.time(500).unwrap(), SampleTime::from_nanoseconds(500_000_000));
     assert_eq!(source.time(501).unwrap(), SampleTime::from_nanoseconds(500_100_000));
-    // Sample 500 is half a turn later: 512 whole periods, cosine 1.
+    // Sample 500 is half a turn later, which is 512 whole periods, so the cosine is 1.
     near(wires.cosine_v()[1], 0.6, 1e-9);
     assert_eq!(source.samples_from(0, 10_000).unwrap().len(), 10_000);
-    // Of two changes at one sample the later counts, and a change before the latest replaces it there.
+    // Of two changes at the same sample, the later one applies. A change before the latest one replaces it at the same
+    // sample.
     source.change_settings(500, Settings { speed_rpm: 0.0, ..fast.clone() }.validate().unwrap());
     source.change_settings(3, Settings { speed_rpm: 0.0, ..fast }.validate().unwrap());
     near(source.samples_from(9_000, 1).unwrap().reference_deg[0], 180.0, 1e-9);
@@ -112,14 +113,14 @@ fn noise_has_its_deviation_and_is_uncorrelated_between_wires() {
         a.iter().zip(b).map(|(a, b)| (a - 2.5) * (b - 2.5)).sum::<f64>() / 40_000.0 / (0.01 * 0.01 / 2.0)
     };
     for (at, column) in columns.iter().enumerate() {
-        // The variance of 40 000 numbers scatters by √(2/40 000) = 0.7 %, a correlation by 0.5 %; the limit is five of
-        // them.
+        // The variance of 40 000 numbers scatters by √(2/40 000) = 0.7 %, and a correlation by 0.5 %. The limit is five
+        // times as high.
         near(product(column, column), 1.0, 0.035);
         near(column.iter().sum::<f64>() / 40_000.0, 2.5, 5.0 * 0.01 / 40_000.0_f64.sqrt());
         for other in columns.iter().skip(at + 1) {
             near(product(column, other), 0.0, 0.025);
         }
-        // No correlation with itself one sample later.
+        // The noise does not correlate with itself one sample later.
         near(product(&column[1..], &column[..39_999]), 0.0, 0.025);
     }
     let other = source(Settings { seed: 2, ..settings }).samples_from(0, 40_000).unwrap();
@@ -128,7 +129,7 @@ fn noise_has_its_deviation_and_is_uncorrelated_between_wires() {
 
 #[test]
 fn an_open_wire_reads_as_the_receiver_terminates_it() {
-    // A quarter of a period later: sine 0.5 V, cosine 0.
+    // A quarter of a period later, the sine is 0.5 V and the cosine is 0.
     let at = |open: Wire, terminated, references| {
         let settings = Settings {
             periods: 1.0,
@@ -159,9 +160,8 @@ fn an_open_wire_reads_as_the_receiver_terminates_it() {
     }
 }
 
-/// Expected values from Python: 0.5·(cos θ − 0.04·cos 3θ) and so on, at θ = 2π·(16·0.3 + 16·100/1296000·sin(2π·0.3))
-/// and
-/// 0.3 turns, with the amplitude 1 + 0.1·cos(2π·0.3).
+/// The expected values come from Python: 0.5·(cos θ − 0.04·cos 3θ) and so on, at θ = 2π·(16·0.3 +
+/// 16·100/1296000·sin(2π·0.3)) and 0.3 turns, with the amplitude 1 + 0.1·cos(2π·0.3).
 #[test]
 fn harmonic_modulation_and_eccentricity_are_simulated() {
     let settings = Settings {
@@ -181,7 +181,8 @@ fn harmonic_modulation_and_eccentricity_are_simulated() {
 #[test]
 fn hum_is_in_phase_in_both_channels_and_interference_is_not() {
     let settings = Settings { speed_rpm: 0.0, amplitude_v: 0.0, ..silence_duration() };
-    // A quarter period of 50 Hz is 5 ms, of 8 kHz 31.25 µs: three samples of 10 µs are 0.24 of a period.
+    // A quarter of a period takes 5 ms at 50 Hz and 31.25 µs at 8 kHz. Three samples of 10 µs are 0.24 of a period at 8
+    // kHz.
     let hum = source(Settings { hum_v: 0.1, ..settings.clone() }).samples_from(500, 1).unwrap();
     near(hum.sine_v()[0], 0.1, 1e-12);
     near(hum.cosine_v()[0], 0.1, 1e-12);

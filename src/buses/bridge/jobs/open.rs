@@ -13,7 +13,8 @@ use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
 use crate::worker::open::{connect_simulated, open_byte_stream, reply_margin, simulator_settings, wrong_target_error};
 
-/// Link parameter that selects the virtual adapter. Streams accept it, since sessions require it.
+/// Link parameter that selects the virtual adapter. Streams do not need the parameter but accept it, because sessions
+/// require it.
 const BRIDGE: &str = "bridge";
 /// Character format of the adapter's serial port. It only has an effect behind a converter.
 pub(crate) const FORMAT: CharacterFormat = CharacterFormat { baud: Baud::B115200, parity: Parity::None };

@@ -44,7 +44,7 @@ pub(crate) struct RawFrames;
 impl StreamFormat for RawFrames {
     type Samples = Vec<u64>;
 
-    /// 20 000 frames per second; a frame of 43 clocks takes 21.5 µs at 2 MHz, and 27 µs of waiting.
+    /// 20 000 frames per second. A frame with 43 clocks takes 21.5 µs at 2 MHz, in addition to 27 µs of waiting time.
     fn stream_request(&self) -> StreamRequest {
         StreamRequest::Biss { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, period_us: 50 }
     }
@@ -110,7 +110,7 @@ pub(crate) fn count<T>(batches: &[Batch<Vec<T>>]) -> (u64, u64) {
 fn unfetched_and_damaged_samples_are_counted_as_missing() {
     let mut bench = bench(RawFrames, virtual_adapter("fault=flip:0.00002&seed=1"));
     let before = bench.take(Duration::from_secs(1));
-    // The computer slept: the adapter keeps a second.
+    // The computer sleeps for seven seconds, of which the adapter buffers one.
     let asleep = bench.clock.now() + Duration::from_secs(7);
     bench.clock.sleep_until(asleep);
     let batches = [before, bench.take(Duration::from_secs(1))].concat();
@@ -119,7 +119,7 @@ fn unfetched_and_damaged_samples_are_counted_as_missing() {
     let slept = batches.iter().map(|batch| batch.lost).max().unwrap();
     assert!((115_000..=125_000).contains(&slept), "six of the seven seconds: {slept}");
     assert!(lost > slept + 100, "damaged packets too: {lost}");
-    // Times continue through the gap like the numbers.
+    // Like the sample numbers, the times continue across the gap.
     let begin = batches[0].time.saturating_add_ns(batches[0].first as i64 * -50_000);
     for batch in &batches {
         assert_eq!(batch.time, begin.saturating_add_ns(batch.first as i64 * 50_000), "{}", batch.first);
@@ -130,7 +130,7 @@ fn unfetched_and_damaged_samples_are_counted_as_missing() {
 fn samples_lost_by_a_stalled_consumer_are_counted() {
     let Bench { clock, bridge, .. } = bench(RawFrames, virtual_adapter("rpm=60"));
     let stream = Stream::spawn(bridge, 4_000, clock, Arc::new(|| ())).unwrap();
-    // Virtual time runs as fast as the thread.
+    // Virtual time passes as fast as the thread can run.
     let begun = std::time::Instant::now();
     while stream.lost_samples() < 100_000 {
         assert!(begun.elapsed() < Duration::from_secs(20));
@@ -150,10 +150,10 @@ fn samples_lost_by_a_stalled_consumer_are_counted() {
 /// Adapter with scripted replies, and scripted data when a stream begins.
 struct Puppet {
     capabilities: Capabilities,
-    /// Millivolts by which its supply is too high when it is switched on.
+    /// Voltage in millivolts by which the supply exceeds the requested one when it is switched on.
     too_high: u16,
     refused: Vec<(Operation, ErrorCode)>,
-    /// Replies that get lost, by their operation, once each.
+    /// Operations whose reply is lost. Each entry applies once.
     swallowed: Vec<Operation>,
     /// Data sent when a stream begins.
     data: Vec<Message>,
@@ -264,7 +264,7 @@ fn full_scale_values_become_volts_and_gaps_are_kept() {
     let expected = [1.25, -1.250_038_148_137_455_5, 0.0, 0.625_019_074_068_727_7];
     let volts = [&first.samples.sine_v[..], &first.samples.cosine_v[..]].concat();
     assert!(volts.iter().zip(expected).all(|(volts, expected)| near(*volts, expected)), "{volts:?}");
-    // 50 kHz, its maximum: 20 µs.
+    // The adapter samples at 50 kHz at most, which is an interval of 20 µs.
     assert_eq!((first.first, first.lost, first.period_ns), (0, 0, 20_000));
     assert_eq!((second.first, second.lost), (12, 10));
     assert_eq!(second.time.nanoseconds_since(first.time), 240_000);
@@ -278,7 +278,7 @@ fn full_scale_values_become_volts_and_gaps_are_kept() {
     assert_eq!(*heard.lock().unwrap(), expected);
 }
 
-/// The cosine rises by 1000 in 20 µs and is sampled 5 µs late, a quarter of the interval.
+/// The cosine rises by 1000 per interval of 20 µs and is sampled 5 µs late, which is a quarter of the interval.
 #[test]
 fn the_cosine_is_corrected_for_its_skew() {
     let ramp = |from: i16, count: i16| (from..from + count).map(|at| (7, at * 1000)).collect::<Vec<_>>();
@@ -297,7 +297,7 @@ fn the_cosine_is_corrected_for_its_skew() {
     assert!(heard.lock().unwrap().contains(&Request::AnalogSkew));
 }
 
-/// AFS60 with sine and cosine: 5 V, and at most 5.5 V.
+/// An AFS60 with sine and cosine needs 5 V, and allows at most 5.5 V.
 #[test]
 fn a_requested_supply_is_switched_on_within_its_limit() {
     for (too_high, expected) in [(400, Ok((5_400, 60))), (600, Err((5_000, 5_600, 5_500)))] {
@@ -385,7 +385,7 @@ fn a_stream_that_ends_or_restarts_by_itself_is_reported() {
     assert_eq!(other.take(Duration::from_millis(100)).len(), 1, "what another stream has left is let go");
 }
 
-/// Connection that is unplugged after a number of chunks.
+/// A connection that is unplugged after the given number of chunks.
 struct UnpluggingLink(SimLink, u32);
 
 impl ByteLink for UnpluggingLink {

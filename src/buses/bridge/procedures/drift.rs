@@ -74,7 +74,7 @@ mod tests {
         let (mut drift, mut before) = (ClockDrift::default(), None);
         let mut random = 1_u64;
         for packet in 0..hours * 3_600 * 200 {
-            // Sampled at this local time; the adapter's clock was started at another.
+            // `sampled` is local time. The clock of the adapter was started at another time.
             let sampled = packet * PACKET;
             let own = i128::from(sampled + sampled / 1_000_000 * parts_per_million) + 77_000_000_000;
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -100,10 +100,11 @@ mod tests {
         let at = |ms: i64| SampleTime::from_nanoseconds(ms * MS);
         assert_eq!(drift.time(0, at(500)), at(500));
         assert_eq!(drift.time(5_000_000, at(506)), at(505), "it was under way for longer");
-        // The computer slept for an hour, and its clock with it.
+        // The computer slept for an hour, during which its clock stood still.
         let hour = 3_600_000;
         assert_eq!(drift.time(i128::from((hour + 10) * MS), at(510)), at(510));
-        // The adapter's clock stood still for 13.5 s. Late packets could look the same until two sections have passed.
+        // The clock of the adapter stood still for 13.5 s. Until two sections have passed, this looks the same as late
+        // packets.
         for (own, came, expected) in [(20, 520, 520), (25_000, 39_000, 25_500), (36_000, 50_000, 50_000)] {
             assert_eq!(drift.time(i128::from((hour + own) * MS), at(came)), at(expected), "{own}");
         }

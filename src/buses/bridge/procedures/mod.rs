@@ -1,6 +1,5 @@
-//! Host side of the open adapter, for any bus behind it (reference "bridge"). A request is repeated once if no reply
-//! with its sequence number arrives. Stream data are dropped until the reply has arrived. Otherwise, `flow` handles
-//! them.
+//! Host side of the open adapter for any bus (reference "bridge"). A request is repeated once if no reply with its
+//! sequence number arrives. Stream data are dropped until the reply has arrived. Otherwise, `flow` handles them.
 
 mod drift;
 pub(crate) mod flow;
@@ -34,7 +33,7 @@ pub(crate) const BISS_TIME_OUT_US: u16 = 20;
 /// Clock frequencies that may be requested. An adapter uses the nearest one that it supports.
 pub(crate) const CLOCK: WholeNumbers<u32> = WholeNumbers(Quantity::Hertz, 80_000..=10_000_000);
 
-/// Time after the deadline of a reply during which an adapter may still send other data. Then the reply is considered
+/// Time after the deadline of a reply during which an adapter may still send other data, before the reply is considered
 /// missing.
 const OTHER_DATA_TIME: Duration = Duration::from_secs(1);
 
@@ -371,11 +370,12 @@ mod tests {
     #[test]
     fn the_adapters_clock_is_estimated_and_resynchronized() {
         let mut clocks = ClockOffsetBounds::default();
-        // The local clock is 1000 µs ahead. Request at 2000, sampled at 1100 of the adapter's, reply at 2400.
+        // The local clock is 1000 µs ahead. The request is sent at 2000, the adapter samples at 1100 of its own clock,
+        // and the reply arrives at 2400.
         assert_eq!(clocks.local_time_of(1100, at(2000), at(2400)), at(2200));
-        // 900 to 1300 so far, and now 995 to 1395, which gives 995 to 1300.
+        // The bounds of the offset were 900 to 1300. This exchange yields 995 to 1395, so 995 to 1300 remain.
         assert_eq!(clocks.local_time_of(2005, at(3000), at(3400)), at(2005) + Duration::from_nanos(1_147_500));
-        // 950 to 1010 narrows the range to 995 to 1010.
+        // This exchange yields 950 to 1010, so 995 to 1010 remain.
         assert_eq!(clocks.local_time_of(3000, at(3950), at(4010)), at(3000) + Duration::from_nanos(1_002_500));
         // A slow exchange does not widen the range again.
         assert_eq!(clocks.local_time_of(5000, at(5500), at(9000)), at(5000) + Duration::from_nanos(1_002_500));

@@ -15,8 +15,8 @@ use crate::units::{CharacterFormat, Moment, Parity, SupplyVoltage};
 const IDLE_BITS: u64 = 55;
 /// Longest time for which the firmware waits for a reply, in milliseconds.
 pub const MAX_TIMEOUT_MS: u64 = 2_000;
-/// Time after the last transfer before the supply is switched off. An encoder may still be storing; the manual does not
-/// state for how long (`U`).
+/// Time after the last transfer before the supply is switched off. An encoder may still be storing values. The manual
+/// does not state how long this takes (`U`).
 const STORE_TIME: Duration = Duration::from_secs(1);
 
 /// Properties of the line between an adapter and a device.
@@ -37,7 +37,7 @@ pub struct LineSupply {
     pub power_up: Duration,
 }
 
-/// A device at the serial line of an adapter. The adapter is identified and configured before the first frame.
+/// A device on the serial line of an adapter. The adapter is identified and configured before the first frame.
 pub struct AdapterSerialLink {
     wire: Box<dyn ByteLink>,
     clock: Arc<dyn Clock>,
@@ -88,7 +88,7 @@ impl AdapterSerialLink {
         }
     }
 
-    /// Runs an exchange with the adapter. The user cancels between two exchanges, not within one.
+    /// Runs an exchange with the adapter. A cancellation takes effect between two exchanges, not within one.
     fn with_adapter<T>(
         &mut self,
         work: impl FnOnce(&mut Adapter<'_, '_>) -> Result<T, Failure>,
@@ -155,7 +155,7 @@ impl AdapterSerialLink {
         let request = Request::UartTransfer { timeout_us: microseconds(timeout), idle_us: microseconds(idle), tx };
         self.last_transfer = Some(self.clock.now());
         let transferred = self.with_adapter(|adapter| {
-            // Not repeated: the device may already have executed the request.
+            // The request is not repeated, because the device may already have executed it.
             let answered = match adapter.request_within(&request, longest) {
                 Ok(Some(answered)) => answered,
                 // The device is silent, or the reply was damaged. An adapter that no longer replies is an error.
@@ -189,7 +189,7 @@ impl AdapterSerialLink {
 impl ByteLink for AdapterSerialLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         if !self.unsent.is_empty() {
-            // Nothing was awaited since the last frame.
+            // No reply to the last frame was awaited, so the frame has not been sent yet.
             self.transfer(self.clock.now())?;
         }
         self.unsent.extend(bytes);

@@ -59,14 +59,15 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Sine and cosine of `hz` with an amplitude of 20 000, sampled every 10 µs with the cosine 2 µs late.
+    /// Returns samples of a sine and a cosine of `hz` with an amplitude of 20 000. They are taken every 10 µs, and the
+    /// cosine is sampled 2 µs late.
     fn sampled(hz: f64, count: usize) -> Vec<(i16, i16)> {
         let value = |angle: f64| (20_000.0 * angle).round() as i16;
         let at = |sample: usize, late: f64| TAU * hz * (sample as f64 * 10e-6 + late);
         (0..count).map(|sample| (value(at(sample, 0.0).sin()), value(at(sample, 2e-6).cos()))).collect()
     }
 
-    /// Largest error of the angle in degrees after a correction in chunks of the given lengths.
+    /// Returns the largest error of the angle in degrees after a correction in chunks of the given lengths.
     fn largest_error(hz: f64, portions: &[usize]) -> f64 {
         let mut samples = sampled(hz, portions.iter().sum());
         let mut correction = SkewCorrection::new(2_000, 10_000).unwrap();
@@ -84,7 +85,7 @@ mod tests {
         samples.iter().enumerate().skip(1).map(error).fold(0.0, f64::max)
     }
 
-    /// Without the correction, 2 µs are 0.72° at 1 kHz and 3.6° at 5 kHz.
+    /// Without the correction, a delay of 2 µs is an error of 0.72° at 1 kHz and of 3.6° at 5 kHz.
     #[test]
     fn the_cosine_moves_to_the_time_of_the_sine() {
         for (hz, limit) in [(50.0, 0.01), (1_000.0, 0.01), (5_000.0, 0.05), (10_000.0, 0.5)] {

@@ -89,8 +89,8 @@ impl Service {
         self.0
     }
 
-    /// Returns the name used by ODVA. From 4Bh on, the meaning of a code depends on the class. Of these codes, only
-    /// those of the connection manager are known.
+    /// Returns the name used by ODVA. From 4Bh on, the meaning of a code depends on the class. In this range, only the
+    /// services of the connection manager are known.
     pub fn name(self, class: Option<u16>) -> Option<&'static str> {
         let connections = class.is_none_or(|class| class == Request::CONNECTION_MANAGER).then_some(&CONNECTION_NAMES);
         let names = NAMES.iter().chain(connections.into_iter().flatten());

@@ -93,7 +93,7 @@ mod tests {
     fn a_wrong_length_breaks_the_connection_permanently() {
         let mut receiver = Receiver::default();
         let mut bytes = frame(1, 4).emit();
-        // 65512 is one more than a frame may have.
+        // 65512 exceeds the maximum data length by one.
         bytes.splice(2..4, [0xE8, 0xFF]);
         receiver.push(&bytes);
         let broken = PacketError::Value { what: Structure::Encapsulation, field: PacketField::Length, got: 65512 };

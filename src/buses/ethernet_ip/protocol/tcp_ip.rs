@@ -219,8 +219,8 @@ mod tests {
         configuration.check_reachable()
     }
 
-    /// The first, last and broadcast addresses match those of Python's `ipaddress.ip_network("192.168.1.64/26")`: 64,
-    /// 65 to 126, and 127.
+    /// The first, last and broadcast addresses match Python's `ipaddress.ip_network("192.168.1.64/26")`: 64, 65 to 126,
+    /// and 127.
     #[test]
     fn unusable_addresses_are_refused() {
         let own = |text: &str| -> Ipv4Addr { text.parse().unwrap() };

@@ -16,7 +16,7 @@ fn bytes(text: &str) -> Vec<u8> {
     parse_hex(text).unwrap()
 }
 
-/// Reference 9: RegisterSession, its reply, a request in a session, ListIdentity.
+/// Frames of reference 9: RegisterSession and its reply, a request in a session, and ListIdentity.
 #[test]
 fn published_frames_match() {
     let zeros = "00 ".repeat(20);
@@ -47,7 +47,7 @@ fn published_frames_match() {
     );
 }
 
-/// A reply to an earlier request, to another session or command is none to this one.
+/// A reply to an earlier request, in another session or to another command does not match.
 #[test]
 fn a_reply_matches_only_its_own_request() {
     let request = Frame::unconnected_message(SESSION, [7; 8], vec![0x0E]);
@@ -63,7 +63,7 @@ fn a_reply_matches_only_its_own_request() {
     assert_eq!(Frame::unregister_session(SESSION).emit()[..8], bytes("66 00 00 00 78 56 34 12"));
 }
 
-/// Reference 9, CIP.
+/// CIP requests of reference 9.
 #[test]
 fn published_requests_match() {
     let cases = [
@@ -75,7 +75,8 @@ fn published_requests_match() {
         ("set 152", "10 03 20 65 24 01 30 98 01", Request::set_attribute(0x65, 1, 152, vec![1])),
         ("set 47", "10 03 20 64 24 01 30 2F 01 00", Request::set_attribute(0x64, 1, 47, vec![1, 0])),
         ("control", "0E 03 20 F5 24 01 30 03", Request::get(ConfigurationControl::CLASS, 1, 3)),
-        // By hand: segments of a class and an attribute above 255 are wide, 21 00 and 31 00 before the number.
+        // Composed by hand: a class or an attribute above 255 is encoded as a wide segment, with 21 00 or 31 00 before
+        // the number.
         ("wide", "0E 05 21 00 2C 01 24 01 31 00 34 12", Request::get(0x012C, 1, 0x1234)),
         ("all", "01 02 20 01 24 01", Request::get_all(Identity::CLASS, 1)),
     ];
@@ -96,7 +97,8 @@ fn published_requests_match() {
     assert!(matches!(Reply::parse(&[0x0E, 0, 0, 0]), Err(PacketError::Value { got: 0x0E, .. })));
 }
 
-/// A number may be sent wider than necessary, which is preserved; unknown segments are preserved as received.
+/// A number may be encoded wider than necessary, and its width is preserved. Unknown segments are preserved as
+/// received.
 #[test]
 fn every_path_round_trips() {
     for (label, text, segments) in [
@@ -142,7 +144,7 @@ fn open() -> ForwardOpen {
     }
 }
 
-/// Reference 9: 50 bytes; its reply; ForwardClose.
+/// Reference 9: a ForwardOpen request of 50 bytes, its reply, and ForwardClose.
 #[test]
 fn published_connection_matches() {
     let text = "54 02 20 06 24 01 03 FA 00 00 00 00 01 00 01 00 01 00 34 12 CD AB 00 00 01 00 00 00 10 27 00 00 16 48 \
@@ -153,7 +155,7 @@ fn published_connection_matches() {
     let parsed = ForwardOpen::parse(&request.data).unwrap();
     assert_eq!(parsed, open());
     assert_eq!(parsed.timeout.duration(), Duration::from_secs(2));
-    // 10 ms, multiplier 1: 4 · 2 intervals.
+    // The interval is 10 ms, and multiplier 1 means 4 · 2 intervals.
     assert_eq!(parsed.to_target_timeout(), Duration::from_millis(80));
 
     let text = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 10 27 00 00 10 27 00 00 00 00";
@@ -175,8 +177,9 @@ fn published_connection_matches() {
     assert_eq!(ForwardClose::parse(&Request::parse(&bytes(text)).unwrap().data), Ok(close));
 }
 
-/// By hand, from the fields of the two replies: serial 0001, vendor 1234h, serial number ABCDh; then 0 words and a
-/// reserved byte, or the remaining words of the path and a reserved byte. Status 01, one word after it, 0106h.
+/// Composed by hand from the fields of the two replies: serial 0001, vendor 1234h, serial number ABCDh. These are
+/// followed by 0 words and a reserved byte, or by the remaining words of the path and a reserved byte. The rejection
+/// has status 01 and one extended status word, 0106h.
 #[test]
 fn a_connection_ends_or_is_refused() {
     let text = "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00";
@@ -199,7 +202,7 @@ fn a_connection_ends_or_is_refused() {
     assert_eq!(ForwardOpen::parse(&wrong), Err(PacketError::Value { what: Structure::ForwardOpen, field, got: 8 }));
 }
 
-/// Reference 7: the sizes of the table, bit by bit, and the variant with multicast.
+/// Network parameters of all sizes in the table of reference 7, bit by bit, and of the multicast variant.
 #[test]
 fn published_network_parameters_match() {
     use NetworkType::{Multicast, PointToPoint};
@@ -218,7 +221,8 @@ fn published_network_parameters_match() {
             (size, false, false)
         );
     }
-    // 16 and 8 bytes of process data: 2 + 4 in addition to the target, 2 back.
+    // For 16 and 8 bytes of process data, packets to the target have 2 + 4 more bytes, and packets to the originator
+    // have 2 more.
     assert_eq!([16, 8].map(|data| data + IoPacket::size_overhead(RealTimeFormat::Header)), [22, 14]);
     assert_eq!([16, 8].map(|data| data + IoPacket::size_overhead(RealTimeFormat::Modeless)), [18, 10]);
     assert_eq!(NetworkParameters::new(Multicast, NetworkPriority::Low, 512), None);
@@ -236,7 +240,7 @@ fn published_network_parameters_match() {
     assert_eq!((other.transport_class(), other.trigger(), other.is_server()), (3, Trigger::Application, true));
 }
 
-/// Reference 9, UDP both ways.
+/// Cyclic packets of reference 9 in both directions.
 #[test]
 fn published_cyclic_packets_match() {
     let to_target = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 16 00 01 00 01 00 00 00 39 04 64 64 00 80 02 00 00 00 \
@@ -263,9 +267,10 @@ fn published_cyclic_packets_match() {
     assert!(IoPacket::parse(&turned, RealTimeFormat::Modeless).is_err(), "the address comes first");
 }
 
-/// By hand, from the fields of the identity item: version 1; socket AF_INET, port 44818 = AF12h, 192.168.1.5, eight
-/// zeros; vendor 1010 = 03F2h, type 12, product 1, revision 1.2, status 0030h, serial number 4711 = 1267h, a text of
-/// 10, state 3. 2 + 16 + 14 + 1 + 10 + 1 = 44 = 2Ch bytes in the item, 2 + 4 + 44 = 50 = 32h in the frame.
+/// Composed by hand from the fields of the identity item: version 1; socket with AF_INET, port 44818 = AF12h,
+/// 192.168.1.5 and eight zeros; vendor 1010 = 03F2h, type 12, product 1, revision 1.2, status 0030h, serial number 4711
+/// = 1267h, a name of 10 characters, and state 3. The item has 2 + 16 + 14 + 1 + 10 + 1 = 44 = 2Ch bytes, and the data
+/// of the frame have 2 + 4 + 44 = 50 = 32h bytes.
 #[test]
 fn an_identity_item_is_parsed() {
     let item = "01 00 00 02 AF 12 C0 A8 01 05 00 00 00 00 00 00 00 00 F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 0A 48 49 50 \
@@ -290,15 +295,15 @@ fn an_identity_item_is_parsed() {
     assert_eq!(items.identity(), Some(&expected));
     let reply = Frame::list_identity([0; 8]).reply(&Body::List(ItemList(vec![Item::Identity(expected.clone())])));
     assert_eq!(hex(&reply.emit()), hex(&bytes(&text)));
-    // The object's attributes are the same, from the vendor on and without the state.
+    // The attributes of the identity object are the same bytes from the vendor on, without the state.
     let all = bytes(item)[18..43].to_vec();
     assert_eq!((Identity::parse_all(&all), expected.identity.emit_all()), (Ok(expected.identity.clone()), all));
     assert_eq!(expected.identity.attribute_bytes(6), Some(bytes("67 12 00 00")));
     assert_eq!(expected.identity.attribute_bytes(8), None);
 }
 
-/// By hand: C0A80105h = 192.168.1.5 and so on, low byte first; a text of three with its length in two bytes, and a byte
-/// that fills the word. The low four bits of the control are the source.
+/// Composed by hand: addresses such as C0A80105h = 192.168.1.5 with the low byte first, a name of three characters with
+/// its length in two bytes, and a byte that fills the word. The low four bits of the control are the source.
 #[test]
 fn the_interface_configuration_is_parsed() {
     let text = "05 01 A8 C0 00 FF FF FF 01 01 A8 C0 00 00 00 00 00 00 00 00 03 00 6C 61 6E 00";
@@ -323,7 +328,8 @@ fn the_interface_configuration_is_parsed() {
 
 #[test]
 fn socket_address_items_are_parsed() {
-    // By hand: 8000h, 16 bytes; family 2, port 2222 = 08AEh, 10.0.0.7, all high byte first.
+    // Composed by hand: 8000h and 16 bytes. The family is 2, the port is 2222 = 08AEh and the address is 10.0.0.7, all
+    // with the high byte first.
     let text = "02 00 00 80 10 00 00 02 08 AE 0A 00 00 07 00 00 00 00 00 00 00 00 01 80 10 00 00 02 08 AE EF 01 02 03 00 \
                 00 00 00 00 00 00 00";
     let items = ItemList::parse(&bytes(text)).unwrap();

@@ -144,7 +144,8 @@ mod tests {
         }
     }
 
-    /// The length in the header is checked. The example in the manual (reference 5) is one byte too short.
+    /// The length in the header is checked. The example printed in the manual (reference 5) is rejected, because it is
+    /// one byte too short.
     #[test]
     fn the_length_in_the_header_is_checked() {
         let printed = [0x80, 0x01, 0x01, 0x02, 0x00, 0x00, 0x7B];

@@ -300,7 +300,7 @@ mod tests {
         assert_eq!(hex(&high), "80 01 01 02 00 01 05 75");
     }
 
-    /// Reference 6.
+    /// The replies are from reference 6.
     #[test]
     fn published_replies_match() {
         let word = |word| Reply::Position(PositionWord::new(word).unwrap());

@@ -147,7 +147,7 @@ mod tests {
         assert!(receiver.is_waiting());
         assert_eq!(receiver.handle_silence(), None);
         assert!(!receiver.is_waiting());
-        // The false start hides a complete frame until then.
+        // Until then, a false start hides a complete frame.
         assert_eq!(frames(&mut receiver, &format!("80 01 01 3F 00 {VALUE} {READ}")), [""; 0]);
         assert_eq!(receiver.handle_silence().map(|frame| hex(&frame)).as_deref(), Some(VALUE));
         assert_eq!(receiver.handle_silence().map(|frame| hex(&frame)).as_deref(), Some(READ));

@@ -1,4 +1,4 @@
-//! The command `decode interbus`, which explains process data words with all meanings or with the one that options
+//! The command `decode interbus`, which explains process data words. It lists all meanings, or the one that the options
 //! select.
 
 use serde_json::{Map, Value as Json, json};

@@ -24,8 +24,8 @@ pub const WEAR_LAST: u64 = GUARANTEED_STORES as u64;
 /// Number of stores from which the EEPROM is considered worn.
 pub const WEAR_LIMIT: u64 = 450;
 
-/// Returns the number of stores up to which a plan may start without being forced. A plan with a cost of 0 causes no
-/// wear, so there is no limit for this plan.
+/// Returns the number of stores up to which a plan with this cost may start without being forced. There is no limit if
+/// the cost is 0, because such a plan causes no wear.
 pub const fn wear_limit(cost: u64) -> u64 {
     if cost == 0 { u64::MAX } else { WEAR_LIMIT - 1 }
 }
@@ -273,7 +273,7 @@ mod tests {
         };
         let cases = [
             (Some(0), 1, None),
-            // See issue 22.4.
+            // Issue 22.4: the number of earlier stores is unknown.
             (None, 1, Some(WearAfterPlan::Unknown)),
             (None, 0, None),
             (Some(148), 1, None),

@@ -22,7 +22,7 @@ pub enum CheckStep {
     InputWord,
     /// Identity of the encoder, including the plausibility of its steps and turns.
     Identity,
-    /// Read-outs, which show that the encoder receives OUT words and that its IN words return.
+    /// Read-outs, which show that the encoder receives OUT words and that its IN words arrive.
     Handshake,
     Temperature,
     Wear,

@@ -60,7 +60,7 @@ enum ExchangeError {
     Exception(Exception),
 }
 
-/// A complete frame. The error contains bytes that do not form a frame, and their damage.
+/// A complete frame, or bytes that do not form a frame together with their damage.
 type FrameResult = Result<Vec<u8>, (ReplyDamage, Vec<u8>)>;
 
 impl<'a> Gateway<'a> {

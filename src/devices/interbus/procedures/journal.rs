@@ -1,4 +1,4 @@
-//! Facts that outlive a job: the original mode of an encoder, and the store cycles that a switch of the mode may have
+//! State that outlives a job: the original mode of an encoder, and the store cycles that a switch of the mode may have
 //! used.
 
 use crate::devices::interbus::protocol::StartupMode;

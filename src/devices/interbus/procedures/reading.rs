@@ -133,7 +133,7 @@ mod tests {
         assert_eq!((word.position(), word.rpm(), word.cams()), (Some(1_193_046), None, None));
         let word = reading(0x01FF_FFC4, StartupMode::Velocity, (8192, 1), 0);
         assert_eq!((word.position(), word.rpm(), word.cams()), (None, Some(-60), None));
-        // Position 1000 = 3E8h under the window at shift 0, cams 0 and 2 on.
+        // The window with shift 0 contains position 1000 (3E8h), and cams 0 and 2 are on.
         let word = reading(0x0003_E805, cams, (3600, 1), 0);
         assert_eq!((word.position(), word.cams().map(|own| own.outputs)), (Some(1000), Some(5)));
         // The position has more bits than the window, or is shifted out of it.
@@ -145,7 +145,7 @@ mod tests {
         }
     }
 
-    /// With 1000 steps over 3 turns, turn 1 begins at 333.3, so its first step is 334.
+    /// With 1000 steps over 3 turns, turn 1 begins at step 333.3, so its first whole step is 334.
     #[test]
     fn a_position_is_split_into_turns_and_steps() {
         let place = |word| reading(word, StartupMode::K3, (1000, 3), 0).turn_position();
@@ -160,9 +160,10 @@ mod tests {
     fn swapped_words_are_detected() {
         assert_eq!(swapped_position_word(0x3456_0012), Some(0x0012_3456));
         assert_eq!(swapped_position_word(0x0012_3456), None);
-        // Stray bits in both orders prove nothing.
+        // Stray bits in both orders are not conclusive.
         assert_eq!(swapped_position_word(0x3456_3456), None);
-        // 2DC6C0h; and parameters lost, which is not a position.
+        // The first word is 2DC6C0h with swapped halves. The second one is the error word for lost parameters, which is
+        // not a position.
         assert_eq!(
             (swapped_position_word(0xC6C0_002D), swapped_word_if_unexplained(0xC6C0_002D)),
             (None, Some(0x002D_C6C0))

@@ -227,7 +227,7 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut WrittenCh
 fn trigger_preset(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     ensure_standstill(master)?;
     let gear = master.gear();
-    // One step is tolerated.
+    // A deviation of one step is tolerated.
     master.trigger_preset(|position| shortest_distance(position, value, gear) <= 1)
 }
 

@@ -34,9 +34,9 @@ pub struct Parameters {
 /// Counting direction, seen when looking at the shaft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
-    /// 3: the position increases when the shaft turns clockwise.
+    /// Value 3: the position increases when the shaft turns clockwise.
     Clockwise,
-    /// 4: the position increases when the shaft turns counterclockwise.
+    /// Value 4: the position increases when the shaft turns counterclockwise.
     Counterclockwise,
 }
 

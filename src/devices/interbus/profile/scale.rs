@@ -200,7 +200,8 @@ mod tests {
     fn degrees_and_millimetres_become_the_nearest_step() {
         let degrees = |steps, zero| Scale::in_degrees(steps, zero).unwrap();
         let millimetres = |steps, zero| Scale::in_millimetres(steps, zero).unwrap();
-        // Scale, range, value, step, how far off: 8192/360 = 22.7556; 10° are 227.56 steps, 228 steps 10.01953°.
+        // Each row contains a scale, a range, a value, the nearest step and the rounding error. 8192 / 360 is 22.7556,
+        // so 10° are 227.56 steps, and step 228 is at 10.01953°.
         for (scale, range, value, step, off) in [
             (degrees(8192.0, 0), 8192, 10.0, 228, 0.019_531_25),
             (degrees(8192.0, 0), 8192, 360.0, 0, 0.0),

@@ -21,7 +21,7 @@ pub struct Cam {
     pub stop: Value,
 }
 
-/// A program of eight cams, of which only those in the activation mask are active.
+/// A program of eight cams. Only the cams in the activation mask are active.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Program {
     /// Cams by number. Undefined cams are `None`.

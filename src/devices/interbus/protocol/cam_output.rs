@@ -13,7 +13,7 @@ pub struct CamOutput {
     pub stray: u8,
 }
 
-/// Error for a word without cam outputs, in which bit 31 is set.
+/// Error for a word that contains no cam outputs, because its bit 31 is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cam outputs are not valid in {word:08X}")]
 pub struct CamOutputError {

@@ -1,5 +1,5 @@
-//! The three classes of encoders and their identification on the bus. The words of K1 and K2, which have no commands,
-//! are also here (reference 1).
+//! The three classes of encoders, their identification codes on the bus, and the words of K1 and K2 encoders, which
+//! have no commands (reference 1).
 
 use super::value::Value;
 

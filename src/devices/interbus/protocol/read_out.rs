@@ -61,15 +61,15 @@ pub enum ReadOutValue {
 /// decimal 3 to 10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StartupMode {
-    /// 0: the encoder operates like a K2 encoder.
+    /// Code 0: the encoder operates like a K2 encoder.
     K2,
-    /// 1: the encoder operates like a K3 encoder.
+    /// Code 1: the encoder operates like a K3 encoder.
     K3,
     /// Code 2: velocity mode.
     Velocity,
     /// Codes 3 to 0Ah: cam programs 1 to 8.
     Cams(ProgramNumber),
-    /// A value that the manual does not define.
+    /// A code that the manual does not define.
     Unknown(Value),
 }
 

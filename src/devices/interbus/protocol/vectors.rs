@@ -28,7 +28,7 @@ fn program(number: u8) -> Command {
     Command::Cams(ProgramNumber::new(number))
 }
 
-/// Reference 3, 5 and 7: a command, its word, and a mode in which it has this meaning.
+/// Each row contains a command, its word, and a mode in which the word has this meaning (references 3, 5 and 7).
 #[test]
 fn published_commands_match() {
     let register = |number| Command::ReadOut(ReadOutNumber::chip_register(number).unwrap());
@@ -83,7 +83,7 @@ fn published_commands_match() {
     assert_eq!(ReadOutNumber::chip_register(16), None);
 }
 
-/// Reference 2 and 7.
+/// The IN words are from references 2 and 7.
 #[test]
 fn published_replies_match() {
     let code = |code| Code::new(code).unwrap();
@@ -124,7 +124,7 @@ fn published_replies_match() {
     assert_eq!(CamOutput::parse(0x8000_0000), Err(CamOutputError { word: 0x8000_0000 }));
 }
 
-/// Reference 3 and 7.
+/// The read-outs and their units are from references 3 and 7.
 #[test]
 fn read_outs_have_their_units() {
     let read = |read_out: ReadOutNumber, word| match Reply::parse(word) {
@@ -152,7 +152,7 @@ fn read_outs_have_their_units() {
     assert_eq!((ReadOutNumber::new(0x5D).register(), ReadOutNumber::new(0xC).register()), (Some(5), None));
 }
 
-/// Reference 6, by its numbers, as far as it is about reading and writing of bytes. 8: the echo of steps 255.
+/// The labels refer to the contradictions in reference 6 that concern words. Number 8 is the echo of 255 steps.
 #[test]
 fn contradictions_in_the_manual_are_resolved() {
     assert_eq!(id_code(Class::K3, Interface::Standard), 55, "1: 37h");
@@ -174,7 +174,7 @@ fn contradictions_in_the_manual_are_resolved() {
     assert!(matches!(Reply::parse(0xC200_00FF), Reply::Echo { .. }), "11: received");
 }
 
-/// Reference 6.3: the same word in each mode, and words that must not be sent.
+/// Reference 6.3: the mode determines the meaning of a word, and some words must not be sent.
 #[test]
 fn the_mode_determines_the_meaning_of_a_word() {
     let (zero, start) = (value(0), Command::Velocity(true));
@@ -208,7 +208,7 @@ fn the_mode_determines_the_meaning_of_a_word() {
     }
 }
 
-/// Reference 4 and 5: the echo of a cam is an assumption.
+/// The echoes are from references 4 and 5. The echo of a cam is an assumption.
 #[test]
 fn the_mode_determines_the_echo() {
     assert_eq!(Reply::parse(0xC200_00FF).echoed_command(Parameterisation), Some(set_command(P::Steps, 255)));
@@ -217,14 +217,14 @@ fn the_mode_determines_the_echo() {
     assert_eq!(Reply::parse(0xE040_0008).echoed_command(Cams), Some(Command::Activate(8)));
     assert_eq!(Reply::parse(0xC000_0000).echoed_command(Parameterisation), None);
     assert_eq!(Reply::parse(0xA000_00FF).echoed_command(Parameterisation), None);
-    // The worked example.
+    // The worked example of the reference.
     let example = [(P::Steps, 255, 0xC200_00FF), (P::Turns, 1, 0xC400_0001), (P::Direction, 3, 0xC600_0003)];
     for (parameter, number, word) in example {
         assert_eq!(Reply::echo_of(set_command(parameter, number)).emit(), word);
     }
 }
 
-/// Reference 7: positions under the window, with cam 5 on.
+/// Reference 7: the window of a position at different shifts, with cam 5 on.
 #[test]
 fn published_cam_outputs_match() {
     for (word, at) in [(0x01CD_EF20, 0), (0x01AB_CD20, 8), (0x00BC_DE20, 4), (0x0000_0020, 25)] {
@@ -233,7 +233,7 @@ fn published_cam_outputs_match() {
         assert_eq!(CamOutput::parse(word), Ok(output));
         assert_eq!(output.position_bits(shift(at)), 0x1AB_CDEF & shift(at).mask());
     }
-    // Low 17 bits, high 17 bits, none.
+    // The window contains the lowest 17 bits, the highest 17 bits, or none.
     assert_eq!([0, 8, 25].map(|at| shift(at).mask()), [0x1_FFFF, 0x1FF_FF00, 0]);
     let bits = [0, 7, 8, 24, 25, 31].map(|bit| CamOutput::bit(bit, shift(8)).unwrap());
     let expected =
@@ -243,7 +243,7 @@ fn published_cam_outputs_match() {
     assert_eq!((CamOutput::bit(32, shift(0)), WindowShift::new(26)), (None, None));
 }
 
-/// Reference 1 and 7.
+/// The identification codes are from references 1 and 7.
 #[test]
 fn classes_have_their_id_codes() {
     use Interface::{Loop2, OpticalFibre, Standard};
@@ -263,7 +263,7 @@ fn classes_have_their_id_codes() {
     assert_eq!((k1.emit(), k2.emit()), (0x1FFF, 0x0312_3456));
 }
 
-/// Reference 1.
+/// The LED states are from reference 1.
 #[test]
 fn led_states_match_the_reference() {
     use LedState::{Blinking, Off, On};
@@ -275,7 +275,7 @@ fn led_states_match_the_reference() {
     assert_eq!(says(Off, Off, Off, Off), None);
 }
 
-/// Reference 7; the wrap is an assumption there.
+/// The positions are from reference 7, where the wrap is an assumption.
 #[test]
 fn the_gear_rounds_down() {
     let cases = [
@@ -301,7 +301,7 @@ fn the_gear_rounds_down() {
     assert!(Gear::new(0x200_0000, 4096).is_err());
 }
 
-/// Reference 3: ranges, which depend on the gear.
+/// Reference 3: the limits of a parameter, some of which depend on the gear.
 #[test]
 fn parameter_limits_are_checked() {
     let gear = Gear::new(3600, 10).unwrap();
@@ -310,7 +310,7 @@ fn parameter_limits_are_checked() {
         (P::Turns, 1, 4096),
         (P::Direction, 3, 4),
         (P::Preset, 0, 3599),
-        // Issue 22.6: a position within the measuring range.
+        // Issue 22.6: the zero shift must be within the measuring range.
         (P::ZeroShift, 0, 3599),
         (P::Default, 0, 0),
     ] {
@@ -328,7 +328,7 @@ fn parameter_limits_are_checked() {
     assert_eq!(P::from_code(Code::new(6).unwrap()), None);
 }
 
-/// Reference 7: edges belong to a cam.
+/// Reference 7: a cam is also on at its edges.
 #[test]
 fn cams_are_on_between_their_edges() {
     let on = |start, stop, at| Cam { start: value(start), stop: value(stop) }.is_on(value(at));
@@ -341,7 +341,7 @@ fn cams_are_on_between_their_edges() {
     assert_eq!([0x14, 0x15, 0x213, 0x214].map(|at| program.outputs(value(at))), [0, 8, 8, 0]);
 }
 
-/// Generates cams, many of them short, at the ends of the range or across them.
+/// Generates programs in which many cams are short, at the ends of the range or across them.
 fn arbitrary_programs() -> impl Strategy<Value = [Program; 8]> {
     let edge = prop_oneof![0_u32..40, 0x1FF_FFD0_u32..=0x1FF_FFFF, 0..=0x1FF_FFFF_u32];
     let cam = (edge.clone(), edge).prop_map(|(start, stop)| Cam { start: value(start), stop: value(stop) });
@@ -370,7 +370,7 @@ proptest! {
         }
     }
 
-    /// Words that begin as those of the manual do, which any number seldom hits.
+    /// Tests words that begin like the words in the manual, which random words seldom do.
     #[test]
     fn words_near_the_manuals_round_trip(high in prop::sample::select(vec![0x2010, 0x2020, 0x2021, 0x2040, 0x2080]), low: u16) {
         let word = high << 16 | u32::from(low);
@@ -385,7 +385,7 @@ proptest! {
         prop_assert!(legal <= 1);
     }
 
-    /// The window by the reference's formula.
+    /// The window is compared with the formula of the reference.
     #[test]
     fn the_window_matches_its_formula(position in 0..=0x1FF_FFFF_u32, outputs: u8, at in 0..=25_u8) {
         let output = CamOutput::at_position(value(position), outputs, shift(at));
@@ -394,7 +394,7 @@ proptest! {
         prop_assert_eq!(output.position_bits(shift(at)), position & shift(at).mask());
     }
 
-    /// The result equals that of the plain programs: at edges, next to them and anywhere.
+    /// The outputs equal those of the original programs at all edges, next to them, and at a random position.
     #[test]
     fn compiled_programs_equal_plain_ones(programs in arbitrary_programs(), anywhere in 0..=0x1FF_FFFF_u32) {
         let compiled = CompiledPrograms::new(&programs);

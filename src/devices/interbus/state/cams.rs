@@ -142,7 +142,7 @@ impl Lane {
 }
 
 impl OutputState {
-    /// Returns whether the output reported by the encoder differs from that of the program.
+    /// Returns whether the encoder reports a different output than the program.
     pub fn is_mismatch(self) -> bool {
         self.simulated.zip(self.own).is_some_and(|(simulated, own)| simulated != own)
     }

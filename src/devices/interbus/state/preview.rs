@@ -85,7 +85,7 @@ mod tests {
         for (position, outputs) in [(14, 0), (15, 8), (213, 8), (214, 0)] {
             preview.compare(&reading(2, position, outputs));
         }
-        // Another program is not known.
+        // Other programs are unknown.
         preview.compare(&reading(1, 15, 0));
         assert_eq!((preview.same, preview.other), (4, 0));
         preview.compare(&reading(2, 214, 8));

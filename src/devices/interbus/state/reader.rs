@@ -111,7 +111,7 @@ mod tests {
             lines.map(|line| line.meaning.unwrap_or_else(|why| why).to_string_in(Language::English)).collect()
         };
         let of = |way| Reading { source: way, ..Reading::default() };
-        // Reference 7.
+        // The word is from reference 7.
         assert_eq!(says(of(WordSource::K1), "0FFF"), ["position 4095"]);
         assert_eq!(says(of(WordSource::In), "0x00123456, C0000000"), ["position 1193046", "busy"]);
         assert_eq!(says(of(WordSource::Out), "080003e8h"), ["Preset value := 1000"]);

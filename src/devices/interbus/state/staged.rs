@@ -3,8 +3,8 @@
 //!
 //! Every edit creates a complete new state, to which undo can return. Edits are kept if the encoder is read again. In
 //! all states of the history, the other values are updated from the encoder. A cam program cannot be edited before it
-//! has been read, since the cost of a change is unknown, and earlier edits of it wait until it is read. A profile can
-//! gain values that it did not contain.
+//! has been read, because the cost of a change would be unknown. Earlier edits of such a program are kept until it is
+//! read. A profile can gain values that it did not contain.
 //!
 //! Positions are in steps, from 0 to the measuring range minus one.
 

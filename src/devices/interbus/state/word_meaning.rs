@@ -181,7 +181,7 @@ mod tests {
         for (word, mode, says) in [
             (0x0012_3456, EncoderMode::Position, "position 1193046"),
             (0xC000_0000, EncoderMode::Position, "busy"),
-            // −60 in 25 bits.
+            // −60 as a number of 25 bits.
             (0x01FF_FFC4, EncoderMode::Velocity, "speed -60 rpm"),
             (0xC200_00FF, EncoderMode::Parameterisation, "echo of: Steps := 255"),
             (0x01CD_EF20, EncoderMode::Cam, "cams on: 5; window 0x001CDEF"),

@@ -1,5 +1,5 @@
-//! Problems of the edited values, shown below every page so that they do not move anything clickable. An edit on one
-//! page may cause problems on another, such as cams beyond a shorter measuring range.
+//! Problems of the edited values, shown below every page so that buttons and entries do not move. An edit on one page
+//! may cause problems on another, such as cams beyond a shorter measuring range.
 
 use egui::{RichText, Ui};
 

@@ -1,5 +1,5 @@
-//! The layout given by `--layout`: a profile file, a family with its settings, any frame in one word, or a LinuxCNC
-//! format string.
+//! The layout given by `--layout`: a profile file, a family with its settings, a description of the frame in one word,
+//! or a LinuxCNC format string.
 
 use std::path::Path;
 

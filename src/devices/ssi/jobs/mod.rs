@@ -24,7 +24,7 @@ pub struct Ssi {
     wire: Box<dyn ByteLink>,
     station: Station,
     motor: Option<Motor>,
-    /// Interval between streamed words in microseconds, or `None` if words are requested singly.
+    /// Interval between streamed words in microseconds, or `None` if words are requested one at a time.
     streamed_us: Option<u32>,
 }
 
@@ -47,7 +47,7 @@ pub enum SsiOutput {
     Check(Vec<check::SsiStepResult>),
 }
 
-/// Step of a job. The only step is the reading of words.
+/// A step of a job, which is always the reading of words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JobStep;
 
@@ -105,10 +105,10 @@ impl Device for Ssi {
     type Job = SsiJob;
     type Output = SsiOutput;
     type Error = JobError;
-    /// No values exist, because SSI encoders only send words.
+    /// SSI encoders send only words, so there are no messages.
     type DeviceMessage = Infallible;
     type Sample = Words;
-    /// No values exist, because SSI encoders only send words.
+    /// SSI encoders send only words, so there is nothing else to watch.
     type Watch = Infallible;
     type JobStep = JobStep;
 

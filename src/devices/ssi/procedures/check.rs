@@ -44,7 +44,7 @@ pub enum CheckFinding {
         taken: u64,
         different: usize,
     },
-    /// A finding about the words, with the number of words affected.
+    /// A finding that occurs in `count` words.
     Said {
         finding: Said,
         count: u64,
@@ -54,11 +54,11 @@ pub enum CheckFinding {
     Silent,
     Stands {
         position: u64,
-        /// Maximum distance of a position from the first one, in steps.
+        /// Largest distance between the first position and any other one, in steps.
         steps: u64,
     },
     Turns {
-        /// Maximum distance between consecutive positions in steps, in the shorter direction.
+        /// Largest distance between consecutive positions in steps, measured in the shorter direction.
         most: u64,
     },
 }
@@ -163,7 +163,7 @@ fn check_supply(identity: &Identity) -> SsiStepResult {
     SsiStepResult { step: CheckStep::Supply, verdict, findings: vec![finding] }
 }
 
-/// Evaluates the changes of position from word to word. Distances are measured in the shorter direction.
+/// Evaluates the motion of the shaft from the distances between positions, which are measured in the shorter direction.
 fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
     let all = u128::from(layout.position_code().last_position()) + 1;
     let apart = |one: u64, other: u64| {
@@ -217,7 +217,7 @@ mod tests {
 
     use Verdict::{Attention, Bad, Good};
 
-    /// AFS60 of reference section 8 with 18 binary bits, and ERRDIG, ERRSI and ERRSYNC on the last clocks.
+    /// Frames of an AFS60 from reference section 8: 18 binary bits, with ERRDIG, ERRSI and ERRSYNC on the last clocks.
     #[test]
     fn words_are_judged_step_by_step() {
         let layout = layout("afs60");
@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn a_wrong_layout_is_bad() {
-        // Zeros after 12 bits in the 14 of an AHS36, where the encoder sends bits.
+        // The layout expects zeros after 12 bits, but the AHS36 sends 14 position bits.
         let words = [0x2A5B << 1, 0x2A5C << 1, 0x2A5F << 1];
         let lines = check_words(&identity(400_000, None), &layout("ahs36,st=12"), &words);
         assert_eq!(lines[3].verdict, Bad);

@@ -26,7 +26,7 @@ pub struct Master<'a> {
 }
 
 impl<'a> Master<'a> {
-    /// Creates a master for one job. The time limit for retries starts again.
+    /// Creates a master for one job, and restarts the time limit for retries.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         Master { line: SerialLine::new(ctx), station }
@@ -94,8 +94,8 @@ impl<'a> Master<'a> {
     /// interval is used.
     ///
     /// # Errors
-    /// Returns an error from [`identify`](Self::identify) if the stream cannot be started. Later, an error of the
-    /// adapter ends the stream, but the stream continues after a cancellation.
+    /// Returns an error of [`identify`](Self::identify) if the stream cannot be started. An error of the adapter ends a
+    /// running stream, whereas a cancellation does not.
     pub fn next_words(&mut self, period_us: u32) -> Result<Words, Error> {
         let streamed = StreamKind::Ssi { period_us };
         if self.station.flow.as_ref().is_none_or(|flow| flow.stream_kind() != streamed) {
@@ -220,7 +220,8 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Executes `once` until a reply arrives or no retry is left. The operation must allow repeated execution.
+    /// Calls `once` until a reply arrives or no attempt is left. The operation must have the same effect if it is
+    /// repeated.
     fn with_retries<T>(&mut self, mut once: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Error> {
         let longest = 2 * (REPEAT_AFTER + self.station.line.margin);
         let mut tries = 0;
@@ -244,7 +245,8 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Marks the adapter as not configured, because it may have been reset. A cancellation has no effect.
+    /// Marks the adapter as not configured after an error, because it may have been reset. A cancellation is not such
+    /// an error.
     fn handle_possible_reset(&mut self, error: Error) -> Error {
         if error != Error::Cancelled {
             self.station.forget_settings();

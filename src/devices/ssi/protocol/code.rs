@@ -165,7 +165,7 @@ mod tests {
 
     use super::*;
 
-    /// Reference section 8, "Gray".
+    /// The code words are from reference section 8, "Gray".
     #[test]
     fn gray_words_match_the_reference() {
         let pairs = [
@@ -182,7 +182,7 @@ mod tests {
         assert_eq!(gray_to_binary(0xFF_FFFE), 0xAA_AAAB);
     }
 
-    /// Column Graycode, 0 to 15, of the table in section 2.4 of the manual.
+    /// The code words are from the column "Graycode", 0 to 15, in section 2.4 of the manual.
     #[test]
     fn gray_words_match_the_manual() {
         let table = [0, 1, 3, 2, 6, 7, 5, 4, 12, 13, 15, 14, 10, 11, 9, 8];
@@ -191,7 +191,7 @@ mod tests {
         }
     }
 
-    /// Table of reference section 2 with the columns N, n, code(0), code(1), code(N/2), code(N−1).
+    /// The table is from reference section 2, with the columns N, n, code(0), code(1), code(N/2) and code(N−1).
     #[test]
     fn gray_excess_matches_the_reference() {
         let table = [
@@ -214,7 +214,7 @@ mod tests {
         }
     }
 
-    /// Error cases of reference section 8.
+    /// The invalid words are from reference section 8.
     #[test]
     fn words_outside_gray_excess_are_refused() {
         let coding = PositionCode::new(Code::GrayExcess, 9).unwrap();

@@ -1,4 +1,5 @@
-//! Description of a frame: the content of each clock. A description may be contradictory; [`super::Layout`] checks it.
+//! Description of a frame: the content of each clock. A description may be contradictory until [`super::Layout`] has
+//! checked it.
 
 use serde::Deserialize;
 

@@ -136,8 +136,8 @@ fn frame_bits(levels: &[LineLevels], run: &[Edge], half: f64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Appends the levels of both lines during a transfer of the given bits, as in reference section 1. Returns the end
-    /// of the transfer; `half` is the half period in µs.
+    /// Appends the levels of both lines during a transfer of the given bits, as in reference section 1, and returns the
+    /// end of the transfer. `half` is half a clock period in µs.
     fn transfer(levels: &mut Vec<LineLevels>, begins: f64, bits: &str, half: f64) -> f64 {
         let mut put = |at: f64, clock, data| levels.push(LineLevels { at: at * 1e-6, clock, data });
         let mut data = true;
@@ -165,13 +165,13 @@ mod tests {
         levels
     }
 
-    /// Frame of an AHM36 with MT 123h and ST 2A5Bh in Gray (reference section 8).
+    /// Frame of an AHM36 in Gray code with MT 123h and ST 2A5Bh (reference section 8).
     const GRAY: &str = "000110110010011111011101100";
     const INVERSE: &str = "111001001101100000100010011";
 
     #[test]
     fn bits_are_sampled_as_the_host_does() {
-        // 400 kHz, 2 MHz, and 25 kHz, where half a period is longer than tm.
+        // The clock frequencies are 400 kHz, 2 MHz and 25 kHz. At 25 kHz, half a period is longer than tm.
         for (half, pause) in [(1.25, 30.0), (0.25, 30.0), (20.0, 200.0)] {
             let found = extract_frames(&recording(&[GRAY, INVERSE, GRAY], half, pause)).unwrap();
             assert_eq!(
@@ -179,7 +179,7 @@ mod tests {
                 ExtractedFrames { clocks: 27, frames: vec![0x0D9_3EEC, 0x726_C113, 0x0D9_3EEC], left_out: 0 }
             );
         }
-        // The last bit is 1 and the line falls half a period later; one clock alone.
+        // Each burst has a single clock. After the last bit, which is 1, the data line falls half a period later.
         assert_eq!(extract_frames(&recording(&["1", "0", "1"], 1.0, 30.0)).unwrap().frames, [1, 0, 1]);
     }
 

@@ -24,7 +24,7 @@ pub enum Role {
     Again(u8),
 }
 
-/// A clock of a frame with its bit.
+/// One clock of a frame, with its content and its bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
     /// Clock number, starting at 1.

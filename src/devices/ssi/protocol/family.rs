@@ -53,7 +53,8 @@ pub struct Family {
     /// Whether the position can be delayed by one clock.
     #[serde(default)]
     pub shift: bool,
-    /// Frames in the order of the width of the position. The first frame with enough room for the position is used.
+    /// Frames in ascending order of their maximum position width. The first one with enough room for the position is
+    /// used.
     pub frames: Vec<Frame>,
     /// Words that have a special meaning and are not a position.
     #[serde(default)]
@@ -184,7 +185,7 @@ pub enum FamilyProblem {
     Delivered(SettingsError),
 }
 
-/// All known families.
+/// The known encoder families.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Families(Vec<Family>);
 
@@ -229,7 +230,7 @@ impl Family {
     }
 }
 
-/// Returns line and column of the first line that begins with `entry`. Both are counted from 1, and both are 1 if there
+/// Returns the line and the column of the first line that begins with `entry`, both counted from 1. Both are 1 if there
 /// is no such line.
 fn location_of_entry(text: &str, entry: &str) -> (usize, usize) {
     let lines = text.lines().enumerate();
@@ -256,8 +257,8 @@ impl Families {
         ("kh53.ron", include_str!("../../../../assets/devices/ssi/kh53.ron")),
     ];
 
-    /// Parses family files, given by name and content. Returns an error for each invalid file; the other files are
-    /// still used.
+    /// Parses family files from their names and contents. Invalid files are skipped, and an error is returned for each
+    /// of them.
     pub fn read<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> (Self, Vec<FamilyError>) {
         let mut errors = Vec::new();
         let mut read = Vec::new();
@@ -276,7 +277,7 @@ impl Families {
         Self::read(Self::BUILT_IN).0
     }
 
-    /// Returns these families and `others`. A family of `others` replaces a family with the same key.
+    /// Returns these families together with `others`. A family in `others` replaces a family with the same key.
     #[must_use]
     pub fn merged_with(self, others: Families) -> Self {
         let mut all = others.0;

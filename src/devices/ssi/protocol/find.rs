@@ -36,13 +36,12 @@ const MIN_DIFFERENT_FRAMES: usize = 32;
 const CLASSES: usize = 6;
 /// Penalty in bits for each setting that makes a class less common. It applies once for the whole recording.
 const WEIGHT_BITS: f64 = 8.0;
-/// Maximum difference between the weight of a class member and that of the most probable member. Less probable members
-/// are omitted.
+/// Maximum difference in weight between a class member and the most probable member. Less probable members are omitted.
 const MAX_EXTRA_WEIGHT: f64 = 8.0;
 /// Minimum number of frames per thousand in which two readings must agree to be considered the same.
 const SAME_PERMILLE: usize = 995;
-/// Maximum information in bits over all frames by which a reading may exceed the best one. Readings with more
-/// information are not searched for families.
+/// Maximum excess of a reading's information over that of the best reading, in bits over all frames. Readings with a
+/// larger excess are not compared with families.
 const NEAR_BITS: f64 = 300.0;
 
 /// Result of a search for layouts.
@@ -55,7 +54,7 @@ pub struct Search {
     /// Reason why the first class is uncertain. It is `None` if every bit is explained and no other class fits equally
     /// well.
     pub doubt: Option<SearchUncertainty>,
-    /// Classes of possible layouts, with the best first. The list may be empty.
+    /// Classes of possible layouts, best first. The list may be empty.
     pub classes: Vec<Class>,
 }
 
@@ -81,8 +80,8 @@ pub enum SearchUncertainty {
 /// Class of layouts that the recorded frames cannot distinguish.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Class {
-    /// Members of the class, with the most probable first. Factory settings come before changed ones, and usual widths
-    /// before unusual ones.
+    /// Members of the class, most probable first. Factory settings come before changed ones, and usual widths before
+    /// unusual ones.
     pub members: Vec<LayoutProposal>,
     /// Evidence for the class.
     pub evidence: ClassEvidence,
@@ -238,7 +237,8 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     search(doubt, verdict::merge_classes(&words, groups))
 }
 
-/// Returns whether two readings result in the same motion. The motion may be reversed, or have steps of half the size.
+/// Returns whether two readings result in the same motion. The motion may be reversed, or its steps may differ by a
+/// small power of two.
 fn is_same_motion(one: &Motion, other: &Motion) -> bool {
     let halvings = |motion: &Motion| {
         let steps =

@@ -126,7 +126,7 @@ mod tests {
         tally.finding_counts().iter().map(row).collect()
     }
 
-    /// Frames of an AFS60 from reference section 8, with 18 bits of position followed by ERRDIG, ERRSI and ERRSYNC.
+    /// Frames of an AFS60 from reference section 8, with 18 position bits followed by ERRDIG, ERRSI and ERRSYNC.
     #[test]
     fn cleared_errors_count_per_frame_and_static_ones_once() {
         let layout = layout("afs60");
@@ -154,7 +154,7 @@ mod tests {
             tally.count_findings(&kh53, kh53.decode(frame), at(number));
         }
         assert_eq!(rows(&tally), [("overspeed or gap".to_owned(), 2, 1, 4, true)]);
-        // ATM60 with 8 of 12 turn bits in tree format. The zeros before them are received as ones.
+        // An ATM60 in tree format with 8 of 12 turn bits. One of the zeros before them is received as a 1.
         let tree = layout("atm60,mt=8,st=8");
         let mut tally = FindingCounts::default();
         tally.count_findings(&tree, tree.decode(0x14A_780 | 1 << 24), at(0));

@@ -1,5 +1,6 @@
 //! Notation of any frame as one word for the command line, such as
-//! `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. Names and patterns are not included; they require a profile.
+//! `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. Names and patterns are not included, because they require a
+//! profile.
 
 use super::code::Code;
 use super::descriptor::{BitMeaning, ErrorBit, FrameDescriptor, GrayCoverage, Parity, Repeat};
@@ -172,14 +173,14 @@ mod tests {
         FrameDescriptor::parse(text).unwrap().unwrap()
     }
 
-    /// Reference section 8: AHM36 in Gray is 12 and 14 bits followed by an error bit.
+    /// Reference section 8: an AHM36 in Gray code has 12 and 14 position bits followed by an error bit.
     #[test]
     fn one_word_specifications_parse() {
         let layout = Layout::new(frame("frame,clocks=27,mt=12,st=14,code=gray,err=27,area=26")).unwrap();
         assert_eq!(layout.decode(0x0D9_3EEC).position, 0x123 << 14 | 0x2A5B);
         let inverted = Layout::new(frame("frame,clocks=27,mt=12,st=14,code=gray,err=27,inverted=1,area=26")).unwrap();
         assert_eq!(inverted.decode(!0x0D9_3EEC & 0x7FF_FFFF).position, 0x123 << 14 | 0x2A5B);
-        // A start bit, 4 bits and odd parity, repeated after a zero.
+        // A frame with a start bit, 4 position bits and odd parity, which is repeated after a zero.
         let twice = Layout::new(frame("frame,clocks=13,lead=1,st=4,ones=1,parity=odd@6,repeat=6+1,area=5")).unwrap();
         let reading = twice.decode(0b1_1001_0011_0010);
         assert_eq!(reading.position, 0b1001, "1 1001 1, 0, and again");

@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn bits_and_numbers_parse() {
-        // Reference section 8: AHS36 2A5B.
+        // Frame of an AHS36 at position 2A5Bh (reference section 8).
         for text in ["101010010110110", "0b1010100_10110110", "1010 1001 0110 110", "0x54B6", "0X54b6", "0x000054B6"] {
             assert_eq!(parse_frame(text, 15), Ok(0x54B6), "{text}");
         }

@@ -275,7 +275,7 @@ fn angle_degrees(steps: u64, per_turn: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Reference section 5: 100 steps over 12.5 turns of 8192 steps, and 3600 steps over one turn.
+    /// Reference section 5: 100 steps over 12.5 turns of 8192 steps each, and 3600 steps over one turn.
     #[test]
     fn positions_convert_to_turns_and_degrees() {
         let axis = Range::RoundAxis { steps: 100, revolutions: Fraction { numerator: 25, denominator: 2 } };
@@ -283,7 +283,8 @@ mod tests {
             assert_eq!(axis.position_from_shaft(raw, 8192), position, "{raw}");
         }
         assert_eq!(Range::Steps { per_turn: 3600, turns: 1 }.position_from_shaft(4096, 8192), 1800);
-        // Turn 1234h and 270° of 2^17: the lowest 12 bits of the turns, three quarters of 2^13.
+        // The shaft is at 270° of turn 1234h and has 2^17 steps per turn. The position contains the lowest 12 bits of
+        // the turns and three quarters of 2^13 steps.
         let bits = Range::Bits { multiturn: 12, singleturn: 13 };
         assert_eq!(bits.position_from_shaft(0x1234 << 17 | 0x18000, 1 << 17), 0x234 << 13 | 0x1800);
         assert_eq!(Range::Bits { multiturn: 0, singleturn: 18 }.position_from_shaft(0x18000, 1 << 17), 0x30000);
@@ -292,7 +293,8 @@ mod tests {
         assert_eq!(most.position_from_shaft(u64::MAX, 1 << 32), u64::MAX);
     }
 
-    /// Expected values calculated by hand for 360 steps on a shaft with 4096, and for the round axis of the reference.
+    /// The expected values were calculated by hand for 360 steps on a shaft with 4096 steps, and for the round axis of
+    /// the reference.
     #[test]
     fn direction_and_preset_transform_positions() {
         use Direction::{Clockwise, CounterClockwise};

@@ -28,11 +28,11 @@ pub struct Times {
     pub any_steps: Option<AnySteps>,
 }
 
-/// Times of asynchronous operation, in which the encoder takes positions independently of the transfers.
+/// Times of asynchronous operation, in which the encoder samples positions independently of the transfers.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AsynchronousTimes {
-    /// Time from one position to the next, in microseconds.
+    /// Interval between two positions, in microseconds.
     pub update: f64,
     /// Minimum age of a position at the time of reading, in microseconds.
     #[serde(default)]
@@ -45,11 +45,11 @@ pub struct AsynchronousTimes {
     pub pause_varies: Option<f64>,
 }
 
-/// Times of synchronous operation, in which the host's clock makes the encoder take a position.
+/// Times of synchronous operation, in which the clock of the host triggers the sampling of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SynchronousTimes {
-    /// Moment at which a position is taken.
+    /// Moment at which a position is sampled.
     pub taken: SamplingMoment,
     /// Monoflop time tm in this mode in microseconds, if it differs.
     #[serde(default)]
@@ -65,14 +65,14 @@ pub struct SynchronousTimes {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SamplingMoment {
-    /// The position is taken a certain time after the last clock.
+    /// The position is sampled a certain time after the last clock.
     Behind {
-        /// Time from the last clock until the position is taken, in microseconds.
+        /// Time from the last clock until the position is sampled, in microseconds.
         starts: f64,
-        /// Time from then until the position is ready, in microseconds.
+        /// Time from the sampling until the position is ready, in microseconds.
         ready: f64,
     },
-    /// The position is taken at the first falling edge, and is sent in the next burst.
+    /// The position is sampled at the first falling edge, and is sent in the next burst.
     FirstEdge,
 }
 
@@ -80,7 +80,7 @@ pub enum SamplingMoment {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AnySteps {
-    /// Time from one position to the next in asynchronous mode, in microseconds.
+    /// Interval between two positions in asynchronous mode, in microseconds.
     pub update: f64,
     /// Monoflop time tm and minimum pause in synchronous mode, in microseconds.
     pub monoflop: f64,
@@ -103,7 +103,7 @@ pub struct ReadConditions {
     pub any_steps: bool,
 }
 
-/// Times that result from the conditions of reading.
+/// Times that result from the reading conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
     /// Duration of a clock period.
@@ -158,7 +158,7 @@ pub enum Warning {
     },
     /// Frames are read faster than the encoder samples positions, so some positions are read several times.
     Repeats {
-        /// Time from one position to the next.
+        /// Interval between two positions.
         update: Duration,
     },
     /// The family has no synchronous mode.

@@ -124,7 +124,7 @@ mod tests {
         let read = InjectedFault::read("errsi:4, ERRSYNC , Safety-Fault", &safe).unwrap();
         let flags: Vec<Flags> = read.iter().map(InjectedFault::set_flag).collect();
         assert_eq!(flags, [Flags::error(1), Flags::error(2), Flags::NONE]);
-        // 21 clocks.
+        // The word has 21 clocks.
         assert_eq!(read[2].sent_word(), Some(0x1F_FFFF));
         assert_eq!(InjectedFault::read("overspeed-or-gap", &layout("kh53")).unwrap()[0].sent_word(), Some(0xFF_FFFE));
         assert_eq!(InjectedFault::read("", &safe), Some(Vec::new()));

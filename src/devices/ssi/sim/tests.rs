@@ -20,8 +20,8 @@ fn read(query: &str) -> Result<(), ConfigError> {
     AttachableEncoder::DEFAULT_ADAPTER.attach_device(&query_pairs(query)).map(|_| ())
 }
 
-/// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of those within a
-/// turn.
+/// The shaft is at 270.0° of turn 1234h. The SSI position contains the lowest 12 bits of the turns and the highest 13
+/// bits of the steps.
 #[test]
 fn words_follow_code_preset_and_direction() {
     let natural = 0x234 << 13 | 0x1800;
@@ -58,7 +58,7 @@ fn invalid_values_are_reported() {
     let sentence = "`ssi-error=ERRDIG` is not valid (allowed: ERROR, separated by commas; append :SECONDS to make an \
                     error recur)";
     assert_eq!(read("ssi=ahm36&ssi-error=ERRDIG").unwrap_err().to_string(), sentence);
-    // The order of the two does not matter.
+    // The order of the two settings does not matter.
     assert_eq!(read("ssi-error=ERRDIG&ssi=ahm36").unwrap_err().to_string(), sentence);
     assert_eq!(read("ssi-error=error:2&ssi=ahm36,st=12"), Ok(()));
     let none = read("ssi-error=ERROR").unwrap_err().to_string();
@@ -73,7 +73,7 @@ proptest! {
     }
 }
 
-/// At 60 rpm a revolution of 2^13 steps takes a second; the encoder needs no other device to be turned.
+/// At 60 rpm, a revolution of 2^13 steps takes a second. The shaft turns even if no other device is attached.
 #[test]
 fn the_encoder_turns_without_other_devices() {
     let mut host = Host::to("ssi=atm60,code=binary&rpm=60", &[&AttachableEncoder::DEFAULT_ADAPTER]);

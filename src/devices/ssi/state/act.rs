@@ -104,7 +104,7 @@ impl Encoder {
 
     fn start_trial(&mut self, with: TrialInput) {
         let layout = self.designer.layout();
-        // If the word read last is displayed, the trial starts with it.
+        // If the last word read is displayed, the trial starts with it.
         if self.is_showing_live()
             && let Some(word) = self.record.last().map(|seen| seen.word)
         {

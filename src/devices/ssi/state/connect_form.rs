@@ -98,7 +98,7 @@ impl SsiForm {
         [Settings::entries(), bridge::entries()].concat()
     }
 
-    /// Returns the parameter for the supply of the encoder, and the other link parameters.
+    /// Returns the entries for the supply of the encoder, and those for the other link parameters.
     pub fn link_entries() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| own.key == "voltage")
     }
@@ -150,7 +150,7 @@ mod tests {
             "sim:?ssi=ahm36,code=gray&rpm=-60&fault=drop:0.01&clock=1000000",
             "bridge:/dev/ttyACM0",
             "bridge:/dev/ttyACM0?voltage=24&margin=200",
-            // Issue 22.16: a value other than that of the check box stays in the link.
+            // Issue 22.16: a value that the check box cannot represent stays in the link.
             "bridge:/dev/ttyACM0?voltage=24&leave-supply=on",
             "bridge:/dev/ttyACM0?voltage=24&leave-supply=off",
             "bridge:tcp:adapter:5000?clock=1500000&pause=30",

@@ -21,7 +21,7 @@ pub struct Encoder {
     pub session: Session<Ssi>,
     pub designer: LayoutDesigner,
     pub trial: TrialFrame,
-    /// Whether the word read last is displayed instead of the trial frame.
+    /// Whether the last word read is displayed instead of the trial frame.
     pub(super) follows: bool,
     pub record: Record,
     pub hunt: SearchState,
@@ -59,8 +59,8 @@ impl Encoder {
         self.designer.design()
     }
 
-    /// Returns the displayed frame. This is the word read last if there is one and it is to be displayed, and the trial
-    /// frame otherwise.
+    /// Returns the displayed frame: the last word read if it is available and selected for display, or else the trial
+    /// frame.
     pub fn displayed_frame(&self) -> Decoded {
         let live = || self.record.last().and_then(|seen| seen.decoded.clone());
         self.is_showing_live().then(live).flatten().unwrap_or_else(|| self.trial.decode(self.designer.layout()))

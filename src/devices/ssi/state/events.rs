@@ -24,7 +24,7 @@ impl Kind for Ssi {
     const KIND: &'static str = KIND;
     type Edits = Drafts;
     type SessionHandle = Option<Motor>;
-    /// No values exist, because nothing is written to an SSI encoder.
+    /// Nothing is written to an SSI encoder, so there is nothing to review.
     type Review = Infallible;
 
     fn session_handle(session: &Session<Self>) -> Option<Motor> {

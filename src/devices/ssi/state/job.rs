@@ -1,4 +1,4 @@
-//! Names of the jobs.
+//! Names of the jobs of an SSI encoder.
 
 use crate::app::Text;
 use crate::devices::ssi::jobs::SsiJob;

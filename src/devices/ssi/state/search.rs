@@ -145,7 +145,7 @@ fn parse_table(text: &str, clocks: u8) -> Option<Result<Frames, Text>> {
 }
 
 fn parse_frames(text: &str, clocks: u8) -> Result<Frames, Text> {
-    // Column of the frames and number of bits, once a line has shown them.
+    // Column of the frames and their number of bits, once a line has shown them.
     let mut own: Option<(usize, u8)> = None;
     let mut are_numbers = false;
     let mut frames = Vec::new();

@@ -170,8 +170,8 @@ impl BurstDiagram {
         (comes(field.first), comes(field.last + 1).min(self.timing.burst.as_secs_f64()))
     }
 
-    /// Returns three times in seconds. The data line goes low at the first time, after the bits, and goes high again
-    /// between the second and the third. It goes high with the next burst at the latest.
+    /// Returns three times in seconds. After the bits, the data line goes low at the first time. It returns high
+    /// between the second and the third, or with the next burst at the latest.
     pub fn low_times(&self) -> (f64, f64, f64) {
         let (burst, cycle) = (self.timing.burst.as_secs_f64(), self.timing.cycle.as_secs_f64());
         let (least, most) = self.timing.monoflop;

@@ -1,4 +1,4 @@
-//! The search page. It shows the layouts that fit the frames read last, or the frames in a file. Results are ranked and
+//! The search page. It shows the layouts that fit the last frames read, or the frames in a file. Results are ranked and
 //! explained. Layouts that the frames cannot distinguish form a class, with the motion that would distinguish them.
 
 use egui::{RichText, Ui};

@@ -1,4 +1,4 @@
-//! The trial frame. The user can enter a position to see its bits, or bits to see their position. The word read last
+//! The trial frame. The user can enter a position to see its bits, or bits to see their position. The last word read
 //! can be used as well.
 
 use egui::{RichText, Ui};
@@ -146,7 +146,7 @@ fn bits_ui(
         });
     });
     let mut text = view.bits.take().unwrap_or_else(|| own.clone());
-    // The frame around the entry adds its own width to that of the text.
+    // The frame around the entry adds its own width to the width of the text.
     let width = (ui.available_width() - 18.0).max(0.0);
     let response = mono_entry(ui, theme, &mut text, width, &word, "");
     if response.has_focus() {

@@ -9,7 +9,7 @@ use crate::sim::setting::query_pairs;
 use crate::sim::{ByteDevice, ConfigError, Motor, RPM, SimulatedFaults};
 use crate::units::Moment;
 
-/// Host of the adapter.
+/// The host of the adapter.
 pub(crate) struct Host {
     pub(crate) adapter: Adapter,
     pub(crate) receiver: Receiver,
@@ -89,13 +89,13 @@ impl Host {
     }
 }
 
-/// Shaft with a position of 35 bits, 17 of them within a revolution, followed by six other bits. Its registers store
-/// what is written. It is at 270° of turn 1234h, and needs half a second to start.
+/// A BiSS device with a position of 35 bits, 17 of them within a revolution, followed by six other bits. Its registers
+/// store any value that is written. Its shaft is at 270° of turn 1234h, and the device needs half a second to start.
 pub(crate) struct Dial {
     motor: Motor,
     revolutions: f64,
     now: Moment,
-    /// When it has started; `None`: without power.
+    /// Time at which the device has started, or `None` if its power is off.
     ready: Option<Moment>,
     registers: [u8; 0x80],
 }

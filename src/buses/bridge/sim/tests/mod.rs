@@ -22,7 +22,7 @@ fn the_adapter_identifies_itself() {
     assert_eq!((hello.max_clock_hz, hello.max_sample_hz), (10_000_000, 1_000_000));
     host.refuses(Request::Supply { on: true, millivolt: 8000 }, ErrorCode::NOT_SUPPORTED);
     host.refuses(Request::UartConfig { baud: 9600, parity: 2, turnaround_us: 0 }, ErrorCode::NOT_SUPPORTED);
-    // An unknown operation.
+    // The operation is unknown.
     host.adapter.on_bytes(host.now, &Packet { seq: 9, op: 0x55, body: vec![] }.emit());
     let messages = host.receive(host.now + Duration::from_millis(1));
     let text = "this adapter has no such thing".to_owned();
@@ -58,7 +58,8 @@ fn damaged_wires_are_reported() {
     }
 }
 
-/// 47 cycles of 47 µs (7 of acknowledge, 22 of clocks, 18 of time-out), and the transmission of the bytes.
+/// In addition to the usual reply time, a register access takes 47 cycles of 47 µs (7 µs for the acknowledgement, 22 µs
+/// for the clocks and 18 µs for the time-out).
 #[test]
 fn a_register_access_takes_the_expected_time() {
     let mut host = Host::with("");
@@ -98,7 +99,8 @@ fn a_stream_blocks_its_bus() {
     assert_eq!(host.stream(100), []);
 }
 
-/// 1024 periods in a revolution, 60 revolutions per minute, 0.5 V of amplitude, 1.25 V of full scale.
+/// The full scale is 1.25 V. The encoder has 1024 periods per revolution, turns at 60 rpm and has an amplitude of 0.5
+/// V.
 #[test]
 fn analog_samples_match_the_virtual_encoder() {
     let mut host = Host::with("rpm=60");
@@ -114,7 +116,7 @@ fn analog_samples_match_the_virtual_encoder() {
         samples.extend(data.samples);
     }
     assert!(samples.len() > 101_000);
-    // 0.5 V of 1.25 V are 13 107 of 32 767; 0.5 mV of noise are 13.
+    // 0.5 V of 1.25 V is 13 107 of 32 767, and 0.5 mV of noise is 13.
     let near = |value: i16, expected: f64| (f64::from(value) - expected).abs() < 100.0;
     assert!(near(samples[0].0, 0.0) && near(samples[0].1, 13_106.8));
     for (index, (sine, cosine)) in samples.iter().enumerate() {
@@ -129,7 +131,7 @@ fn analog_samples_match_the_virtual_encoder() {
     host.refuses(Request::AnalogConfig { sample_hz: 1_000_001 }, ErrorCode::BAD_ARGUMENT);
 }
 
-/// The word of the test encoder has 13 bits per revolution: a quarter of one is 2048.
+/// The word of the test encoder has 13 bits per revolution, so a quarter of a revolution is 2048 steps.
 #[test]
 fn without_a_biss_encoder_the_adapter_has_a_shaft() {
     let mut host = Host::to("rpm=60&supply=switched", &[&SsiTestEncoder]);
@@ -224,7 +226,8 @@ fn the_adapter_answers_after_a_flood_of_requests() {
     host.expect(read, Reply::BissRegisterRead { value: 0x61 });
 }
 
-/// A host that sleeps for ten seconds loses the samples that the adapter cannot store, which is reported.
+/// If the host sleeps for ten seconds, the samples that the adapter cannot store are lost, and their number is
+/// reported.
 #[test]
 fn unfetched_samples_are_lost_and_reported() {
     let mut host = Host::with("");

@@ -11,10 +11,10 @@ use crate::devices::interbus::protocol::{Command, ReadOutNumber, Reply, StartupM
 /// Time limit for a requested cam value to disappear after 00000000h. After it, 80000000h is sent (`U`: not
 /// documented).
 const VALUE_CLEAR_TIMEOUT: Duration = Duration::from_millis(300);
-/// Number of additional readings, because the first reading may return an old word.
+/// Number of times that the IN word is read again, because the first reading may return an old word.
 const EXTRA_READINGS: u32 = 2;
 const READING_INTERVAL: Duration = Duration::from_millis(10);
-/// Time for which the known mode stays valid after a step of a job that returned the encoder to it.
+/// Time for which the mode does not have to be read again after a step of a job has returned the encoder to it.
 const MODE_VALIDITY: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
@@ -164,7 +164,8 @@ impl Master<'_> {
         self.switch_to_mode(mode)
     }
 
-    /// Returns whether the encoder is in its initial mode and no word other than normal operation is active.
+    /// Returns whether the encoder is known to be in its initial mode. The current OUT word must be normal operation,
+    /// no command may have been lost, and no parameters or cams may be in the process of being set.
     fn is_in_initial_state(&self) -> bool {
         let rests = matches!(self.out, None | Some(Command::Normal));
         rests && !self.lost && !self.parameterising && !self.unsure && self.is == self.found
@@ -240,7 +241,7 @@ impl Master<'_> {
         self.send_idle_word()
     }
 
-    /// Sends 00000000h, so that a following 80000000h has the edge that it needs to take effect.
+    /// Sends 00000000h, so that the next 80000000h causes the rising edge that it needs to take effect.
     fn clear_run_command(&mut self) -> Result<(), Error> {
         for _ in 0..EXTRA_READINGS {
             self.run_cycle(Command::Normal)?;

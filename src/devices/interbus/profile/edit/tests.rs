@@ -19,13 +19,14 @@ fn sent(device: &Image, wanted: &Image) -> Vec<(Parameter, u32)> {
 fn equal_values_are_not_written() {
     let plan = plan_edits(&image(), &image()).unwrap();
     assert_eq!(plan, InterbusPlan { base: Base::default(), ops: vec![] });
-    // Values that are not wanted need not be known.
+    // Values that are not wanted do not have to be known.
     let nothing = Image::from_parameters(image().parameters);
     assert!(plan_edits(&image(), &nothing).unwrap().is_empty());
     assert!(plan_edits(&nothing, &nothing).unwrap().is_empty());
 }
 
-/// Issue 22.6: a zero shift is a position within the measuring range; one beyond the new range is changed first.
+/// Issue 22.6: a zero shift is a position within the measuring range. If it is beyond the new range, it is changed
+/// before the range.
 #[test]
 fn a_zero_shift_must_be_within_the_measuring_range() {
     let device = Image::from_parameters(Parameters {
@@ -44,18 +45,18 @@ fn a_zero_shift_must_be_within_the_measuring_range() {
     let refused = plan_edits(&device, &with(&|own| own.zero_shift = 255));
     assert_eq!(refused, Err(PlanError::OutOfRange(beyond)));
     assert_eq!(sent(&device, &with(&|own| own.zero_shift = 254)), [(Parameter::ZeroShift, 254)]);
-    // One that stays must be within the new range, as the preset must.
+    // Like the preset, a zero shift that does not change must be within the new range.
     let full = with(&|own| own.zero_shift = 254);
     let shorter = |zero_shift| with(&|own| (own.steps, own.zero_shift) = (100, zero_shift));
     assert!(matches!(plan_edits(&full, &shorter(254)), Err(PlanError::OutOfRange(_))));
     assert_eq!(sent(&full, &shorter(99)), [(Parameter::ZeroShift, 99), (Parameter::Steps, 100)]);
-    // For a longer range it follows.
+    // If the range becomes longer, the zero shift is changed after it.
     let longer = with(&|own| (own.steps, own.zero_shift) = (1000, 999));
     assert_eq!(sent(&device, &longer), [(Parameter::Steps, 1000), (Parameter::ZeroShift, 999)]);
 }
 
-/// By the issue: a full set (64 cams, 8 masks) written to an encoder that already has 60 of the cams changes only the
-/// differences, and costs a store for each program that changes.
+/// A full set of 64 cams and 8 masks is written to an encoder that already has 60 of the cams. Only the differences are
+/// written, and each changed program uses one store cycle.
 #[test]
 fn a_full_set_writes_only_differences() {
     let device = image();
@@ -118,7 +119,7 @@ fn all_parameters_need_one_store() {
     assert_eq!(plan.ops[0].change_count(), 4);
 }
 
-/// A number is sent when it is within its limits: steps ≤ 8192 · turns, preset < steps (reference 3).
+/// A parameter is sent when its value is within its limits: steps ≤ 8192 · turns, and preset < steps (reference 3).
 #[test]
 fn parameters_are_sent_in_a_legal_order() {
     use Parameter::{Preset, Steps, Turns};
@@ -136,7 +137,7 @@ fn parameters_are_sent_in_a_legal_order() {
     ];
     for (label, device, wanted, order) in cases {
         assert_eq!(sent(&device, &wanted), order, "{label}");
-        // Word by word.
+        // The limits are met after every word.
         let Parameters { mut steps, revolutions: mut turns, mut preset, .. } = device.parameters;
         for (parameter, number) in order {
             match parameter {
@@ -165,7 +166,7 @@ fn the_shift_is_stored_with_a_changed_program() {
         .collect();
     assert_eq!((shifts, plan.write_cycles()), (vec![(3, Some((zero, eight))), (6, None)], 2));
     assert_eq!(plan.base.shift, Some(zero));
-    // Alone it costs one.
+    // A change of the shift alone uses one store cycle.
     let plan = plan_edits(&device, &image_with(&device, &items[..1])).unwrap();
     assert_eq!((plan.ops[0].item_names().as_str(), logbook_note(&plan.ops[0]).as_str()), ("shift", "shift: 0 → 8"));
     assert_eq!((plan.ops.len(), plan.write_cycles(), plan.base.programs.len()), (1, 1, 1));
@@ -179,7 +180,7 @@ fn invalid_values_are_refused_with_both_limits() {
     assert_eq!(refusal(&[("revolutions", Number(4097))]), GearError::Turns { turns: 4097 }.into());
     let preset = OutOfRange { parameter: Parameter::Preset, value: 3600, low: 0, high: 3599 };
     assert_eq!(refusal(&[("preset", Number(3600))]), preset.into());
-    // It stays, and the range is then too short for it.
+    // The preset of 500 does not change, so the new range is too short for it.
     let stays = OutOfRange { value: 500, high: 359, ..preset };
     let short: Vec<(String, ItemValue)> =
         ProgramNumber::all().map(|number| (format!("cam-mask:{}", number.get()), ItemValue::Mask(0))).collect();
@@ -194,15 +195,15 @@ fn invalid_values_are_refused_with_both_limits() {
     assert!(plan_edits(&device, &image_with(&device, &[("cam:2:5", ItemValue::Cam(cam_between(3599, 10)))])).is_ok());
 }
 
-/// Cams that are not written may be beyond the range; active ones may not be left there.
+/// Cams that are not written may be beyond the new range, unless they are active.
 #[test]
 fn a_shorter_range_refuses_enabled_cams_beyond_it() {
     let device = image();
     let shorter = image_with(&device, &[("steps", Number(750))]);
-    // Cam 7 of program 1 ends at 750; those of program 8 at 757.
+    // Cam 7 of program 1 ends at 750, and cam 7 of program 8 at 757.
     let beyond = PlanError::CamBeyondRange { item: parse_item("cam:1:7"), edge: Edge::Stop, position: 750, last: 749 };
     assert_eq!(plan_edits(&device, &shorter), Err(beyond.clone()));
-    // Also if the image has no programs.
+    // The same applies if the wanted image has no programs.
     let parameters = Image::from_parameters(shorter.parameters);
     assert_eq!(plan_edits(&device, &parameters), Err(beyond));
     let mut resting = shorter;

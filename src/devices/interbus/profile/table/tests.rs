@@ -62,14 +62,14 @@ fn decimal_commas_are_accepted_if_no_delimiter() {
         assert_eq!(rows(&table), [(1, 0, "", 105, 203)], "{text}: {:?}", table.problems);
         assert_eq!(table.delimiter, Some(delimiter));
     }
-    // With commas as delimiters there is no decimal comma: these are five columns.
+    // If commas separate the columns, they cannot be decimal commas, so this row has five columns.
     assert_eq!(rows(&steps("1,2,3,20,25")), [(1, 2, "3", 20, 25)]);
 }
 
 #[test]
 fn rounding_of_an_edge_is_reported() {
-    // 8192 steps per turn, the machine's 0 at 1000: 10° are 227.56 steps and 228 are 10.0195°; 350° are 7964.44, and
-    // 7964 349.9805°.
+    // There are 8192 steps per turn, and the zero of the machine is at 1000. 10° are 227.56 steps, and 228 steps are
+    // 10.0195°. 350° are 7964.44 steps, and 7964 steps are 349.9805°.
     let table = options(Scale::in_degrees(8192.0, 1000).unwrap(), 8192).read("feed;350;10\nplain;0;90");
     assert_eq!(rows(&table), [(1, 0, "feed", 772, 1228), (1, 1, "plain", 1000, 3048)]);
     let row = &table.rows[0];
@@ -88,7 +88,7 @@ fn a_full_turn_pulse_ends_just_before_its_start() {
     for (text, start, stop) in [("0;360", 0, 999), ("90;450", 250, 249), ("-90;270", 750, 749), ("350;370", 972, 28)] {
         assert_eq!(rows(&degrees.read(text)), [(1, 0, "", start, stop)], "{text}");
     }
-    // 360° become 359.64°.
+    // The stop at 360° becomes the last step at 359.64°.
     assert!((degrees.read("0;360").rows[0].stop.off + 0.36).abs() < 1e-9);
 }
 
@@ -98,7 +98,7 @@ fn two_pulses_on_one_track_take_two_cams_with_a_note() {
     assert_eq!(rows(&table), [(1, 0, "Glue", 10, 20), (1, 1, "feed", 0, 500), (1, 2, "glue", 40, 50)]);
     let cams = vec![cam(0), cam(2)];
     assert_eq!(table.notes, [TableNote::Pulses { program: number(1), name: "Glue".to_owned(), cams }]);
-    // Another program has its own track.
+    // Pulses of different programs do not share a track, even if they have the same name.
     assert_eq!(steps("1;glue;10;20\n2;glue;40;50").notes, []);
 }
 

@@ -7,7 +7,7 @@ use super::*;
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::sim::ByteDevice;
 
-/// Generates words, more of them valid than random ones would be.
+/// Generates words that are valid more often than random ones.
 fn word() -> impl Strategy<Value = u32> {
     let of_parameters = (0_u32..16, 0_u32..0x3000).prop_map(|(code, data)| code << 25 | data);
     let of_cams = (0x20_u32..0x70, any::<u32>()).prop_map(|(code, data)| code << 24 | data & 0xFF_FFFF);
@@ -26,12 +26,12 @@ proptest! {
             master.wait(pause);
             master.read();
             let (encoder, memory) = (&master.encoder, master.encoder.memory());
-            // A word uses at most one store, and only one that leaves something does.
+            // A word uses at most one store cycle, and a word with the prefix 000 uses none.
             prop_assert!(encoder.store_count() == before || encoder.store_count() == before + 1 && word >> 29 != 0);
             prop_assert!(memory.gear().total_steps() <= 8192 * memory.gear().turns());
             prop_assert!(ProgramNumber::all().all(|number| memory.program(number).cams.iter().all(Option::is_some)));
         }
-        // Without power only stored values remain.
+        // Without power, only stored values remain.
         master.encoder.disconnect();
         prop_assert!(master.encoder.memory() == master.encoder.stored());
     }
@@ -46,7 +46,7 @@ proptest! {
         }
     }
 
-    /// Every request in a frame gets one reply with its number, unit and function.
+    /// Each request in a frame receives one reply with the same number, unit and function.
     #[test]
     fn every_request_gets_one_matching_reply(number in any::<u16>(), unit in any::<u8>(), pdu in prop::collection::vec(any::<u8>(), 1..60), function in 0_u8..20) {
         let mut host = Host::with("encoders=3");

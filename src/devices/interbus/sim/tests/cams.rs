@@ -3,7 +3,7 @@
 use super::*;
 use crate::devices::interbus::protocol::{Cam, StartupMode, Value};
 
-/// Settings with two disc positions per step.
+/// Settings with which a step has two disc positions.
 const SETTINGS: &str = "steps=4096&revolutions=1&position=200";
 
 fn at(position: i32) -> i32 {
@@ -23,7 +23,7 @@ fn the_manuals_example_matches() {
         (0x4600_0015, 0xC600_0015),
         (0x6600_0213, 0xE600_0213),
         (0x2040_0008, 0xE040_0008),
-        // Position 100 = 64h in bits 24..8, and cam 3 from 21 to 531 is on.
+        // Bits 24..8 contain position 100 (64h), and cam 3 is on from 21 to 531.
         (0x8000_0000, 0x0000_6408),
     ]);
     assert_eq!([20, 21, 531, 532].map(|position| outputs(&mut master, position)), [0, 8, 8, 0]);
@@ -35,25 +35,26 @@ fn the_manuals_example_matches() {
 #[test]
 fn cams_are_on_as_in_the_reference() {
     let mut master = Master::with(SETTINGS);
-    // Cam 0 from 15 to 213, cam 1 over the end from 100 to 20.
+    // Cam 0 is on from 15 to 213. Cam 1 is on from 100 to 20, across the end of the range.
     master.put(&[0x2080_0002, 0x4000_000F, 0x6000_00D5, 0x4200_0064, 0x6200_0014, 0x2040_0003, 0x8000_0000]);
     let cases = [(14, 2), (15, 3), (20, 3), (21, 1), (5, 2), (50, 1), (99, 1), (100, 3), (213, 3), (214, 2), (4095, 2)];
     for (position, expected) in cases {
         assert_eq!(outputs(&mut master, position), expected, "{position}");
     }
-    // Only the cams in the mask.
+    // Only the cams in the mask are active.
     master.put(&[0x2040_0001, 0x8000_0000]);
     assert_eq!(outputs(&mut master, 5), 0);
 }
 
-/// Position 1ABCDEFh with cam 5 on, as in the reference; all steps over all turns, a step is a position.
+/// The position is 1ABCDEFh with cam 5 on, as in the reference. With the largest gear, a step is one disc position.
 #[test]
 fn the_shift_selects_the_position_bits_of_the_window() {
     let cases = [(0, 0x01CD_EF20), (4, 0x00BC_DE20), (8, 0x01AB_CD20), (25, 0x0000_0020)];
     for (shift, expected) in cases {
         let mut master = Master::with("cams=none");
         master.put(&[0x2080_0001, 0x4A00_0000, 0x6BFF_FFFE, 0x2040_0020, 0x2010_0000 | shift, 0x8000_0000]);
-        // The gear of 1FFFFFFh steps over 2000000h positions drops a step here: (1ABCDEFh + 1) positions minus one.
+        // The gear has 1FFFFFFh steps for 2000000h disc positions and has dropped one step here, so this is disc
+        // position 1ABCDEFh + 1.
         assert_eq!(master.position(0x1AB_CDF0), expected, "{shift}");
     }
 }
@@ -126,7 +127,7 @@ fn a_changed_program_is_stored_when_another_one_is_selected() {
 fn presets_are_cam_words_while_a_program_runs() {
     let mut master = Master::with(SETTINGS);
     master.put(&[0x2080_0001, 0x4000_0005, 0x8000_0000]);
-    // The start of cam 0 becomes 0, and its echo looks like a busy word.
+    // The start of cam 0 is set to 0, so its echo looks like the word of a busy encoder.
     master.exchange(&[(0x4000_0000, 0xC000_0000), (0x2020_0010, 0xA000_0000)]);
 }
 

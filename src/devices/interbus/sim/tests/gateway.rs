@@ -45,7 +45,7 @@ const READ: &str = "00 01 00 00 00 06 01 04 00 00 00 02";
 
 #[test]
 fn words_are_two_registers_in_the_default_order() {
-    // 1193046 is 123456h; the gear drops a step of 33554432: (123457h positions).
+    // 1193046 is 123456h. The gear drops one of 33554432 steps, so this is the position at disc position 123457h.
     let mut host = Host::with("position=1193047");
     host.exchange(&[
         (READ, "00 01 00 00 00 07 01 04 04 00 12 34 56"),
@@ -70,7 +70,7 @@ fn word_order_registers_and_unit_are_configurable() {
     ]);
 }
 
-/// Function 6 writes half a word, which the encoder sees before the other half is written.
+/// Function 6 writes half a word, which the encoder processes before the other half is written.
 #[test]
 fn a_single_register_is_half_a_word() {
     let mut host = Host::with("position=0");
@@ -118,7 +118,7 @@ fn split_and_concatenated_frames_are_accepted() {
         assert_eq!(host.ask(&hex(&all[cut..])), reply, "{cut}");
     }
     assert_eq!(host.ask(&format!("{READ} {READ}")), format!("{reply} {reply}"));
-    // Bytes that are not Modbus are discarded, with those received with them.
+    // Bytes that are not Modbus are discarded, together with all bytes received at the same time.
     for nonsense in ["00 01 00 01 00 06 01 04 00 00 00 02", "00 01 00 00 00 00 01", "00 01 00 00 00 FF 01 04"] {
         assert_eq!(host.ask(nonsense), "", "{nonsense}");
         assert_eq!(host.ask(READ), reply, "{nonsense}");
@@ -132,7 +132,7 @@ fn several_encoders_have_consecutive_registers() {
         ("00 01 00 00 00 0B 01 10 00 02 00 02 04 20 21 00 00", "00 01 00 00 00 06 01 10 00 02 00 02"),
         ("00 02 00 00 00 06 01 04 00 00 00 04", "00 02 00 00 00 0B 01 04 08 00 00 00 00 A0 00 0F A1"),
         ("00 02 00 00 00 06 01 04 00 01 00 02", "00 02 00 00 00 07 01 04 04 00 00 A0 00"),
-        // Both at once, from the lower half of the first.
+        // One request writes to both encoders, beginning with the lower half of the first one's word.
         ("00 03 00 00 00 0D 01 10 00 01 00 03 06 00 00 00 00 00 00", "00 03 00 00 00 06 01 10 00 01 00 03"),
         ("00 02 00 00 00 06 01 04 00 02 00 02", "00 02 00 00 00 07 01 04 04 00 00 00 00"),
         ("00 02 00 00 00 06 01 04 00 03 00 02", "00 02 00 00 00 03 01 84 02"),
@@ -144,7 +144,8 @@ fn several_clients_share_the_encoder() {
     let mut host = Host::with("position=0");
     let mut other = host.second_client();
     host.exchange(&[("00 01 00 00 00 0B 01 10 00 00 00 02 04 02 00 01 68", "00 01 00 00 00 06 01 10 00 00 00 02")]);
-    // Half a request of one client does not affect the other.
+    // The length in the header is checked. The example printed in the manual (reference 5) is rejected, because it is
+    // one byte too short.
     assert_eq!(host.ask("00 05 00 00 00 06"), "");
     other.exchange(&[
         (READ, "00 01 00 00 00 07 01 04 04 C2 00 01 68"),
@@ -179,7 +180,7 @@ fn configured_faults_are_injected() {
     let garbage = bytes(&noisy.ask(READ));
     assert_eq!(garbage.len(), mine.len());
     assert_ne!(garbage, mine);
-    // The same seed, the same faults.
+    // The same seed causes the same faults.
     let some =
         |seed| (0..50).map(|_| 0).scan(Host::with(seed), |host, _| Some(host.ask(READ).len())).collect::<Vec<_>>();
     let lossy = "position=0&fault=drop:0.5&seed=7";
@@ -187,7 +188,7 @@ fn configured_faults_are_injected() {
     assert_ne!(some(lossy), some("position=0&fault=drop:0.5&seed=8"));
 }
 
-/// A request that is not executed leaves no trace; a cable can be repaired.
+/// A request that is not executed has no effect. After the fault is removed, the encoder replies again.
 #[test]
 fn a_gateway_exception_keeps_the_word_from_the_encoder() {
     let mut host = Host::with("exception=1");
@@ -223,6 +224,6 @@ fn the_motor_handle_turns_the_shaft() {
     motor.set_rpm(60.0);
     host.ask(READ);
     host.now = host.now + Duration::from_millis(490);
-    // Half a turn since the previous request, 500 ms earlier.
+    // The shaft has made half a turn since the previous request, 500 ms earlier.
     assert_eq!(host.ask(READ), "00 01 00 00 00 07 01 04 04 00 00 10 00");
 }

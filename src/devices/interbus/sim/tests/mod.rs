@@ -1,5 +1,5 @@
-//! Tests of the virtual encoder from the perspective of a master, in virtual time. Expected words are the reference's;
-//! none is computed by the code under test.
+//! Tests of the virtual encoder from the perspective of a master, in virtual time. The expected words come from the
+//! reference and not from the code under test.
 
 mod any;
 mod cams;

@@ -11,7 +11,7 @@ fn the_worked_example_of_the_reference_matches() {
         (0x0400_0001, [0xC200_00FF, 0xC400_0001]),
         (0x0600_0003, [0xC400_0001, 0xC600_0003]),
         (0x0800_0000, [0xC600_0003, 0xC800_0000]),
-        // 5000 of 8192 positions in 255 steps: 155.6.
+        // Disc position 5000 of 8192 is step 155.6 of 255.
         (0x8000_0000, [0xC800_0000, 155]),
         (0x0000_0000, [155, 155]),
         (0x4000_0000, [155, 0]),
@@ -39,13 +39,13 @@ fn busy_words_last_the_configured_time() {
         })
         .collect();
     assert_eq!(words, [7, 7, 0xC000_0000, 0xC000_0000, 0xC200_0168]);
-    // Cycles continue without readings.
+    // Cycles also elapse without readings.
     master.write(0x0200_00B4);
     master.wait(10);
     assert_eq!(master.read(), 0xC000_0000);
     master.wait(10);
     assert_eq!(master.read(), 0xC200_00B4);
-    // A position is available at once, after the old words.
+    // A position is available immediately after the old words.
     master.write(0x8000_0000);
     assert_eq!([master.read(), master.read()], [0xC200_00B4, 0xC200_00B4]);
     assert_eq!(master.read() >> 31, 0);
@@ -53,7 +53,7 @@ fn busy_words_last_the_configured_time() {
 
 #[test]
 fn steps_and_turns_scale_positions_as_in_the_reference() {
-    // Steps, turns, position of the disc, position.
+    // Steps, turns, disc position and resulting position.
     let cases = [
         (255, 1, 0, 0),
         (255, 1, 4095, 127),
@@ -66,7 +66,7 @@ fn steps_and_turns_scale_positions_as_in_the_reference() {
         (1000, 10, -1, 999),
     ];
     for (steps, turns, place, position) in cases {
-        // More turns first: this number of steps needs them.
+        // The turns are set first, because this number of steps requires them.
         let mut master = Master::with("steps=1&revolutions=1");
         master.put(&[0x0400_0000 | turns, 0x0200_0000 | steps, 0x8000_0000, 0]);
         assert_eq!(master.position(place), position, "{steps} steps, {turns} turns, place {place}");
@@ -84,7 +84,7 @@ fn out_of_range_values_are_wrong_data_and_change_nothing() {
         (master.encoder.store_count(), master.encoder.memory()),
         (3, &config("steps=8192&revolutions=1").memory)
     );
-    // More turns allow more steps, which then do not allow fewer turns.
+    // More turns allow more steps. With these steps, fewer turns are then rejected.
     master.exchange(&[(0x0400_0002, 0xC400_0002), (0x0200_4000, 0xC200_4000), (0x0400_0001, 0x8200_0000)]);
     master.exchange(&[(0x0800_3FFF, 0xC800_3FFF), (0x0A00_3FFF, 0xCA00_3FFF), (0x0600_0004, 0xC600_0004)]);
 }
@@ -100,7 +100,7 @@ fn undocumented_codes_are_unknown() {
         master.exchange(&[(word, 0), (0, 0)]);
     }
     assert_eq!(master.encoder.store_count(), 3);
-    // Outside of position mode a parameter is unknown.
+    // Outside position mode, the word of a parameter is unknown.
     master.exchange(&[(0x2040_0001, 0), (0x0200_0168, 0x8400_0000), (0x8000_0000, 0)]);
 }
 
@@ -120,10 +120,10 @@ fn each_programmed_preset_triggers_once() {
     master.exchange(&[(0x4000_0000, 180), (0, 180), (0x2021_0006, 0xA000_0000), (0, 180)]);
     master.exchange(&[(0x0800_0064, 0xC800_0064), (0x8000_0000, 180), (0, 180), (0x2021_0006, 0xA000_0001), (0, 180)]);
     master.exchange(&[(0x4000_0000, 100), (0, 100), (0x2021_0006, 0xA000_0000), (0, 100)]);
-    // The shaft turns by a quarter, and nothing more is fired.
+    // The shaft makes a quarter turn. A second preset word has no effect.
     assert_eq!(master.position(6144), 190);
     master.exchange(&[(0x4000_0000, 190), (0, 190)]);
-    // The FRABA preset can be repeated.
+    // The FRABA preset can be applied repeatedly.
     for place in [0, 6144] {
         master.set_shaft_position(place);
         master.exchange(&[(0x6000_0000, 100), (0x8000_0000, 100), (0, 100)]);
@@ -154,7 +154,7 @@ fn the_other_direction_counts_backwards() {
 fn zero_shift_moves_the_position_within_the_range() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
     master.put(&[0x0A00_00C8, 0x8000_0000, 0]);
-    // 180 and 200 of 360; then 180 and 359; 360 is beyond the range.
+    // 180 + 200 wraps to 20 of 360 steps, and 180 + 359 wraps to 179. A zero shift of 360 is out of range.
     assert_eq!(master.read(), 20);
     master.put(&[0x0A00_0167, 0x8000_0000, 0]);
     assert_eq!(master.read(), 179);
@@ -166,7 +166,7 @@ fn the_word_holds_the_speed_while_requested() {
     let mut master = Master::with("rpm=1500&position=0&steps=8192&revolutions=1");
     master.exchange(&[(0x2040_0001, 1500), (0x2021_0009, 0xA000_0002), (0, 1500), (0x2040_0000, 0), (0, 0)]);
     master.encoder.motor().set_rpm(-3.0);
-    // 25 bits of -3.
+    // −3 as a number of 25 bits.
     master.exchange(&[(0x2040_0001, 0x01FF_FFFD), (0x2040_0000, 0)]);
     master.put(&[0x0600_0004, 0x8000_0000, 0]);
     master.exchange(&[(0x2040_0001, 3)]);

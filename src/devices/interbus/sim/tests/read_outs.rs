@@ -29,7 +29,7 @@ fn every_read_out_of_the_manual_has_its_value() {
         (0xFFFF, 0xA400_0000),
     ];
     for (number, expected) in cases {
-        // Either word ends it.
+        // Both 00000000h and 80000000h end a read-out.
         master.exchange(&[
             (0x2021_0000 | number, expected),
             (0, 34),

@@ -14,7 +14,7 @@ fn unstored_values_are_lost_without_power() {
     assert_eq!((master.read(), master.encoder.store_count()), (90, 4));
 }
 
-/// The gateway sends the same word as before, which the encoder takes as a new one.
+/// The gateway sends the same word as before. After power-on, the encoder processes it as a new word.
 #[test]
 fn the_masters_word_is_processed_when_power_returns() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
@@ -43,7 +43,7 @@ fn power_lost_in_a_store_loses_the_parameters() {
     assert_eq!((master.read(), master.encoder.store_count()), (0x8600_0000, 5));
     assert_eq!((master.encoder.memory().gear().total_steps(), master.encoder.memory().direction()), (0x01FF_FFFF, 3));
     assert_eq!(master.encoder.memory().program(program(1)).mask, 0xFF);
-    // Set again, it works.
+    // After the parameters have been set again, the encoder works.
     master.exchange(&[(0x0400_0001, 0x8200_0000), (0x0200_0168, 0xC200_0168), (0x0400_0001, 0xC400_0001)]);
     master.write(0x8000_0000);
     assert_eq!((master.read() >> 31, master.encoder.store_count()), (0, 6));

@@ -45,7 +45,7 @@ fn parameters_are_echoed() {
             ("40000000", "0001E240"),
             ("00000000", "0001E240"),
             ("0E000000", "CE000000"),
-            // The zero point stays, and the preset is 0 again.
+            // The zero point is unchanged, and the preset is 0 again.
             ("80000000", "0001E240"),
             ("60000000", "00000000"),
         ],
@@ -66,7 +66,7 @@ fn cams_are_echoed_with_both_upper_bits_set() {
             ("20400008", "E0400008"),
             ("20100008", "E0100008"),
             ("20100019", "E0100019"),
-            // One step beyond the range of 25 bits.
+            // The edges are one step beyond the measuring range.
             ("4FFFFFFF", "98000004"),
             ("6FFFFFFF", "98000004"),
             ("4E000000", "CE000000"),
@@ -86,7 +86,7 @@ fn values_are_read_out() {
     walk(
         settings,
         &[
-            // 1193046 of 33554432 positions in 4000 steps: 142.2.
+            // Disc position 1193046 of 33554432 is step 142.2 of 4000.
             ("00000000", "0000008E"),
             ("20210001", "A0000FA0"),
             ("2021000C", "A00000FD"),
@@ -103,6 +103,6 @@ fn values_are_read_out() {
 
 #[test]
 fn a_k1_encoder_sends_the_position_within_a_turn() {
-    // 1FFEh of 2000h positions are FFFh of 1000h.
+    // Disc position 1FFEh of 2000h is FFFh of 1000h.
     walk("class=K1&position=24574", &[("00000000", "00000FFF"), ("02000168", "00000FFF")]);
 }

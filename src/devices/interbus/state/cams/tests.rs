@@ -57,7 +57,8 @@ fn a_cam_across_the_end_is_two_segments() {
 
 #[test]
 fn simulated_outputs_are_compared_with_the_encoders() {
-    // The manual's example and reference 7: 15..213 has 15 and 213 and not 214; 100..20 has 5 and not 50.
+    // Example of the manual and reference 7: the cam from 15 to 213 is on at 15 and 213 but not at 214. The cam from
+    // 100 to 20 is on at 5 but not at 50.
     let chart = chart(&[(3, 15, 213), (5, 100, 20)]);
     for (position, outputs) in [(15, 0b10_1000), (213, 0b10_1000), (214, 0b10_0000), (5, 0b10_0000), (50, 0b00_1000)] {
         assert_eq!(chart.outputs(position), outputs, "{position}");
@@ -117,7 +118,7 @@ fn the_keyboard_moves_to_the_next_grid_line() {
     }
     assert_eq!(next_grid_line(&steps, 40.0, 0, false), -50, "over the end of the range");
     assert_eq!(next_grid_line(&steps, 0.01, 7, true), 8);
-    // 10° of 1000 steps: 27.8, 55.6, 83.3.
+    // With 1000 steps per turn, the grid lines of 10° are at 27.8, 55.6 and 83.3.
     let degrees = Scale::in_degrees(1000.0, 0).unwrap();
     for (position, forward, expected) in [(28, true, 56), (56, true, 83), (83, false, 56), (0, false, -28)] {
         assert_eq!(next_grid_line(&degrees, 20.0, position, forward), expected, "{position}");
@@ -141,7 +142,7 @@ fn grid_lines_are_at_round_values() {
     assert_eq!(seen(&Scale::default(), &whole, 1500.0), expected);
     let degrees = Scale::in_degrees(8192.0, 0).unwrap();
     assert_eq!(seen(&degrees, &whole, 1500.0), [(0, 0.0), (2048, 90.0), (4096, 180.0), (6144, 270.0), (8192, 0.0)]);
-    // The machine's 0 is at 1024: the range begins at 315°.
+    // The zero of the machine is at 1024, so the range begins at 315°.
     let turned = Scale::in_degrees(8192.0, 1024).unwrap();
     assert_eq!(seen(&turned, &whole, 1500.0), [(1024, 0.0), (3072, 90.0), (5120, 180.0), (7168, 270.0)]);
     let near = whole.zoomed(8192.0 / 100.0, 0.0, 8192);
@@ -175,7 +176,7 @@ fn edges_snap_to_nearby_positions() {
     let pull =
         |edge, by, with: &SnapSettings| snap_distance(&chart, &steps, DragTarget::Edge(cam(0), edge), first, by, with);
     let on = SnapSettings { reach: 6.0, apart: None, edges: true };
-    // Of the other cam: 403 to 555. A stop snaps to right before its start, or to its stop.
+    // The other cam spans 403 to 555. A stop snaps to the step before its start, or to its stop.
     assert_eq!(199 + pull(Edge::Stop, 200.3, &on), 402);
     assert_eq!(199 + pull(Edge::Stop, 351.0, &on), 555);
     assert_eq!(100 + pull(Edge::Start, 453.4, &on), 556);
@@ -186,9 +187,9 @@ fn edges_snap_to_nearby_positions() {
     assert_eq!(100 + pull(Edge::Start, 353.0, &grid), 450);
     assert_eq!(100 + pull(Edge::Start, -104.0, &grid), 0);
     assert_eq!(100 + pull(Edge::Start, -204.0, &grid), -100, "over the end of the range");
-    // Moved as a whole, either edge snaps: 199 + 203 = 402.
+    // If the cam is moved as a whole, either edge can snap: 199 + 203 = 402.
     assert_eq!(snap_distance(&chart, &steps, DragTarget::Whole(cam(0)), first, 199.0, &on), 203);
-    // 90° of 1000 steps is 250; the grid has 30°, which is 83.3.
+    // With 1000 steps per turn, 90° is at 250. The grid lines are 30° apart, which is 83.3 steps.
     let degrees = Scale::in_degrees(1000.0, 0).unwrap();
     let units = SnapSettings { reach: 6.0, apart: Some(80.0), edges: false };
     assert_eq!(100 + snap_distance(&chart, &degrees, DragTarget::Edge(cam(0), Edge::Start), first, 146.5, &units), 250);

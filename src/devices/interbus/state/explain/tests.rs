@@ -100,7 +100,7 @@ fn encoder_errors_name_a_remedy() {
     }
 }
 
-/// Modbus application protocol 1.1b3, chapter 7.
+/// The codes are from *Modbus application protocol* 1.1b3, chapter 7.
 #[test]
 fn gateway_exceptions_are_explained_with_their_code() {
     let requested = RequestedItem::Write { register: 2048, word: 0x4000_0000 };
@@ -115,7 +115,7 @@ fn gateway_exceptions_are_explained_with_their_code() {
     }
 }
 
-/// Reference 2.
+/// The error words are from reference 2.
 #[test]
 fn error_words_are_explained() {
     for word in [0x8200_0000, 0x8400_0000, 0x8600_0000, 0x9800_0004, 0x9800_0005, 0x8000_0000] {
@@ -189,7 +189,7 @@ fn an_interrupted_write_names_the_remaining_steps() {
     assert!(lines[1].contains("lead-back"), "{lines:?}");
 }
 
-/// Issue 22.5: the remedy comes after returning the encoder to its mode.
+/// Issue 22.5: the advice to complete the write follows the advice to return the encoder to its mode.
 #[test]
 fn completing_a_write_is_advised_after_the_return_to_operation() {
     let standing = LeftState { out: 0, parameterising: true, found: None, is: None };
@@ -213,7 +213,7 @@ fn completing_a_write_is_advised_after_the_return_to_operation() {
     }
 }
 
-/// Issue 22.4: an unknown count is reported with the option that permits the write.
+/// Issue 22.4: if the number of earlier stores is unknown, the message names the option that permits the write.
 #[test]
 fn a_write_with_unknown_wear_names_the_override() {
     let refused = job_error_texts(&JobError::NotStarted(NotStarted::WearUnknown { cost: 2 }));

@@ -43,8 +43,8 @@ impl StagedEdits {
         kept
     }
 
-    /// Applies the edits of a draft as a single undo step. Edits of a program that was not read wait for it. Invalid
-    /// edits are dropped.
+    /// Applies the edits of a draft as a single undo step. Edits of a program that has not been read are kept until it
+    /// is read. Invalid edits are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
             self.waiting.extend(draft);
@@ -60,7 +60,7 @@ impl StagedEdits {
         self.apply_step(wanted);
     }
 
-    /// Returns the programs whose edits wait until they are read.
+    /// Returns the programs that have edits but have not been read yet.
     pub fn pending_programs(&self) -> Vec<ProgramNumber> {
         let waits = |number: &ProgramNumber| self.waiting.iter().any(|kept| kept.program() == Some(*number));
         ProgramNumber::all().filter(waits).collect()

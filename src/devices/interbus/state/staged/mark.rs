@@ -82,7 +82,7 @@ impl EditedValues {
     }
 }
 
-/// Returns whether two names are equal, regardless of case and blanks at their ends.
+/// Returns whether two names are equal, ignoring case and leading or trailing blanks.
 pub(super) fn is_same_track_name(one: &str, other: &str) -> bool {
     one.trim().to_lowercase() == other.trim().to_lowercase()
 }

@@ -87,7 +87,7 @@ fn refused_edits_name_the_limits_and_change_nothing() {
         (Edit::Steps(0), EditError::Gear(GearError::Steps { steps: 0, turns: 1, most: 8192 })),
         (Edit::Revolutions(4097), EditError::Gear(GearError::Turns { turns: 4097 })),
         (Edit::Preset(1000), beyond(Parameter::Preset, 1000, 0, 999)),
-        // Issue 22.6.
+        // Issue 22.6: the zero shift must be within the measuring range.
         (Edit::ZeroShift(1000), beyond(Parameter::ZeroShift, 1000, 0, 999)),
         (edge(1, 0, Edge::Start, 1000), EditError::Edge { edge: Edge::Start, to: 1000, last: 999 }),
         (edge(1, 0, Edge::Stop, u32::MAX), EditError::Edge { edge: Edge::Stop, to: u32::MAX, last: 999 }),
@@ -124,7 +124,7 @@ fn programs_are_copied_mirrored_and_shifted() {
     // 999 - 350 = 649 and 999 - 300 = 699.
     staged.apply_edit(&Edit::Mirror(number(1))).unwrap();
     assert_eq!((cam_edges(&staged, 0), cam_edges(&staged, 3)), ((949, 999), (649, 699)));
-    // 949 + 60 = 1009 and 999 + 60 = 1059, less 1000.
+    // 949 + 60 = 1009 and 999 + 60 = 1059, both reduced by the range of 1000.
     staged.apply_edit(&Edit::Rotate { program: number(1), by: 60 }).unwrap();
     assert_eq!((cam_edges(&staged, 0), cam_edges(&staged, 3)), ((9, 59), (709, 759)));
     staged.apply_edit(&Edit::Rotate { program: number(1), by: -1_000_020 }).unwrap();
@@ -327,7 +327,7 @@ fn marks_show_values_beyond_the_range_and_conflicts() {
     staged.undo();
     assert!(staged.edited_values().unwrap().findings().is_empty());
 
-    // Pulses of one track: 300 to 350 and one that begins within it.
+    // Two pulses of one track: one from 300 to 350, and one that may begin within the first.
     let drawn = |start, stop| Edit::Cam { program: number(1), cam: cam(5), start, stop, on: true };
     staged.apply_edit(&name(3, "Feed")).unwrap();
     staged.apply_edit(&name(5, "feed")).unwrap();

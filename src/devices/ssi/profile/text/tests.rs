@@ -179,7 +179,7 @@ proptest! {
 }
 
 proptest! {
-    /// For any entered numbers: a valid frame that is the same when it is read again, or a reason.
+    /// Any entered numbers yield either a valid frame that survives a round trip, or an error with the reason.
     #[test]
     fn any_numbers_are_parsed_or_refused(
         clocks in 0..=70_u8,
@@ -238,7 +238,7 @@ fn unknown_fields_are_kept() {
     assert_eq!(read.beyond.len(), 7);
     let read = ProfileDocument { beyond: Vec::new(), ..read };
     assert_eq!(ProfileDocument::parse(&written, SsiProfile::FORMATS).unwrap(), read);
-    // Entries of a bit stay with it, even if another is inserted before it.
+    // Unknown entries stay with their error bit even if the order of the bits changes.
     let mut moved = read.body.into_profile::<SsiProfile>().unwrap();
     moved.descriptor.errors.reverse();
     let written = document(moved).emit();
@@ -321,7 +321,7 @@ fn profile_errors_name_their_location() {
     }
 }
 
-/// Issue 22.26: one changed value changes the text at one point.
+/// Issue 22.26: changing a value edits the text only at that value.
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut SsiProfile| {

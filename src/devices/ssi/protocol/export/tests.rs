@@ -31,7 +31,7 @@ fn format_strings_match_linuxcnc() {
     assert_eq!(from_linuxcnc("ssi_chan_0=error%1bposition%24ge").unwrap().clock_count(), 25);
 }
 
-/// A layout written by hand may give its bits any names; LinuxCNC creates a pin for each.
+/// A handwritten layout may give its bits any names, but LinuxCNC requires a unique pin name for each bit.
 #[test]
 fn each_bit_has_a_unique_pin() {
     let mut frame = layout("ahs36").descriptor().clone();
@@ -100,7 +100,7 @@ fn a_parity_bit_is_not_an_error_bit_in_the_sheet() {
     assert!(lines.iter().any(|line| line.contains("divide the value by 2 ")), "{lines:?}");
 }
 
-/// Two definitions of one name are one flag too few, and a compiler's warning.
+/// If two flags had the same name, the compiler would report a redefinition, and one of the flags would be lost.
 #[test]
 fn flags_have_unique_names() {
     let text = generate_c99(&from_linuxcnc("ones%1berror%1bposition%14eerror%1b").unwrap(), "");

@@ -155,7 +155,7 @@ mod tests {
             ("ahm36,code=binary,mt=12,st=14,clocks=27,align=left,err=fix", "ahm36"),
             ("atm60,mt=12,st=13,align=tree12_13,err=none", "atm60"),
             ("atm60,mt=13,st=12,align=tree13_12", "atm60,mt=13"),
-            // The same frame has two names.
+            // These two specifications describe the same frame.
             ("atm60,mt=12,st=12,align=right25", "atm60,st=12,align=tree13_12"),
             ("atm60,mt=0,st=12,code=gray", "atm60,code=gray,mt=0,st=12"),
             ("ahm36,steps=1000,turns=1", "ahm36,steps=1000"),

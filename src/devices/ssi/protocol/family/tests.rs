@@ -46,7 +46,7 @@ fn family_errors_name_their_location() {
     }
 }
 
-/// Reference section 8: settings, turns, steps, active error bit, bits in clock order.
+/// Frames of reference section 8: settings, turns, steps, active error bit, and bits in clock order.
 const GOLDEN: [(&str, u64, u64, &str, &str); 28] = [
     ("ahs36", 0, 0x2A5B, "", "101010010110110"),
     ("ahs36,code=gray", 0, 0x2A5B, "", "111111011101100"),
@@ -78,7 +78,7 @@ const GOLDEN: [(&str, u64, u64, &str, &str); 28] = [
     ("ttk70,clocks=31", 0, 0x12_3456, "gap", "0001001000110100010101101000000"),
 ];
 
-/// Ignored settings would result in another position.
+/// If these settings were ignored, the result would be a different position.
 #[test]
 fn settings_that_would_be_ignored_are_refused() {
     let cases = [
@@ -103,8 +103,8 @@ fn frames_match_the_reference() {
             Range::Length { .. } => steps,
             _ => range.position(turns, steps).unwrap(),
         };
-        // In one row the error bit is 1 in the reference's picture although its title says otherwise; that row would fail
-        // here.
+        // In one row of the reference, the error bit is 1 in the picture although the title says otherwise. This row
+        // would fail here.
         let flags = error_flag(&resolved, error);
         assert_eq!(error.is_empty(), flags == Flags::NONE, "{text}");
         let frame = layout.encode(position, flags).unwrap();
@@ -118,7 +118,8 @@ fn frames_match_the_reference() {
     }
 }
 
-/// The whole 25-bit frame one clock later: its last bit is lost (reference section 8, "full, SHIFT-RIGHT only").
+/// Reference section 8, "full, SHIFT-RIGHT only": if the whole 25-bit frame is sent one clock later, its last bit is
+/// lost.
 #[test]
 fn shifting_right_alone_loses_the_last_bit() {
     let layout = resolve("atm60,shift=1").unwrap().layout;
@@ -127,13 +128,14 @@ fn shifting_right_alone_loses_the_last_bit() {
     assert_eq!(layout.encode(position | 1, Flags::NONE), Some(0x05A_591A));
     assert!(layout.loses_lowest_bit());
     assert_eq!(layout.decode(0x05A_591A).position, position);
-    // Both settings together lose nothing (section 6, traps 2 and 3).
+    // Combined with an alignment to the right, the shift does not lose any bit (reference section 6, traps 2 and 3).
     for text in ["atm60,mt=11,align=right24,shift=1", "atm60,align=right25,shift=1"] {
         assert!(!resolve(text).unwrap().layout.loses_lowest_bit(), "{text}");
     }
 }
 
-/// Section 6, trap 1: tested before anything is decoded; 20 ones and a zero are only a suspicion.
+/// Reference section 6, trap 1: the pattern is tested before the frame is decoded. A frame with only some of these ones
+/// is suspicious, but its position remains valid.
 #[test]
 fn the_kh53_has_an_error_pattern() {
     for code in ["binary", "gray"] {
@@ -151,7 +153,7 @@ fn the_kh53_has_an_error_pattern() {
     }
 }
 
-/// Section 6, traps 4 and 7.
+/// All ones can be a safety fault, a stuck line or a valid position (reference section 6, traps 4 and 7).
 #[test]
 fn a_safety_fault_and_a_stuck_line_are_distinguished() {
     let safe = resolve("afm60s").unwrap().layout;
@@ -165,17 +167,18 @@ fn a_safety_fault_and_a_stuck_line_are_distinguished() {
     let high = plain.decode(0x1_FFFF_FFFF);
     assert_eq!(plain.to_findings(high)[0], FrameFinding::StuckHigh { sure: true });
     assert!(!plain.is_valid(high));
-    // 8191 of an ARS60 is all ones too: a suspicion.
+    // Position 8191 of an ARS60 also consists of all ones, so a stuck line is only suspected.
     let short = resolve("ars60,st=13").unwrap().layout;
     assert_eq!(short.to_findings(short.decode(0x1FFF)), [FrameFinding::StuckHigh { sure: false }]);
     assert!(short.is_valid(short.decode(0x1FFF)));
     assert_eq!(short.to_findings(short.decode(0)), [FrameFinding::StuckLow { sure: false }]);
-    // No position of 3600 in gray excess is coded as 0.
+    // In Gray excess with 3600 steps, no position has the code word 0.
     let excess = resolve("atm60,steps=3600,code=gray-excess").unwrap().layout;
     assert_eq!(excess.to_findings(excess.decode(0)), [FrameFinding::StuckLow { sure: true }, FrameFinding::Code]);
 }
 
-/// Section 6, trap 5: the frame of an AFS60 shrinks with its resolution, that of an AHS36 does not.
+/// Reference section 6, trap 5: the frame of an AFS60 becomes shorter if the resolution is reduced, whereas the frame
+/// of an AHS36 does not.
 #[test]
 fn only_some_frames_shrink_with_the_resolution() {
     let clocks = |text: &str| resolve(text).unwrap().layout.clock_count();
@@ -192,7 +195,7 @@ fn wrong_padding_is_reported() {
     assert!(layout.is_valid(reading));
 }
 
-/// Reference section 5: a round axis of 100 steps over 12.5 turns has 8 in each.
+/// Reference section 5: a round axis with 100 steps over 12.5 turns has 8 steps per turn.
 #[test]
 fn a_round_axis_divides_into_turns() {
     let layout = resolve("ahm36,steps=100,revolutions=25/2").unwrap().layout;
@@ -250,7 +253,7 @@ fn unsupported_settings_are_refused_with_a_reason() {
     }
 }
 
-/// They change the position, not the meaning of its bits.
+/// Direction and preset change the position, but not the meaning of its bits.
 #[test]
 fn direction_and_preset_do_not_change_the_frame() {
     let (plain, set) = (resolve("ahs36").unwrap(), resolve("ahs36,direction=ccw,preset=16383").unwrap());
@@ -264,6 +267,6 @@ fn undocumented_settings_are_accepted_with_advice() {
     assert_eq!(resolve("ahs36,steps=360,code=bcd").unwrap().advice, [SettingAdvice::Code(Code::Bcd)]);
     assert_eq!(resolve("kh53,clocks=25").unwrap().advice, [SettingAdvice::Clocks { bits: 24, clocks: 25 }]);
     assert_eq!(resolve("ttk70,clocks=31").unwrap().advice, []);
-    // A host that cannot use the error bits clocks the resolution only (manual 3.1).
+    // A host that cannot use the error bits clocks in only the position (manual 3.1).
     assert_eq!(resolve("ahs36,st=12,err=none,clocks=12").unwrap().layout.clock_count(), 12);
 }

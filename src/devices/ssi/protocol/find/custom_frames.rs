@@ -38,8 +38,8 @@ pub(super) fn try_custom_frames(
     let mut widths_of: Vec<u8> = (least..=most).collect();
     let rank =
         |bits: &u8| common_bit_splits(*bits, 1).first().map_or(9.0, |(turns, steps)| width_penalty(*turns, *steps));
-    // The widths are that of the complete frame up to the lowest bit, that of the bits that changed, and the most
-    // common widths in between.
+    // Tries the full width up to the lowest bit, the width of the bits that changed, and the most common widths in
+    // between.
     let ends = |bits: &u8| *bits == most || *bits == least;
     widths_of
         .sort_by(|a, b| (!ends(a), rank(a)).partial_cmp(&(!ends(b), rank(b))).unwrap_or(std::cmp::Ordering::Equal));

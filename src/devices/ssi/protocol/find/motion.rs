@@ -4,14 +4,15 @@
 
 /// Number of steps over which each median is taken.
 const BLOCK: usize = 16;
-/// Cost in bits of each group of similar differences.
+/// Number of bits that each group of similar differences adds to the information, in addition to the differences
+/// themselves.
 const MODEL_BITS: f64 = 8.0;
-/// Information in bits of a frame without a valid number.
+/// Number of bits that a frame without a valid number adds to the information.
 const NONE_BITS: f64 = 16.0;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
-    /// Information of all steps in bits.
+    /// Information content of all steps in bits.
     pub(super) bits: f64,
     pub(super) median: i64,
     /// Number of steps from each frame to the next, or `None` if either frame has no valid number.
@@ -77,8 +78,8 @@ impl Motion {
     }
 }
 
-/// Returns the information of all differences in bits. Each difference is encoded as a group of similar sizes and an
-/// index in the group. A frequent group needs fewer bits.
+/// Returns the information content of all differences in bits. Each difference is encoded as a group of similar sizes
+/// and an index within the group. The more frequent a group is, the fewer bits it needs.
 fn information_bits(uneven: &[i64]) -> f64 {
     // Groups by the number of bits, separately for differences below and above 0.
     let mut groups = [0_usize; 130];

@@ -15,9 +15,10 @@ const FIRST_TEST_FRAMES: usize = 620;
 const RUN_LENGTH: usize = 31;
 /// Number of the best readings that are tested with all frames.
 const BEST_READINGS: usize = 8;
-/// Maximum information in bits by which a reading may exceed the best reading to be tested with other numbers of steps.
+/// Maximum excess of a reading's information over that of the best reading, in bits. Readings within this limit are
+/// also tested with other numbers of steps.
 const NEAR_BITS: f64 = 400.0;
-/// Minimum number of changes per thousand frames of a clock that can be the lowest bit of a turning shaft.
+/// Minimum number of changes per thousand frames for a clock to be considered the lowest bit of the position.
 const LAST_PERMILLE: usize = 10;
 /// Minimum percentage of frames with correct parity for a bit to be considered a parity bit.
 const PARITY_PERCENT: usize = 85;

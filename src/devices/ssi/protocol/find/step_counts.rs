@@ -6,7 +6,7 @@ use super::reading::{FrameNumbers, Reading};
 use crate::devices::ssi::protocol::code::Code;
 
 const TRIED_COUNTS: usize = 40;
-/// Maximum information in bits by which another number of steps may exceed the best one to be considered equally good.
+/// Maximum excess of information, in bits, with which another number of steps is considered as good as the best one.
 const ALTERNATIVE_MARGIN_BITS: f64 = 10.0;
 
 /// Returns the possible codes, each with two possible numbers of steps: the most common one and the largest one that
@@ -133,7 +133,7 @@ fn common_step_counts(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
     all
 }
 
-/// Returns how uncommon a number of steps is, from 0 for a common number up to 5.
+/// Returns the cost of a number of steps, from 0 for a common number or a power of two to 5 for any other odd number.
 pub(super) fn unusual_step_cost(steps: u64) -> u8 {
     if !common_step_counts(steps..=steps).is_empty() || steps.is_power_of_two() {
         return 0;

@@ -44,7 +44,8 @@ fn the_class_of_every_family_ranks_first() {
             let text = format!("{},code={code}", family.key);
             let truth = layout(&text);
             let search = find(&turning(&truth, speed), truth.clock_count(), &families);
-            // If the end of the range is not passed, it is not known whether higher bits belong to the position.
+            // If the shaft does not pass the end of the range, it is unknown whether higher bits belong to the
+            // position.
             assert!(
                 matches!(search.doubt, None | Some(SearchUncertainty::Open)),
                 "{text} at {speed}: {:?}",
@@ -54,7 +55,7 @@ fn the_class_of_every_family_ranks_first() {
             let named =
                 first.members.iter().filter(|member| member.family.as_ref().is_some_and(|(key, _)| *key == family.key));
             assert!(named.clone().any(|member| is_same_frame(&member.layout, &truth)), "{text} at {speed}");
-            // A change only in the first frames counts as disturbed.
+            // A bit that changes only in the first frames is counted as disturbed.
             assert!(first.evidence.misfits <= 2, "{text} at {speed}");
         }
     }
@@ -83,7 +84,7 @@ fn settings_are_found() {
     }
 }
 
-/// Contiguous frames do not show the end of the turns, nor distinguish a safety encoder from the other.
+/// Contiguous frames reveal neither the boundary between turns and steps nor whether the encoder is a safety encoder.
 #[test]
 fn indistinguishable_layouts_form_one_class() {
     let families = Families::built_in();
@@ -124,7 +125,8 @@ fn noise_and_stuck_lines_yield_no_layout() {
     assert_eq!(find(&[], 25, &families).doubt, Some(SearchUncertainty::Standing));
 }
 
-/// Returns frames of an encoder of no family: gray excess whose end was passed, and a parity bit.
+/// Frames without a family are recognised: Gray excess in which the shaft passes the end of the range, and a frame with
+/// a parity bit.
 #[test]
 fn encoders_of_no_family_are_found() {
     let families = Families::built_in();
@@ -152,7 +154,7 @@ fn encoders_of_no_family_are_found() {
     assert_eq!(search.classes[0].members[0].layout.descriptor().parity, Some(parity));
 }
 
-/// Some frames disturbed, some with errors: the layout is found nevertheless, and both are counted.
+/// The layout is found even if some frames are disturbed and others contain errors. Both kinds are counted.
 #[test]
 fn disturbed_frames_do_not_hide_the_layout() {
     let truth = layout("ahm36,st=12,code=gray");
@@ -165,7 +167,7 @@ fn disturbed_frames_do_not_hide_the_layout() {
     }
     let search = find(&frames, 27, &Families::built_in());
     let first = &search.classes[0];
-    // The disturbed bit is one of turns that do not change.
+    // The disturbed bit is a turn bit that otherwise never changes.
     assert_eq!((search.doubt, first.evidence.misfits), (Some(SearchUncertainty::Open), 40));
     assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &truth)));
 }
@@ -187,10 +189,10 @@ fn reads(proposal: &LayoutProposal, frames: &[u64], meant: &[Option<u64>]) -> bo
     frames.iter().zip(meant).all(read)
 }
 
-/// Issue 22.22: recordings of fifteen encoders, made in Python, with noise and disturbed frames. In the order of the
-/// file: whether the tick is allowed, since every bit is explained (a 1 before the position and its highest bit look
-/// the same until the end of the range is passed, so do a falling binary position and exchanged wires, and so do 3600
-/// and 3598 steps as long as the shaft jumps over the first and the last).
+/// Issue 22.22: recordings of fifteen encoders, generated in Python, with noise and disturbed frames. The flag
+/// specifies whether the result may be certain, which requires that every bit is explained. Until the end of the range
+/// is passed, a 1 before the position looks like its highest bit. A decreasing binary position looks like swapped
+/// wires, and 3600 steps look like 3598 as long as the shaft skips the first and the last one.
 #[test]
 fn independent_recordings_are_recognized() {
     let vectors = [
@@ -231,8 +233,8 @@ fn independent_recordings_are_recognized() {
     assert_eq!((first, foremost), (15, 14), "the truth in the first class, and as its first member");
 }
 
-/// Issue 22.22: no tick at a layout that reads a frame in another way than intended. All thousand: `cargo bench --bench
-/// ssi`.
+/// Issue 22.22: a layout that reads a frame differently than intended is never reported as certain. `cargo bench
+/// --bench ssi` tests all thousand recordings.
 #[test]
 fn no_confirmed_layout_is_wrong() {
     let families = Families::built_in();
@@ -249,7 +251,7 @@ fn no_confirmed_layout_is_wrong() {
     assert!(ticks >= 1, "a tick is given where it may be");
 }
 
-/// Issue 22.22: the name of the entry can be used unchanged.
+/// Issue 22.22: the text of a proposal can be used as a layout specification without changes.
 #[test]
 fn every_proposal_round_trips_as_text() {
     let families = Families::built_in();

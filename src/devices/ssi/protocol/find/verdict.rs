@@ -8,7 +8,7 @@ use super::reading::FrameNumbers;
 use super::{CLASSES, Class, ClassEvidence, Group, LayoutProposal, OpenQuestion, SearchUncertainty, WEIGHT_BITS};
 use crate::devices::ssi::protocol::range::Range;
 
-/// Minimum difference between the first two classes in bits.
+/// Minimum lead of the first class over the second one, in bits.
 const LEAD_BITS: f64 = 100.0;
 /// Maximum information content of motion that is considered steady, as a fraction of the bits in the position values.
 const EVEN_MOTION_INFORMATION: f64 = 0.7;

@@ -73,7 +73,7 @@ proptest! {
         prop_assert_eq!(seen, FrameReading { position: kept, flags });
     }
 
-    /// A parity bit finds every single flipped bit, a repetition every one in either word.
+    /// A parity bit detects every single inverted bit, and a repetition detects every inverted bit in either word.
     #[test]
     fn flipped_bits_are_detected_by_parity_and_repetition(layout in layouts(), position in any::<u64>(), at in 0..64_u8) {
         let last = layout.position_code().last_position();
@@ -177,7 +177,8 @@ fn impossible_layouts_are_refused_with_a_reason() {
     }
 }
 
-/// Reference section 8: the position ABCDEF in Gray followed by an error bit 1, both ways.
+/// Reference section 8: the position ABCDEF in Gray code followed by an error bit of 1, which the code may cover or
+/// not.
 #[test]
 fn gray_decodes_with_and_without_the_error_bit() {
     let descriptor = |coded| FrameDescriptor {
@@ -196,14 +197,16 @@ fn gray_decodes_with_and_without_the_error_bit() {
     assert_eq!(gray_to_binary(0x1FC_5631), 0x157_9BDE);
 }
 
-/// Zeros around the word belong to the Gray code or not: the frames differ whenever the lowest bit is 1 (section 2).
+/// The Gray code may cover the zeros around the position or not. The frames differ if the lowest bit is 1 (reference
+/// section 2).
 #[test]
 fn gray_may_cover_the_position_or_also_the_zeros() {
     let descriptor =
         |coded| FrameDescriptor { clocks: 14, area: 14, code: Code::Gray, coded, ..FrameDescriptor::binary(0, 12) };
     let position = Layout::new(descriptor(GrayCoverage::Position)).unwrap();
     let area = Layout::new(descriptor(GrayCoverage::Area)).unwrap();
-    // 101 = binary 1100101, gray 1010111; with two zeros after it: gray of 110010100 = 101011110.
+    // 101 is 1100101 in binary and 1010111 in Gray code. With two zeros after it, the Gray code of 110010100 is
+    // 101011110.
     assert_eq!(position.encode(101, Flags::NONE), Some(0b1_0101_1100));
     assert_eq!(area.encode(101, Flags::NONE), Some(0b1_0101_1110));
     assert_eq!(position.encode(100, Flags::NONE), area.encode(100, Flags::NONE));

@@ -18,8 +18,8 @@ fn times(key: &str) -> Times {
     Families::built_in().find_by_key(key).unwrap().times
 }
 
-/// An encoder of no family: reference section 1 has tm 15…25 µs, 2 MHz and the table of cables for all of SSI, and 33
-/// bits at 400 kHz take 82.5 µs. How often it makes positions is not known.
+/// Reference section 1: an encoder without a family has a tm of 15 to 25 µs, a maximum of 2 MHz, and the cable table of
+/// all SSI encoders. 33 bits at 400 kHz take 82.5 µs. The interval between its positions is unknown.
 #[test]
 fn any_encoder_has_the_general_times() {
     let reads = ReadConditions { cable_metres: Some(80.0), ..reads(33, 400e3, 20) };
@@ -37,7 +37,7 @@ fn any_encoder_has_the_general_times() {
     assert_eq!(Times::for_any_encoder(&synchronous).warnings, [Warning::SynchronousUnknown, too_fast]);
 }
 
-/// Reference section 1: "Duration (bits/f)".
+/// The durations are from reference section 1, "Duration (bits/f)".
 #[test]
 fn bursts_match_the_reference() {
     let table = [(25, 400e3, 62_500), (25, 1e6, 25_000), (25, 1.5e6, 16_667), (33, 400e3, 82_500)];
@@ -45,7 +45,7 @@ fn bursts_match_the_reference() {
         let timing = times("afm60").calculate_timing(&reads(clocks, clock_hz, 100));
         assert_eq!(timing.burst, Duration::from_nanos(nanoseconds), "{clocks} at {clock_hz}");
     }
-    // 33 bits at 400 kHz and tm of 25 µs: 107.5 µs.
+    // 33 bits at 400 kHz and a tm of 25 µs take 107.5 µs.
     let timing = times("afm60").calculate_timing(&reads(33, 400e3, 100));
     assert_eq!(timing.least_pause, Duration::from_micros(25));
     assert_eq!(timing.monoflop, (Duration::from_micros(15), Duration::from_micros(25)));
@@ -65,7 +65,7 @@ fn cable_lengths_match_the_manual() {
     }
 }
 
-/// Reference section 5.
+/// The limits are from reference section 5.
 #[test]
 fn family_timing_limits_cause_warnings() {
     let warnings = |key: &str, reads: &ReadConditions| times(key).calculate_timing(reads).warnings;
@@ -74,7 +74,8 @@ fn family_timing_limits_cause_warnings() {
     let behind = |reads: ReadConditions| ReadConditions { synchronous: true, ..reads };
     assert_eq!(warnings("ahm36", &ahm), []);
     assert_eq!(warnings("ahm36", &reads(27, 400e3, 600_001)), [Warning::PauseLong { most: micros(600_000) }]);
-    // 27 bits at 2 MHz take 13.5 µs: with 30 µs of pause a read takes 43.5 µs, and positions are made every 125.
+    // 27 bits at 2 MHz take 13.5 µs. With a pause of 30 µs, a frame is read every 43.5 µs, but a new position is
+    // available only every 125 µs.
     assert_eq!(warnings("ahm36", &reads(27, 2e6, 30)), [Warning::Repeats { update: micros(125) }]);
     assert_eq!(warnings("ahm36", &behind(reads(27, 400e3, 100))), [Warning::PauseShort { least: micros(150) }]);
     assert_eq!(warnings("atm60", &behind(reads(25, 1.6e6, 300))), [Warning::EncoderClock { most_hz: 1_500_000 }]);
@@ -82,7 +83,7 @@ fn family_timing_limits_cause_warnings() {
     assert_eq!(warnings("atm60", &odd), [Warning::PauseShort { least: micros(200) }]);
     assert_eq!(warnings("afs60", &behind(reads(21, 400e3, 100))), [Warning::NoSynchronous]);
     assert_eq!(warnings("afs60", &reads(21, 2.1e6, 100)), [Warning::EncoderClock { most_hz: 2_000_000 }]);
-    // Half a clock of 15 µs: 33.3 kHz.
+    // A clock level may last at most 15 µs, which is half a period at 33.3 kHz.
     assert!(matches!(warnings("afs60", &reads(21, 33e3, 100))[..], [Warning::ClockSlow { .. }]));
     assert_eq!(warnings("afs60", &reads(21, 34e3, 100)), []);
 }
@@ -90,7 +91,7 @@ fn family_timing_limits_cause_warnings() {
 #[test]
 fn position_ages_are_computed() {
     let micros = |all: f64| Duration::from_secs_f64(all * 1e-6);
-    // 25 clocks at 500 kHz: 50 µs.
+    // 25 clocks at 500 kHz take 50 µs.
     let burst = reads(25, 500e3, 300);
     let behind = ReadConditions { synchronous: true, ..burst };
     assert_eq!(times("atm60").calculate_timing(&burst).age, Some((micros(55.0), micros(200.0))));

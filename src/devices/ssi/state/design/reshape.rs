@@ -1,5 +1,5 @@
-//! Adaptation of a frame to a different position range or code. The frame becomes longer or shorter in the way in which
-//! a user would redraw it.
+//! Adapts a frame to a different position range or code. The frame becomes longer or shorter, as if a user had redrawn
+//! it.
 
 use crate::devices::ssi::protocol::{Code, FrameDescriptor, LayoutError, PositionCode, Range};
 

@@ -87,7 +87,7 @@ mod tests {
     use crate::app::Language::{English, German};
     use crate::devices::ssi::protocol::english_text;
 
-    /// The English catalogue texts match those of the command line.
+    /// The English texts of the catalogue match the texts of the command line.
     #[test]
     fn both_languages_have_the_same_content() {
         let codes = [Code::Binary, Code::Gray, Code::GrayExcess, Code::Bcd].map(ExportText::CodeName);

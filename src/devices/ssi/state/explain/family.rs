@@ -12,7 +12,7 @@ pub fn note_text(family: &Family, words: &str) -> Text {
     Text::new("plain.words").with_name("words", words, family.german_or(words))
 }
 
-/// Returns the message about the file of a family that cannot be read or used.
+/// Returns the message about a family file that cannot be read or used.
 pub fn family_error_text(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store_error_text(error) };
     match cause.get::<FamilyError>() {
@@ -50,7 +50,7 @@ mod tests {
                 assert_ne!(text.to_string_in(Language::German), *words);
             }
         }
-        // A user's family without German texts uses those of its file.
+        // If a user-defined family has no German texts, the texts of its file are used.
         let family = Families::built_in().iter().next().cloned().unwrap();
         assert_eq!(note_text(&family, "Own words").to_string_in(Language::German), "Own words");
     }

@@ -10,7 +10,7 @@ fn layout(text: &str) -> Layout {
     settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
 }
 
-/// Returns the words of a stream, a millisecond apart.
+/// Returns consecutive words of a stream at intervals of one millisecond.
 fn run(first: u64, words: &[u64]) -> Words {
     Words {
         first,
@@ -37,7 +37,7 @@ fn words_around_a_gap_are_not_consecutive() {
     let mut record = Record::new(layout("afs60"));
     record.add_words(vec![run(0, &[1, 2, 3]), run(3, &[4, 5])], 0);
     assert_eq!((record.latest_words(21), record.count(21)), (vec![1, 2, 3, 4, 5], 5));
-    // Two runs of three words were not taken in time.
+    // Two runs of three words each were dropped, because they were not fetched in time.
     record.add_words(vec![run(11, &[6, 7]), run(13, &[8])], 2);
     assert_eq!((record.latest_words(21), record.count(21)), (vec![6, 7, 8], 3));
     assert_eq!((record.dropped_count(), record.count(20)), (6, 0));
@@ -47,7 +47,7 @@ fn words_around_a_gap_are_not_consecutive() {
 fn renaming_an_error_bit_keeps_its_count() {
     let mut record = Record::new(layout("afs60"));
     record.add_words(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
-    // This number of words is not stored, but recorded.
+    // The words themselves are no longer stored, but their positions remain recorded.
     record.kept.clear();
     let mut descriptor = record.layout.descriptor().clone();
     descriptor.errors[2].name = "LIGHT".to_owned();

@@ -99,9 +99,9 @@ proptest! {
         let there = strip.with_part_moved(handle, to, following);
         let reached = there.clock(handle).unwrap();
         prop_assert!((at.min(to)..=at.max(to)).contains(&reached), "{handle:?}: {at} to {to}, at {reached}");
-        // A bit moved directly after others follows them from now on.
+        // A bit that is moved directly after other bits follows the position from then on.
         prop_assume!(moving::bits_after_position(there.layout()).len() == moving::bits_after_position(&layout).len() || !following);
-        // So does the end of an area that the position now fills.
+        // The end of an area that the position now fills also follows the position.
         let fills = |layout: &Layout| moving::position_end(layout) == layout.descriptor().area;
         prop_assume!(fills(there.layout()) == fills(&layout) || !following);
         let back = there.with_part_moved(handle, at, following);
@@ -153,7 +153,7 @@ fn frames_are_divided_into_fields() {
     assert_eq!(tree.strip_handles()[..5], handles);
     assert_eq!(tree.strip_handles()[5..], [Handle::FrameEnd]);
     assert_eq!(tree.position(), Some((5, 20)));
-    // MT is 5 to 12, so that its fourth bit from below is on clock 9.
+    // The turn bits are on clocks 5 to 12, so MT3 is on clock 9.
     assert_eq!(cell_text(&tree, 9).to_string_in(Language::English), "Clock 9: turn bit MT3 (number of turn bits: 8)");
     assert_eq!(short_label(&tree, &tree.fields()[2]).to_string_in(Language::German), "ST 8");
 
@@ -171,7 +171,7 @@ fn frames_are_divided_into_fields() {
     assert_eq!(cell_text(&twice, 13).to_string_in(Language::English), "Clock 13: repeats the bit of clock 3");
 }
 
-/// AHS36 with 14 bits, its error bit on clock 15; then with 12.
+/// An AHS36 has 14 position bits and the error bit on clock 15. The position is then shortened to 12 bits.
 #[test]
 fn error_bits_optionally_follow_the_end_of_the_steps() {
     let strip = family("ahs36", &Settings::default());
@@ -181,13 +181,13 @@ fn error_bits_optionally_follow_the_end_of_the_steps() {
     let following = strip.with_part_moved(Handle::StepsEnd, 12, true);
     assert_eq!(frame(&following, 0xABC, &[0]), 0x55E4);
     assert_eq!((bits_follow_position(fixed.layout()), bits_follow_position(following.layout())), (false, true));
-    // The error bit blocks the move; a following bit does not, but the end of the frame does.
+    // The error bit blocks the move. If the bit follows the position, the end of the frame is the limit.
     assert_eq!(strip.limits(Handle::StepsEnd, false), (1, 14));
     assert_eq!(strip.limits(Handle::StepsEnd, true), (1, 14));
     assert_eq!(fixed.limits(Handle::StepsEnd, true), (1, 14));
 }
 
-/// ATM60 of 25 bits: 8 bits of turns and 8 of steps, as trees of either kind and right-aligned.
+/// An ATM60 frame with 25 clocks, 8 turn bits and 8 step bits, in both tree formats and right-aligned.
 #[test]
 fn moving_boundaries_yields_the_formats_of_the_manual() {
     let position = 0xA5 << 8 | 0x3C;
@@ -198,14 +198,14 @@ fn moving_boundaries_yields_the_formats_of_the_manual() {
     assert_eq!(frame(&other.with_part_moved(Handle::StepsEnd, 21, true), position, &[]), 0x00A_53C0);
     let right = tree.with_part_moved(Handle::Position, 9, true);
     assert_eq!(frame(&right, position, &[]), 0x001_4A78);
-    // Two zeros between: the lowest bits of the turns belong to them now.
+    // With two zeros between turns and steps, the turns can be extended over these zeros.
     let apart = tree.with_part_moved(Handle::BetweenEnd, 14, true);
     assert_eq!(kinds(&apart)[1..4], [(Kind::Turns, 5, 12), (Kind::Between, 13, 14), (Kind::Steps, 15, 20)]);
     assert_eq!(apart.with_part_moved(Handle::TurnsEnd, 20, true).clock(Handle::TurnsEnd), Some(14));
     assert!(apart.strip_handles().contains(&Handle::TurnsEnd) && !apart.strip_handles().contains(&Handle::Split));
 }
 
-/// TTK70 with 31 clocks; KH53, whose pattern is bits of the whole frame.
+/// A TTK70 with 31 clocks, and a KH53, whose pattern consists of all bits of the frame.
 #[test]
 fn extending_the_frame_adds_zeros() {
     let ttk = family("ttk70", &Settings::default());
@@ -226,7 +226,7 @@ fn error_bits_swap_positions() {
     assert_eq!(names(&strip), ["ERRDIG", "ERRSI", "ERRSYNC"]);
     let moved = strip.with_part_moved(Handle::Error(0), 21, true);
     assert_eq!(names(&moved), ["ERRSYNC", "ERRSI", "ERRDIG"]);
-    // A bit of the position is not a possible place, and after the frame there is none.
+    // A bit cannot be moved into the position or beyond the end of the frame.
     assert_eq!(strip.with_part_moved(Handle::Error(2), 5, true).clock(Handle::Error(2)), Some(19));
     assert_eq!(strip.with_part_moved(Handle::Error(0), 64, true).clock(Handle::Error(0)), Some(21));
 }
@@ -237,7 +237,7 @@ fn step_positions_move_as_one_field() {
     let strip = family("ahs36", &settings);
     let inside = [Handle::LeadEnd, Handle::Split, Handle::TurnsEnd, Handle::BetweenEnd, Handle::StepsEnd];
     assert!(inside.iter().all(|handle| !strip.strip_handles().contains(handle) && strip.clock(*handle).is_none()));
-    // 12 bits on clocks 1 to 12, two zeros, the error bit on clock 15.
+    // The position has 12 bits on clocks 1 to 12, followed by two zeros and the error bit on clock 15.
     assert_eq!(strip.limits(Handle::Position, true), (1, 3));
     assert_eq!(
         kinds(&strip.with_part_moved(Handle::Position, 9, true))[..2],
@@ -248,7 +248,7 @@ fn step_positions_move_as_one_field() {
 #[test]
 fn cells_show_their_decoded_values() {
     let strip = family("afs60", &Settings { singleturn: Some(13), clocks: Some(18), ..Settings::default() });
-    // 1234h, ERRSI, and a 1 on clock 18, which is always 0.
+    // The position is 1234h, ERRSI is active, and clock 18 carries a 1 although it should always be 0.
     let shown = strip.cell_states(0x91A2 << 2 | 1);
     let tells: Vec<_> = (1..).zip(&shown).filter_map(|(clock, cell)| cell.tells.map(|tells| (clock, tells))).collect();
     assert_eq!(tells, [(15, BitMeaning::Invalid), (18, BitMeaning::Warning)]);

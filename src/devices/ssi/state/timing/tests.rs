@@ -33,14 +33,14 @@ fn span_texts(diagram: &BurstDiagram) -> Vec<String> {
     diagram.spans().iter().map(|span| diagram.span_text(span).to_string_in(Language::English)).collect()
 }
 
-/// Reference section 1: 33 bits at 400 kHz take 82.5 µs, tm is 15 to 25 µs.
+/// Reference section 1: 33 bits at 400 kHz take 82.5 µs, and tm is 15 to 25 µs.
 #[test]
 fn a_short_pause_is_drawn_without_a_break() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
     let times =
         ["T = 2.5 µs", "Burst of 33 clocks: 82.5 µs", "Pause: 40 µs", "tm = 15 µs … 25 µs", "Minimum pause: 25 µs"];
     assert_eq!(span_texts(&diagram), times);
-    // 122.5 µs from burst to burst, and two and a half clocks of the next.
+    // The interval between bursts is 122.5 µs. Two and a half clocks of the next burst are also drawn.
     assert_eq!(diagram.sections().len(), 1);
     assert_eq!(micros(diagram.end_time()), 128.75);
     let edges: Vec<f64> = diagram.clock_edges().into_iter().map(micros).collect();
@@ -56,7 +56,8 @@ fn a_short_pause_is_drawn_without_a_break() {
     assert_eq!([from, to].map(micros), [31.25, 76.25], "clocks 13 to 30");
 }
 
-/// AHM36, synchronous: a position is started 20 µs after the last clock and ready 125 µs later.
+/// An AHM36 in synchronous mode starts to sample a position 20 µs after the last clock. The position is ready 125 µs
+/// later.
 #[test]
 fn the_sampling_moment_is_shown() {
     let synchronous = diagram("ahm36", 400e3, 200.0, true);
@@ -79,7 +80,8 @@ fn the_sampling_moment_is_shown() {
 #[test]
 fn a_long_pause_is_drawn_with_a_marked_break() {
     let diagram = diagram("afm60", 400e3, 82_500.0, false);
-    // The burst, the events after it up to 25 µs and two fifths of a burst; the same before the next burst.
+    // The first section contains the burst, the events up to 25 µs after it, and a margin of two fifths of a burst. The
+    // second one begins with the same margin before the next burst.
     let pieces: Vec<_> = diagram.sections().iter().map(|piece| (micros(piece.from), micros(piece.to))).collect();
     assert_eq!(pieces, [(0.0, 140.5), (82_549.5, 82_588.75)]);
     assert_eq!(skipped_operations(diagram.gap_after(0)).to_string_in(Language::German), "82,41 ms ausgelassen");
@@ -148,7 +150,7 @@ fn frequencies_are_formatted_and_parsed_with_units() {
 }
 
 proptest! {
-    /// Every event is on the axis, which is in order and never longer than its content.
+    /// Every event is on the axis, whose sections are in order. Together, they are not much longer than a burst.
     #[test]
     fn every_event_is_on_the_axis(hz in 1e3..2e6_f64, pause in 0.0..1e6_f64, synchronous: bool, key in 0..3_usize) {
         let diagram = diagram(["ahm36", "atm60", "ttk70"][key], hz, pause, synchronous);
@@ -159,7 +161,7 @@ proptest! {
         for at in ends.chain(diagram.marks().iter().map(|mark| mark.at)).chain(diagram.clock_edges()) {
             prop_assert!(pieces.iter().any(|piece| (piece.from..=piece.to).contains(&at)), "{at}: {pieces:?}");
         }
-        // The rest of the pause does not compress the burst to nothing.
+        // A long pause does not make the burst too small to read.
         let burst = diagram.timing.burst.as_secs_f64();
         let drawn: f64 = pieces.iter().map(|piece| piece.to - piece.from).sum();
         prop_assert!(drawn < 14.0 * burst, "{drawn} of {burst}");

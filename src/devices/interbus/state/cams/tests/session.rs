@@ -21,24 +21,24 @@ type Cams = [[Own; 8]; 8];
 
 struct Model {
     range: u32,
-    /// Everything that was, the present at `at`.
+    /// All states of the undo history. The current one is at index `at`.
     past: Vec<Cams>,
     at: usize,
 }
 
 #[derive(Clone, Debug)]
 enum Step {
-    /// Program, cam, the stop and not the start, and by how far.
+    /// Moves an edge of a cam: program, cam, whether the edge is the stop, and number of steps.
     Drag(usize, usize, bool, i64),
-    /// Program, cam, whether it is the stop, and the new position.
+    /// Enters the position of an edge: program, cam, whether the edge is the stop, and new position.
     Type(usize, usize, bool, u32),
-    /// Program, cam, start and length.
+    /// Draws a cam: program, cam, start and length.
     Draw(usize, usize, u32, u32),
     Switch(usize, usize, bool),
     Copy(usize, usize),
     Mirror(usize),
     Rotate(usize, i64),
-    /// Indices of a program and of one of its cams.
+    /// Imports a table with a single cam: program, cam, start and length.
     Table(usize, usize, u32, u32),
     Undo,
     Redo,

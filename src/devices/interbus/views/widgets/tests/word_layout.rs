@@ -16,13 +16,14 @@ fn draw(shift: u8, word: Option<u32>, width: f32) -> egui_kittest::Harness<'stat
 
 #[test]
 fn groups_describe_their_bits() {
-    // Reference 7: 00BCDE20 is 1ABCDEF under a shift of 4, with cam 5 on. The window has bits 20 to 4.
+    // Reference 7: the word 00BCDE20h contains position 1ABCDEFh with a shift of 4, and cam 5 is on. The window
+    // contains bits 20 to 4.
     let harness = draw(4, Some(0x00BC_DE20), 860.0);
     harness.get_by_label("Invalid, bit 31: 0");
     harness.get_by_label("Always 0, bits 30 to 25: 000000");
     harness.get_by_label("Position, bits 20 to 4, bits 24 to 8: 01011110011011110");
     harness.get_by_label("Cam outputs, bits 7 to 0: 00100000");
-    // From a shift of 9 on the window is wider than the rest of the position.
+    // From a shift of 9, the window is wider than the remaining bits of the position.
     let harness = draw(20, None, 860.0);
     harness.get_by_label("Always 0, bits 30 to 13");
     harness.get_by_label("Position, bits 24 to 20, bits 12 to 8");

@@ -126,7 +126,7 @@ const fn field_side(handle: Handle) -> f32 {
     }
 }
 
-/// Handles a drag of a handle with the pointer, and its end.
+/// Processes a pointer drag of a handle, including its end.
 fn apply_drag(
     view: &StripContext<'_>,
     response: &Response,

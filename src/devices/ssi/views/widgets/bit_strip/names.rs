@@ -28,7 +28,7 @@ pub(super) struct NameTag {
 const NAME_SPACING: f32 = 6.0;
 /// Maximum width of a name. A longer name is truncated, and the tooltip shows it in full.
 const MAX_NAME_WIDTH: f32 = 160.0;
-/// Number of rows in which a free space for a name is searched. It equals the maximum number of error bits in a frame.
+/// Number of rows that are searched for free space for a name. It equals the maximum number of error bits in a frame.
 const LEVELS: usize = 8;
 
 /// A name that is wider than its field.

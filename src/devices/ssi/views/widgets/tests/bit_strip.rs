@@ -193,7 +193,8 @@ fn every_frame_stays_within_its_width() {
 #[test]
 fn a_handle_describes_its_purpose_and_range() {
     let mut harness = tree();
-    // Turns and steps keep a bit each of clocks 5 to 20; the position has four zeros before it and five after it.
+    // Turns and steps share clocks 5 to 20 and keep at least one bit each. The position has four zeros before it and
+    // five after it.
     for (label, reach) in
         [("Boundary between the turn bits and the step bits", "Range: 5 to 19"), ("Entire position", "Range: 1 to 10")]
     {
@@ -209,7 +210,7 @@ fn a_handle_describes_its_purpose_and_range() {
     harness.get_by_label("This boundary cannot be moved because the adjacent bits are in use.");
 }
 
-/// Eight error bits with long names, at the beginning of a line and at its end: none overlaps another.
+/// Eight error bits with long names do not overlap, whether they are at the start or at the end of a line.
 #[test]
 fn names_do_not_overlap() {
     for (first, width) in [(1_u8, 860.0), (20, 860.0), (40, 600.0), (56, 300.0)] {
@@ -226,7 +227,7 @@ fn names_do_not_overlap() {
         };
         descriptor.errors = (0..8).map(error).collect();
         let harness = strip(&Layout::new(descriptor).unwrap(), width);
-        // A field's rectangle is its bracket together with its name, which is wider.
+        // The rectangle of a field includes its bracket and its name, which is wider than the bracket.
         let name = |index: u8| {
             let label = format!("A_LONG_NAME_OF_AN_ERROR_BIT_{index}, on clock {}", first + index);
             harness.get_by_label(&label).rect()

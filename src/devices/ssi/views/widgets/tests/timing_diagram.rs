@@ -50,7 +50,8 @@ fn hovering_shows_the_clock() {
         timing_diagram(ui, &theme(), &TimingDiagram { label: "Burst", diagram: own, frame: None });
     });
     let rect = harness.get_by_label("Burst").rect();
-    // The burst is at least a quarter of the axis to its first break: from its beginning on, clock by clock.
+    // The burst takes up at least a quarter of the axis before the first break, so moving the pointer visits clock
+    // after clock.
     let mut seen: Vec<u8> = Vec::new();
     for step in 0..16 {
         let x = rect.left() + rect.width() * (0.06 + 0.02 * step as f32);

@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn times_and_positions_convert_both_ways() {
         let pieces = [AxisSection { from: 0.0, to: 60.0 }, AxisSection { from: 1000.0, to: 1040.0 }];
-        // 224 points minus a break of 24 are two per second.
+        // Without the break of 24 points, 200 of 224 points remain, which are two points per second.
         let axis = Axis::new(&pieces, Rangef::new(10.0, 234.0));
         for (at, x) in [(0.0, 10.0), (60.0, 130.0), (1000.0, 154.0), (1040.0, 234.0), (500.0, 142.0), (9999.0, 234.0)] {
             assert!((axis.x(at) - x).abs() < 1e-3, "{at}: {}", axis.x(at));

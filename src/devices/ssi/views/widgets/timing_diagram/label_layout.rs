@@ -111,7 +111,7 @@ mod tests {
             place_labels(&two, (0.0, 400.0)),
             [LabelPlacement { level: 0, left: 16.0 }, LabelPlacement { level: 0, left: 306.0 }]
         );
-        // At the end, there is only space before the line.
+        // At the right end, there is only space before the line.
         assert_eq!(place_labels(&two[1..], (0.0, 350.0)), [LabelPlacement { level: 0, left: 234.0 }]);
     }
 
