@@ -3,8 +3,8 @@
 //! project's sine/cosine reference.
 //!
 //! Model, with θ the true angle: x = R·cos θ + p (cosine channel) and y = (R·sin θ·cos α − R·cos θ·sin α)/r + q (sine
-//! channel). The fit is to A·x² + B·y² + C·xy + D·x + E·y = 1, after the origin was moved to the centre of the ellipse.
-//! The equation is best conditioned there, and signals with a large mean level can be fitted as well.
+//! channel). The fitted equation is A·x² + B·y² + C·xy + D·x + E·y = 1, after the origin was moved to the centre of the
+//! ellipse. The equation is best conditioned there, and signals with a large mean level can be fitted as well.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -65,7 +65,7 @@ const LINE_VARIANCE_RATIO: f64 = 1e-4;
 /// Minimum ratio of the smallest to the largest eigenvalue of the normal equations. Below it, the solution is not
 /// unique.
 const MIN_EIGENVALUE_RATIO: f64 = 1e-13;
-/// Number of times the origin is moved to the centre of the previous ellipse.
+/// Number of times that the origin is moved to the centre of the previous ellipse.
 const CENTRING_PASSES: usize = 4;
 
 impl SignalChannel {

@@ -1,7 +1,7 @@
 //! Effect of a drive's input circuit on the signals: signal frequency at a given speed, phase and gain of the input
 //! filter. See SICK 8010701, process data channel, and section 1 of the project's sine/cosine reference. The manual
-//! names the input resistor in the text and the feedback resistor in the formula. The relevant resistor is the one
-//! across the capacitor.
+//! names the input resistor in the text, but the feedback resistor in the formula. The relevant resistor is the one in
+//! parallel with the capacitor.
 
 use std::f64::consts::TAU;
 

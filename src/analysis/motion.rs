@@ -15,10 +15,10 @@ pub struct Motion {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotionRates {
-    /// Speed in steps/s, averaged over the last window. It applies to the middle of the window. `None` until a window
-    /// has passed.
+    /// Speed in steps/s, averaged over the last window, or `None` until a window has passed. It applies to the middle
+    /// of the window.
     pub speed: Option<f64>,
-    /// Acceleration in steps/s² from the last two windows. `None` until two windows have passed.
+    /// Acceleration in steps/s² from the last two windows, or `None` until two windows have passed.
     pub acceleration: Option<f64>,
 }
 

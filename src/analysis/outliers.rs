@@ -1,6 +1,6 @@
-//! Detection of samples far from the ellipse, which are caused by a relay's spark or a loose contact. A few of them
-//! would distort an ellipse fitted by least squares. Outliers are found by a robust deviation, which is the median of
-//! the distances. They are left out of a second fit, and reported.
+//! Detection of samples far from the ellipse, as caused by a relay's spark or a loose contact. A few such outliers
+//! would distort an ellipse fitted by least squares. They are found by a robust measure, the median of the distances,
+//! and are reported and left out of a second fit.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ pub struct Outliers {
     pub longest: usize,
     /// Largest distance of an outlier from the ellipse, in volts.
     pub farthest_v: f64,
-    /// Ellipse through all samples and their coverage. `None` if the samples do not determine an ellipse.
+    /// Ellipse through all samples and their coverage, or `None` if the samples do not determine an ellipse.
     pub all: Option<(Ellipse, Coverage)>,
 }
 

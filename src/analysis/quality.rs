@@ -74,7 +74,8 @@ impl Family {
 /// A quantity that is outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QualityFinding {
-    /// The amplitude is outside its limits, given for the channel with the smaller or the larger amplitude.
+    /// The amplitude of a channel is outside its limits. The value is from the channel with the smaller or the larger
+    /// amplitude.
     Amplitude {
         /// Peak amplitude found, in volts.
         volts: f64,

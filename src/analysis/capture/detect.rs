@@ -256,8 +256,8 @@ fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     let name = |field: &Vec<u8>| String::from_utf8_lossy(&normalise_header_field(field)).into_owned();
     let mut found: Vec<Vec<String>> =
         before.iter().rev().take_while(wide).take(2).map(|line| line.fields.iter().map(name).collect()).collect();
-    // The second of two lines has the units. Otherwise, the first line is no part of the header. A field in the second
-    // line that is not a unit may be a count ("Sequence") or a number from the header.
+    // If the header has two lines, the second contains the units. Otherwise, the first line is not part of the header.
+    // A field in the second line that is not a unit may be a count ("Sequence") or a number from the header.
     let is_named = |line: &Vec<String>| Columns::find_by_name(line).is_some();
     let units = |line: &Vec<String>| {
         !is_named(line) && line.iter().any(|name| name.starts_with(['(', '[']) || is_unit(&name.to_lowercase()))

@@ -55,12 +55,12 @@ pub struct Record<'a> {
 pub struct Diagnosis {
     /// Findings, most severe first.
     pub findings: Vec<DiagnosisFinding>,
-    /// Peak amplitude of the cosine channel in volts. `None` if no ellipse was fitted.
+    /// Peak amplitude of the cosine channel in volts, or `None` if no ellipse was fitted.
     pub amplitude_v: Option<f64>,
     /// RMS white noise of one channel in volts, if known.
     pub noise_v: Option<f64>,
-    /// Spectral lines that are not harmonics of the signal, strongest first, including those of the mains. `None` if
-    /// the samples are not evenly spaced or the capture is too short for a spectrum.
+    /// Spectral lines that are not harmonics of the signal, strongest first, including mains hum. The value is `None`
+    /// if the samples are not evenly spaced or the capture is too short for a spectrum.
     pub interference: Option<Vec<Interference>>,
     /// Line spacing of the interference spectrum in hertz, if available.
     pub spacing_hz: Option<f64>,

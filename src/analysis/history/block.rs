@@ -1,4 +1,4 @@
-//! Block of samples of one column with its pyramid. The pyramid holds the minimum and maximum of every 8 samples, of
+//! A block of one column's samples with its pyramid. The pyramid holds the minimum and maximum of every 8 samples, of
 //! every 8 such buckets, and so on up to the whole block. A block is independent of time and of its position in the
 //! history.
 
@@ -85,7 +85,7 @@ impl ValueRange {
     }
 }
 
-/// Block of up to `BLOCK` samples. Its memory is allocated at once, except that of the flags, and is reused after
+/// Block of up to `BLOCK` samples. All memory except for the flags is allocated at once, and is reused after
 /// [`clear`](SampleBlock::clear). A block has few fields, which makes scans of many blocks fast.
 #[derive(Debug)]
 pub(super) struct SampleBlock<T> {

@@ -119,7 +119,7 @@ pub struct History {
     columns: Vec<Column>,
     /// Number of blocks to keep, including the one being filled.
     keep: usize,
-    /// Longest pause in nanoseconds across which samples are joined. `None` without a limit.
+    /// Longest pause in nanoseconds across which samples are joined, or `None` without a limit.
     longest_pause: Option<i64>,
     broken: bool,
 }

@@ -200,7 +200,7 @@ mod tests {
         let mut capture = capture();
         let analysis = analysed(&capture);
         let told = absolute_offset(&capture, Some(&analysis)).unwrap().unwrap();
-        // Rounding down takes half a step on average; an offset of 1 % moves the phase by 0.57° or 0.05 steps.
+        // Rounding down subtracts half a step on average. An offset of 1 % shifts the phase by 0.57°, or 0.05 steps.
         assert!((told.offset_steps - 2.5).abs() < 0.01, "{told:?}");
         assert!((told.farthest_steps - 0.55).abs() < 0.02, "{told:?}");
         assert_eq!(told.samples, 20_000);

@@ -52,7 +52,7 @@ struct TurnPosition {
 }
 
 impl TurnPosition {
-    /// Splits a position. A turn has 256 · numerator / denominator steps (reference 5).
+    /// Splits a position. A turn has 256 · numerator / denominator steps (reference, section 5).
     fn split(position: i32, scale: PositionScale) -> Self {
         let (numerator, denominator) = (i64::from(scale.numerator()), i64::from(scale.denominator()));
         // Fractions of a step make a turn a whole number.

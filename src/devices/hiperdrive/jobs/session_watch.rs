@@ -27,7 +27,7 @@ const REPLY_TIMEOUT: Duration = Duration::from_millis(130);
 const UNCHECKED_TIMEOUT: Duration = Duration::from_millis(250);
 /// Interval between checks of the line while a reply is awaited.
 const CHECK_INTERVAL: Duration = Duration::from_millis(10);
-/// Maximum time allowed for a reply, no matter how slow the device was before.
+/// Maximum time allowed for a reply, regardless of how slow the device was before.
 const MAX_REPLY_TIMEOUT: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -166,7 +166,8 @@ pub enum CheckFinding {
 const READING_COUNT: u32 = 20;
 /// Allowed supply voltage in tenths of a volt: 24 V, 15 % less or 20 % more (`U`: not documented).
 const SUPPLY_RANGE: std::ops::RangeInclusive<i64> = 204..=288;
-/// Allowed temperature of a device or a drive, in degrees Celsius (`U`: the manual contradicts itself, reference 8.9).
+/// Allowed temperature of a device or a drive, in degrees Celsius (`U`: the manual contradicts itself, reference,
+/// section 8.9).
 const TEMPERATURE_RANGE: std::ops::RangeInclusive<i64> = -10..=70;
 
 /// Runs the check to its end, unless the device fails.

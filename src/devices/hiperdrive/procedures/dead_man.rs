@@ -1,6 +1,6 @@
 //! The dead-man control, which is the only source of a drive's control word. In every interval, it derives the word
-//! from the drive's report, the user's request and the drive's permit (reference 3). Time is an argument, and no call
-//! blocks.
+//! from the drive's report, the user's request and the drive's permit (reference, section 3). Time is an argument, and
+//! no call blocks.
 //!
 //! Invariants for any input:
 //! - A word that could start a motion is sent only while a fresh action of the user requests that motion. All other

@@ -1,4 +1,5 @@
-//! Reading the identity, the status, and everything else that can be read. Nothing is set. See reference 4.
+//! Reading the identity, the status, and everything else that can be read. Nothing is set. See section 4 of the
+//! reference.
 
 use std::collections::BTreeMap;
 
@@ -72,7 +73,7 @@ pub struct DriveStatus {
     pub number: DriveNumber,
     /// Status word, parameter 105.
     pub status: StatusWord,
-    /// Errors stored in parameters 108 to 115, newest first. After power-up, they may be old (reference 4).
+    /// Errors stored in parameters 108 to 115, newest first. After power-up, they may be old (reference, section 4).
     pub buffer: Vec<ErrorCode>,
     /// Drive error word, motion status and communication error, parameters 116 to 118. The value 0 means no error, and
     /// FFFFh means no drive.

@@ -197,7 +197,7 @@ mod tests {
 
     const HDA30A: (Topology, Variant) = (Topology::Adapter, Variant::new(7));
 
-    /// Returns the factory value of an HDA30A parameter: ±511 turns of 65536 steps (reference 5).
+    /// Returns the factory value of an HDA30A parameter: ±511 turns of 65536 steps (reference, section 5).
     fn factory(number: u16) -> Option<i64> {
         Some(match number {
             152 => 1,

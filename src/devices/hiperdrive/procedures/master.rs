@@ -1,5 +1,5 @@
-//! Host side of explicit messages (reference 7). There is one session per connection. A numbered context matches
-//! replies to requests. Late replies are skipped and counted.
+//! Host side of explicit messages (reference, section 7). There is one session per connection. A numbered context
+//! matches replies to requests. Late replies are skipped and counted.
 //!
 //! Reads are repeated. A request that sets a value is sent once. If its reply is lost, the value is read back. The
 //! stream keeps the order, so the device answers this read after the lost request.

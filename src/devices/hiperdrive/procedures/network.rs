@@ -1,4 +1,4 @@
-//! IP address and its source: address switches and TCP/IP object (reference 1).
+//! IP address and its source: address switches and TCP/IP object (reference, section 1).
 
 use super::error::RequestedItem;
 use super::identify::device_parameter;

@@ -1,5 +1,5 @@
-//! Execution of a plan. The values on which the plan is based are read again. Each operation is then executed and
-//! read back (reference 4).
+//! Execution of a plan. The values on which the plan is based are read again. Each operation is then executed and read
+//! back (reference, section 4).
 
 use std::time::Duration;
 
@@ -144,7 +144,8 @@ fn execute(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Resul
     Ok(())
 }
 
-/// Writes a parameter and reads it back. A reference is rounded to 64 steps (reference 4) and becomes the position.
+/// Writes a parameter and reads it back. A reference is rounded to 64 steps (reference, section 4) and becomes the
+/// position.
 fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
     master.set_parameter(number, wanted)?;
     let reads = master.read_number(number)?;
@@ -207,7 +208,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
     }
 }
 
-/// Method of clearing a drive's fault (reference 4).
+/// Method of clearing a drive's fault (reference, section 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultReset {
     /// The drive has no fault.
@@ -247,7 +248,7 @@ fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error>
 }
 
 /// Writes the address source, then the addresses. The order matters because setting the source to *stored* stores the
-/// current address (reference 1).
+/// current address (reference, section 1).
 fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSettings) -> Result<(), Error> {
     if from.source != to.source {
         let attribute = ConfigurationControl::ATTRIBUTE;

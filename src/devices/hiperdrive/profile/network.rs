@@ -1,5 +1,5 @@
-//! Network settings of a device and their plan: TCP/IP object, CIP class F5h (reference 1). The settings apply if the
-//! address switch is at 0. The addresses also apply if it is at 97.
+//! Network settings of a device and their plan: TCP/IP object, CIP class F5h (reference, section 1). The settings apply
+//! if the address switch is at 0. The addresses also apply if it is at 97.
 
 use super::{Base, HiperdrivePlan, Op, PlanError};
 use crate::buses::ethernet_ip::protocol::{AddressSource, InterfaceConfiguration};

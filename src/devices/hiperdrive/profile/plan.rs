@@ -61,15 +61,15 @@ pub enum Op {
     },
 }
 
-/// A service of a device, requested through parameter 47 or 197 (reference 4).
+/// A service of a device, requested through parameter 47 or 197 (reference, section 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Service {
     /// Parameter 47 = 1: saves the current values of all saved parameters.
     Save,
     /// Parameter 47 = −2: restores the last saved parameters of the adapter or hub, but not of its drives.
     Recall,
-    /// Parameter 47 = −1: restores the factory values of the adapter or hub itself without saving them; those of its
-    /// drives stay unchanged.
+    /// Parameter 47 = −1: restores the factory values of the adapter or hub itself without saving them. The values of
+    /// its drives stay unchanged.
     Factory,
     /// Parameter 47 = −3: restores and saves the factory values of all parameters, and DHCP.
     FactoryAll,

@@ -3,7 +3,7 @@
 use super::{HiperdriveProfile, Image, ProfileDrive, ProfileIdentity};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Variant};
 
-/// Factory values of a requested drive of type HDA30 (reference 4 and 5).
+/// Factory values of a requested drive of type HDA30 (reference, sections 4 and 5).
 const DRIVE: [(u16, i64); 13] = [
     (152, 1),
     (154, 256),

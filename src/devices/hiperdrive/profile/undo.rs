@@ -21,7 +21,7 @@ pub(super) fn redo(item: &ChangedItem) -> Option<Redo> {
 }
 
 impl HiperdriveProfile {
-    /// Keeps the parameters that a write has changed. A backup contains all parameters, of which a later write may have
+    /// Keeps the parameters that a write has changed. A backup contains all parameters, and a later write may have
     /// changed others.
     pub(super) fn keep_parameters(&mut self, items: &[ChangedItem]) {
         let is_changed = |name: &str| items.iter().any(|item| item.item == name);

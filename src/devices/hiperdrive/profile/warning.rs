@@ -10,8 +10,8 @@ use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, Parameter
 /// A side effect of a plan about which the user is warned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
-    /// The scale changes, so the same limits mean different positions in turns (reference 3, *Scaling moves soft
-    /// limits*).
+    /// The scale changes, so the same limits mean different positions in turns (reference, section 3, *Scaling moves
+    /// soft limits*).
     LimitsMove {
         /// Number of the drive.
         drive: DriveNumber,

@@ -1,5 +1,5 @@
-//! The control word (STW, reference 3), built from the action that a host requests. Words built here never have
-//! reserved bits set. They have no jog bits set either, because a stop might not end a jog step.
+//! The control word (STW, reference, section 3), built from the action that a host requests. Words built here never
+//! have reserved bits set. They have no jog bits set either, because a stop might not end a jog step.
 
 use super::status_word::{StatusBit, StatusWord};
 
@@ -74,7 +74,7 @@ pub struct ReservedBitsError {
 }
 
 /// Mask of the reserved bits 1, 2, 11, 13, 14 and 15. PROFIdrive, by contrast, requires bits 1 and 2 to be set
-/// (reference 8.2).
+/// (reference, section 8.2).
 const RESERVED: u16 = 0xE806;
 
 fn bits(word: u16) -> String {
@@ -218,8 +218,8 @@ impl ControlWord {
     }
 
     /// Returns the motion that starts when this control word follows `before`. The drive must be operational and report
-    /// `status`. A job starts on a difference of levels, not on an edge (reference 8.10). Clearing bit 12 after a run
-    /// therefore starts a job to a stale target.
+    /// `status`. A job starts on a difference of levels, not on an edge (reference, section 8.10). Clearing bit 12
+    /// after a run therefore starts a job to a stale target.
     pub fn motion_start(self, before: ControlWord, status: StatusWord) -> Option<MotionStart> {
         let rises = |bit: ControlBit| self.is_set(bit) && !before.is_set(bit);
         let acknowledged = status.is_set(StatusBit::SetpointAcknowledged);

@@ -1,5 +1,5 @@
-//! Errors that a drive stores (parameters 108 to 115, newest first; reference 4). Names are those of the manual. Causes
-//! and remedies are derived where the manual gives none (`D`).
+//! Errors that a drive stores (parameters 108 to 115, newest first; reference, section 4). The names follow the manual.
+//! Causes and remedies are derived where the manual gives none (`D`).
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! LEDs of a hub, of an adapter and of their network ports (reference 1). Remedies are derived (`D`).
+//! LEDs of a hub, of an adapter and of their network ports (reference, section 1). Remedies are derived (`D`).
 
 /// State of a two-colour RS485 LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,9 +1,9 @@
 //! HIPERDRIVE: small drives of halstrup-walcher, one behind an EtherNet/IP adapter or up to eight behind a hub. Control
 //! and status words, the state machine, process data, parameter words, parameters, scaling, switches and LEDs.
 //!
-//! The source is manual 004 of the drive, called "the manual" below. "Reference" and a number denote a section of the
-//! project's reference on HIPERDRIVE. `D` marks derived facts, and `U` marks assumptions that the manual does not
-//! confirm. Where the manual contradicts itself, reference 8 states the interpretation used.
+//! The source is manual 004 of the drive, called "the manual" below. "The reference" is the project's reference on
+//! HIPERDRIVE. `D` marks derived facts, and `U` marks assumptions that the manual does not confirm. Where the manual
+//! contradicts itself, section 8 of the reference states the interpretation used.
 
 #![warn(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! Parameter numbers, their CIP addresses, and the rows of the parameter table (reference 4 and 7).
+//! Parameter numbers, their CIP addresses, and the rows of the parameter table (reference, sections 4 and 7).
 
 use std::fmt;
 use std::time::Duration;
@@ -12,8 +12,8 @@ use super::value::Kind;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct DriveNumber(u8);
 
-/// Parameter number: up to 99 for the device, 100 to 199 for drive 1, 200 to 299 for drive 2, and so on up to 899.
-/// The manual's text says n · 100 instead of (n − 1) · 100 (reference 8.3).
+/// Parameter number: up to 99 for the device, 100 to 199 for drive 1, 200 to 299 for drive 2, and so on up to 899. The
+/// manual's text says n · 100 instead of (n − 1) · 100 (reference, section 8.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ParameterNumber(u16);
 
@@ -154,8 +154,8 @@ impl ParameterNumber {
         if 1 <= number && number <= 899 { Some(ParameterNumber(number)) } else { None }
     }
 
-    /// Converts a parameter number of drive 1 to that of another drive, or returns `None` if the number does not belong
-    /// to drive 1.
+    /// Converts a parameter number of drive 1 to the number for another drive, or returns `None` if the number does not
+    /// belong to drive 1.
     pub const fn for_drive(number: u16, drive: DriveNumber) -> Option<Self> {
         if 100 <= number && number <= 199 { Some(ParameterNumber(number + 100 * (drive.0 as u16 - 1))) } else { None }
     }

@@ -1,5 +1,5 @@
-//! All parameters of the device and of drive 1 (reference 4). The names are those of the program, since the manual has
-//! German names.
+//! All parameters of the device and of drive 1 (reference, section 4). The program defines the English names, since the
+//! manual only has German ones.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;

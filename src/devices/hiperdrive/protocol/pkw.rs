@@ -1,4 +1,4 @@
-//! Parameter words in the process data: a request is repeated until its reply has arrived (reference 6).
+//! Parameter words in the process data: a request is repeated until its reply has arrived (reference, section 6).
 
 use std::fmt;
 
@@ -37,7 +37,7 @@ pub enum Task {
     Count = 9,
 }
 
-/// Answer in a reply. The manual's text repeats the numbers of the requests instead (reference 8.4).
+/// Answer in a reply. The manual's text repeats the numbers of the requests instead (reference, section 8.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Answer {
     /// Answer 0: there was no request.

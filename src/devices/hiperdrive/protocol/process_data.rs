@@ -1,12 +1,12 @@
-//! Process data: the cyclic output to the drives and the input from them (reference 2).
+//! Process data: the cyclic output to the drives and the input from them (reference, section 2).
 
 use super::control_word::{ControlWord, ReservedBitsError};
 use super::pkw::Pkw;
 use super::status_word::StatusWord;
 use crate::parameter::Keywords;
 
-/// Byte order of numbers in the process data. The manual does not define it (reference 8.11). It is little-endian
-/// unless a device is observed to differ.
+/// Byte order of numbers in the process data. The manual does not define it (reference, section 8.11). It is
+/// little-endian unless a device is observed to differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ByteOrder {
     /// Low byte first, as throughout CIP.
@@ -199,7 +199,8 @@ impl Layout {
         }
     }
 
-    /// Builds an image from the data of the drives. Missing drives are zero; surplus drives are dropped.
+    /// Builds an image from the data of the drives. The data of missing drives are zero, and surplus drives are
+    /// dropped.
     fn image(self, places: impl Iterator<Item = [u8; BYTES_PER_DRIVE]>, pkw: Option<Pkw>) -> Vec<u8> {
         let drives = usize::from(self.topology.drives());
         let words = self.pkw.then(|| pkw.unwrap_or_default().emit(self.order));
@@ -290,7 +291,7 @@ impl OutputImage {
         Ok(OutputImage { drives, pkw })
     }
 
-    /// Returns the image as bytes. Missing drives are filled with zeros, which do not control a drive; surplus drives
+    /// Returns the image as bytes. Missing drives are filled with zeros, which do not control a drive. Surplus drives
     /// are dropped.
     pub fn emit(&self, layout: Layout) -> Vec<u8> {
         layout.image(self.drives.iter().map(|drive| drive.emit(layout.order)), self.pkw)
@@ -308,7 +309,7 @@ impl InputImage {
         Ok(InputImage { drives, pkw })
     }
 
-    /// Returns the image as bytes. Missing drives are filled with zeros; surplus drives are dropped.
+    /// Returns the image as bytes. Missing drives are filled with zeros, and surplus drives are dropped.
     pub fn emit(&self, layout: Layout) -> Vec<u8> {
         layout.image(self.drives.iter().map(|drive| drive.emit(layout.order)), self.pkw)
     }

@@ -1,4 +1,4 @@
-//! Conversion between steps, turns, millimetres and rpm by parameters 154 to 164 (reference 5).
+//! Conversion between steps, turns, millimetres and rpm by parameters 154 to 164 (reference, section 5).
 
 /// Conversion between transmitted steps and turns. A turn has 256 · numerator / denominator steps. The formula in
 /// section 8.4 of the manual is garbled.

@@ -1,5 +1,5 @@
-//! States of the drive and the transitions between them (reference 3). They are reconstructed from sections 6.4 and 6.5
-//! of the manual (`D`).
+//! States of the drive and the transitions between them (reference, section 3). They are reconstructed from sections
+//! 6.4 and 6.5 of the manual (`D`).
 
 use std::fmt;
 

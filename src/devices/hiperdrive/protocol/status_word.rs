@@ -1,4 +1,4 @@
-//! The status word (ZSW, reference 3).
+//! The status word (ZSW, reference, section 3).
 
 use super::state::State;
 
@@ -26,8 +26,8 @@ pub enum StatusBit {
     SwitchOnLock = 6,
     /// A fault is present in any state.
     Warning = 7,
-    /// Following error bit. The manual describes it both as set and as cleared by a following error (reference 8.1).
-    /// Use error 8203 and bit 3 instead.
+    /// Following error bit. The manual describes it both as set and as cleared by a following error (reference, section
+    /// 8.1). Use error 8203 and bit 3 instead.
     NoFollowingError = 8,
     /// Same as bit 4.
     ControlRequested = 9,

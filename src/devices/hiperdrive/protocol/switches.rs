@@ -1,5 +1,5 @@
-//! Address switches S1 and S2, read when the device is switched on (reference 1). S3 selects the drive to which the
-//! RS485 LED refers.
+//! Address switches S1 and S2, read when the device is switched on (reference, section 1). S3 selects the drive to
+//! which the RS485 LED refers.
 
 use core::net::Ipv4Addr;
 

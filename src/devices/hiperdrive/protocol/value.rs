@@ -1,4 +1,4 @@
-//! Parameter values in CIP: strings, and numbers whose length depends on their type (reference 7).
+//! Parameter values in CIP: strings, and numbers whose length depends on their type (reference, section 7).
 
 /// Type of a parameter value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,4 +1,4 @@
-//! Variants of a drive (parameter 120, reference 4).
+//! Variants of a drive (parameter 120, reference, section 4).
 
 use super::scaling::Family;
 

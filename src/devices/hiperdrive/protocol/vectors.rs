@@ -27,7 +27,7 @@ fn status(word: u16) -> StatusWord {
     StatusWord::new(word)
 }
 
-/// Reference 3.
+/// Control words match section 3 of the reference.
 #[test]
 fn published_control_words_match() {
     use Direction::{Clockwise, Counterclockwise};
@@ -96,7 +96,7 @@ fn the_stop_word_depends_on_the_mode() {
     );
 }
 
-/// A job starts on a difference of levels, a run on an edge, and neither without its conditions (reference 3 and 8.10).
+/// A job starts on a difference of levels, and a run on an edge, if all conditions are met (sections 3 and 8.10).
 #[test]
 fn words_start_a_job_or_a_run() {
     let cases = [
@@ -123,7 +123,7 @@ fn words_start_a_job_or_a_run() {
     }
 }
 
-/// Reference 3 and 9.
+/// Status words and the resulting states match sections 3 and 9 of the reference.
 #[test]
 fn published_status_words_match() {
     let cases = [
@@ -156,7 +156,7 @@ fn published_status_words_match() {
     assert!(moving && done);
 }
 
-/// Reference 3.
+/// Transitions match section 3 of the reference.
 #[test]
 fn the_state_machine_matches_the_reference() {
     use State::{Enabled, Fault, Locked, Moving, NotReady, Operational, Ready};
@@ -262,7 +262,7 @@ fn recipes_reach_their_target_state() {
     assert_eq!(unlocked, (vec![0x0401, 0x0400], State::Ready));
 }
 
-/// Examples of reference 9: 2.5 turns (163840) at 100 % in both byte orders, and −1 turn (−65536) at 50 % and 75 %.
+/// Section 9 of the reference: 2.5 turns (163840) at 100 % in both byte orders, −1 turn (−65536) at 50 % and 75 %.
 #[test]
 fn published_process_data_to_a_drive_match() {
     let setpoint = |control: u16, speed, torque, target| Setpoint {
@@ -306,7 +306,7 @@ fn published_process_data_to_a_drive_match() {
     assert_eq!((Percent::new(101), Percent::new(100)), (None, Some(Percent::FULL)));
 }
 
-/// Reference 9.
+/// Process data from a drive match section 9 of the reference.
 #[test]
 fn published_process_data_from_a_drive_match() {
     let cases = [
@@ -327,7 +327,7 @@ fn published_process_data_from_a_drive_match() {
     assert_eq!(to_turns_and_steps(actual.position), (1, 34_464));
 }
 
-/// Lengths of reference 2: 16 or 8 bytes for an adapter, 40 and 72 for hubs, or 8 less without parameter words.
+/// Section 2 of the reference: 16 or 8 bytes for an adapter, 40 and 72 for hubs, or 8 less without parameter words.
 #[test]
 fn published_lengths_match() {
     let layout = |topology, pkw| Layout { topology, pkw, order: ByteOrder::Little };

@@ -1,4 +1,4 @@
-//! A virtual drive: effects of control words, motion and faults (reference 2 to 5).
+//! A virtual drive: effects of control words, motion and faults (reference, sections 2 to 5).
 //!
 //! Assumptions (`U`: not documented):
 //! - Words with reserved bits are ignored.

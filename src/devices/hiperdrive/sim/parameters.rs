@@ -147,7 +147,7 @@ impl Drive {
         Ok(())
     }
 
-    /// Sets the position to that of the shaft, which is between 0 and 1 turn (manual, 198).
+    /// Sets the position to the angle of the shaft, between 0 and 1 turn (manual, 198).
     pub(super) fn invalidate_position(&mut self) {
         self.offset = -(self.axis.place() / TURN).floor() * TURN;
     }

@@ -1,4 +1,4 @@
-//! Parameter words in the process data: the answers of a station (reference 6).
+//! Parameter words in the process data: the answers of a station (reference, section 6).
 
 use super::parameters::string_element;
 use super::station::Station;

@@ -151,7 +151,8 @@ fn next<T: Copy + PartialEq>(all: &[T], now: T) -> T {
     all.get(at).or(all.first()).copied().unwrap_or(now)
 }
 
-/// Severity, and the text IDs of meaning and remedy. The English texts are those of the protocol tables.
+/// Severity, and the text IDs of the meaning and the remedy. The English texts equal the phrases in the protocol
+/// tables.
 type Row = (Severity, &'static str, &'static str);
 
 fn drives(subject: LedSubject, light: DriveLedState) -> Row {

@@ -1,5 +1,5 @@
 //! Network settings of a device: its TCP/IP object, the edited values, the effect of switches S1 and S2, and the result
-//! at the next power-up (reference 1). Nothing is requested from the device here.
+//! at the next power-up (reference, section 1). This module sends nothing to the device.
 
 use core::net::Ipv4Addr;
 

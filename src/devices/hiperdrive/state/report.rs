@@ -88,7 +88,7 @@ fn drive_section(
     section.with(Block::Table(parameter_table(context, profile, unit.rows(Some(drive)))))
 }
 
-/// Returns the limits of travel of a drive in turns of its shaft, and the distance between them.
+/// Returns the travel limits of a drive in turns of its shaft, and the distance between them.
 fn travel_fact(
     context: &ReportContext<'_>,
     profile: &HiperdriveProfile,

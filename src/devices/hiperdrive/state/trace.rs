@@ -148,7 +148,8 @@ mod tests {
     const HEAD: &str = "6F 00 14 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 \
                         00 00 00 00 00 00 02 00 00 00 00 00 B2 00 04 00";
 
-    /// Issue 22.11: rejections and deliberately damaged explicit messages (reference 7) are explained and marked.
+    /// Issue 22.11: rejections and deliberately damaged explicit messages (reference, section 7) are explained and
+    /// marked.
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let cases = [
@@ -180,7 +181,7 @@ mod tests {
         explained.meaning.iter().map(|text| text.to_string_in(Language::English)).collect()
     }
 
-    /// Returns a frame with the given context around a message (reference 7 and 9).
+    /// Returns a frame with the given context around a message (reference, sections 7 and 9).
     fn around(context: u8, message: &str) -> String {
         let length = parse_hex(message).unwrap().len();
         format!(

@@ -122,7 +122,7 @@ impl HiperdriveDevice {
         document.body.get::<HiperdriveProfile>()
     }
 
-    /// Returns the edited profile if the session is that of a profile.
+    /// Returns the edited profile, or `None` if the session does not belong to a profile.
     pub(crate) fn edited_profile(&self) -> Option<HiperdriveProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.edited_values()?);
         Some(HiperdriveProfile { image: wanted.clone(), ..profile.clone() })

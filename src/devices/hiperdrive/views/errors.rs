@@ -100,7 +100,7 @@ fn values_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     });
 }
 
-/// Returns the meaning of a value of parameters 116 to 118 (reference 4).
+/// Returns the meaning of a value of parameters 116 to 118 (reference, section 4).
 const fn drive_word_text_id(word: u16) -> &'static str {
     match word {
         0 => "hd_health.well",

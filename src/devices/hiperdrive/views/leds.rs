@@ -1,5 +1,5 @@
-//! LED states, drawn as they appear on the device. Clicking an LED cycles through its states until it matches the real
-//! one.
+//! LED states, drawn as they appear on the device. Each click on an LED selects its next state, until the LED matches
+//! the real one.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, RichText, Shape, Stroke, Ui, pos2, vec2};
 

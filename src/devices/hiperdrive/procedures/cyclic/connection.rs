@@ -1,4 +1,4 @@
-//! Packets of a cyclic connection: numbered and timed when sent, verified when received (reference 7).
+//! Packets of a cyclic connection: numbered and timed when sent, verified when received (reference, section 7).
 
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
-//! Parameters read cyclically through the parameter words of a connection, one at a time (reference 6). The words are
-//! only used for reading. Writing requires explicit messages and a plan.
+//! Parameters read cyclically through the parameter words of a connection, one at a time (reference, section 6). The
+//! words are only used for reading. Writing requires explicit messages and a plan.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -154,7 +154,7 @@ mod tests {
     }
 
     const CLEAR: &str = "00 00 00 00 00 00 00 00";
-    /// Example from reference 9: reading parameter 166, with the value 350.
+    /// Request to read parameter 166, and its reply with the value 350 (reference, section 9).
     const READ_166: &str = "A6 10 00 00 00 00 00 00";
     const IS_350: &str = "A6 10 00 00 5E 01 00 00";
 

@@ -122,7 +122,7 @@ pub enum MotionKind {
     },
 }
 
-/// A level of the stop sequence (reference 3, *STOP ladder*).
+/// A level of the stop sequence (reference, section 3, *STOP ladder*).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StopLevel {
     Mode,

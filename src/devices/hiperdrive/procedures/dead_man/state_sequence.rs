@@ -1,5 +1,5 @@
 //! Sequences of control words that bring a drive to a requested state. The control words are sent one after another,
-//! each until the drive has followed or a time limit has expired (reference 3, and the recipes in
+//! each until the drive has followed or a time limit has expired (reference, section 3, and the recipes in
 //! `devices/hiperdrive/protocol/recipe`).
 
 use super::{

@@ -10,7 +10,7 @@
 //! | overrun while braking | a stop in progress continues and keeps its reason |
 //!
 //! A run that ends within one degree beyond a limit is considered to have reached the end of its range, since the
-//! repeatability of a drive is ±1° (manual, technical data; reference 5).
+//! repeatability of a drive is ±1° (manual, technical data; reference, section 5).
 
 use super::{
     ActionEnd, DeadMan, Motion, MotionKind, MotionLock, MotionRefusal, MotionRequest, NOT_REACHED_TIME, Permit, Stage,
@@ -47,7 +47,7 @@ pub(super) struct ActionMonitor {
     pub(super) at_end: bool,
 }
 
-/// Accuracy in whole degrees: ±2.5° (manual, technical data; reference 5), rounded up.
+/// Accuracy in whole degrees: ±2.5° (manual, technical data; reference, section 5), rounded up.
 const ACCURACY_DEG: i64 = 3;
 
 impl OutsideLimits {

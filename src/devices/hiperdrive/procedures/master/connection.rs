@@ -31,7 +31,7 @@ pub struct OpenedConnection {
     pub close: ForwardClose,
 }
 
-/// Vendor ID of this program, an unassigned number (reference 9).
+/// Vendor ID of this program, an unassigned number (reference, section 9).
 const VENDOR: u16 = 0x1234;
 /// Code of the time-out multiplier for eight intervals, which tolerates a single delay of the host. Long intervals use
 /// the code for four intervals, so that drives stop soon.

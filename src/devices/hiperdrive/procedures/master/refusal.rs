@@ -76,8 +76,8 @@ impl Master<'_> {
     }
 
     /// Returns the current range of a parameter. The upper limit (parameter 160) is above the lower limit (parameter
-    /// 158), and the position and the reference lie between them (reference 4). No limit is farther from 0 than the
-    /// turns of the drive (reference 5).
+    /// 158), and the position and the reference lie between them (reference, section 4). No limit is farther from 0
+    /// than the turns of the drive (reference, section 5).
     fn current_range(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<ParameterRange>, Error> {
         let travel = match number.drive().filter(|_| row.reach.is_some()) {
             Some(drive) => self.travel(drive)?,

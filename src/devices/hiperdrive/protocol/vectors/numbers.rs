@@ -75,7 +75,7 @@ fn a_reply_matches_only_its_own_request() {
     }
 }
 
-/// Reference 7.
+/// Classes and attributes match section 7 of the reference.
 #[test]
 fn parameters_map_to_cip_attributes() {
     for (own, class, attribute, drive, base) in [
@@ -104,7 +104,7 @@ fn parameters_map_to_cip_attributes() {
     assert_eq!(DriveNumber::all_for(Topology::Hub4).map(DriveNumber::get).collect::<Vec<_>>(), [1, 2, 3, 4]);
 }
 
-/// Reference 4.
+/// The number of parameters and their factory values match section 4 of the reference.
 #[test]
 fn the_parameter_table_matches_the_reference() {
     assert!(PARAMETERS.is_sorted_by(|one, other| one.number < other.number));
@@ -259,7 +259,7 @@ fn steps_convert_to_turns_and_millimetres() {
     assert!((four.to_turns(33_488_896) - 83_722.24).abs() < 1e-6);
 }
 
-/// Reference 2 and 5.
+/// Conversions match sections 2 and 5 of the reference.
 #[test]
 fn turns_reference_torque_and_speed_convert() {
     for (position, expected) in [(-1, (-1, 65_535)), (0, (0, 0)), (163_840, (2, 32_768)), (i32::MIN, (-32_768, 0))] {
@@ -279,7 +279,7 @@ fn turns_reference_torque_and_speed_convert() {
     assert_eq!(SpeedScale::new(0, 1), Err(ScaleError::Zero));
 }
 
-/// Reference 1 and 4.
+/// The tables match sections 1 and 4 of the reference.
 #[test]
 fn error_variant_led_and_switch_tables_match_the_reference() {
     assert!(ERROR_CODES.is_sorted_by(|one, other| one.code.code() < other.code.code()));

@@ -67,7 +67,7 @@ impl TargetDevice {
         if let Some(status) = status {
             return frame.error_reply(status);
         }
-        // A TCP connection has one session. Another request for one returns it (`U`).
+        // A TCP connection has one session. Another request returns the existing session (`U`).
         if let Some((session, _)) = self.sessions.iter().find(|(_, owner)| **owner == from) {
             return Frame { session: *session, ..frame.error_reply(EncapsulationStatus::UNSUPPORTED) };
         }

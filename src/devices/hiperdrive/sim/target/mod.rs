@@ -1,4 +1,5 @@
-//! An EtherNet/IP target in front of a station (reference 7): TCP connections, and the datagrams of all of them.
+//! An EtherNet/IP target in front of a station (reference, section 7): TCP connections, and the datagrams of all of
+//! them.
 //!
 //! Assumptions (`U`: not documented):
 //! - A session ends with its TCP connection. A cyclic connection ends only by its own time-out, since its packets show

@@ -102,7 +102,7 @@ impl Network {
                 if matches!(control.source(), AddressSource::Unknown(_)) {
                     return Err(GeneralStatus::INVALID_VALUE);
                 }
-                // On a change from another source to stored, the present address is stored (reference 1).
+                // On a change from another source to stored, the present address is stored (reference, section 1).
                 if control.source() == AddressSource::Stored && self.control.source() != AddressSource::Stored {
                     self.stored = self.present.clone();
                 }

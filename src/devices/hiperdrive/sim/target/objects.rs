@@ -1,4 +1,4 @@
-//! The CIP objects: identity, parameters (reference 7), and network objects.
+//! The CIP objects: identity, parameters (reference, section 7), and network objects.
 
 use super::device::TargetDevice;
 use crate::buses::ethernet_ip::protocol::{

@@ -1,4 +1,4 @@
-//! Tests of faults: how they appear, and how they are cleared (reference 3, 4 and 7).
+//! Tests of faults: how they appear, and how they are cleared (reference, sections 3, 4 and 7).
 
 use super::*;
 use crate::devices::hiperdrive::protocol::{ACKNOWLEDGE, State, UNLOCK};

@@ -1,4 +1,5 @@
-//! Tests of parameters: allowed values, stored values, and the parameter words in the process data (reference 4 to 6).
+//! Tests of parameters: allowed values, stored values, and the parameter words in the process data (reference, sections
+//! 4 to 6).
 
 use super::super::ParameterError;
 use super::*;

@@ -17,7 +17,7 @@ pub struct Outcome {
     pub target: i32,
     pub position: i32,
     pub ended: ActionEnd,
-    /// Allowed deviation from the target in steps, corresponding to 1° (reference 5, repeatability).
+    /// Allowed deviation from the target in steps, corresponding to 1° (reference, section 5, repeatability).
     pub allowed: i64,
 }
 

@@ -1,4 +1,4 @@
-//! Tests of the cyclic connection (reference 7 and 9).
+//! Tests of the cyclic connection (reference, sections 7 and 9).
 
 use super::*;
 

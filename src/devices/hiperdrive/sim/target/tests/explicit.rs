@@ -1,4 +1,4 @@
-//! Tests of frames and explicit messages (reference 7 and 9).
+//! Tests of frames and explicit messages (reference, sections 7 and 9).
 
 use super::*;
 
