@@ -49,8 +49,8 @@ impl CyclicControl {
         self.motion.clone()
     }
 
-    /// Returns a drive's data from the cyclic connection, or `None` if the connection is closed or has not received any
-    /// data.
+    /// Returns a drive's data from the cyclic connection, or `None` if the connection is closed or has not received
+    /// data yet.
     pub(super) fn actual_values(&self, drive: DriveNumber) -> Option<ActualValues> {
         let view = self.motion.snapshot();
         let speaks = view.open && view.link.received > 0;

@@ -34,7 +34,7 @@ const MAX_REPLY_TIMEOUT: Duration = Duration::from_secs(1);
 pub(super) struct ReplyMonitor {
     /// Time at which the oldest unanswered request was sent.
     requested: Option<Moment>,
-    /// Time of the last check of the line in which nothing had arrived.
+    /// Time of the last check of the line that found no new bytes.
     looked: Moment,
     /// Longest recent reply time. Each shorter reply lowers it by up to an eighth.
     slowest: Duration,

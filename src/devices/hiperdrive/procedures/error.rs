@@ -130,8 +130,8 @@ pub enum Error {
         /// Extended status word, either 0100h or 0106h.
         extended: u16,
     },
-    /// The device offers a longer send or receive interval than requested, with which a drive could not be stopped in
-    /// time.
+    /// The device only offers a longer send or receive interval than requested, at which a drive could not be stopped
+    /// in time.
     #[error("the device offers cyclic data every {got_ms} ms instead of every {asked_ms} ms")]
     TooSlow {
         /// Requested interval in milliseconds.

@@ -55,7 +55,7 @@ pub struct Survey {
     pub network: Network,
     /// All parameters of the device and its drives, except those that the device rejects.
     pub values: BTreeMap<ParameterNumber, Value>,
-    /// Numbers whose length does not match the type of their parameter; they are missing in `values`.
+    /// Numbers whose length does not match the type of their parameter. They are missing from `values`.
     pub wrong_lengths: Vec<WrongLength>,
 }
 

@@ -37,7 +37,7 @@ pub struct DisplayedLimits {
     pub limits: (i64, i64),
 }
 
-/// Time for which a reading of the limits is valid. It is longer than a slow device may take to reply to all requests.
+/// Time for which a reading of the limits is valid. Even a slow device replies to all requests within this time.
 const VALIDITY: Duration = Duration::from_secs(4);
 
 /// Returns whether a drive with this value of parameter 186 stops when communication is lost. Values that the manual

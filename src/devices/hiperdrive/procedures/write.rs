@@ -144,8 +144,8 @@ fn execute(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Resul
     Ok(())
 }
 
-/// Writes a parameter and reads it back. A reference is rounded to 64 steps (reference, section 4) and becomes the
-/// position.
+/// Writes a parameter and reads it back. The drive rounds parameter 198 to 64 steps (reference, section 4) and adopts
+/// it as its position.
 fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
     master.set_parameter(number, wanted)?;
     let reads = master.read_number(number)?;

@@ -6,12 +6,12 @@ use crate::devices::hiperdrive::protocol::ParameterNumber;
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::profile::{ChangedItem, Redo};
 
-/// Omits the save at the end of a write, which is not a value.
+/// Returns the values in a changed item. The save at the end of a write is not a value, so nothing is returned for it.
 pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
     if item.item == ParameterNumber::SAVE.to_string() { Vec::new() } else { vec![item.clone()] }
 }
 
-/// Returns the instruction for an item that is never restored.
+/// Returns the instruction for an item that the backup cannot restore, or `None` if it can be restored.
 pub(super) fn redo(item: &ChangedItem) -> Option<Redo> {
     match item.item.parse::<Item>() {
         Ok(item) if item.0.drive1_number() == REFERENCE => Some(Redo::SetPosition),

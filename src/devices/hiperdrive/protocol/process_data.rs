@@ -158,7 +158,7 @@ impl Topology {
         }
     }
 
-    /// Returns the string with which parameter 13 denotes the topology.
+    /// Returns the value of parameter 13 for this topology.
     pub const fn category(self) -> &'static str {
         match self {
             Topology::Adapter => "HIPERDRIVE SINGLE",

@@ -1,4 +1,4 @@
-//! The condition of an endless run: the limits and the scaling of the drive have their factory values.
+//! The condition for an endless run: the limits and the scaling of the drive must have their factory values.
 
 use super::unit::HiperdriveDevice;
 use crate::app::Text;

@@ -70,8 +70,8 @@ pub fn percent(text: &str) -> Result<Percent, Text> {
     percent.ok_or_else(|| TEXTS.text("hd_entry.percent").with("entry", text.trim()))
 }
 
-/// Parses a parameter value, which is decimal or hexadecimal with the prefix `0x`. An empty entry removes the value
-/// from a profile.
+/// Parses a parameter value, either decimal or hexadecimal with the prefix `0x`. An empty entry removes the value from
+/// a profile.
 ///
 /// # Errors
 /// Returns an error with the reason if the entry is invalid.

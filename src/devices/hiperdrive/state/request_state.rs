@@ -80,7 +80,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Checks whether a drive may start a motion that lasts until the user stops it, which is a jog or a run.
+    /// Checks whether a drive may start a motion that lasts until the user stops it, that is, a jog or a run.
     ///
     /// # Errors
     /// Returns an error with the reason if the drive may not be moved in this way.

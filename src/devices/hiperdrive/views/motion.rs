@@ -329,8 +329,7 @@ fn percent_ui(
     presets: &[Percent],
     to: &mut Percent,
 ) -> Result<(), Text> {
-    // Typed text is dropped if another value has taken effect in the meantime, which is a preset or the value of a new
-    // session.
+    // Typed text is dropped if a preset or the value of a new session has taken effect in the meantime.
     let typed = draft.take().filter(|(text, counted)| *counted == own || forms::percent(text) == Ok(own));
     let mut text = typed.map_or_else(|| own.get().to_string(), |(text, _)| text);
     let response = text_entry(ui, &mut text, PERCENT_WIDTH, word, "");

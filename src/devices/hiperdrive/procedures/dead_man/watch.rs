@@ -158,7 +158,7 @@ impl ActionMonitor {
         beyond.or_else(|| leaves.then_some(ActionEnd::WrongWay { position: actual.position }))
     }
 
-    /// Detects motion while a job is paused, which is a change of more than a degree from the position after braking.
+    /// Detects motion while a job is paused: a change of more than a degree from the position after braking.
     fn check_paused(&mut self, has_braked: bool, actual: ActualValues, permit: &Permit) -> Option<ActionEnd> {
         if !has_braked {
             self.waits_at = None;

@@ -1,4 +1,4 @@
-//! Known facts about a drive during its axis set-up.
+//! The known facts about a drive on which its axis set-up is based.
 
 use std::collections::BTreeMap;
 
