@@ -1,4 +1,4 @@
-//! The command `do`: filter, preset, and the guided procedures at the motor. Without a terminal, the program cannot ask
+//! The `do` command: filter, preset, and the guided procedures at the motor. Without a terminal, the program cannot ask
 //! which drive turns the motor. In this case, `--yes` states that the motor does not depend on this encoder.
 
 use std::path::Path;
@@ -68,8 +68,8 @@ fn check_device(common: &CommonArgs, output: &Output) -> Result {
 }
 
 fn return_to_operation(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
-    // Returning to operation stores nothing, so no consent is needed without a terminal. On a terminal, the user may
-    // have entered values that will be discarded.
+    // Returning to operation stores nothing, so no consent is required without a terminal. On a terminal, the user is
+    // asked, because entered values would be discarded.
     if !act.consent.yes
         && can_prompt()
         && !ask_yes_no("Values that were entered but not saved will be lost. Return the encoder to operation? [y/N] ")
@@ -137,7 +137,7 @@ fn run_change(
     }
 }
 
-/// Returns whether an operation was completed and passed.
+/// Returns whether an operation was completed successfully.
 fn is_passed(outcome: &Outcome) -> bool {
     match outcome {
         Outcome::Tested(report) => report.result.is_passed(),
@@ -150,8 +150,8 @@ fn is_passed(outcome: &Outcome) -> bool {
     }
 }
 
-/// Parses the arguments of the action `mounting`, which are `calibrate wiegand-test save preset=ST,MT data=FILE`. If
-/// neither calibration nor test is given, both are run.
+/// Parses the arguments of the `mounting` action, such as `calibrate wiegand-test save preset=ST,MT data=FILE`. If
+/// neither the calibration nor the test is specified, both are run.
 fn parse_mounting_steps(output: &Output, words: &[&str]) -> Result<MountingSteps> {
     let mut run = MountingSteps::default();
     let (mut tests, mut saves) = (false, false);
@@ -190,7 +190,7 @@ fn parse_preset_value(text: &str) -> Result<PresetValue> {
     }
 }
 
-/// Parses a value that fits into the registers. The field widths of the encoder may be smaller.
+/// Parses a preset value that fits into the registers. The position of the encoder may have fewer bits.
 fn value(singleturn: &str, multiturn: &str) -> Result<PresetValue> {
     let part = |name: &str, text: &str| {
         let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{name}: {text:?} is not a number")))?;
@@ -200,8 +200,7 @@ fn value(singleturn: &str, multiturn: &str) -> Result<PresetValue> {
     PresetValue::new(steps, turns).ok_or_else(|| out_of_range("singleturn", singleturn, 0, 0xFF_FFFF))
 }
 
-/// The arguments of a preset in the form `[ST [MT]] [singleturn
-/// multiturn]`.
+/// The arguments of a preset in the form `[ST [MT]] [singleturn|multiturn]`.
 struct PresetArguments<'a> {
     singleturn: Option<&'a str>,
     multiturn: Option<&'a str>,
@@ -229,8 +228,8 @@ impl<'a> PresetArguments<'a> {
         Ok(PresetArguments { singleturn, multiturn, parts })
     }
 
-    /// Returns the change. A missing multiturn value is 0, unless only the singleturn is preset. In that case, the
-    /// stored multiturn is kept.
+    /// Returns the change that the arguments specify. A missing multiturn value is 0, unless only the singleturn is
+    /// preset. In that case, the stored multiturn value is kept.
     fn to_change(&self, runner: &mut Runner) -> Result<Change> {
         let stored = |runner: &mut Runner| -> Result<String> {
             let Ok(range) = BissProfile::PRESET.parse::<RegisterRange>() else { return Ok("0".to_owned()) };

@@ -1,6 +1,6 @@
-//! The command `decode`, which explains captured UBICOM frames, bridge packets, position frames and position words
-//! offline. The format is detected by a matching checksum. A position word has no checksum, so it must be written as
-//! `position` prints it. Examples are `0x024698000` with nine digits, and `raw=610893824`.
+//! The `decode` command, which explains captured UBICOM frames, bridge packets, position frames and position words
+//! offline. The format is detected by its checksum. A position word has no checksum, so it must be written as the
+//! `position` command prints it, such as `0x024698000` (nine digits) or `raw=610893824`.
 
 mod bridge;
 mod position;
@@ -16,9 +16,9 @@ use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
 
 enum CapturedData {
-    /// Bits of a position frame, with the original string.
+    /// Bits of a position frame, with their original notation.
     Bits(String, u64),
-    /// Position word, with the original string.
+    /// Position word, with its original notation.
     Word(String, u64),
     Bytes(Vec<u8>),
 }
@@ -36,8 +36,9 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     show(output, &explained)
 }
 
-/// Parses the arguments. Nine hexadecimal digits with 0x, digits with a final h, and numbers after `raw=` are position
-/// words. 11 digits, or another number of digits with 0x, are the bits of a frame. Everything else is bytes.
+/// Parses the arguments. Nine hexadecimal digits after 0x, digits followed by h, and numbers after `raw=` are position
+/// words. Eleven digits, or any other number of digits after 0x, are the bits of a frame. Everything else is parsed as
+/// bytes.
 fn parse_captured(words: &[String]) -> Result<Vec<CapturedData>> {
     let is_bits = |word: &String| match strip_hex_prefix(word) {
         (true, digits) => (3..=2 * position::BYTES).contains(&digits.len()),
@@ -72,7 +73,7 @@ fn position_word(word: &str) -> Result<u64> {
         .ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, such as 0x024698000 or raw=610893824")))
 }
 
-/// Returns an error if an argument has an odd number of digits, which cannot be bytes. It may be a position word
+/// Returns an error if an argument has an odd number of digits and therefore cannot be bytes. It may be a position word
 /// without its prefix.
 fn require_even_digit_count(word: &str) -> Result<()> {
     let is_number = word.len() % 2 == 1 && word.len() > 1 && word.chars().all(|c| c.is_ascii_hexdigit());
@@ -84,7 +85,7 @@ fn require_even_digit_count(word: &str) -> Result<()> {
     Err(Failure::Usage(format!("{word:?} {why}")))
 }
 
-/// Removes a leading 0x. Returns whether it was present, and the digits.
+/// Removes a leading 0x. Returns whether it was present, and the remaining digits.
 fn strip_hex_prefix(word: &str) -> (bool, &str) {
     match word.strip_prefix("0x").or_else(|| word.strip_prefix("0X")) {
         Some(digits) => (true, digits),
@@ -92,7 +93,8 @@ fn strip_hex_prefix(word: &str) -> (bool, &str) {
     }
 }
 
-/// Explains bytes by the protocol whose checksum matches. If there is none, explains them by their form.
+/// Explains bytes according to the protocol whose checksum matches. If no checksum matches, the protocol is guessed
+/// from the form of the bytes.
 fn explain_bytes(bytes: &[u8], requested: &mut Option<Request>) -> Vec<FrameExplanation> {
     let ubicom = ubicom::explain_frames(bytes, requested);
     let bridge = bridge::explain_packet(bytes);

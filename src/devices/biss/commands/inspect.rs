@@ -45,7 +45,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
     Ok(Success::Well)
 }
 
-/// Returns the manufacturer as text. If the text is not printable, returns it as hexadecimal bytes.
+/// Returns the manufacturer ID as text if it is printable, or as hexadecimal bytes otherwise.
 fn manufacturer_text(identity: &Identity) -> String {
     let bytes = &identity.kind.manufacturer;
     let text = std::str::from_utf8(bytes).ok().filter(|text| text.chars().all(|c| c.is_ascii_graphic()));
@@ -95,7 +95,7 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
     lines.text()
 }
 
-/// Returns the serial number together with its bytes, because no manual defines their order.
+/// Returns the serial number together with its bytes, because the manual does not define the byte order.
 fn format_serial_number(identity: &Identity) -> String {
     format!("{} ({})", identity.serial_number, hex(&identity.serial_bytes))
 }
@@ -176,7 +176,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
             let reading = match came {
                 Ok(BissOutput::Position(reading)) => reading,
                 Ok(other) => return Err(unexpected_output(&other)),
-                // No line is printed, since the next frame may be good.
+                // No line is printed, because the next frame may be valid.
                 Err(error) if is_noise(&error) && good_at.elapsed() < NOISE => return Ok(false),
                 Err(error) => {
                     if let JobError::Device(Error::WrongWidths { frames, .. }) = &*error {
@@ -200,7 +200,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     ended
 }
 
-/// Returns whether frames have arrived, but all of them had a wrong checksum.
+/// Returns whether frames were received but all of them had a wrong checksum.
 fn is_noise(error: &JobError) -> bool {
     matches!(error, JobError::Device(Error::Damaged { cause: ReplyDamage::Frame(_), .. }))
 }

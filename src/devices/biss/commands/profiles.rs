@@ -77,7 +77,7 @@ impl ProfileCommands for BissCommands {
         }
     }
 
-    /// Returns the message that a profile was read in a device mode.
+    /// Returns a message if the profile was read in a device mode.
     fn profile_note(&self, profile: &Body) -> Option<Text> {
         explain::profile_unsaved(profile.get()?)
     }

@@ -19,13 +19,13 @@ pub(super) fn name(address: RegisterAddress) -> Option<&'static str> {
     register(address).map(|register| register.name.english()).or_else(area)
 }
 
-/// Describes the bytes at an address. They must form a complete register whose number needs an explanation.
+/// Describes the bytes at an address if they form a complete register whose number needs an explanation.
 pub(super) fn register_meaning(address: RegisterAddress, bytes: &[u8]) -> Option<String> {
     let register = register(address).filter(|register| register.address == address)?;
     describe_value(register, bytes)
 }
 
-/// Describes a register if the given bytes cover exactly that register.
+/// Describes a register if the range covers exactly that register.
 pub(super) fn describe_register(register: &Register, range: RegisterRange, bytes: &[u8]) -> Option<String> {
     let own = register.address == range.start() && register.width == range.count();
     own.then(|| describe_value(register, bytes)).flatten()
@@ -47,7 +47,7 @@ pub(super) fn filter(filter: PositionFilter) -> String {
     }
 }
 
-/// Describes the bytes of a register. Returns `None` for a code without a meaning.
+/// Describes the bytes of a register. Returns `None` for a code of unknown meaning.
 fn describe_value(register: &Register, bytes: &[u8]) -> Option<String> {
     let unit = if register.unit.is_empty() { String::new() } else { format!(" {}", register.unit) };
     Some(match register.decode(bytes)? {

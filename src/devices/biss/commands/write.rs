@@ -23,7 +23,7 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
     show_changes(output, &range.to_string(), &operations, &changes, &spent)
 }
 
-/// Parses a number for a single register, or hexadecimal bytes for consecutive registers.
+/// Parses a number for a single register or hexadecimal bytes for consecutive registers.
 fn value(range: RegisterRange, is_run: bool, text: &str) -> Result<Vec<u8>> {
     if !is_run {
         let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{range}: {text:?} is not a number")))?;

@@ -1,10 +1,10 @@
-//! Descriptions of encoders: user-defined ones first, then the built-in ones.
+//! Loading of encoder descriptions, in which user-defined descriptions precede built-in ones.
 
 use crate::devices::biss::protocol::{Descriptions, KIND};
 use crate::profile::Cause;
 use crate::store::{Store, StoreError, read_folder};
 
-/// Returns the encoder descriptions, with user-defined ones first. Also returns a `DescriptionError` for each unusable
+/// Returns the encoder descriptions, with user-defined descriptions first, and a `DescriptionError` for each unusable
 /// file.
 pub fn load_descriptions(store: &Store) -> (Descriptions, Vec<StoreError>) {
     let (files, unread) = read_folder(&store.device_folder(KIND), "ron");

@@ -6,7 +6,7 @@ use crate::buses::bridge::protocol::StreamData;
 use crate::devices::biss::procedures::{Frame, parse_frames};
 use crate::devices::biss::protocol::Layout;
 
-/// BiSS position frames with verified checksums.
+/// A stream of BiSS position frames with verified checksums.
 #[derive(Clone, Debug)]
 pub struct BissFrames {
     pub layout: Layout,
@@ -44,8 +44,8 @@ mod tests {
     use crate::devices::biss::protocol::PositionData;
     use crate::worker::stream::Producer;
 
-    /// A stream of 20,000 frames per second. A frame of 43 clocks takes 21.5 µs at 2 MHz and is followed by a wait of
-    /// 27 µs.
+    /// Returns a stream of 20,000 frames per second. A frame of 43 clocks takes 21.5 µs at 2 MHz and is followed by a
+    /// pause of 27 µs.
     fn biss() -> BissFrames {
         BissFrames { layout: Layout::default(), clock_hz: 2_000_000, period_us: 50 }
     }
@@ -55,7 +55,7 @@ mod tests {
         let mut bench = bench(biss(), virtual_adapter("rpm=3000&position=0"));
         let batches = bench.take(Duration::from_secs(5));
         let (frames, lost) = count(&batches);
-        // The last samples may still be in transit, or the last wait was a little longer.
+        // The last samples may still be in transit, or the last wait may have been slightly longer.
         assert!((99_880..=100_500).contains(&frames) && lost == 0, "{frames} frames, {lost} lost");
         let begin = batches[0].time;
         assert!(
@@ -68,7 +68,7 @@ mod tests {
             for frame in &batch.samples {
                 let PositionData { multiturn, singleturn, error, warning } = frame.unwrap();
                 let position = i64::from(multiturn) * 131_072 + i64::from(singleturn);
-                // 50 revolutions per second are 327.68 steps per frame.
+                // 50 revolutions per second correspond to 327.68 steps per frame.
                 assert!(before.is_none_or(|before| (327..=328).contains(&(position - before))) && !error && !warning);
                 before = Some(position);
             }

@@ -28,7 +28,7 @@ pub const WEAR_WARNING: u64 = 800;
 
 #[derive(Debug)]
 pub enum BissJob {
-    /// Reads everything that is displayed after connecting.
+    /// Reads all values that are displayed after connecting.
     Survey,
     Identify,
     /// Reads mode, errors, warnings, temperature and filter.
@@ -43,7 +43,8 @@ pub enum BissJob {
     ReadBank(u8),
     /// Reads all registers of a data area, at standstill.
     ReadArea(Area),
-    /// Reads everything that can be restored, at standstill. Values that were never saved in the encoder are marked.
+    /// Reads all restorable values at standstill. The profile is marked if some values may never have been saved in the
+    /// encoder.
     Save,
     /// Reads the encoder for comparison. The job fails if some values may never have been saved.
     SaveToCompare,
@@ -63,8 +64,8 @@ pub enum Change {
     /// Writes registers, given as addresses and bytes. Registers of a data area are saved together.
     Write(Vec<(RegisterRange, Vec<u8>)>),
     SelectFilter(PositionFilter),
-    /// Stores the preset value, if there is one. Then sets the given parts of the position at the current shaft angle
-    /// to the stored value.
+    /// Stores the preset value, if specified, and then sets the given parts of the current shaft position to the stored
+    /// value.
     Preset {
         value: Option<PresetValue>,
         parts: Option<PresetParts>,
@@ -128,13 +129,13 @@ pub struct Prepared {
     pub unchanged: u64,
     /// Settings of a profile that the encoder does not have.
     pub missing: Vec<String>,
-    /// Values that differ but are not written, because they are only valid for another encoder on its own motor.
+    /// Values that differ but are not written, because they are only valid for another encoder on its motor.
     pub mounting_left: Vec<RegisterRange>,
     /// Device mode in which the profile was read, if the profile may contain values that were never saved in the
     /// encoder.
     pub unsaved: Option<DeviceMode>,
     pub other_type: Option<TypeMismatch>,
-    /// Written values that are only valid for another encoder on its own motor. They must be adjusted for this encoder.
+    /// Written values that are only valid for another encoder on its motor. They must be adjusted for this encoder.
     pub mounting_written: Vec<RegisterRange>,
 }
 
@@ -226,7 +227,7 @@ pub enum BissOutput {
     Saved(Box<BissProfile>),
     Prepared(Box<Prepared>),
     Committed(Box<Committed>),
-    /// The encoder was returned to operation. Contains the previous device mode.
+    /// The encoder was returned to operation from the given device mode.
     ReturnedToOperation(DeviceMode),
 }
 
@@ -238,8 +239,8 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// Returns the key of an encoder for backups and the logbook. It contains manufacturer and device ID, because serial
-/// numbers are only unique within these.
+/// Returns the key of an encoder for backups and the logbook. It contains the manufacturer and the device ID, because a
+/// serial number is unique only in combination with them.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     logbook_key(&identity.kind, &identity.serial_number, is_virtual)
 }

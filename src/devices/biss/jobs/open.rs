@@ -22,7 +22,7 @@ use crate::worker::{OpenError, Session};
 const BRIDGE: &str = "bridge";
 
 parameters! {
-    /// Link parameters of the configuration pin at the serial line of an adapter.
+    /// Link parameters for a configuration pin that is connected to the serial line of an adapter.
     struct PinAtAdapter: UrlError {
         is_pin: bool = false, "pin" => SWITCH;
         /// Supply voltage that the adapter provides to the encoder, in millivolts, or `None` for no supply.
@@ -34,7 +34,7 @@ parameters! {
 /// Checks a link to a BiSS encoder without opening it.
 ///
 /// # Errors
-/// Returns [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
+/// Returns [`OpenError::Url`] or [`OpenError::Sim`] if a setting is invalid.
 pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
@@ -76,11 +76,11 @@ fn read(url: &LinkUrl) -> Result<(Station, VirtualEncoder), OpenError> {
         let mut known = way.parameters();
         known.extend((url.scheme == LinkScheme::Replay).then_some(BRIDGE));
         let of_the_pin = if url.scheme == LinkScheme::Bridge { PinAtAdapter::KEYS } else { &[] };
-        // The bus has some of them as well.
+        // The bus has some of these parameters as well.
         known.extend(of_the_pin.iter().filter(|name| !way.parameters().contains(name)));
         check_parameters(&url.query, url.scheme, &known)?;
         if url.scheme == LinkScheme::Bridge && way == Transport::ConfigPin {
-            // The adapter waits no longer than this.
+            // The adapter does not support longer time-outs.
             url.query.read("timeout", &Milliseconds(1..=MAX_TIMEOUT_MS))?;
         }
     }
@@ -88,8 +88,8 @@ fn read(url: &LinkUrl) -> Result<(Station, VirtualEncoder), OpenError> {
     if !is_virtual {
         return Ok((station, VirtualEncoder::new(way, &[])?));
     }
-    // The parameters for echo and byte order configure the virtual encoder. The line detects both as with a real
-    // encoder.
+    // The parameters for echo and byte order configure the virtual encoder. The host detects both, as it does for a
+    // real encoder.
     (station.line.echo, station.order) = (Echo::Unknown, None);
     let line = [Transport::ConfigPin, Transport::Adapter].map(Transport::parameters).concat();
     let of_the_encoder = |name: &str| name != BRIDGE && (Config::KEYS.contains(&name) || !line.contains(&name));
@@ -113,7 +113,8 @@ fn parse_transport(url: &LinkUrl) -> Result<Transport, OpenError> {
     }
 }
 
-/// Rejects parameters that neither the line nor the virtual device has, and names those that require an adapter.
+/// Rejects parameters that neither the line nor the virtual device has. The error lists the valid parameters, including
+/// those that require the other transport.
 fn check_virtual_parameters(query: &UrlQuery, way: Transport) -> Result<(), UrlError> {
     let own = |way: Transport| {
         let line = way.parameters().into_iter().filter(|name| !Config::KEYS.contains(name));

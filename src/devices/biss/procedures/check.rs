@@ -1,5 +1,5 @@
-//! Device check. The values of an encoder are compared with its description, its data sheet and the line, and each item
-//! receives a verdict. No data is written except the bank selection.
+//! Device check, which examines an encoder against its description and its data sheet, examines the line, and gives a
+//! verdict for each item. No data is written except the bank selection.
 
 use super::survey::{EncoderStatus, FlagRegister, read_all_registers};
 use super::{Error, Identity, Master, PositionReading, Survey, Transport};
@@ -38,7 +38,7 @@ pub enum CheckFinding {
     Mismatch(IdentityMismatch),
     Error(u8, Option<Name>),
     Warning(u8, Option<Name>),
-    /// The encoder does not report errors and warnings, or not with this firmware.
+    /// The encoder or its firmware does not report errors and warnings.
     NotTold,
     Mode(DeviceMode),
     Open,
@@ -51,7 +51,7 @@ pub enum CheckFinding {
     Sheet(EdsError),
     /// The encoder has no data sheet, or its profile is not supported.
     NoSheet,
-    /// The data sheet and the description define different widths of multiturn and singleturn.
+    /// The data sheet and the description define different multiturn and singleturn widths.
     OtherFrame {
         sheet: (u8, u8),
         description: (u8, u8),
@@ -92,7 +92,8 @@ pub enum CheckFinding {
 /// Number of position readings used to assess the line.
 const READINGS: u32 = 50;
 
-/// Runs the check, which ends early only if the line fails. `wear` is called as soon as the encoder is identified.
+/// Runs the check, which ends early only if the line fails. `wear` is called as soon as the encoder has been
+/// identified.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the job is cancelled.
@@ -193,7 +194,7 @@ mod offset {
     pub(super) const MAX_CURRENT: u8 = 0x38;
 }
 
-/// Compares measured values with the limits in the data sheet. Returns `None` if no value can be compared.
+/// Compares measured values with the limits in the data sheet. Returns `None` if there is no value to compare.
 fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult> {
     let sheet = survey.identity.data_sheet.as_ref()?.encoder.eds.as_ref().ok()?;
     let judge = |fits: bool| if fits { Verdict::Good } else { Verdict::Attention };
@@ -235,7 +236,7 @@ fn check_wiegand_result(survey: &Survey) -> Option<BissStepResult> {
     Some(BissStepResult::new(CheckStep::Wiegand, vec![finding]))
 }
 
-/// Reads the position repeatedly and counts a missing reading as damaged.
+/// Reads the position repeatedly. Missing readings are counted as damaged.
 fn check_readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     let before = master.station().line.damaged;
     let told_by_line = master.station().transport == Transport::ConfigPin;
@@ -243,7 +244,7 @@ fn check_readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     for _ in 0..READINGS {
         match master.position() {
             Ok(reading) => damaged += u64::from(reading.crc_errors),
-            // The line already counts each damaged attempt.
+            // Each damaged attempt has already been counted.
             Err(Error::Damaged { .. }) if told_by_line => {}
             Err(Error::Damaged { .. } | Error::WrongWidths { .. } | Error::TooWide { .. }) => damaged += 1,
             Err(error) => return Err(error),

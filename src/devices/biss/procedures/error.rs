@@ -1,4 +1,4 @@
-//! Errors of an encoder, with the details for their messages.
+//! Errors of jobs with an encoder, including the details for the error messages.
 
 use std::fmt;
 
@@ -39,7 +39,7 @@ pub enum Error {
     },
     #[error("damaged reply while {requested} (attempts: {tries}): {cause}")]
     Damaged { requested: RequestedItem, tries: u32, cause: ReplyDamage },
-    /// Bytes keep arriving although the line must be silent.
+    /// Bytes keep arriving during the required silence.
     #[error("the line is never idle")]
     NeverSilent,
     #[error(transparent)]
@@ -47,7 +47,7 @@ pub enum Error {
     #[error("no encoder acknowledges on the bus (attempts: {tries})")]
     NoAcknowledge {
         tries: u32,
-        /// Whether the adapter could supply the encoder but was not told to.
+        /// Whether the adapter can supply the encoder but was not requested to do so.
         supply_off: bool,
     },
     #[error("the data line stays low (attempts: {tries})")]
@@ -63,7 +63,7 @@ pub enum Error {
         /// Assumed width of the checksum in bits.
         crc_bits: u8,
     },
-    /// The frame widths are unknown, and no frame length fits the checksums.
+    /// The frame widths are unknown, and the checksums do not match for any frame length.
     #[error("no frame length matches the CRC of the frames")]
     WidthsUnknown { moving: bool },
     #[error("the encoder has no register {address}")]
@@ -78,8 +78,8 @@ pub enum Error {
         /// Value read back from the register, or `None` if the connection cannot provide it.
         reads: Option<u8>,
     },
-    /// It is unknown whether the value was accepted, because the register cannot be read back or the value read back
-    /// proves nothing.
+    /// It is unknown whether the value was accepted, because the register cannot be read back or the value read back is
+    /// not conclusive.
     #[error("it is not known whether 0x{value:02X} was written to register {address}: {cause}")]
     Unclear {
         address: RegisterAddress,
@@ -110,7 +110,7 @@ pub enum Error {
     NotIdentified,
     #[error("the shaft is moving")]
     Moving {
-        /// Speed in revolutions per minute, positive clockwise. `None` if the encoder counts too few turns.
+        /// Speed in revolutions per minute, positive clockwise, or `None` if the encoder counts too few turns.
         rpm: Option<f64>,
     },
     /// The encoder is in a device mode in which its registers may show values that were never saved.
@@ -143,12 +143,12 @@ impl Error {
     }
 }
 
-/// Returns the register with a global number, or the bank selection register if the number is too large.
+/// Returns the register with the given global number, or the bank selection register if the number is too large.
 pub(super) fn requested_register(number: u16) -> RegisterAddress {
     RegisterAddress::from_global(number).unwrap_or(RegisterAddress::BANK_SELECT)
 }
 
-/// Returns the registers as an array of the requested size.
+/// Converts register values to an array of the requested size.
 ///
 /// # Errors
 /// Returns [`Error::TooFew`] if the number of registers differs.
@@ -198,7 +198,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the encoder cannot be reached, which makes further attempts useless.
+    /// Returns whether the encoder can no longer be reached, so that further attempts would be useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_)

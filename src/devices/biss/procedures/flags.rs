@@ -1,5 +1,5 @@
 //! Errors and warnings for transports whose positions do not include them. Over the configuration pin, they are read
-//! from separate registers. See reference UBICOM 4.
+//! from separate registers. See section 4 of the UBICOM reference.
 
 use std::time::Duration;
 
@@ -17,8 +17,8 @@ pub(super) struct Flags {
     errors_last: bool,
 }
 
-/// Interval at which one of the two registers is read during position polling. It is long enough to have little effect
-/// on the rate of positions.
+/// Interval at which one of the two registers is read while the position is polled. It is long enough to have little
+/// effect on the polling rate.
 const READ_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Reads the position once, together with the encoder's current errors and warnings.

@@ -1,4 +1,4 @@
-//! Frames of a stream. Each yields a position with a verified checksum, or the reason why there is none.
+//! Frames of a stream. A frame yields a position with a verified checksum, or the reason why there is no position.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,7 +13,7 @@ use crate::units::Moment;
 pub enum FrameReadError {
     #[error("no encoder acknowledges on the bus")]
     NoAcknowledge,
-    /// The bits are not a valid frame: the checksum is wrong or the line does not change.
+    /// The bits are not a valid frame, because the checksum is wrong or the level of the line does not change.
     #[error(transparent)]
     Frame(#[from] FrameError),
     #[error("the adapter has no frame, status {}", .0.byte())]
@@ -25,7 +25,7 @@ pub type Frame = Result<PositionData, FrameReadError>;
 /// A run of consecutive stream frames at equal intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConsecutiveFrames {
-    /// Number of the first frame since the start of the stream. Missing frames are included.
+    /// Number of the first frame, counted from the start of the stream. Missing frames are counted as well.
     pub first: u64,
     pub at: Moment,
     pub period_ns: i64,
@@ -90,8 +90,8 @@ fn parse_frame(layout: &Layout, status: BissStatus, raw: u64) -> Frame {
 mod tests {
     use super::*;
 
-    /// Frames from BiSS reference 2: a valid frame, the same frame with the error bit, and the same frame with a
-    /// flipped bit.
+    /// The frames are taken from section 2 of the BiSS reference: a valid frame, the same frame with the error bit, and
+    /// the same frame with a flipped bit.
     #[test]
     fn a_frame_yields_a_reading_or_an_error() {
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };

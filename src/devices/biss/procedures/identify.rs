@@ -1,5 +1,5 @@
-//! Identification of an encoder. It is based on the direct registers common to all BiSS C encoders, the matching
-//! description, and the data sheet, which defines the frame.
+//! Identification of an encoder, based on the direct registers that all BiSS C encoders have, the matching description,
+//! and the data sheet, which defines the frame.
 
 use std::sync::Arc;
 
@@ -27,8 +27,8 @@ pub struct Identity {
     /// Firmware version, or `None` if the encoder has no registers for the version.
     pub firmware: Option<Firmware>,
     pub description: Arc<Description>,
-    /// Difference from the description of another device of the same manufacturer, or `None` if there is no such
-    /// description.
+    /// Difference from the closest description, which is for another device of the same manufacturer, or `None` if
+    /// there is no such description.
     pub mismatch: Option<IdentityMismatch>,
     /// Data sheet, or `None` if the encoder has none or its profile is not supported.
     pub data_sheet: Option<DataSheet>,
@@ -93,12 +93,12 @@ impl Identity {
         }
     }
 
-    /// Returns the multiturn width in bits, if known.
+    /// Returns the width of the multiturn position in bits, if known.
     pub fn multiturn_bits(&self) -> Option<u8> {
         self.is_layout_source_known().then_some(self.layout.multiturn_bits())
     }
 
-    /// Returns the singleturn width in bits, if known.
+    /// Returns the width of the singleturn position in bits, if known.
     pub fn singleturn_bits(&self) -> Option<u8> {
         self.is_layout_source_known().then_some(self.layout.singleturn_bits())
     }
@@ -119,7 +119,7 @@ pub fn identify(master: &mut Master<'_>, types: &Descriptions) -> Result<Identit
     identify_and_record(master, types, &mut Registers::default())
 }
 
-/// Identifies the encoder like [`identify`], and stores everything that was read in `registers`.
+/// Identifies the encoder like [`identify`], and stores all values that were read in `registers`.
 pub(super) fn identify_and_record(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -170,7 +170,7 @@ pub(super) fn identify_and_record(
 }
 
 /// Determines an unknown frame layout. The layout of the kit encoder is used if its checksum matches. Otherwise, the
-/// function searches for a layout. This is not possible over the configuration pin, which carries no frames.
+/// layout is searched for. This is not possible over the configuration pin, which does not transmit frames.
 fn detect_frame_source(master: &mut Master<'_>) -> Result<FrameSource, Error> {
     if master.station().transport == Transport::ConfigPin {
         return Ok(FrameSource::Assumed);
@@ -220,7 +220,7 @@ fn firmware_from_registers(description: &Description, registers: &Registers) -> 
     }
 }
 
-/// Reads both banks of the data sheet. Returns `None` if the profile has no supported data sheet.
+/// Reads both banks of the data sheet. Returns `None` if the encoder's profile defines no supported data sheet.
 fn read_data_sheet(
     master: &mut Master<'_>,
     profile: ProfileId,
@@ -240,7 +240,7 @@ fn read_data_sheet(
     Ok(Some(DataSheet { common, encoder, layout }))
 }
 
-/// Reads a data sheet, or returns `None` if the bank does not exist.
+/// Reads a data sheet bank, or returns `None` if the bank does not exist.
 fn read_data_sheet_bank(
     master: &mut Master<'_>,
     which: EdsBank,

@@ -1,5 +1,5 @@
-//! Host side of the serial line. Requests are repeated, written values are read back, and values are read twice if
-//! necessary. Single exchanges are implemented in [`ubicom`] and [`bus`].
+//! The host side of the line, which repeats requests, reads back written values, and reads values twice if necessary.
+//! Single exchanges are implemented in [`ubicom`] and [`bus`].
 //!
 //! A read is repeated at most five times within at most eight seconds. A write is never repeated without checking its
 //! effect.
@@ -24,10 +24,10 @@ use crate::link::line::{MAX_ATTEMPTS, SerialLine};
 use crate::units::Moment;
 
 /// Number of missing replies after which a register is considered nonexistent, provided that another register replies.
-/// A disturbed line may lose a single reply.
+/// Interference on the line may cause the loss of a single reply.
 const MAX_MISSING_REPLIES: u32 = 3;
 
-/// Host side of the line to a BiSS encoder, over either transport.
+/// The host side of the line to a BiSS encoder, for either transport.
 pub struct Master<'a> {
     line: SerialLine<'a>,
     station: &'a mut Station,
@@ -99,8 +99,7 @@ impl<'a> Master<'a> {
         self.line.ignore_cancellation(shielded)
     }
 
-    /// Runs `work` with a reply time limit of `patience`. Reads are repeated for this time, because the encoder may be
-    /// silent.
+    /// Runs `work`, in which reads are repeated for up to `patience`, because the encoder may be silent for some time.
     pub fn with_reply_timeout<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.patience.replace(patience);
         let result = work(self);
@@ -108,8 +107,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Runs `work`, in which every register must yield the same value twice. This is required for values that will be
-    /// stored.
+    /// Runs `work`, in which every register must yield the same value twice, for values that will be stored.
     pub fn run_double_checked<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -147,8 +145,8 @@ impl<'a> Master<'a> {
         places.into_iter().map(|address| self.read(address)).collect()
     }
 
-    /// Writes a register. If no reply confirms the value, the register is read back, provided that this reveals the
-    /// value. The write is repeated only if the value was not accepted.
+    /// Writes a register. If no reply confirms the value, the register is read back, provided that this is conclusive.
+    /// The write is repeated only if the value was not accepted.
     ///
     /// # Errors
     /// Returns [`Error::Refused`] if the encoder rejects the value. Returns [`Error::Unclear`] if it remains unknown
@@ -211,7 +209,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Reads a frame of the given widths over an adapter. The frame is right-justified and its checksum is not
+    /// Reads a frame with the given widths over an adapter. The frame is right-justified, and its checksum is not
     /// verified.
     pub(super) fn read_frame(&mut self, data_bits: u8, crc_bits: u8) -> Result<u64, Error> {
         self.ensure_bus_ready_for(data_bits, crc_bits)?;
@@ -232,7 +230,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Prepares the first access. This determines the byte order of register numbers, or configures the bus.
+    /// Prepares the first access by determining the byte order of register numbers or by configuring the bus.
     fn ensure_ready(&mut self) -> Result<(), Error> {
         match self.station.transport {
             Transport::Adapter => self.ensure_bus_ready(),
@@ -316,19 +314,19 @@ impl<'a> Master<'a> {
             return Err(failed);
         }
         match trouble {
-            // No pause is needed, because late packets are recognised by their number.
+            // No pause is required, because late packets are recognised by their numbers.
             ExchangeError::Damage(ReplyDamage::Frame(_)) => {}
             _ if self.station.transport == Transport::Adapter => self.pause()?,
             ExchangeError::Silence { .. } => {
                 self.line.receive_late_bytes(&mut self.station.line, tries, BYTE_TIME_OUT)?
             }
-            // After this time, an incomplete frame in the encoder has timed out.
+            // By this time, the encoder has discarded an incomplete frame.
             _ => self.station.line.quiet_until = self.now() + BYTE_TIME_OUT,
         }
         Ok(())
     }
 
-    /// Returns whether the given register is the only one that does not reply. For comparison, another register is read
+    /// Returns whether this register does not reply although another one does. For this purpose, both are read
     /// repeatedly. The check is skipped if the encoder may be silent for a long time.
     fn is_only_this_register_silent(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {

@@ -1,5 +1,5 @@
-//! Reading the memory of the encoder: banks, data areas, and everything that can be restored. Data areas are not
-//! accessed while the shaft turns. See manual 6.5.
+//! Reading the memory of the encoder: banks, data areas, and all restorable values. Data areas are not accessed while
+//! the shaft turns. See manual 6.5.
 
 use std::time::Duration;
 
@@ -16,18 +16,18 @@ use crate::profile::UnknownValues;
 /// Number of position readings for detecting standstill.
 const READINGS: usize = 3;
 const READING_INTERVAL: Duration = Duration::from_millis(100);
-/// Minimum multiturn width in bits for measuring a speed. During the readings, a motor at 12,000 rpm turns forty times,
-/// which is less than this range.
+/// Minimum multiturn width in bits required for measuring a speed. During the readings, a motor at 12,000 rpm makes
+/// forty revolutions, which this width can count.
 const MIN_MULTITURN_BITS: u8 = 7;
 /// Reciprocal of the maximum jitter of a shaft at rest, in revolutions (`U`: not documented).
 const REST_JITTER_DIVISOR: u64 = 8192;
 
-/// Handling of values that were entered in a device mode but never saved. The encoder shows them as if they were
+/// The handling of values that were entered in a device mode but never saved. The encoder reports them as if they were
 /// stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnsavedValues {
     Marked,
-    /// Return an error, because a comparison would treat the values as stored.
+    /// Causes an error, because a comparison would treat the values as stored.
     Refused,
 }
 
@@ -60,7 +60,7 @@ pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Err
 }
 
 /// Returns the mean speed of the readings in revolutions per minute, positive clockwise. Returns `None` if the
-/// multiturn is too narrow to count the turns, or its width is unknown.
+/// multiturn width is unknown or insufficient for counting the turns.
 fn speed(readings: &[PositionReading]) -> Option<f64> {
     let (first, last) = (readings.first()?, readings.last()?);
     if first.multiturn_bits < MIN_MULTITURN_BITS || !first.is_split_known {
@@ -68,7 +68,7 @@ fn speed(readings: &[PositionReading]) -> Option<f64> {
     }
     let range = 1_i64.checked_shl((first.multiturn_bits + first.singleturn_bits).into())?;
     let steps = last.position() as i64 - first.position() as i64;
-    // The shorter direction is used.
+    // The shaft is assumed to have moved in the shorter direction.
     let steps = (steps + range / 2).rem_euclid(range) - range / 2;
     let turns = steps as f64 / f64::powi(2.0, first.singleturn_bits.into());
     let minutes = last.at.duration_since(first.at).as_secs_f64() / 60.0;
@@ -120,8 +120,8 @@ pub fn read_area_at_standstill(
     read_reliably(master, |master| read_area(master, area, progress))
 }
 
-/// Reads the identity and everything that can be restored. The device mode is left unchanged, because returning to
-/// operation would discard entered values.
+/// Reads the identity and all restorable values. The device mode is left unchanged, because returning to operation
+/// would discard entered values.
 ///
 /// # Errors
 /// Returns [`Error::NotInOperation`] if unsaved values are not allowed, [`Error::Moving`] if the shaft moves, or
@@ -157,7 +157,7 @@ pub fn save(
             })?;
             data.push(DataImage::new(area, banks));
         }
-        // Another host may have entered a mode meanwhile.
+        // Another host may have entered a device mode in the meantime.
         let mode = before.or(non_operational_mode(master, &description)?);
         match refused(&mode) {
             Some(mode) => Err(Error::NotInOperation { mode }),
@@ -166,8 +166,8 @@ pub fn save(
     })
 }
 
-/// Runs `read`. If any data was damaged on the line in the meantime, other damage may have gone unnoticed. In this
-/// case, everything is read again until two readings agree.
+/// Runs `read`. If the line damages any data during this time, other damage may go unnoticed. In this case, `read` is
+/// run again until two results agree.
 fn read_reliably<T>(
     master: &mut Master<'_>,
     mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,
@@ -177,7 +177,8 @@ fn read_reliably<T>(
     if was_sure || !master.station().requires_double_read() { Ok(value) } else { master.run_double_checked(read) }
 }
 
-/// Creates the profile of an encoder. `unsaved` is the device mode during the reading, or `None` in operation.
+/// Creates the profile of an encoder. `unsaved` is the device mode in which the encoder was read, or `None` for
+/// operation.
 pub fn create_profile(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceMode>) -> BissProfile {
     let identity = &survey.identity;
     let sheets = identity.data_sheet.iter().flat_map(|sheet| [&sheet.common, &sheet.encoder]);

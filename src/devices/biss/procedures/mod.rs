@@ -1,6 +1,6 @@
-//! Procedures of a BiSS C encoder, over its configuration pin (UBICOM) or over an adapter on the bus. Each uses a
-//! [`Master`], which sends requests, repeats those that may be repeated, and observes the time limits. "Manual" refers
-//! to POSITAL's manual for the IXARC kit encoders.
+//! Procedures for BiSS C encoders, over the configuration pin (UBICOM) or over an adapter on the bus. They use a
+//! [`Master`], which sends requests, repeats them where this is safe, and observes the time limits. "Manual" refers to
+//! POSITAL's manual for the IXARC kit encoders.
 //!
 //! ```text
 //! read, write, position ── master: repetitions ──┬─▶ master/ubicom: one exchange over the configuration pin

@@ -13,11 +13,11 @@ pub struct PositionReading {
     pub at: Moment,
     /// Number of revolutions, limited by the multiturn width.
     pub turns: u32,
-    /// Position within the revolution in steps. A revolution has 2 to the power of
-    /// [`singleturn_bits`](Self::singleturn_bits) steps.
+    /// Position within the revolution in steps. The number of steps per revolution is 2 to the power of
+    /// [`singleturn_bits`](Self::singleturn_bits).
     pub steps: u32,
-    /// Whether the error bit marks the position as invalid, or `None` if unknown. Over the configuration pin, a
-    /// separate register provides the bit.
+    /// Whether the error bit marks the position as invalid, or `None` if unknown. Over the configuration pin, this is
+    /// read from a separate register.
     pub error: Option<bool>,
     /// Whether the warning bit is set, or `None` if unknown.
     pub warning: Option<bool>,
@@ -35,7 +35,7 @@ pub struct PositionReading {
 }
 
 impl PositionReading {
-    /// Creates a reading without error and warning bits, CRC errors and frame, which not every transport provides.
+    /// Creates a reading without the error and warning bits, CRC errors and frame, which not every transport provides.
     pub(super) fn new(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             at,
@@ -61,12 +61,13 @@ impl PositionReading {
         }
     }
 
-    /// Returns the position word, which has the multiturn bits above the singleturn bits. It has no flags and no CRC.
+    /// Returns the position word, in which the multiturn bits are above the singleturn bits. It contains no flags and
+    /// no CRC.
     pub const fn position_word(&self) -> Word {
         Word { value: self.position(), bits: self.multiturn_bits + self.singleturn_bits }
     }
 
-    /// Returns turns and steps as a single number of steps.
+    /// Returns the turns and steps combined into a single number of steps.
     pub const fn position(&self) -> u64 {
         (self.turns as u64) << self.singleturn_bits | self.steps as u64
     }
@@ -82,7 +83,7 @@ impl PositionReading {
         f64::from(self.steps) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
-    /// Returns whether the position is valid. This is not the case if the error bit is set.
+    /// Returns whether the position is valid, that is, whether the encoder does not report an error.
     pub fn is_valid(&self) -> bool {
         self.error != Some(true)
     }
@@ -91,7 +92,7 @@ impl PositionReading {
 #[derive(Clone, Debug, PartialEq)]
 pub enum PolledSample {
     Position(PositionReading),
-    /// Frames have arrived, but none with a correct checksum.
+    /// Frames have arrived, but none of them had a correct checksum.
     Missed {
         /// Time of the last frame.
         at: Moment,
@@ -106,12 +107,12 @@ pub enum PolledSample {
 pub struct WatchedReading {
     pub at: Moment,
     pub range: RegisterRange,
-    /// Values in ascending order of address, or the reason why they were not read. The register may not exist or may
-    /// belong to a data area.
+    /// Values in ascending order of address, or the reason why they were not read, for example because the register
+    /// does not exist or belongs to a data area.
     pub value: Result<Vec<u8>, Error>,
 }
 
-/// Reads the position once. Damaged frames are not an error if good ones have been received before.
+/// Reads the position once. Damaged frames do not cause an error if valid frames have been received before.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
@@ -134,7 +135,7 @@ pub fn read_watched_value(master: &mut Master<'_>, what: RegisterRange) -> Resul
     let description = master.station().description.clone();
     let of_area = |address| description.as_ref().is_some_and(|own| own.area_at(address).is_some());
     let value = match what.addresses().find(|address| of_area(*address)) {
-        // Data areas are not read while the shaft turns (manual 6.5), and the user does not stop the shaft to watch a
+        // Data areas are not read while the shaft turns (manual 6.5), and users do not stop the shaft to watch a
         // register.
         Some(address) => Err(Error::NotWatched { address }),
         None => match master.read_consecutive(what.start(), what.count().into()) {

@@ -1,4 +1,4 @@
-//! The register values read from an encoder, byte by byte, and functions that read described registers.
+//! Register values that were read from an encoder, byte by byte, and functions that read described registers.
 
 use std::collections::BTreeMap;
 

@@ -26,7 +26,7 @@ pub const ORDERS: Keywords<Option<ByteOrder>> =
     Keywords(&[("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst))]);
 
 parameters! {
-    /// Link parameters of the configuration pin.
+    /// Link parameters for the configuration pin.
     pub struct PinParameters: UrlError {
         /// Baud rate of the serial port. The port may support fewer rates.
         pub baud: Baud = FORMAT.baud, "baud" => CustomNotation(AllowedValues::BitRate { low: 300, high: 4_000_000 }, read_baud),
@@ -41,7 +41,7 @@ parameters! {
 }
 
 parameters! {
-    /// Link parameters that set limits for late replies.
+    /// Link parameters that determine how late a reply may be.
     pub struct LineParameters: UrlError {
         /// Additional delay allowed for a reply, or `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
@@ -49,7 +49,7 @@ parameters! {
 }
 
 parameters! {
-    /// Link parameters of the bus behind an adapter.
+    /// Link parameters for the bus behind an adapter.
     pub struct BusParameters: UrlError {
         /// BiSS clock frequency in hertz. The default is slow enough for long cables.
         pub clock_hz: u32 = 1_000_000, "clock" => CLOCK, "connect.biss_clock";
@@ -72,9 +72,9 @@ parameters! {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transport {
-    /// UBICOM over the configuration pin, which selects registers by global address.
+    /// UBICOM over the configuration pin, with global register addresses.
     ConfigPin,
-    /// BiSS over an adapter, which selects registers by bank and by address within it.
+    /// BiSS over an adapter, with register addresses within the selected bank.
     Adapter,
 }
 
@@ -99,7 +99,7 @@ pub struct Station {
     pub order: Option<ByteOrder>,
     /// Reply time-out, not counting transmission time and the margin.
     pub timeout: Duration,
-    /// Requested BiSS clock frequency in hertz. The adapter uses the nearest supported one.
+    /// Requested BiSS clock frequency in hertz. The adapter uses the nearest supported frequency.
     pub clock_hz: u32,
     /// BiSS clock frequency set by the adapter in hertz, or `None` until it has been set.
     pub actual_clock_hz: Option<u32>,
@@ -118,25 +118,25 @@ pub struct Station {
     pub given: Option<Layout>,
     /// Source of the frame layout, or `None` before identification.
     pub(super) source: Option<FrameSource>,
-    /// Whether each value must be read twice, even on a line without errors. Values that will be stored are read in
-    /// this way.
+    /// Whether every value must be read twice, even on a line without errors. This is required for values that will be
+    /// stored.
     pub(super) thorough: bool,
     pub(super) noisy: bool,
     pub(super) bus: Option<Bus>,
     /// The bank selected over BiSS, and the time at which the selection was last certain.
     pub(super) bank: Option<(u8, Moment)>,
-    /// Number of frames with a wrong checksum since the last reading.
+    /// Number of frames with a wrong checksum since the last position reading.
     pub(super) crc_errors: u32,
     /// Whether a frame with the current widths has had a correct checksum.
     pub(super) good_frames: bool,
     /// Last values of the error and warning registers, read over the configuration pin.
     pub(super) flags: Option<Flags>,
     pub(super) flow: Option<SampleStream>,
-    /// Time of the last frame of any earlier stream.
+    /// Time of the last frame in any earlier stream.
     pub(super) streamed_until: Option<SampleTime>,
     pub(super) written_at: Option<Moment>,
-    /// Whether a store, a calibration or a restart may still be running, because a write ended early without returning
-    /// the encoder to operation.
+    /// Whether a store, a calibration or a restart may still be in progress, because a write ended early and the
+    /// encoder was not returned to operation.
     pub unfinished: bool,
 }
 
@@ -151,8 +151,8 @@ pub struct Supply {
 impl Supply {
     /// Time from power-up until registers can be read (data sheet, 02:0Eh).
     pub(crate) const POWER_UP: Duration = Duration::from_millis(500);
-    /// Range of supply voltages in millivolts that suits every version of the kit encoder (manual, chapter 2: 4.75 to
-    /// 12.5 V).
+    /// Range of supply voltages, in millivolts, that is suitable for all versions of the kit encoder (manual, chapter
+    /// 2: 4.75 to 12.5 V).
     pub(crate) const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
 
     /// Returns the requested supply voltage together with the range of the kit encoder.
@@ -217,8 +217,8 @@ impl Station {
         Ok(station)
     }
 
-    /// Returns the position frame layout. A layout from the data sheet or the link has priority over the one in the
-    /// description. The default is the layout of the kit encoder.
+    /// Returns the position frame layout. A layout from the data sheet or the link takes precedence over the layout in
+    /// the description. The default is the layout of the kit encoder.
     pub fn frame_layout(&self) -> Layout {
         let described = || self.description.as_ref().and_then(|description| description.layout().cloned());
         self.layout.clone().or_else(described).unwrap_or_default()
@@ -282,7 +282,7 @@ impl fmt::Display for Station {
 }
 
 impl FrameParameters {
-    /// Returns the frame layout specified in the link. Unless the link specifies a checksum, the usual one is used.
+    /// Returns the frame layout specified in the link. If the link specifies no checksum, the usual checksum is used.
     fn layout(self, query: &UrlQuery) -> Result<Option<Layout>, RejectedParameter> {
         let alone = |name: &str, allowed| RejectedParameter::new(name, query.get(name).unwrap_or_default(), allowed);
         let Some(singleturn) = self.singleturn else {
@@ -290,7 +290,7 @@ impl FrameParameters {
             return other.map_or(Ok(None), |name| Err(alone(name, AllowedValues::OnlyWith("st"))));
         };
         let crc = self.crc.unwrap_or_else(|| Crc::new(Crc::POSITION, 0, true).ok());
-        // Widths of 32 and 32 bits leave no space for flags and checksum.
+        // Two widths of 32 bits leave no space for flags and checksum.
         let layout = Layout::new(self.multiturn.unwrap_or(0), singleturn, true, true, crc);
         layout.map(Some).map_err(|_| alone("st", AllowedValues::ShortFrame))
     }
@@ -339,7 +339,7 @@ mod tests {
         assert_eq!(station.supply, Some(Supply { millivolt: 4_750, measured: None }));
     }
 
-    /// Issue 22.20: 12 multiturn bits, 19 singleturn bits, two flags, and CRC6 43h unless another is given.
+    /// Issue 22.20: 12 multiturn bits, 19 singleturn bits and two flags, with CRC6 43h unless specified otherwise.
     #[test]
     fn a_frame_format_can_be_given_in_the_link() {
         let given = |query: &str| station(query).unwrap().given.map(|own| (own.data_bits(), own.crc_bits()));
@@ -381,8 +381,8 @@ mod tests {
         }
     }
 
-    /// Manual, appendix 9.1: bank select, mode, password and the data areas keep written values; the remaining
-    /// registers are commands, are read-only, or are not described.
+    /// According to appendix 9.1 of the manual, written values can be read back from the bank selection, mode, password
+    /// and data area registers. All other registers are commands, are read-only, or are not described.
     #[test]
     fn readback_applies_to_registers_that_keep_their_value() {
         let mut station = Station::new(Transport::ConfigPin, Duration::ZERO);

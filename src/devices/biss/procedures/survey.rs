@@ -1,4 +1,4 @@
-//! The status of an encoder, and a survey of everything else that can be displayed.
+//! Reading the status of an encoder and all other values that can be displayed.
 
 use super::identify::identify_and_record;
 use super::registers::Registers;

@@ -5,17 +5,17 @@ use std::time::Duration;
 use super::{Error, Master};
 use crate::devices::biss::protocol::{Crc, Layout, LayoutError, detect_data_bits};
 
-/// Maximum length of a frame in bits, including data and checksum.
+/// Maximum length of a frame in bits, including the checksum.
 const CLOCKED: u8 = 64;
-/// Maximum number of frames examined.
+/// Maximum number of frames to examine.
 const FRAMES: usize = 200;
 const READING_INTERVAL: Duration = Duration::from_millis(2);
 /// Maximum width of the singleturn position in bits.
 const MAX_SINGLETURN_BITS: u8 = 32;
 
-/// Finds the frame layout by its checksum while the shaft turns. It is assumed that an error and a warning bit follow
-/// the position, and that the checksum is CRC6 43h inverted, as usual for BiSS encoders (`U`). The multiturn width
-/// cannot be observed. Therefore, up to 32 bits of the position are taken as the singleturn.
+/// Finds the frame layout by means of the checksum while the shaft turns. The position is assumed to be followed by an
+/// error bit, a warning bit and an inverted CRC6 43h, as usual for BiSS encoders (`U`). The multiturn width cannot be
+/// determined. Therefore, up to 32 bits of the position are interpreted as the singleturn position.
 ///
 /// # Errors
 /// Returns [`Error::WidthsUnknown`] if no length fits or the shaft is at standstill, or another error if the exchange

@@ -1,6 +1,6 @@
-//! Writing a plan to an encoder. The values on which the plan is based are read again first. Each operation is then
-//! performed, if required with an operator at the motor, and its result is read back. The encoder is returned to
-//! operation after each operation.
+//! Execution of a plan. First, the values on which the plan is based are read again. Each operation is then performed,
+//! with an operator at the motor if required, and its result is read back. After each operation, the encoder is
+//! returned to operation.
 
 use super::error::to_register_array;
 use super::procedure::{Failure, LeftState, Operator, Outcome, ProcedureContext, ProcedureProgress, ProcedureStep};
@@ -38,14 +38,14 @@ pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Failure, Writte
 pub struct EndState {
     /// The current step of the running operation.
     pub at: ProcedureStep,
-    /// State of an encoder that could not be returned to operation, as far as it is known. It is `None` if the encoder
-    /// is in operation with the password cleared, which is also its state after a loss of power.
+    /// Known state of an encoder that could not be returned to operation. `None` means that the encoder is in operation
+    /// with the password cleared, which is also its state after a loss of power.
     pub standing: Option<LeftState>,
 }
 
 impl InterruptedWrite {
-    /// Returns the register whose individual write has an unknown result, if any. The result is known if the value was
-    /// rejected or not sent.
+    /// Returns the register for which the result of an individual write is unknown, if any. If the value was rejected
+    /// or not sent, the result is known.
     pub fn uncertain_write(&self) -> Option<RegisterAddress> {
         match (&self.unfinished, &self.cause) {
             (Some(Op::WriteRegister { .. }), Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
@@ -58,12 +58,12 @@ impl InterruptedWrite {
 pub struct EncoderWriter<'w, 'm> {
     guide: ProcedureContext<'w, 'm>,
     identity: &'w Identity,
-    /// The step at which an operation ended early.
+    /// Step at which an operation ended early.
     at: ProcedureStep,
 }
 
 impl<'w, 'm> EncoderWriter<'w, 'm> {
-    /// Creates the writer for the encoder with the given identity. Every step is reported through `tell`.
+    /// Creates a writer for the encoder with the given identity. Every step is reported through `tell`.
     ///
     /// # Errors
     /// Returns an error if the encoder has not been identified.
@@ -89,8 +89,8 @@ impl Write for EncoderWriter<'_, '_> {
     type Written = WrittenValues;
     type EndState = EndState;
 
-    /// Checks that the plan was made for the connected encoder. The memory is compared as well, because two new
-    /// encoders have the same identity.
+    /// Checks that the plan was made for this encoder. The memory is compared as well, because two new encoders can
+    /// have the same identity.
     fn confirm_base(&mut self, plan: &BissPlan) -> Result<(), Error> {
         let master = self.guide.master_mut();
         let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });
@@ -137,7 +137,7 @@ impl Write for EncoderWriter<'_, '_> {
         self.at = guide.current_step();
         let led = return_to_operation(guide, ended.as_ref().err());
         count(done, op, ended?);
-        // The operation is done, and the encoder cannot be left in this state.
+        // The operation is complete, but the encoder must not be left in this state.
         self.at = guide.current_step();
         Ok(led?)
     }
@@ -172,8 +172,8 @@ fn count(done: &mut WrittenValues, op: &Op, outcome: Outcome) {
     if !matches!(outcome, Outcome::Skipped { .. }) {
         done.ops += 1;
         done.written += op.compared_items();
-        // The result of a calibration is known only from the encoder's status. The same applies to a result that shows
-        // only after a restart.
+        // The result of a calibration is known only from the encoder's status, as is a result that cannot be read
+        // before a restart.
         let is_unverifiable =
             matches!(op, Op::Calibrate | Op::WiegandTest { .. } | Op::WriteRegister { old: None, .. });
         done.verified += if is_unverifiable { 0 } else { op.compared_items() };
@@ -199,8 +199,8 @@ fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> 
     Ok(true)
 }
 
-/// Checks that the encoder is not in a device mode, in which its registers could show values that were entered but not
-/// saved.
+/// Checks that the encoder is in operation. In a device mode, its registers could contain values that were entered but
+/// not saved.
 ///
 /// # Errors
 /// Returns [`Error::NotInOperation`] in a device mode, or another error if the exchange fails.
@@ -211,8 +211,8 @@ pub fn ensure_operation_mode(master: &mut Master<'_>, description: &Description)
     }
 }
 
-/// Returns the device mode, in which registers may show values that were never saved. Returns `None` in operation and
-/// for an encoder without device modes.
+/// Returns the device mode, or `None` in operation and for an encoder without device modes. In a device mode, registers
+/// may contain values that were never saved.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
@@ -222,7 +222,7 @@ pub fn non_operational_mode(master: &mut Master<'_>, description: &Description) 
     Ok((mode != DeviceMode::OPERATION).then_some(mode))
 }
 
-/// Reads the state of an encoder on which a plan is based. It consists of the identity, the settings and the given
+/// Reads the state of an encoder on which a plan is based, which consists of the identity, the settings and the given
 /// banks.
 ///
 /// # Errors
@@ -250,7 +250,7 @@ pub fn read_state(
     Ok(DeviceState { identity: identity.profile(), filter, preset, areas, banks: read })
 }
 
-/// Reads a bank, which requires the shaft to be at standstill. The bank is read twice if the line has damaged any data.
+/// Reads a bank. The shaft must be at standstill. If the line has damaged any data, the bank is read twice.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.

@@ -1,4 +1,4 @@
-//! Planning single changes and guided procedures. Each is checked against the rules of the encoder before anything is
+//! Planning single changes and guided procedures. They are checked against the rules of the encoder before anything is
 //! sent.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -25,14 +25,14 @@ pub enum MotorSource {
     ThisEncoder,
 }
 
-/// The steps for an encoder that was mounted on a motor. They are performed in field order.
+/// The steps for an encoder that has been mounted on a motor. They are performed in the order of the fields.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MountingSteps {
     /// Whether to calibrate the singleturn position.
     pub calibrate: bool,
     /// Whether to save the result of the Wiegand test. `None` skips the test.
     pub wiegand: Option<bool>,
-    /// Value to set at the current shaft position, and the parts of the position to set.
+    /// Value to which the current shaft position is set, and the parts of the position that are set.
     pub preset: Option<(PresetValue, PresetParts)>,
     /// Profile from which the data areas are written, if any.
     pub data: Option<Box<BissProfile>>,
@@ -44,10 +44,10 @@ impl MountingSteps {
         self.calibrate || self.wiegand.is_some()
     }
 
-    /// Checks that the motor does not depend on this encoder, if a step needs a motor.
+    /// Checks that no step needs a motor, or that the motor does not depend on this encoder.
     ///
     /// # Errors
-    /// Returns [`PlanError::DrivenByThisEncoder`] if it does.
+    /// Returns [`PlanError::DrivenByThisEncoder`] if the required motor depends on this encoder.
     pub fn check_motor(&self, motor: MotorSource) -> Result<(), PlanError> {
         if self.needs_motor() && motor == MotorSource::ThisEncoder {
             return Err(PlanError::DrivenByThisEncoder);
@@ -68,8 +68,7 @@ pub enum RegisterKind<'d> {
 /// Returns the way in which a register must be written.
 ///
 /// # Errors
-/// Returns [`PlanError::ReadOnly`], or [`PlanError::Guarded`] for a register that may only be written by the
-/// procedures.
+/// Returns [`PlanError::ReadOnly`], or [`PlanError::Guarded`] for a register that only procedures may write.
 pub fn register_kind(description: &Description, address: RegisterAddress) -> Result<RegisterKind<'_>, PlanError> {
     if is_protected_register(description, address) {
         return Err(PlanError::Guarded { address });
@@ -112,9 +111,9 @@ pub fn find_procedure(
     }
 }
 
-/// Plans to write exactly the given bytes. A later edit of a register replaces an earlier one, and unchanged values are
-/// omitted. `banks` and `registers` contain the current values of all edited registers. A register that cannot be read
-/// has the value `None`.
+/// Plans to write the given bytes. A later edit of a register replaces an earlier edit, and edits that change nothing
+/// are omitted. `banks` and `registers` contain the current values of all edited registers, or `None` if a register
+/// cannot be read.
 ///
 /// # Errors
 /// Returns a [`PlanError`] if an edit is not allowed.
@@ -171,7 +170,8 @@ pub fn plan_edits(
     Ok(BissPlan { base, ops })
 }
 
-/// Returns the number of persistent writes that a value needs. It is at most one for a register without a description.
+/// Returns the number of persistent writes that writing a value costs. For a register without a description, this is
+/// assumed to be one.
 fn write_cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 {
     description.register_at(address).map_or(1, |register| u8::from(register.costs_write_cycle(value)))
 }
@@ -189,8 +189,8 @@ pub fn plan_filter(description: &Description, device: &DeviceState, to: Position
     Ok(BissPlan { base, ops: if from == to { vec![] } else { vec![Op::SelectFilter { from, to }] } })
 }
 
-/// Plans to store a preset value, unless it is already stored. With `parts`, the plan also sets the current shaft
-/// position to the stored value.
+/// Plans to store a preset value, unless it is already stored. If `parts` is specified, the plan also sets these parts
+/// of the current shaft position to the stored value.
 ///
 /// # Errors
 /// Returns an error if the value is too wide, the encoder has no preset, or the given parts cannot be preset
@@ -218,10 +218,10 @@ pub fn plan_preset(
     Ok(BissPlan { base: Base { preset: Some(from), ..Base::default() }, ops })
 }
 
-/// Plans the guided procedures after an encoder was mounted.
+/// Plans the guided procedures for an encoder that has been mounted on a motor.
 ///
 /// # Errors
-/// Returns a [`PlanError`] if a step is not possible. This includes a step that needs a motor if the motor depends on
+/// Returns a [`PlanError`] if a step is not possible, for example because it needs a motor and the motor depends on
 /// this encoder.
 pub fn plan_mounting(
     description: &Description,

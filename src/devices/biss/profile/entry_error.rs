@@ -1,6 +1,6 @@
 //! Errors in the entries of a BiSS profile.
 
-/// The reason why a profile entry is rejected.
+/// Reason why a profile entry is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// The bank is listed twice.

@@ -1,4 +1,4 @@
-//! Item names in an encoder. Examples are `0x66` for a direct register, `0x24:0x10` for a register in a bank, and
+//! Names of the items in an encoder, such as `0x66` for a direct register, `0x24:0x10` for a register in a bank, and
 //! `0x24:0x10+3` for consecutive registers.
 
 use std::fmt;
@@ -14,7 +14,7 @@ pub struct RegisterRange {
     count: u8,
 }
 
-/// The error for a string that does not name any registers.
+/// Error for a string that does not name any registers.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} is not an item; items are 0x40 to 0x7F or BANK:OFFSET such as 0x24:0x10, either with +COUNT appended")]
 pub struct ItemError(pub String);

@@ -1,5 +1,5 @@
-//! BiSS profiles. They contain the saved content of an encoder. The module also compares two encoders, and plans
-//! restores and guided procedures.
+//! BiSS profiles, which contain the saved content of an encoder, comparison of two encoders, and planning of restores
+//! and guided procedures.
 
 #![warn(missing_docs)]
 

@@ -1,5 +1,5 @@
-//! Changes made by an operation, for the logbook. Registers are listed with their address and their name from the
-//! manual, in every language of the window.
+//! Changes made by an operation, for the logbook. Registers are listed with their address and with their name from the
+//! manual, regardless of the language of the window.
 
 use super::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::bits::hex_compact;
@@ -7,7 +7,7 @@ use crate::devices::biss::protocol::{Description, PositionFilter, PresetValue};
 use crate::profile::ChangedItem;
 
 impl Op {
-    /// Returns the changed items with their old and new values. Consecutive registers are one item.
+    /// Returns the changed items with their old and new values. Consecutive registers form one item.
     pub fn changed_items(&self, description: &Description) -> Vec<ChangedItem> {
         let byte = |byte: u8| format!("{byte:02X}");
         vec![match self {

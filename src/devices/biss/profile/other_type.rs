@@ -1,6 +1,6 @@
-//! Comparison of the type of an encoder with that of a profile. The type consists of profile ID, manufacturer, device
-//! ID and the position widths. The widths matter because a preset is a number of steps, which is a different angle with
-//! other widths.
+//! Comparison of the type of an encoder with the type in a profile. The type consists of the profile ID, the
+//! manufacturer, the device ID and the position widths. The widths matter because a preset value is a number of steps,
+//! and the same number is a different angle if the widths differ.
 
 use std::fmt;
 

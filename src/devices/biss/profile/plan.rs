@@ -1,4 +1,4 @@
-//! The operations that change an encoder, their cost, and the values that a plan is based on.
+//! The operations that change an encoder, their cost, and the values on which a plan is based.
 
 use super::{Bank, BissProfile, RegisterRange};
 use crate::devices::biss::protocol::{Area, PositionFilter, PresetCommand, PresetValue, RegisterAddress};
@@ -20,12 +20,12 @@ pub struct Base {
     pub registers: Vec<(RegisterAddress, u8)>,
 }
 
-/// An operation of a plan. It enters the required device mode and leaves it again.
+/// An operation of a plan, which enters the required device mode and leaves it again.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// Writes registers of one area and saves them together (manual 6.5).
     StoreData {
-        /// Area with the registers. The command in its `open` field opens it.
+        /// Area that contains the registers. It is opened with the command in its `open` field.
         area: Area,
         /// Register changes in ascending order of address.
         registers: Vec<RegisterChange>,
@@ -76,9 +76,9 @@ pub enum Op {
 pub struct RegisterChange {
     /// Address of the register.
     pub address: RegisterAddress,
-    /// Value before the change.
+    /// Old value.
     pub old: u8,
-    /// Value after the change.
+    /// New value.
     pub new: u8,
 }
 
@@ -134,8 +134,8 @@ impl Op {
         matches!(self, Op::Calibrate | Op::WiegandTest { .. })
     }
 
-    /// Returns the register ranges that the operation changes, in the notation of the command `read`. The list is empty
-    /// if no readable register changes.
+    /// Returns the register ranges that the operation changes, as accepted by the `read` command. The list is empty if
+    /// no readable register changes.
     pub fn register_ranges(&self) -> Vec<RegisterRange> {
         let known = |text: &str| text.parse().into_iter().collect();
         match self {
@@ -149,8 +149,8 @@ impl Op {
         }
     }
 
-    /// Returns the name of the item that the operation changes. The command `read` accepts this name if the item can be
-    /// read.
+    /// Returns the name of the item that the operation changes. If the item can be read, the `read` command accepts
+    /// this name.
     pub fn item_name(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
@@ -161,7 +161,7 @@ impl Op {
     }
 
     /// Returns the number of items that the operation changes, counted as in a comparison. This is the number of
-    /// changed registers in an area, and otherwise one.
+    /// changed registers for a data area, and one for any other operation.
     pub fn compared_items(&self) -> u64 {
         match self {
             Op::StoreData { registers, .. } => registers.len() as u64,

@@ -1,5 +1,5 @@
-//! Planning a restore. A plan contains only differences and needs as few persistent writes as possible. Values that are
-//! only valid for another encoder on its motor are omitted. A preset value is stored, but the position is not set.
+//! Planning a restore. Only differences are written, with as few persistent writes as possible. Values that are only
+//! valid for another encoder on its motor are not written. A preset value is stored, but the position is not set.
 
 pub use crate::profile::RestoreOptions;
 
@@ -25,7 +25,7 @@ pub struct DeviceState {
 /// The outcome of planning a restore.
 pub type Restore = crate::profile::Restore<BissPlan, RegisterRange>;
 
-/// The reason why a change cannot be planned.
+/// Reason why a change cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from an encoder with a different serial number.
@@ -55,13 +55,13 @@ pub enum PlanError {
         /// Width of that part in bits.
         bits: u8,
     },
-    /// The code does not denote a filter.
+    /// There is no filter with this code.
     #[error("0x{code:02X} is not a valid filter")]
     UnknownFilter {
         /// Requested filter code.
         code: u8,
     },
-    /// The encoder's description has no such procedure.
+    /// The description of the encoder does not contain the procedure.
     #[error("\"{description}\" has no such procedure")]
     NoProcedure {
         /// Requested procedure.
@@ -69,7 +69,7 @@ pub enum PlanError {
         /// Name of the description.
         description: String,
     },
-    /// The encoder's firmware is too old for the request.
+    /// The firmware of the encoder is too old for the procedure.
     #[error("firmware {needed} is required, but the encoder has {found}")]
     FirmwareTooOld {
         /// Requested procedure.
@@ -105,7 +105,7 @@ pub enum PlanError {
         /// Code of the active filter.
         code: u8,
     },
-    /// The drive of the motor closes its loop on this encoder, and the encoder provides no position during the
+    /// The drive of the motor closes its loop on this encoder, but the encoder provides no position during the
     /// procedure.
     #[error("the motor is controlled with this encoder's position, which is not available during the procedure")]
     DrivenByThisEncoder,
@@ -136,8 +136,8 @@ pub fn plan_restore(
     Ok(planner.finish())
 }
 
-/// Plans to write only the data areas of a profile to an encoder that is being mounted. The plan includes the values
-/// that are only valid on this motor.
+/// Plans to write only the data areas of a profile to an encoder that is being mounted. The plan includes values that
+/// are only valid on this motor.
 ///
 /// # Errors
 /// Returns a [`PlanError`] if the data areas cannot be written.
@@ -150,14 +150,14 @@ pub fn plan_data_areas(profile: &BissProfile, device: &DeviceState) -> Result<Re
 /// Checks that a profile was read from this encoder. The check always fails for an encoder without a serial number.
 ///
 /// # Errors
-/// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`] if it was read from another encoder.
+/// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`] if the profile was read from another encoder.
 pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Checks that a profile was read from this encoder, unless the options allow a profile of another encoder. Even if
-/// another serial number is allowed, another encoder type must be allowed separately, because its registers may have
-/// other meanings.
+/// Checks that a profile was read from this encoder, unless the options allow a profile of another encoder. Another
+/// encoder type must be allowed separately from another serial number, because its registers may have different
+/// meanings.
 ///
 /// # Errors
 /// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`] if the encoder is not allowed.
@@ -203,14 +203,14 @@ pub(super) fn check_preset_width(value: PresetValue, identity: &ProfileIdentity)
     Ok(())
 }
 
-/// Treatment of mounting values, which are valid only for one encoder as mounted on its motor.
+/// The treatment of mounting values, which are valid only for one encoder as mounted on its motor.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum MountingPolicy {
     /// The values belong to this encoder.
     Own,
     /// The values belong to another encoder and are not written.
     Leave,
-    /// The values belong to another encoder but are written anyway.
+    /// The values belong to another encoder, but the user has allowed them to be written.
     Write,
 }
 
@@ -350,7 +350,7 @@ pub(super) fn store_operations(area: &Area, registers: Vec<RegisterChange>) -> V
         address: change.address,
         old: Some(change.old),
         new: change.new,
-        // The cost is not known, but it is at most one write cycle.
+        // The cost is unknown, but it is at most one write cycle.
         cycles: 1,
     };
     registers.into_iter().map(single).collect()

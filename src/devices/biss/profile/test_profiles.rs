@@ -1,4 +1,4 @@
-//! Test profiles based on a kit encoder as delivered.
+//! Test profiles based on a kit encoder with factory settings.
 
 use super::{Bank, BissProfile, DataImage, PresetSetting, ProfileIdentity, RecordedValues};
 use crate::devices::biss::protocol::{Access, Area, Firmware, PositionFilter, PresetValue, ProfileId};
@@ -38,7 +38,7 @@ pub(super) fn profile(serial_number: &str) -> BissProfile {
     }
 }
 
-/// Changes bytes in a bank, which is added to the listed banks if necessary.
+/// Sets bytes in a bank, which is added to the profile if necessary.
 pub(super) fn set_bank_bytes(profile: &mut BissProfile, number: u8, bytes: &[(usize, u8)]) {
     let mut bank = profile.bank(number).unwrap_or_else(|| Bank::filled_with(number, 0));
     for (at, byte) in bytes {

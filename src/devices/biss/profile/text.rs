@@ -1,4 +1,4 @@
-//! The text format of a BiSS profile, which users can read and edit. Each error names the entry that caused it.
+//! The text format of a BiSS profile, which users can read and edit. Errors name the entry that caused them.
 
 use super::{
     Bank, BissProfile, DataImage, EntryError, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity,
@@ -13,7 +13,7 @@ use crate::profile::mounting::MOUNTING_COMMENT;
 use crate::profile::ron_text::{Entries, Writer, quote};
 use crate::profile::{ChangedItem, Comparison, Profile, ProfileError, Redo};
 
-/// Range of each part of a preset value. A part occupies three registers.
+/// Range of the singleturn and multiturn parts of a preset value, which occupy three registers each.
 const PRESET_NUMBER: AllowedValues = AllowedValues::whole_range(0, 16_777_215);
 
 impl Profile for BissProfile {

@@ -1,28 +1,28 @@
-//! Register addresses. Addresses 00h to 3Fh lie within one of the banks, and 40h to 7Fh are direct. UBICOM numbers all
-//! of them globally. See chapter 4 of the manual, and "Address global" in its appendix.
+//! Register addresses. Addresses 00h to 3Fh lie within the selected bank, and 40h to 7Fh are direct registers. UBICOM
+//! uses global numbers for all registers. See chapter 4 of the manual, and "Address global" in its appendix.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// The address of a register. Direct registers sort before those in banks.
+/// The address of a register. Direct registers are ordered before registers in banks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterAddress(u16);
 
-/// The error for a string that is not a register address.
+/// Error for a string that is not a register address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is not a register: enter 0x40 to 0x7F for a direct register, or BANK:OFFSET such as 0x24:0x10")]
 pub struct AddressError(String);
 
 impl RegisterAddress {
-    /// Number of registers in a bank. There are equally many direct registers.
+    /// Number of registers in a bank, which is also the number of direct registers.
     pub const BANK_SIZE: u8 = 0x40;
-    /// Register 40h in all encoders. It selects the bank visible at 00h to 3Fh.
+    /// Register 40h, which all encoders have. It selects the bank that is visible at 00h to 3Fh.
     pub const BANK_SELECT: RegisterAddress = RegisterAddress(0x00);
-    /// Register 41h in all encoders. It holds the number of the first electronic data sheet bank.
+    /// Register 41h, which all encoders have. It holds the number of the first bank of the electronic data sheet.
     pub const EDS_BANK: RegisterAddress = RegisterAddress(0x01);
-    /// Registers 42h and 43h in all encoders. They hold the profile ID.
+    /// Registers 42h and 43h, which all encoders have. They hold the profile ID.
     pub const PROFILE: RegisterAddress = RegisterAddress(0x02);
-    /// Registers 78h to 7Dh in all encoders. They hold the device ID, and the manufacturer ID follows.
+    /// Registers 78h to 7Dh, which all encoders have. They hold the device ID, and are followed by the manufacturer ID.
     pub const DEVICE_ID: RegisterAddress = RegisterAddress(0x38);
 
     /// Creates the address of a direct register. Returns `None` outside 40h to 7Fh.
@@ -55,8 +55,8 @@ impl RegisterAddress {
         if self.0 < 0x40 { None } else { Some(((self.0 - 0x40) / 0x40) as u8) }
     }
 
-    /// Returns the seven-bit address for the control frame. It is 40h to 7Fh for a direct register, and 00h to 3Fh
-    /// within a bank.
+    /// Returns the seven-bit address for the control frame, which is 40h to 7Fh for a direct register and 00h to 3Fh
+    /// for a register in a bank.
     pub const fn address(self) -> u8 {
         // The value is always below 40h.
         let offset = (self.0 % 0x40) as u8;
@@ -106,7 +106,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Expected values are taken from UBICOM reference 3.
+    /// Expected values from section 3 of the UBICOM reference.
     #[test]
     fn published_address_map_matches() {
         let cases = [
@@ -121,7 +121,7 @@ mod tests {
             ("0x23:0x3F", 0x093F),
             ("0x24:0x00", 0x0940),
             ("0x43:0x3F", 0x113F),
-            // Given by name in the same section.
+            // These registers are given by name in the same section.
             ("0x6B", 0x002B),
             ("0x6A", 0x002A),
             ("0x66", 0x0026),

@@ -6,11 +6,11 @@
 //! CDM    S  CTS  ID    ADR    CRC4    R   W   S   DATA    CRC4    P        host → encoder, at the end of a cycle
 //! CDS    0  IDL0 … IDL7 0…            0   R   W   S       DATA    CRC4 P   encoder → host, at the start of a cycle
 //! ```
-//! A CDS bit answers the CDM bit of the previous cycle. P = 1 continues with the next address, whose S is sent in the
-//! same cycle. Fourteen cycles with CDM = 0 return both sides to the idle state from any state.
+//! A CDS bit is the reply to the CDM bit of the previous cycle. P = 1 continues with the next address, whose S is sent
+//! in the same cycle. From any state, fourteen cycles with CDM = 0 return both sides to the idle state.
 //!
-//! No available source defines two details (`U`). In this implementation, a host that waits for the encoder's S repeats
-//! its own S, because fourteen zeros would be an abort. An encoder echoes written data with its checksum.
+//! The available sources leave two details open (`U`). In this implementation, a host that waits for the encoder's S
+//! repeats its own S, because fourteen zeros would abort the request. An encoder echoes written data with its checksum.
 
 mod encoder;
 mod host;
@@ -41,7 +41,7 @@ enum RequestKind {
     Write { values: Vec<u8> },
 }
 
-/// The reason why a request is invalid.
+/// Reason why a request is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
     /// The slave number is outside the range 0 to 7.
@@ -57,13 +57,13 @@ pub enum RequestError {
     },
 }
 
-/// The reason why a request failed.
+/// Reason why a request failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ControlError {
     /// No encoder with the given number is on the line.
     #[error("no slave {0} answers")]
     NoSlave(u8),
-    /// The encoder did not echo the access type, because it did not understand the request or rejected it.
+    /// The encoder did not echo the access type, because the request was unintelligible or was rejected.
     #[error("the encoder refuses register 0x{0:02X}")]
     Rejected(u8),
     /// The encoder delayed its reply for too many cycles.

@@ -1,26 +1,26 @@
-//! BiSS checksums. They have a polynomial of up to 32 bits, process bits in the order of transmission, and use no
-//! reflection. Each encoder defines the polynomial for its position data. The control frame always uses the 4-bit one.
-//! See manual 3.1.1 and iC-Haus AN3.
+//! BiSS checksums, which have a width of up to 32 bits, process bits in the order of transmission, and use no
+//! reflection. The polynomial for position data depends on the encoder. The control frame always uses the same 4-bit
+//! polynomial. See manual 3.1.1 and iC-Haus AN3.
 
 use std::fmt;
 
-/// A checksum algorithm. The width of the checksum follows from the polynomial.
+/// A checksum algorithm. The polynomial determines the width of the checksum.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Crc {
     polynomial: u64,
     start: u32,
     inverted: bool,
-    /// Remainders for all byte values, aligned to the upper end of a 32-bit register.
+    /// Remainders for all byte values, left-aligned in a 32-bit register.
     table: [u32; 256],
 }
 
-/// The reason why checksum parameters are invalid.
+/// Reason why checksum parameters are invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CrcError {
     /// The degree of the polynomial is 0 or above 32.
     #[error("the CRC polynomial {0:#X} must have 2 to 33 bits, including its highest and lowest terms")]
     Degree(u64),
-    /// The polynomial lacks its lowest term, so the checksum would not detect every single-bit error.
+    /// The lowest term of the polynomial is missing, so the checksum would not detect every single-bit error.
     #[error("the CRC polynomial {0:#X} must have the constant term 1")]
     LowestTerm(u64),
     /// The start value is wider than the checksum.
@@ -40,8 +40,8 @@ impl Crc {
     /// Polynomial x⁴ + x + 1 for the control frame. The checksum is sent inverted.
     pub const CONTROL: u64 = 0x13;
 
-    /// Creates a checksum algorithm. The polynomial includes its highest and lowest terms, so that 43h is x⁶ + x + 1.
-    /// `start` is the value of the register before the first bit.
+    /// Creates a checksum algorithm. The polynomial includes its highest and lowest terms. For example, 43h is x⁶ + x +
+    /// 1. `start` is the value of the CRC register before the first bit.
     ///
     /// # Errors
     /// Returns a [`CrcError`] if the parameters do not describe a checksum of 1 to 32 bits.
@@ -60,8 +60,8 @@ impl Crc {
         Ok(crc)
     }
 
-    /// Creates a checksum algorithm from the notation of the electronic data sheet, or returns `None` for 0, which
-    /// means no checksum. The notation omits the lowest term, so that 21h means 43h.
+    /// Creates a checksum algorithm from the notation of the electronic data sheet, which omits the lowest term. For
+    /// example, 21h means 43h. Returns `None` for 0, which means no checksum.
     ///
     /// # Errors
     /// Returns an error from [`new`](Self::new) if the parameters are invalid.
@@ -92,14 +92,14 @@ impl Crc {
         self.polynomial.ilog2() as u8 // at most 32
     }
 
-    /// Returns the checksum of the lowest `bits` bits of `data`, highest bit first. The result is inverted if the
-    /// checksum is sent inverted. Values of `bits` above 64 are treated as 64.
+    /// Returns the checksum of the lowest `bits` bits of `data`, which are processed highest bit first. If the checksum
+    /// is sent inverted, the result is inverted. Values of `bits` above 64 are treated as 64.
     pub fn compute(&self, data: u64, bits: u8) -> u32 {
         let unused = 32 - u32::from(self.width());
         let mut register = self.start << unused;
         let mut left = u32::from(bits.min(64));
         while left > 0 {
-            // The bits of the incomplete byte come first, so that only complete bytes follow.
+            // The bits of an incomplete byte are processed first, so that only complete bytes remain.
             let now = if left.is_multiple_of(8) { 8 } else { left % 8 };
             left -= now;
             let group = (data >> left) as u32 & ((1 << now) - 1);
@@ -139,7 +139,7 @@ pub(super) fn crc4(data: u16, bits: u8) -> u8 {
 }
 
 fn crc_table(polynomial: u64, degree: u32) -> [u32; 256] {
-    // The polynomial without its highest term, aligned to the most significant bit of 32.
+    // The polynomial without its highest term, left-aligned in 32 bits.
     let low_terms = ((polynomial ^ 1 << degree) << (32 - degree)) as u32;
     let mut table = [0; 256];
     for (index, entry) in (0u32..).zip(&mut table) {
@@ -161,7 +161,7 @@ mod tests {
         let degree = 63 - polynomial.leading_zeros();
         let mut rest = u128::from(data) & ((1u128 << bits) - 1);
         rest <<= degree;
-        // A start value is equivalent to a change in the first bits.
+        // A start value is equivalent to a change of the first data bits.
         rest ^= u128::from(start) << bits;
         for at in (degree..u32::from(bits) + degree).rev() {
             if rest >> at & 1 == 1 {
@@ -171,7 +171,8 @@ mod tests {
         rest as u32
     }
 
-    /// Expected header CRC4 values from reference 3, calculated over CTS = 1, ID = 0 and the address.
+    /// Expected CRC4 values of the header from section 3 of the reference, calculated over CTS = 1, ID = 0 and the
+    /// address.
     #[test]
     fn published_headers_match() {
         let table = [
@@ -191,7 +192,7 @@ mod tests {
         for (address, sum) in table {
             assert_eq!(crc4(0x400 | address, 11), sum, "{address:02X}");
         }
-        // Commands with CTS = 0, ID 0, CMD 01 and 00 (reference 3, last line).
+        // Commands with CTS = 0, ID 0, CMD 01 and 00 (last line of section 3 of the reference).
         assert_eq!(crc4(0b001, 11), 0xC);
         assert_eq!(crc4(0b000, 11), 0xF);
     }
@@ -206,7 +207,7 @@ mod tests {
         }
     }
 
-    /// Expected data CRC4 values from reference 3.
+    /// Expected CRC4 values of data bytes from section 3 of the reference.
     #[test]
     fn published_data_bytes_match() {
         let table = "00→F 01→C 02→9 03→A 04→3 05→0 07→6 10→A 1C→D 21→6 29→D 2A→8 30→0 46→2 4B→6 61→1 72→1 80→1 FF→B";
@@ -218,7 +219,7 @@ mod tests {
     }
 
     /// Check values for the string 123456789 from the catalogue of parametrised CRC algorithms (reveng), for algorithms
-    /// of any width without reflection.
+    /// of different widths without reflection.
     #[test]
     fn other_polynomials_match_published_check_values() {
         let cases = [

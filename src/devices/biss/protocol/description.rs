@@ -1,5 +1,6 @@
-//! Encoder descriptions. These are RON files in `assets/devices/biss/` that users can edit. They define the frame,
-//! registers, data areas and procedures of one type of encoder. This module handles the data only and opens no files.
+//! Encoder descriptions, which define the frame, registers, data areas and procedures of one type of encoder. The
+//! built-in descriptions are RON files in `assets/devices/biss/`, and users can add their own files. This module does
+//! not open any files.
 
 mod codes;
 mod description_error;
@@ -45,7 +46,7 @@ pub struct Identity {
     pub device_id: [u8; 6],
 }
 
-/// A mismatch between an encoder and its description.
+/// A mismatch between an encoder and a description.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the encoder reports {found}, but the description \"{name}\" is for {expected}")]
 pub struct IdentityMismatch {
@@ -79,8 +80,8 @@ pub struct Procedure {
     pub command: RegisterAddress,
     /// Address of the status register.
     pub status: RegisterAddress,
-    /// First additional register, if any. It holds the error code and results of a Wiegand test, or the value of a
-    /// preset.
+    /// First additional register, if any. It holds the error code of a Wiegand test, followed by the results, or the
+    /// value of a preset.
     pub data: Option<RegisterAddress>,
     /// Oldest firmware that supports the procedure.
     pub since: Firmware,
@@ -215,13 +216,13 @@ impl fmt::Display for Identity {
 }
 
 impl Descriptions {
-    /// The descriptions that ship with the program, each with its file name.
+    /// The descriptions that are shipped with the program, each with its file name.
     pub const BUILT_IN: [(&'static str, &'static str); 2] = [
         ("posital_kit.ron", include_str!("../../../../assets/devices/biss/posital_kit.ron")),
         ("unknown.ron", include_str!("../../../../assets/devices/biss/unknown.ron")),
     ];
 
-    /// Parses description files. An unusable file yields an error and does not affect the others.
+    /// Parses description files. An unusable file yields an error but does not affect the other files.
     pub fn read<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> (Self, Vec<DescriptionError>) {
         let mut errors = Vec::new();
         let mut read = Vec::new();
@@ -231,7 +232,7 @@ impl Descriptions {
                 Err(error) => errors.push(error),
             }
         }
-        // Specific descriptions come before those that apply to any encoder.
+        // Specific descriptions precede those that apply to any encoder.
         read.sort_by_key(|description| description.identity.is_none());
         (Descriptions(read), errors)
     }
@@ -251,8 +252,8 @@ impl Descriptions {
         Descriptions(all)
     }
 
-    /// Returns the description for the given identity. A specific description is preferred to one that applies to any
-    /// encoder.
+    /// Returns the description for the given identity. A specific description takes precedence over one that applies to
+    /// any encoder.
     pub fn find(&self, identity: &Identity) -> Option<&Description> {
         self.0.iter().find(|description| description.check_identity(identity).is_ok())
     }

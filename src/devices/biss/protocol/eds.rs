@@ -52,7 +52,8 @@ pub enum EdsValue {
     Bank(u8),
     /// A bank that is not available, encoded as FFh.
     NotAvailable,
-    /// Time in an unknown unit. The manual does not define the unit, and no unit matches all values in its tables.
+    /// Time in an unknown unit. The manual does not define the unit, and no unit matches all values in the manual's
+    /// tables.
     Ticks(u8),
     /// Adaptive time-out, which is encoded as 0.
     Adaptive,
@@ -60,7 +61,7 @@ pub enum EdsValue {
     NoLimit,
     /// Absolute temperature in kelvin.
     Kelvin(u16),
-    /// CRC polynomial including its highest and lowest terms. For example, 43h is x⁶ + x + 1. The value 0 means no CRC.
+    /// CRC polynomial, including its highest and lowest terms. For example, 43h is x⁶ + x + 1, and 0 means no CRC.
     Polynomial(u64),
     /// Profile ID.
     Profile(ProfileId),
@@ -139,7 +140,7 @@ pub struct Eds {
     bytes: [u8; 64],
 }
 
-/// The reason why an electronic data sheet is invalid.
+/// Reason why an electronic data sheet is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EdsError {
     /// The last byte is not the sum of all other bytes.
@@ -292,7 +293,7 @@ impl EdsField {
     /// Returns the decoded value of the field. The checksum of the bank is not verified. See [`Eds::parse`].
     pub fn value(&self, bank: &[u8; 64]) -> EdsValue {
         let raw = self.raw_value(bank);
-        // The conversion loses nothing, because fields with these meanings use only one byte.
+        // The conversion is lossless, because fields with these meanings have only one byte.
         let byte = raw as u8;
         match self.meaning {
             FieldMeaning::Number(unit) => EdsValue::Number(raw, unit),

@@ -1,13 +1,13 @@
-//! One cycle of the data line SLO, with one sample per clock after the latch. It consists of acknowledge, start bit,
-//! control bit, frame and time-out. Clock period and time-out duration do not matter to this module. See manual, figure
-//! 2.
+//! One cycle of the data line SLO, with one sample per clock after the latch. A cycle consists of acknowledge, start
+//! bit, control bit, frame and time-out. This module does not depend on the clock period or the duration of the
+//! time-out. See manual, figure 2.
 
 use super::single_cycle::Layout;
 
 /// One cycle of the data line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BissCycle {
-    /// Number of clocks during which the encoder was busy and SLO was 0, at least 1.
+    /// Number of clocks, at least 1, during which SLO was 0 because the encoder was busy.
     pub acknowledge: usize,
     /// CDS, the control frame bit that the encoder sends in this cycle.
     pub control: bool,
@@ -15,7 +15,7 @@ pub struct BissCycle {
     pub raw: u64,
 }
 
-/// The reason why samples do not form a cycle.
+/// Reason why samples do not form a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CycleError {
     /// The line never went low, because no encoder is connected or a wire is broken.
@@ -32,7 +32,7 @@ pub enum CycleError {
         /// Number of samples received after the start bit.
         got: usize,
     },
-    /// The line is high after the frame, although the time-out cannot be over yet.
+    /// The line is high immediately after the frame, although the time-out cannot have elapsed yet.
     #[error("the line is high after the last bit: the frame is longer than {bits} bits")]
     TimeOut {
         /// Frame length in the layout, in bits.
@@ -64,7 +64,7 @@ impl BissCycle {
         Ok(BissCycle { acknowledge, control: *control, raw })
     }
 
-    /// Returns the samples from the acknowledge to the first one of the time-out.
+    /// Returns the samples from the acknowledge to the first sample of the time-out.
     pub fn emit(&self, layout: &Layout) -> Vec<bool> {
         let mut samples = vec![false; self.acknowledge.max(1)];
         samples.extend([true, self.control]);
@@ -80,7 +80,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Cycle from reference 7 with multiturn 1234, singleturn 18000 and an acknowledge of three clocks.
+    /// Cycle from section 7 of the reference with multiturn 1234h, singleturn 18000h and an acknowledge of three
+    /// clocks.
     const SAMPLES: &str = "000 1 0 0001001000110100 11000000000000000 1 1 001111 0";
 
     fn samples(text: &str) -> Vec<bool> {
@@ -93,7 +94,7 @@ mod tests {
         let cycle = BissCycle { acknowledge: 3, control: false, raw: 0x024_6980_00CF };
         assert_eq!(BissCycle::parse(&samples(SAMPLES), &layout), Ok(cycle));
         assert_eq!(cycle.emit(&layout), samples(SAMPLES));
-        // The level of the line before the cycle and after the time-out makes no difference.
+        // The level of the line before the cycle and after the time-out is ignored.
         let rested = [vec![true; 2], samples(SAMPLES), vec![false, true, true]].concat();
         assert_eq!(BissCycle::parse(&rested, &layout), Ok(cycle));
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };
@@ -121,7 +122,8 @@ mod tests {
         assert_eq!(BissCycle::parse(&[true; 64], &layout), Err(CycleError::NoAcknowledge));
         assert_eq!(BissCycle::parse(&[false; 64], &layout), Err(CycleError::NotReady));
         let long = Layout::new(16, 16, true, true, layout.crc().cloned()).unwrap();
-        // The layout is one bit shorter than the encoder's frame, whose last bit, 1, falls into the time-out.
+        // The layout is one bit shorter than the encoder's frame, so the last bit of the frame, which is 1, falls into
+        // the time-out.
         assert_eq!(BissCycle::parse(&samples(SAMPLES), &long), Err(CycleError::TimeOut { bits: 40 }));
     }
 

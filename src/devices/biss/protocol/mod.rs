@@ -1,8 +1,8 @@
 //! BiSS C: position data, the control frame, and the meaning of an encoder's registers.
 //!
-//! Source: POSITAL, *Manual IXARC kit encoders with BiSS C interface* v4.6, called "the manual" below. A "reference" is
-//! a section of the project's reference of it. Facts that the manual leaves open are marked `U` (unknown). They are
-//! either tolerated or configurable.
+//! Source: POSITAL, *Manual IXARC kit encoders with BiSS C interface* v4.6, called "the manual" below. "The reference"
+//! is the project's summary of the manual for implementers. Facts that the manual leaves open are marked `U` (unknown).
+//! They are either tolerated or configurable.
 
 #![warn(missing_docs)]
 

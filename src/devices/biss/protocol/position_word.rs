@@ -1,18 +1,18 @@
-//! The UBICOM position word: singleturn in the lower bits, multiturn above (manual 5.2). The word has no error or
-//! warning bit.
+//! The UBICOM position word, which has the singleturn position in the lower bits and the multiturn position above them
+//! (manual 5.2). The word has no error or warning bit.
 
 use super::single_cycle::{Layout, PositionData};
 use crate::buses::ubicom::protocol::PositionWord;
 
 impl Layout {
-    /// Returns the position word for a reading. Multiturn bits beyond the frame's width are dropped.
+    /// Returns the position word for a reading. Multiturn bits beyond the width in the frame are dropped.
     pub fn position_word(&self, reading: &PositionData) -> PositionWord {
         let [b0, b1, b2, b3, b4, ..] = self.steps_of(reading).to_le_bytes();
         PositionWord::parse([b0, b1, b2, b3, b4])
     }
 
-    /// Splits a position word into multiturn and singleturn. Returns `None` if higher bits are set. The error and
-    /// warning flags of the result are not set.
+    /// Splits a position word into multiturn and singleturn. Returns `None` if higher bits are set. In the result, the
+    /// error and warning flags are cleared.
     pub fn decode_position(&self, word: PositionWord) -> Option<PositionData> {
         let split = |value: u64, bits: u8| (value & ((1 << bits) - 1), value >> bits);
         let (singleturn, above) = split(word.to_u64(), self.singleturn_bits());
@@ -32,7 +32,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Expected values from reference 6.
+    /// Expected values from section 6 of the UBICOM reference.
     #[test]
     fn published_positions_match() {
         let layout = Layout::default();

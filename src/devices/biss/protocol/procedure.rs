@@ -1,5 +1,5 @@
-//! The codes of the command and status registers of the guided procedures (manual 6.3 to 6.7). The encoder's
-//! [description](super::Description) defines where these registers are.
+//! The codes in the command and status registers of the guided procedures (manual 6.3 to 6.7). The addresses of these
+//! registers are defined by the encoder's [description](super::Description).
 
 use std::fmt;
 
@@ -11,11 +11,11 @@ pub enum ProcedureKind {
     WiegandTest,
     /// Singleturn calibration (manual 6.4).
     Calibration,
-    /// Writing of OEM data and EDS motor data (manual 6.5).
+    /// Writing OEM data and EDS motor data (manual 6.5).
     DataWrite,
     /// Selection of the position filter (manual 6.6).
     FilterSelection,
-    /// Setting of the position to a saved preset value (manual 6.7).
+    /// Setting the position to a saved preset value (manual 6.7).
     Preset,
 }
 
@@ -217,8 +217,8 @@ codes! {
     }
 }
 
-/// A preset value with a singleturn and a multiturn part. Each part has three bytes, low byte first. See bank 1, 02h to
-/// 07h.
+/// A preset value with a singleturn part and a multiturn part, each with three bytes, low byte first (bank 1, 02h to
+/// 07h).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PresetValue {
     singleturn: u32,
@@ -328,7 +328,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Expected values from reference 5.5: 270°, 180°, 90°, 1° and 0° at 17 bits.
+    /// Expected values for 270°, 180°, 90°, 1° and 0° at 17 bits from section 5.5 of the reference.
     #[test]
     fn published_preset_values_match() {
         for (singleturn, bytes) in [
@@ -353,7 +353,7 @@ mod tests {
         assert_eq!(PulseVoltage::LIMIT.volts(), 5.3);
     }
 
-    /// Manual 6.3 recommends more than 5.3 V in either direction.
+    /// Manual 6.3 recommends more than 5.3 V in both directions.
     #[test]
     fn a_wiegand_result_is_compared_with_the_limit() {
         for (bytes, passes) in [
@@ -369,7 +369,7 @@ mod tests {
         assert_eq!(WiegandResult::parse([1, 2, 3, 4]).lowest_ccw.byte(), 4);
     }
 
-    /// Covers the codes in the manual's tables and codes that appear in none of them.
+    /// Covers all codes in the manual's tables, and codes that are not in the manual.
     #[test]
     fn codes_match_the_manual_and_unknown_ones_are_kept() {
         assert_eq!(

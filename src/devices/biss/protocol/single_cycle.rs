@@ -1,6 +1,6 @@
-//! Single-cycle data, which an encoder sends in every cycle. A frame contains multiturn, singleturn, error bit, warning
-//! bit and checksum, most significant bit first. The error and warning bits are active low. The field widths depend on
-//! the encoder. See manual 3.1.1, figure 2.
+//! Single-cycle data, which an encoder sends in every cycle. A frame contains the multiturn, the singleturn, an error
+//! bit, a warning bit and a checksum, most significant bit first. The error and warning bits are active low. The field
+//! widths depend on the encoder. See manual 3.1.1, figure 2.
 
 use super::crc::{Crc, CrcError};
 
@@ -14,7 +14,7 @@ pub struct Layout {
     crc: Option<Crc>,
 }
 
-/// The reason why a layout is invalid.
+/// Reason why a layout is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
     /// The field is wider than 32 bits.
@@ -36,7 +36,7 @@ pub enum LayoutError {
     Crc(#[from] CrcError),
 }
 
-/// Contents of a frame with a valid checksum.
+/// The content of a frame with a valid checksum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PositionData {
     /// Revolution count, as wide as the layout's multiturn field.
@@ -50,7 +50,7 @@ pub struct PositionData {
     pub warning: bool,
 }
 
-/// The reason why received bits are not a valid frame.
+/// Reason why received bits are not a valid frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
     /// All bits are 0, which is not a valid frame in this layout. There is no encoder, the line is short-circuited, or
@@ -60,7 +60,7 @@ pub enum FrameError {
     /// All bits are 1, which is not a valid frame in this layout. There is no encoder or a wire is broken.
     #[error("the data line stays high")]
     StuckHigh,
-    /// Bits above the frame's length are set.
+    /// Bits beyond the length of the frame are set.
     #[error("the frame has more than {bits} bits")]
     Long {
         /// Frame length of the layout, in bits.
@@ -138,7 +138,7 @@ impl Layout {
         self.crc.as_ref().map_or(0, Crc::width)
     }
 
-    /// Returns the length of the whole frame, 1 to 64 bits.
+    /// Returns the length of the frame including the checksum, 1 to 64 bits.
     pub fn bits(&self) -> u8 {
         self.data_bits() + self.crc_bits()
     }
@@ -188,7 +188,7 @@ impl Layout {
         f64::from(reading.singleturn) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
-    /// Returns the multiturn and singleturn position as a single step count.
+    /// Returns the multiturn and singleturn position as a single number of steps.
     pub fn steps_of(&self, reading: &PositionData) -> u64 {
         u64::from(reading.multiturn) << self.singleturn_bits | u64::from(reading.singleturn)
     }
@@ -236,7 +236,7 @@ mod tests {
         PositionData { multiturn, singleturn, error, warning }
     }
 
-    /// Expected values from the table of 41-bit frames in reference 2.
+    /// Expected values from the table of 41-bit frames in section 2 of the reference.
     #[test]
     fn published_frames_match() {
         let cases = [
@@ -260,7 +260,7 @@ mod tests {
         }
     }
 
-    /// Flips each bit of the frame 024698000CF from reference 7 in turn.
+    /// Flips each bit of the frame 024698000CF from section 7 of the reference.
     #[test]
     fn every_flipped_bit_is_detected() {
         let layout = Layout::default();
@@ -268,7 +268,7 @@ mod tests {
             let damaged = 0x024_6980_00CF ^ 1 << bit;
             assert!(matches!(layout.parse(damaged), Err(FrameError::Crc { .. })), "bit {bit}");
         }
-        // A CRC6 also detects any two flipped bits, up to a length of 63 bits.
+        // A CRC6 also detects any two flipped bits in frames of up to 63 bits.
         for (one, other) in (0..41).flat_map(|one| (0..one).map(move |other| (one, other))) {
             assert!(layout.parse(0x024_6980_00CF ^ 1 << one ^ 1 << other).is_err(), "bits {one}, {other}");
         }

@@ -1,9 +1,9 @@
-//! Individual registers of the kit encoder: errors, warnings, temperature, device mode, filter, firmware (manual 6.1,
-//! 6.2, 6.6, 6.8 and appendix).
+//! Individual registers of the kit encoder: errors, warnings, temperature, device mode, filter and firmware (manual
+//! 6.1, 6.2, 6.6, 6.8 and appendix).
 
 use std::fmt;
 
-/// The error register (68h). Any bit set here drives the error bit in the position frame to 0.
+/// The error register (68h). If any bit is set, the error bit in the position frame is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ErrorRegister(u8);
 
@@ -108,7 +108,7 @@ impl Temperature {
     }
 }
 
-/// The device mode (6Ah). Modes without a constant are kept as their raw code.
+/// The device mode (6Ah). Unknown modes are preserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct DeviceMode(u8);
 
@@ -183,7 +183,7 @@ impl PositionFilter {
         }
     }
 
-    /// Returns the code, which is used both in 6Eh and as a command.
+    /// Returns the code, which is used both as the register value in 6Eh and as a command.
     pub const fn byte(self) -> u8 {
         match self {
             PositionFilter::Balanced => 0x03,
@@ -250,7 +250,7 @@ impl fmt::Display for ProfileId {
 mod tests {
     use super::*;
 
-    /// Expected values from references 4 and 7.
+    /// Expected values from sections 4 and 7 of the reference.
     #[test]
     fn published_temperatures_match() {
         for (byte, celsius, fahrenheit) in
@@ -265,7 +265,8 @@ mod tests {
         assert_eq!(Temperature::from_celsius(i16::MAX).byte(), 0xFF);
     }
 
-    /// In reference 7, error 12h means multiturn and field too low, and warning 01h means temperature.
+    /// According to section 7 of the reference, error 12h means multiturn and field too low, and warning 01h means
+    /// temperature.
     #[test]
     fn error_and_warning_bits_are_named() {
         let errors: Vec<_> = ErrorRegister::new(0x12).set_bits().collect();

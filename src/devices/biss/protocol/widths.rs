@@ -1,9 +1,9 @@
 //! Detection of the frame length of an unknown encoder. At the correct length, the checksum matches repeatedly while
-//! the shaft turns. See reference 2.
+//! the shaft turns. See section 2 of the reference.
 
 use super::crc::Crc;
 
-/// Range of data widths to try, in bits (`U`: not documented).
+/// Range of data widths to be tried, in bits (`U`: not documented).
 const DATA_BITS: std::ops::RangeInclusive<u8> = 10..=48;
 /// Required number of consecutive frames with a matching checksum. Frames that repeat the previous data are not counted
 /// (`U`: not documented).
@@ -11,10 +11,10 @@ const REQUIRED_FRAMES: usize = 8;
 
 /// Returns the data width without the checksum, or `None` if no length fits or too few frames differ.
 ///
-/// Each frame contains the first `clocked` bits after the control bit, and the last bit received is bit 0.
+/// Each frame contains the first `clocked` bits after the control bit. Bit 0 is the last bit received.
 ///
 /// Consecutive frames with the same data are counted once. At a wrong length, one frame in 64 matches by chance, and
-/// each repetition of it would match as well.
+/// repetitions of such a frame would match as well.
 pub fn detect_data_bits(frames: &[u64], clocked: u8, crc: &Crc) -> Option<u8> {
     DATA_BITS.into_iter().find(|bits| matches_widths(frames, clocked, *bits, crc))
 }
@@ -81,7 +81,7 @@ mod tests {
     }
 
     proptest! {
-        /// Constant high bits must not be mistaken for a shorter frame.
+        /// Frames whose upper bits are constant must not be mistaken for shorter frames.
         #[test]
         fn any_frame_length_is_found(multiturn in 0u8..=16, singleturn in 9u8..=30, step in 1u32..40) {
             let layout = Layout::new(multiturn, singleturn, true, true, Some(crc())).unwrap();

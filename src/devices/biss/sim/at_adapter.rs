@@ -1,4 +1,4 @@
-//! The kit encoder on the bus of a virtual adapter.
+//! A kit encoder on the bus of a virtual adapter.
 
 use super::{Config, Encoder};
 use crate::buses::bridge::sim::{AttachableKind, AttachedDevice, BissDevice};

@@ -1,8 +1,9 @@
-//! Singleturn calibration. It has a counterclockwise and a clockwise run of about five seconds each. See manual 6.4.
+//! Singleturn calibration, which consists of a counterclockwise and a clockwise run of about five seconds each. See
+//! manual 6.4.
 //!
 //! The manual leaves some rules open (`U`). In this model, a run ends after one second if a condition is not met, and
-//! immediately if the speed changes. The second run is rejected if the first was not completed. A final status is kept
-//! until the next run has begun, even if the device mode changes.
+//! immediately if the speed changes. The second run is rejected if the first run has not been completed. A final status
+//! is kept until the next run has started, even if the device mode changes.
 
 use std::time::Duration;
 
@@ -36,7 +37,7 @@ struct CalibrationRun {
     outcome: CalibrationStatus,
 }
 
-/// The effect of a completed calibration run on the calibration table.
+/// The effect of a calibration run on the calibration table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RunOutcome {
     No,
@@ -91,7 +92,7 @@ impl Calibration {
         }
     }
 
-    /// Starts a run that is due, and ends a run whose time has elapsed.
+    /// Starts a run when it is due, and ends it when its time has elapsed.
     pub(super) fn update(&mut self, now: Moment) -> RunOutcome {
         if self.run.is_some_and(|run| run.begins <= now) {
             self.status = CalibrationStatus::Running;

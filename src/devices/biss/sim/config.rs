@@ -1,5 +1,5 @@
-//! Settings of a virtual encoder. They are given in the query of a `sim:` link, such as
-//! `seed=7&fault=drop:0.01&rpm=-500`. This module opens no connection.
+//! Settings of a virtual encoder in the query of a `sim:` link, such as `seed=7&fault=drop:0.01&rpm=-500`. This module
+//! does not open a connection.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -13,8 +13,8 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults, VirtualDevice, setting};
 
 parameters! {
-    /// Settings of a virtual encoder. By default, the encoder has factory settings and the newest known firmware,
-    /// stands still, and has no faults.
+    /// Settings of a virtual encoder. By default, the encoder has factory settings, the latest known firmware, a shaft
+    /// at standstill and no faults.
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
@@ -42,8 +42,8 @@ parameters! {
 }
 
 impl Config {
-    /// Parses key-value pairs that are already percent-decoded. If a key occurs twice, the last value applies. Numbers
-    /// are decimal or hexadecimal with the prefix `0x`.
+    /// Parses percent-decoded keys and values. If a key is repeated, its last value applies. Numbers are decimal, or
+    /// hexadecimal with the prefix `0x`.
     ///
     /// # Errors
     /// Returns an error with the key and the allowed values if a setting is invalid.

@@ -1,11 +1,11 @@
-//! The encoder without a line: the effects of reads and writes (manual 4, 6 and appendix).
+//! The encoder without its line: the effects of reads and writes (manual 4, 6 and appendix).
 //!
 //! ```text
 //! operation ── password, mode ──▶ mode m ── mode 00 ──▶ operation
 //!                                   └── save or preset of modes 05, 07 ──▶ restart (silent) ──▶ operation
 //! ```
-//! The manual leaves some rules open (`U`). In this model, a mode can only be entered from operation, and is left
-//! without the password. Undescribed registers read 00h and cannot be written. Entered values are discarded when the
+//! The manual leaves some rules open (`U`). In this model, a mode can only be entered from operation, and can be left
+//! without the password. Undescribed registers read as 00h and cannot be written. Entered values are discarded when the
 //! mode is left.
 
 mod registers;
@@ -46,7 +46,7 @@ pub struct Encoder {
     password: u8,
     mode: DeviceMode,
     flash: Flash,
-    /// Wiegand test result that was saved when the encoder started.
+    /// Saved result of the Wiegand test, as read when the encoder started.
     saved_wiegand: [u8; 4],
     calibration: Calibration,
     wiegand: WiegandState,
@@ -134,7 +134,7 @@ impl Encoder {
         self.watch_temperature();
     }
 
-    /// Replaces the simulated faults of the flash. The count of stores is kept.
+    /// Replaces the simulated faults of the flash without resetting the count of stores.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.die_in_store = faults.failing_store();
     }
@@ -161,7 +161,7 @@ impl Encoder {
         }
     }
 
-    /// Returns whether the encoder has power, including while it is starting.
+    /// Returns whether the encoder has power, which is also the case while it is starting.
     pub fn has_power(&self) -> bool {
         self.power != Power::Off
     }
@@ -173,8 +173,8 @@ impl Encoder {
         self.power == Power::On && !(self.silent_calibration && self.calibration.is_running())
     }
 
-    /// Returns the position at `now`, or `None` without power or during start-up. The position is marked invalid during
-    /// calibration.
+    /// Returns the position at `now`, or `None` without power or during start-up. During a calibration, the position is
+    /// marked as invalid.
     pub fn position_at(&mut self, now: Moment) -> Option<PositionData> {
         self.update(now);
         let reading = self.shaft.position_at(now);
@@ -182,8 +182,8 @@ impl Encoder {
         (self.power == Power::On).then_some(PositionData { error, warning: self.hot, ..reading })
     }
 
-    /// Returns the shaft position at `now` and the number of steps per revolution. The function returns a position even
-    /// if the encoder does not report one.
+    /// Returns the shaft position at `now` and the number of steps per revolution. The shaft has a position even if the
+    /// encoder does not report one.
     pub fn shaft_position(&mut self, now: Moment) -> (u64, u64) {
         self.update(now);
         (self.shaft.fractional_position_at(now), 1 << (self.shaft.layout().singleturn_bits() + FRACTIONAL_BITS))
@@ -225,7 +225,7 @@ impl Encoder {
         Some(value)
     }
 
-    /// Writes a register at `now`. Returns `false` without any effect if the encoder rejects the request.
+    /// Writes a register at `now`. Returns `false`, without any effect, if the encoder rejects the request.
     pub fn write(&mut self, now: Moment, address: RegisterAddress, value: u8) -> bool {
         self.update(now);
         let offset = address.address();
@@ -351,7 +351,7 @@ impl Encoder {
         true
     }
 
-    /// Writes the flash once. `change` receives `false` if power is lost during the write.
+    /// Writes the flash once. The second argument of `change` is `false` if power is lost during the write.
     fn write_flash(&mut self, change: impl FnOnce(&mut Flash, bool)) {
         self.stores_begun = self.stores_begun.saturating_add(1);
         self.flash.cycles = self.flash.cycles.saturating_add(1);

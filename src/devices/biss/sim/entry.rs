@@ -1,6 +1,6 @@
-//! Procedures in which values are entered and then saved: data, filter and preset. They hold the entered values, and
-//! the [`Encoder`](super::Encoder) saves them. A command out of sequence is rejected (`U`: not documented). See manual
-//! 6.5 to 6.7.
+//! Procedures in which values are entered and then saved: data, filter and preset. This module holds the entered
+//! values, and the [`Encoder`](super::Encoder) saves them. A command out of sequence is rejected (`U`: not documented).
+//! See manual 6.5 to 6.7.
 
 use crate::devices::biss::protocol::{
     DataCommand, DataStatus, FilterCommand, FilterStatus, Layout, PositionFilter, PresetCommand, PresetStatus,
@@ -14,8 +14,8 @@ pub(super) enum Area {
 }
 
 impl Area {
-    /// Returns the area of a bank, and the offset of the bank in that area. Returns `None` if the bank does not belong
-    /// to an area.
+    /// Returns the area that contains a bank, and the offset of the bank in the area. Returns `None` if the bank does
+    /// not belong to an area.
     pub(super) fn area_of_bank(bank: u8) -> Option<(Area, usize)> {
         let begin = |first: u8| usize::from(bank - first) * 64;
         match bank {
@@ -30,14 +30,14 @@ impl Area {
 pub(super) enum EntryEffect {
     Refused,
     Nothing,
-    /// A data area is opened. As a result, its content must be passed to [`DataEntry::open`].
+    /// A data area is opened, so its content must be passed to [`DataEntry::open`].
     Open(Area),
     SaveData(Area, Vec<u8>),
-    /// The filter is written to the flash. A restart follows.
+    /// The filter is written to the flash, and the encoder restarts.
     SaveFilter(PositionFilter),
-    /// The preset value is written to the flash. A restart follows.
+    /// The preset value is written to the flash, and the encoder restarts.
     SavePreset(PresetValue),
-    /// The singleturn part, the multiturn part or both are set to the preset value. A restart follows.
+    /// The singleturn part, the multiturn part or both are set to the preset value, and the encoder restarts.
     Preset {
         singleturn: bool,
         multiturn: bool,
@@ -135,7 +135,7 @@ impl PresetEntry {
         PresetEntry { command: 0, status: PresetStatus::Idle, bytes: stored.emit() }
     }
 
-    /// Handles a command. `parts` is true if the encoder can preset singleturn and multiturn separately.
+    /// Handles a command. `parts` specifies whether the encoder can preset singleturn and multiturn separately.
     pub(super) fn command(&mut self, value: u8, parts: bool, layout: &Layout) -> EntryEffect {
         let then = match (PresetCommand::from_byte(value), self.status) {
             (PresetCommand::Edit, _) => {

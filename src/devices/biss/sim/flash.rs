@@ -1,4 +1,5 @@
-//! The non-volatile memory and its write count, limited to 1000 writes over the encoder's lifetime (manual 6.1).
+//! The non-volatile memory and its write count. The manual allows 1000 writes over the lifetime of the encoder (manual
+//! 6.1).
 
 use crate::devices::biss::protocol::{PositionFilter, PresetValue};
 
@@ -8,18 +9,18 @@ pub struct Flash {
     pub(super) oem_data: Vec<u8>,
     pub(super) preset: PresetValue,
     pub(super) filter: PositionFilter,
-    /// Wiegand test result in tenths of a volt. Each direction has an average and the average minus four standard
-    /// deviations. The clockwise values come first.
+    /// Result of the Wiegand test in tenths of a volt. For each direction, clockwise first, it consists of the average,
+    /// and the average minus four standard deviations.
     pub(super) wiegand: [u8; 4],
     pub(super) calibrated: bool,
     pub(super) cycles: u32,
 }
 
 impl Flash {
-    /// Size of each data area in bytes: 32 banks.
+    /// Size of a data area in bytes, which is that of 32 banks.
     pub(super) const AREA: usize = 32 * 64;
 
-    /// Creates the factory content after the given number of write cycles.
+    /// Creates a flash with factory content and the given number of write cycles.
     pub(super) fn factory_default(cycles: u32) -> Self {
         Flash {
             motor_data: vec![0; Self::AREA],
@@ -49,7 +50,7 @@ impl Flash {
         self.filter
     }
 
-    /// Returns whether a calibration table exists, from the factory or from a run.
+    /// Returns whether there is a calibration table, either from the factory or from a calibration run.
     pub const fn is_calibrated(&self) -> bool {
         self.calibrated
     }

@@ -1,6 +1,6 @@
 //! The virtual BiSS C kit encoder: registers, banks, device modes, guided procedures with their durations and failures,
-//! the flash and its wear, restarts, and the lines that lead to the encoder. Where the manual leaves a rule open (`U`),
-//! one documented choice is followed.
+//! the flash and its wear, restarts, and the lines to the encoder. Where the manual leaves a rule open (`U`), the
+//! assumption is documented.
 //!
 //! | file | purpose |
 //! |---|---|

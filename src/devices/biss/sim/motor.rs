@@ -1,4 +1,4 @@
-//! The motor of the shaft, from the perspective of the encoder.
+//! The motor that turns the shaft, from the perspective of the encoder.
 
 use crate::sim::Motor;
 
@@ -27,7 +27,7 @@ impl Drive {
         &self.motor
     }
 
-    /// Reverses the motor, if configured. Called when a procedure waits for the opposite direction.
+    /// Reverses the motor, if configured. This function is called when a procedure waits for the opposite direction.
     pub(super) fn reverse_if_configured(&self) {
         if self.reverses {
             self.motor.set_rpm(-self.motor.rpm());

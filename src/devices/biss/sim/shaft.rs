@@ -1,4 +1,5 @@
-//! Shaft model: the position as an exact function of time. A preset shifts the reported position, not the shaft itself.
+//! Model of the shaft, whose position is an exact function of time. A preset changes the reported position but does not
+//! move the shaft.
 
 use crate::devices::biss::protocol::{Layout, PositionData};
 use crate::units::Moment;
@@ -6,7 +7,7 @@ use crate::units::Moment;
 /// Number of fractional bits in a step.
 pub(super) const FRACTIONAL_BITS: u8 = 8;
 
-/// A shaft turning at constant speed, as seen by an encoder with 16 multiturn and 17 singleturn bits.
+/// A shaft that turns at constant speed, as measured by an encoder with 16 multiturn and 17 singleturn bits.
 #[derive(Clone, Debug)]
 pub(super) struct Shaft {
     rpm: f64,
@@ -26,7 +27,8 @@ impl Shaft {
         &self.layout
     }
 
-    /// Returns the speed in revolutions per minute, positive clockwise. Clockwise rotation increases the position.
+    /// Returns the speed in revolutions per minute, positive clockwise. The position increases during clockwise
+    /// rotation.
     pub(super) const fn rpm(&self) -> f64 {
         self.rpm
     }
@@ -46,16 +48,16 @@ impl Shaft {
         PositionData { multiturn, singleturn, error: false, warning: false }
     }
 
-    /// Returns the position at a moment with [`FRACTIONAL_BITS`] fractional bits. Another encoder on the same shaft needs this
-    /// resolution.
+    /// Returns the position at a moment with [`FRACTIONAL_BITS`] fractional bits, for another encoder on the same shaft
+    /// that needs this resolution.
     pub(super) fn fractional_position_at(&self, at: Moment) -> u64 {
         let whole = (self.integer_steps(at) + self.offset) % self.position_count();
-        // The product is at least 0 and below 1 << FINE.
+        // The product is at least 0 and below 1 << FRACTIONAL_BITS.
         let parts = (self.steps_at(at).fract() * f64::from(1_u32 << FRACTIONAL_BITS)) as u64;
         whole << FRACTIONAL_BITS | parts
     }
 
-    /// Presets singleturn, multiturn or both to the given values, effective from `at`. A part that is `None` remains
+    /// Presets the singleturn, the multiturn or both to the given values at time `at`. A part that is `None` remains
     /// unchanged.
     pub(super) fn preset(&mut self, at: Moment, singleturn: Option<u32>, multiturn: Option<u32>) {
         let now = self.position_at(at);
@@ -77,7 +79,7 @@ impl Shaft {
     }
 
     fn integer_steps(&self, at: Moment) -> u64 {
-        self.steps_at(at) as u64 // not negative, below the range
+        self.steps_at(at) as u64 // never negative, and below the range
     }
 
     fn steps_at(&self, at: Moment) -> f64 {
@@ -111,7 +113,8 @@ mod tests {
 
     #[test]
     fn fine_positions_include_fractions_of_a_step() {
-        // At 60 rpm the shaft makes 2^17 steps per second, or 131.072 per millisecond; 0.072 of 256 parts is 18.4.
+        // At 60 rpm, the shaft moves by 2¹⁷ steps per second, or 131.072 steps per millisecond. 0.072 steps are 18.4 of
+        // 256 parts.
         let shaft = Shaft::new(Layout::default(), 5, 60.0);
         assert_eq!((shaft.fractional_position_at(at(0)), shaft.fractional_position_at(at(1))), (5 << 8, 136 << 8 | 18));
     }

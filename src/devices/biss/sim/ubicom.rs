@@ -1,4 +1,4 @@
-//! UBICOM on the configuration pin: a half-duplex line simulated byte by byte, with its faults.
+//! UBICOM on the configuration pin, a half-duplex line that is simulated byte by byte, including faults.
 //!
 //! The manual leaves some details open (`U`). In this model, the encoder replies one millisecond after the last byte
 //! and does not reply to invalid requests. Bytes that arrive while it is busy or sending are lost.
@@ -16,7 +16,7 @@ use crate::sim::SimulatedFaults;
 use crate::sim::line::{LineConditions, TransitQueue, VirtualLine};
 use crate::units::Moment;
 
-/// A line with a virtual encoder, from the perspective of the host. The line is created from a [`Config`].
+/// A line with a virtual encoder, as seen by the host. The line is created from a [`Config`].
 #[derive(Clone)]
 pub struct UbicomPort {
     encoder: Encoder,
@@ -30,7 +30,7 @@ pub struct UbicomPort {
     /// Time at which the last byte of an incomplete frame arrived at the encoder.
     heard: Option<Moment>,
     work: Option<PendingRequest>,
-    /// Time until which the encoder drives the line.
+    /// Time at which the encoder stops driving the line.
     transmits_until: Moment,
     frames: u32,
 }
@@ -41,7 +41,7 @@ struct PendingRequest {
     request: Request,
 }
 
-/// A line event. Simultaneous events are handled in the order of the variants.
+/// An event on the line. Simultaneous events are handled in the order of the variants.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderAnswers,
@@ -77,7 +77,7 @@ impl UbicomPort {
         &mut self.encoder
     }
 
-    /// Replaces the simulated faults of the line and the encoder. The counts of frames and stores are kept.
+    /// Replaces the simulated faults of the line and the encoder without resetting the counts of frames and stores.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.wires.faults = faults.clone();
         self.encoder.set_faults(faults);
@@ -136,12 +136,12 @@ impl UbicomPort {
         }
     }
 
-    /// Sends bytes on the line and returns the time at which the last byte is complete.
+    /// Sends bytes on the line, and returns the time at which the last byte is complete.
     fn drive(&mut self, start: Moment, bytes: &[u8], from_encoder: bool) -> Moment {
         let format = if from_encoder { FORMAT } else { self.wires.host };
         let sent = self.wires.send(start, format.baud.duration_of_bits(character_bits(format)), bytes);
         for heard in sent.heard {
-            // If the serial settings differ, no byte is received as it was sent.
+            // If the serial settings differ, all bytes are received incorrectly.
             let byte = if self.wires.host == FORMAT { heard.byte } else { self.wires.rng.u8(..0x80) };
             let to = if from_encoder { &mut self.to_host } else { &mut self.to_encoder };
             to.insert(heard.end, byte);

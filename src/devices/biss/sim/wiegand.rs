@@ -1,8 +1,8 @@
-//! The Wiegand sensor test (manual 6.3), which collects pulses for 515 revolutions in each direction. The encoder
-//! cannot tell clockwise from counterclockwise.
+//! The Wiegand sensor test (manual 6.3), which collects pulses during 515 revolutions in each direction. The encoder
+//! cannot distinguish clockwise from counterclockwise rotation.
 //!
-//! The manual leaves two details open (`U`). In this model, the encoder notices that the second run turns in the same
-//! direction as the first. A sensor without pulses fails with code 01h.
+//! The manual leaves two details open (`U`). In this model, the encoder detects if the shaft turns in the same
+//! direction in both runs. A sensor without pulses fails with code 01h.
 
 use crate::devices::biss::protocol::{WiegandCommand, WiegandResult, WiegandStatus};
 use crate::units::Moment;
@@ -22,7 +22,7 @@ pub(super) struct WiegandState {
     pub(super) error: u8,
     /// Results in ascending order of their registers.
     pub(super) result: [u8; 4],
-    /// Number of revolutions from the start of the run until `since`.
+    /// Number of revolutions between the start of the run and `since`.
     collected: f64,
     since: Moment,
     /// Whether the first run turned clockwise, or `None` until this is known.
@@ -69,7 +69,8 @@ impl WiegandState {
         matches!(self.status, WiegandStatus::Clockwise | WiegandStatus::Counterclockwise)
     }
 
-    /// Adds the revolutions since the previous call at a constant speed. A run ends after enough revolutions.
+    /// Adds the revolutions since the previous call, based on a constant speed. A run ends after the required number of
+    /// revolutions.
     pub(super) fn update(&mut self, now: Moment, rpm: f64, pulses: WiegandPulses) {
         if !self.is_running() {
             return;

@@ -18,7 +18,7 @@ use crate::profile::Body;
 use super::table::Group;
 use crate::devices::biss::state::explain as explained;
 
-/// Interval between readings of watched registers. They change slowly, and each reading delays the position readings.
+/// Interval at which watched registers are read. They change slowly, and reading them delays the position.
 const WATCH_INTERVAL: Duration = Duration::from_millis(500);
 
 impl Encoder {
@@ -95,25 +95,25 @@ impl Encoder {
         }
     }
 
-    /// Returns whether a newly visible bank should be read. This is the case if the bank has not been read, nothing is
-    /// running, no stream would be interrupted, and no earlier attempt failed.
+    /// Returns whether a newly visible bank should be read. This requires that it has not been read, that nothing is
+    /// running, that no stream would be interrupted, and that no earlier attempt has failed.
     pub fn should_read_bank(&self, group: &Group) -> bool {
         let free = self.session.is_ready() && self.active_stream().is_none();
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }
 
-    /// Returns the part of an area that can be shown. This is the whole area for an encoder, and the part that the file
-    /// contains for a profile.
+    /// Returns the part of an area that can be shown. For an encoder, this is the whole area. For a profile, it is the
+    /// part that the file contains.
     pub fn visible_area_part(&self, area: &Area) -> Option<Area> {
         if self.profile().is_some() { self.memory.readable_part(area) } else { Some(area.clone()) }
     }
 
-    /// Returns the reason why an area cannot be edited now, or `None` if it can be edited.
+    /// Returns the reason why an area cannot currently be edited, or `None` if it can be edited.
     pub fn not_editable_reason(&self, area: &Area) -> Option<Text> {
         if !area.access.is_writable() {
             return Some(TEXTS.text("data.read_only"));
         }
-        // A profile is only a file. The access rights of the encoder do not apply to it.
+        // The access rights of the encoder do not apply to a profile, which is only a file.
         (self.session.phase != Phase::Offline && self.session.is_writing()).then(|| Text::new("session.busy"))
     }
 

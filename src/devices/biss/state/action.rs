@@ -13,11 +13,12 @@ pub enum BissAction {
     /// Reads errors, warnings, temperature and device mode.
     ReadStatus,
     Check,
-    /// Starts or stops reading the given register along with the position.
+    /// Starts or stops reading a register along with the position.
     Watch(Box<Register>, bool),
     /// Reads a bank, or the direct registers for `None`.
     ReadBank(Option<u8>),
-    /// Reads a bank that has become visible and was never read. Has no effect while another job is running.
+    /// Reads a bank that has become visible and has never been read. This action has no effect while another job is
+    /// running.
     SeeBank(Option<u8>),
     /// Reads the data area that starts at the given bank.
     ReadArea(u8),
@@ -31,10 +32,10 @@ pub enum BissAction {
         count: usize,
     },
     Plan(Box<Change>),
-    /// Plans the procedures after mounting and shows what they change. A profile that is open in another session
-    /// provides the values for the data areas.
+    /// Plans the procedures that follow mounting, and shows what they would change. A profile that is open in another
+    /// session provides the values for the data areas.
     PlanMounting {
-        /// Steps of the run, without the values for the data areas.
+        /// Steps to perform, without the values for the data areas.
         run: Box<MountingSteps>,
         motor: MotorSource,
         data: Option<SessionId>,

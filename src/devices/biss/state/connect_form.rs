@@ -1,4 +1,4 @@
-//! The connection form for a BiSS C encoder and the link it produces. This module opens no connection.
+//! The connection form for BiSS C encoders, which creates a link but does not open it.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -29,14 +29,14 @@ pub enum BissLinkKind {
     Replay,
 }
 
-/// Values of the connection form. Values for other kinds of connection are kept, but are not included in the link. An
-/// empty field means the default.
+/// Entries of the connection form. An empty entry selects the default. Entries for other kinds of connection are kept,
+/// but are not part of the link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BissForm {
     pub kind: BissLinkKind,
     /// Whether the virtual encoder is behind a virtual adapter, or the recording was made through an adapter.
     pub behind_adapter: bool,
-    /// Whether to connect over a network instead of a local serial port.
+    /// Whether the link uses a network instead of a local serial port.
     pub network: bool,
     pub port: String,
     pub host: String,
@@ -48,9 +48,9 @@ pub struct BissForm {
     pub echo: Echo,
     /// Whether the adapter leaves the encoder's supply on after disconnecting.
     pub leave_supply: bool,
-    /// Values typed for the other parameters.
+    /// Values of the remaining parameters, as entered.
     pub typed: EnteredValues,
-    /// Link parameters without a form field.
+    /// Names and values of link parameters that the form cannot show.
     pub rest: Vec<(String, String)>,
 }
 
@@ -81,7 +81,7 @@ impl Default for BissForm {
 impl FormModel for BissForm {
     type Finder = NoFinder<Self>;
 
-    // The first choice in the window is a virtual encoder behind an adapter, so that every feature is visible.
+    // By default, the window offers a virtual encoder behind an adapter, so that every feature is available.
     fn default_link() -> LinkUrl {
         let mut url = LinkUrl::simulated();
         url.query.set(BRIDGE.0, BRIDGE.1);
@@ -159,12 +159,12 @@ impl BissForm {
         BusParameters::entries()
     }
 
-    /// Returns the baud rate field and the other fields for the configuration pin.
+    /// Returns the baud rate entry and the other entries for the configuration pin.
     pub fn pin_entries() -> (Vec<Entry>, Vec<Entry>) {
         PinParameters::entries().into_iter().partition(|own| own.key == "baud")
     }
 
-    /// Returns the fields for the frame and those for the line. They apply to every kind of connection.
+    /// Returns the entries for the frame and the entries for the line, which apply to every kind of connection.
     pub fn common_entries() -> (Vec<Entry>, Vec<Entry>) {
         (FrameParameters::entries(), LineParameters::entries())
     }
@@ -175,12 +175,12 @@ impl BissForm {
         [own, Self::bus_entries(), PinParameters::entries(), frame, line].concat()
     }
 
-    /// Returns whether the encoder is connected by its bus. The adapter may be real or virtual.
+    /// Returns whether the encoder is connected to the bus of a real or virtual adapter.
     pub fn uses_bus(&self) -> bool {
         self.kind == BissLinkKind::Bus || (self.supports_pin_and_bus() && self.behind_adapter)
     }
 
-    /// Returns whether the link may connect to either the configuration pin or the bus.
+    /// Returns whether the link can connect to either the configuration pin or the bus.
     pub fn supports_pin_and_bus(&self) -> bool {
         matches!(self.kind, BissLinkKind::Virtual | BissLinkKind::Replay)
     }
@@ -260,7 +260,7 @@ mod tests {
             "tcp:[::1]:4001",
             "bridge:/dev/ttyACM0?clock=2000000",
             "bridge:tcp:adapter:5000",
-            // Issue 22.16: a value that the check box cannot represent stays in the link.
+            // Issue 22.16: a value that the checkbox cannot represent remains in the link.
             "bridge:/dev/ttyACM0?leave-supply=on",
             "bridge:tcp:adapter:5000?clock=2000000&leave-supply=on",
             "bridge:/dev/ttyACM0?leave-supply=off",

@@ -1,5 +1,5 @@
-//! Labels for decoded register values. They follow the description of the register, except for the data sheet and for
-//! registers with a role.
+//! Texts for decoded register values. They are based on the description of the register, except for the data sheet and
+//! for registers with a role.
 
 use super::encoder::Encoder;
 use super::format;
@@ -12,7 +12,7 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as explained;
 
 impl Encoder {
-    /// Returns the meaning of a register. Returns `None` if the register was not read or its number needs no
+    /// Returns the meaning of a register value, or `None` if the register was not read or its number needs no
     /// explanation.
     pub fn describe_register(&self, shown: &RegisterEntry<'_>) -> Option<Text> {
         let register = &shown.row.register;
@@ -107,7 +107,7 @@ mod tests {
         encoder.describe_register(&shown).map(|text| text.to_string_in(language)).unwrap_or_default()
     }
 
-    /// Covers every register in reference 4 whose raw number does not explain itself.
+    /// Covers every register in section 4 of the reference whose raw number is not self-explanatory.
     #[test]
     fn every_reference_register_is_decoded() {
         let mut encoder =

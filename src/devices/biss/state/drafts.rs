@@ -1,5 +1,5 @@
-//! Drafts of the edits in an encoder's data areas. An edit is stored as global address and byte, so that it survives a
-//! crash.
+//! Drafts of the edits in an encoder's data areas, which survive a crash. An edit is stored as a global address and a
+//! byte.
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;

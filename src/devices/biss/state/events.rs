@@ -166,7 +166,7 @@ impl SessionEvents for Encoder {
     }
 
     fn try_submit(&mut self, job: BissJob, services: &mut Services) -> bool {
-        // The next request sets the message again if necessary.
+        // If necessary, the next request sets the message again.
         self.refusal = None;
         self.session.submit(job, services)
     }

@@ -37,7 +37,7 @@ pub fn name_text(name: &Name) -> Text {
     Text::new("plain.words").with_name("words", name.english(), name.german())
 }
 
-/// Returns the messages for a job that ended early. Each can be shown on a separate line.
+/// Returns the messages for a job that ended early. They can be shown on separate lines.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder_error_text(error)],
@@ -49,7 +49,7 @@ pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns the reason for a lost connection, or `None` if further requests are possible.
+/// Returns the reason why the connection was lost, or `None` if the connection can still be used.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     lost_link(error.device()?).map(link_error_text)
 }
@@ -191,7 +191,7 @@ pub fn mismatch_text(mismatch: &IdentityMismatch) -> Text {
         .with("expected", &mismatch.expected)
 }
 
-/// Returns the texts for a message from a running job.
+/// Returns the texts for a message that a job has sent.
 pub fn message_texts(remark: &DeviceMessage) -> Vec<Text> {
     match remark {
         DeviceMessage::CrcErrors(1) => vec![TEXTS.text("biss.crc_error")],

@@ -94,14 +94,14 @@ pub(super) fn explained_value_text(value: EdsValue) -> Option<Text> {
     }
 }
 
-/// Returns the name of a data sheet field as used in the manual.
+/// Returns the name of a data sheet field, as used in the manual.
 pub fn eds_field_name(bank: EdsBank, field: &EdsField) -> Text {
     let at = RegisterAddress::in_bank(bank.kit_number(), field.offset);
     let described = at.zip(KIT_DESCRIPTION.as_ref()).and_then(|(at, kit)| kit.register_at(at));
     described.map_or_else(|| literal_text(field.name), |register| words::name_text(&register.name))
 }
 
-/// The built-in description of the kit encoder. It provides the names of data sheet fields in both languages. The
-/// fields are identical in every data sheet.
+/// The built-in description of the kit encoder, which provides the names of data sheet fields in both languages. The
+/// fields are the same in every data sheet.
 static KIT_DESCRIPTION: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());

@@ -1,4 +1,4 @@
-//! Form fields of the procedures and the conversion of their values.
+//! Entries for the procedures and the conversion of their values.
 
 use crate::app::Text;
 use crate::app::number::{parse_in_range, parse_integer};
@@ -25,10 +25,10 @@ impl PresetForm {
         PresetForm { degrees: format!("{}", (degrees * 1e6).round() / 1e6), turns: value.multiturn().to_string() }
     }
 
-    /// Returns the step nearest to the entered angle.
+    /// Returns the step that is nearest to the entered angle.
     ///
     /// # Errors
-    /// Returns a message with the valid range if the entry is invalid.
+    /// Returns an error with the valid range if the entry is invalid.
     pub fn parse_singleturn(&self, layout: &Layout) -> Result<u32, Text> {
         let degrees = parse_in_range(TEXTS.text("preset_card.degrees"), &self.degrees, 0.0, 359.999_999)?;
         let steps = 1_u64 << layout.singleturn_bits();
@@ -39,16 +39,16 @@ impl PresetForm {
     /// Returns the entered number of revolutions.
     ///
     /// # Errors
-    /// Returns a message with the valid range if the entry is invalid.
+    /// Returns an error with the valid range if the entry is invalid.
     pub fn parse_multiturn(&self, layout: &Layout) -> Result<u32, Text> {
         let last = u32::try_from((1_u64 << layout.multiturn_bits()) - 1).unwrap_or(u32::MAX);
         parse_integer(TEXTS.text("preset_card.turns"), &self.turns, 0, last.min(PresetValue::MAX))
     }
 
-    /// Returns the preset value that both fields define.
+    /// Returns the preset value that both entries define.
     ///
     /// # Errors
-    /// Returns a message with the valid range of the first invalid field, if any.
+    /// Returns an error with the valid range if an entry is invalid. Only the first invalid entry is reported.
     pub fn value(&self, layout: &Layout) -> Result<PresetValue, Text> {
         let (singleturn, multiturn) = (self.parse_singleturn(layout)?, self.parse_multiturn(layout)?);
         PresetValue::new(singleturn, multiturn).ok_or_else(|| TEXTS.text("preset_card.too_wide"))
@@ -63,7 +63,7 @@ mod tests {
         PresetForm { degrees: degrees.to_owned(), turns: turns.to_owned() }
     }
 
-    /// Expected steps at 17 bits from reference 5.5.
+    /// Expected steps at 17 bits from section 5.5 of the reference.
     #[test]
     fn degrees_convert_to_the_published_steps() {
         let layout = Layout::default();

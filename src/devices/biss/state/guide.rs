@@ -1,5 +1,5 @@
-//! State of a guided procedure for display: steps, progress, current task and results. The procedure itself runs in a
-//! job, which also receives the answers.
+//! The displayed state of a guided procedure: steps, progress, current task and results. The procedure itself runs in a
+//! job, which also receives the operator's answers.
 
 use crate::app::Text;
 use crate::devices::biss::procedures::procedure::{
@@ -11,7 +11,8 @@ use crate::devices::biss::profile::Op;
 pub struct ProcedureRun {
     ops: Vec<Op>,
     progress: Option<ProcedureProgress>,
-    /// The interrupted step. The last reported step may be a different one, which belongs to the return to operation.
+    /// Step that was interrupted. The last reported step may be a different one that belongs to the return to
+    /// operation.
     pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
     skips: Vec<(usize, OperatorTask)>,
@@ -44,7 +45,7 @@ pub enum StepStatus {
     Failed,
     /// The user cancelled the procedure during the step.
     Cancelled,
-    /// The step has not been reached and may never be.
+    /// The step has not been reached, and may never be reached.
     Ahead,
 }
 
@@ -125,8 +126,8 @@ impl ProcedureRun {
         steps
     }
 
-    /// Returns the range of skipped steps in an operation. It is taken from the result if available, and otherwise from
-    /// the operator's answers.
+    /// Returns the range of skipped steps in an operation, based on its result if available, and otherwise on the
+    /// operator's answers.
     fn skipped_steps(&self, number: usize, steps: &[ProcedureStep]) -> Option<std::ops::Range<usize>> {
         let outcomes = match &self.end {
             Some(ProcedureEnd::Done(outcomes) | ProcedureEnd::Failed { before: outcomes, .. }) => outcomes.as_slice(),
@@ -217,7 +218,7 @@ mod tests {
         let led = [&told[..], &[ProcedureStep::ReturnToOperation]].concat();
         assert_eq!(step_status(&led, Some(run), false), [Done, Done, Done, Failed, Ahead, Ahead, Done]);
         assert_eq!(step_status(&led, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
-        // With the link lost, no return to operation is reported.
+        // If the link is lost, no return to operation is reported.
         assert_eq!(step_status(&told, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
         // The encoder never left operation.
         assert_eq!(step_status(&told[..2], Some(turn), false), [Done, Failed, Ahead, Ahead, Ahead, Ahead, Ahead]);

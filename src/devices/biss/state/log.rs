@@ -1,4 +1,4 @@
-//! Log entries of an encoder: its identity and link, the start of a write, and the results of operations.
+//! Log entries about an encoder: its identity and link, the start of a write, and the results of operations.
 
 use super::encoder::Encoder;
 use crate::app::review::{ChangeTexts, OperationTexts};
@@ -13,7 +13,7 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 
 impl Encoder {
-    /// Logs the first response on a newly opened link.
+    /// Logs the first reply on a newly opened link.
     pub(super) fn log_first_reply(&self, services: &mut Services) {
         let Some(identity) = self.identity() else { return };
         self.session.log_first_reply(vec![transport_text(identity), identity_text(identity)], services);
@@ -23,7 +23,7 @@ impl Encoder {
     pub(super) fn log_operations(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
         let identity = &prepared.identity;
         let operations = prepared.plan.ops.iter().flat_map(|op| match op {
-            // A run of consecutive registers is represented by the first one only.
+            // Consecutive registers are represented by the first register only.
             Op::StoreData { .. } => {
                 op.changed_items(&identity.description).iter().map(explain::literal_text).collect::<Vec<_>>()
             }

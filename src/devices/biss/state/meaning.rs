@@ -1,4 +1,4 @@
-//! The meaning of frames in the trace. To decode a reply, the preceding request must be known. To decode a register
+//! Explanations of frames in the trace. To decode a reply, the preceding request must be known. To decode a register
 //! access over the bus, the selected bank must be known.
 
 use crate::app::explain::literal_text;
@@ -13,7 +13,7 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
-/// A stateful decoder of frames, which must arrive in transmission order.
+/// A stateful decoder that explains frames in the order of transmission.
 #[derive(Debug, Default)]
 pub(super) struct FrameDecoder {
     /// Byte order of register numbers, once known.
@@ -56,7 +56,7 @@ impl FrameDecoder {
         })
     }
 
-    /// Decodes bytes received over the configuration pin after a request. The reply may follow a damaged part.
+    /// Decodes bytes received over the configuration pin after a request. Damaged bytes may precede the reply.
     fn reply(&mut self, bytes: &[u8]) -> FrameExplanation {
         let broken = |damage| FrameExplanation::from_error(words::damage_text(&damage));
         let Ok(frame) = Frame::parse(bytes) else { return broken(ReplyDamage::NoFrame { bytes: bytes.len() }) };
@@ -132,8 +132,8 @@ mod tests {
         (said.fault, words.join(" "))
     }
 
-    /// Issue 22.11: damaged frames on the configuration pin (reference UBICOM 6) are explained and marked, and the
-    /// reply may still follow.
+    /// Issue 22.11: damaged frames on the configuration pin (section 6 of the UBICOM reference) are explained and
+    /// marked, even if the reply follows them.
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let request = "80 01 01 02 00 26 00 55";
@@ -157,7 +157,7 @@ mod tests {
         let mut meaning = FrameDecoder::default();
         decode(&mut meaning, Direction::Sent, "80 01 02 03 00 2B 00 2A 24");
         assert_eq!(decode(&mut meaning, Direction::Received, "80 01 02 01 00 A0 DB").0, Some(TraceFault::Reported));
-        // Behind an adapter, a packet with a wrong checksum.
+        // On the link to an adapter, a packet with a wrong checksum is marked.
         let sent = bridge::Request::Hello.emit(1).emit();
         let mut broken = sent.clone();
         broken[2] ^= 1;

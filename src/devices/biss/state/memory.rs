@@ -1,5 +1,5 @@
-//! The registers read from an encoder, and the edited values. The difference between them is the basis of a plan. This
-//! module does not write anything to an encoder.
+//! The registers read from an encoder, and their edited values. A write is planned from the differences. This module
+//! does not write anything to the encoder.
 //!
 //! Only bytes of a data area that the description marks as writable can be edited. Other writes, such as a filter, a
 //! preset or a command, are reviewed separately and are not treated as edits.
@@ -12,7 +12,7 @@ use crate::devices::biss::protocol::{Area, Description, Register, RegisterAddres
 #[derive(Clone, Debug, Default)]
 pub struct Registers {
     read: BTreeMap<RegisterAddress, u8>,
-    /// Registers whose value differs from the previous reading.
+    /// Registers whose values have changed since the previous reading.
     changed: BTreeSet<RegisterAddress>,
 }
 
@@ -37,11 +37,12 @@ pub enum MemoryError {
     NoData(RegisterAddress),
 }
 
-/// Runs of edited bytes, each with its start address, the values in the encoder and the edited values.
+/// Runs of consecutive edited bytes, each with its start address, the values in the encoder and the edited values.
 pub type EditedRuns = Vec<(RegisterAddress, Vec<u8>, Vec<u8>)>;
 
 impl Memory {
-    /// Stores bytes read from `start` onward. Edits are kept unless they equal the encoder's current values.
+    /// Stores bytes that were read, starting at `start`. Edits are kept unless they equal the current values in the
+    /// encoder.
     pub fn store_bytes(&mut self, start: RegisterAddress, bytes: &[u8]) {
         self.update_base(|own| {
             for (at, byte) in (start.global_number()..).zip(bytes) {
@@ -54,12 +55,12 @@ impl Memory {
         });
     }
 
-    /// Returns a register's value as read, or `None` if the register was not read.
+    /// Returns the value of a register as read, or `None` if the register was not read.
     pub fn read(&self, at: RegisterAddress) -> Option<u8> {
         self.base().read.get(&at).copied()
     }
 
-    /// Returns a register's edited value, or the value read if the register was not edited.
+    /// Returns the edited value of a register, or the value that was read if the register has not been edited.
     pub fn edited_value(&self, at: RegisterAddress) -> Option<u8> {
         self.get(at).or_else(|| self.read(at))
     }
@@ -111,10 +112,10 @@ impl Memory {
         self.get(at).is_some()
     }
 
-    /// Edits bytes from `start` onward as a single undo step.
+    /// Edits consecutive bytes, starting at `start`, as one undoable step.
     ///
     /// # Errors
-    /// Returns a [`MemoryError`] and does not change anything if the edit is rejected.
+    /// Returns a [`MemoryError`] without changing anything if the edit is rejected.
     pub fn edit_bytes(
         &mut self,
         description: &Description,
@@ -134,7 +135,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Discards the edits of `count` bytes from `start` onward.
+    /// Discards the edits of `count` consecutive bytes, starting at `start`.
     pub fn revert_range(&mut self, start: RegisterAddress, count: usize) {
         let range =
             start.global_number()..start.global_number().saturating_add(u16::try_from(count).unwrap_or(u16::MAX));
@@ -164,7 +165,8 @@ impl Memory {
         self.iter().map(|(at, byte)| (at.global_number(), byte)).collect()
     }
 
-    /// Restores edits from a draft. Edits that equal the encoder's values are dropped as soon as these have been read.
+    /// Adopts the edits of a draft. Edits that equal the values in the encoder are dropped as soon as these values have
+    /// been read.
     pub fn take_draft(&mut self, draft: Vec<(u16, u8)>) {
         let places = draft.into_iter().filter_map(|(at, byte)| Some((RegisterAddress::from_global(at)?, byte)));
         self.edit_values(places);

@@ -1,4 +1,4 @@
-//! Recording a BiSS encoder during polling: its positions and the watched registers.
+//! Recording a polled BiSS encoder: its positions and the watched registers.
 
 use std::time::Duration;
 
@@ -37,7 +37,7 @@ impl From<&PositionReading> for Widths {
     }
 }
 
-/// The recorder of an encoder's positions. It also keeps the latest values.
+/// The recorder of an encoder's positions, which also keeps the latest values.
 #[derive(Debug, Default)]
 pub struct Record {
     track: DeviceRecorder<Register>,
@@ -74,7 +74,7 @@ impl Record {
             Some(_) if dropped > 0 => self.track.mark_gap(),
             _ => self.track.record_dropped(dropped),
         }
-        // Thousands of positions per second with equal widths are recorded in batches.
+        // Positions with equal widths are recorded in batches, because there may be thousands of them per second.
         let mut batch = Batch::default();
         for sample in samples {
             match sample {
@@ -110,7 +110,7 @@ impl Record {
         self.last = Some(*reading);
     }
 
-    /// Records streamed frames. Missing frames are counted and leave a gap in the recording.
+    /// Records streamed frames. Missing frames are counted, and leave a gap in the recording.
     fn add_frames(&mut self, run: &ConsecutiveFrames, batch: &mut Batch) {
         let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
@@ -145,7 +145,7 @@ impl Record {
             return;
         }
         let before = self.last.as_ref().map(Widths::from);
-        // If nothing has been read in this session, the meaning from the previous session is kept.
+        // If nothing has been read in this session yet, the scales from the previous session are kept.
         let unknown = || self.track.scales().cloned().unwrap_or_else(|| PositionScales::for_steps(None));
         let meaning = batch.widths.or(before).map_or_else(unknown, position_scales);
         self.track.add_positions(&batch.sightings, &meaning);
@@ -169,7 +169,7 @@ impl Record {
         self.track.add_watched(&register, &watching);
     }
 
-    /// Sets the registers to record along with the position, replacing the previous selection.
+    /// Sets the registers to record along with the position. This replaces the previous selection.
     pub(super) fn set_watched(&mut self, watched: &[Register]) {
         self.track.set_watched(watched);
     }
@@ -187,7 +187,7 @@ impl Record {
         self.crc_errors
     }
 
-    /// Returns the latest stream. Returns `None` if polling has stopped or positions arrive one by one.
+    /// Returns the latest stream, or `None` if polling has stopped or positions arrive one by one.
     pub(super) fn current_stream(&self) -> Option<&FrameStream> {
         self.stream.as_ref()
     }
@@ -233,7 +233,7 @@ fn position_sample(reading: &PositionReading) -> PositionSample {
     }
 }
 
-/// Returns the meaning of positions with the given multiturn and singleturn widths.
+/// Returns the scales of positions with the given multiturn and singleturn widths.
 fn position_scales(Widths { multiturn, singleturn, is_split_known }: Widths) -> PositionScales {
     let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
     if !is_split_known {
@@ -287,7 +287,7 @@ mod tests {
         }
     }
 
-    /// Expected values from reference 2 for turn 1234h at 270°.
+    /// Expected values for turn 1234h at 270° from section 2 of the reference.
     #[test]
     fn raw_values_are_position_words_also_in_a_stream() {
         let mut record = Record::default();
@@ -313,7 +313,7 @@ mod tests {
         assert_eq!((last.position_word().to_string(), last.error, last.warning), ("00A".to_owned(), None, None));
     }
 
-    /// Issue 22.20: a position whose steps per turn are unknown is not split into turns and degrees.
+    /// Issue 22.20: a position is not split into turns and degrees if the number of steps per turn is unknown.
     #[test]
     fn positions_with_unknown_split_are_recorded_in_steps() {
         let mut record = Record::default();

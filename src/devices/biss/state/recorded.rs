@@ -1,5 +1,4 @@
-//! Tests of the draft format in users' files. The draft must be readable, and must be the same after it is written
-//! back.
+//! Tests of the draft format in users' files. A draft must be readable, and must be unchanged when it is written back.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::biss::jobs::Biss;

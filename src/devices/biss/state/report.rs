@@ -1,4 +1,4 @@
-//! Values of an encoder in a report: identity, settings, data sheet, results of the procedures, data areas.
+//! The values of an encoder in a report: identity, settings, data sheet, results of the procedures, and data areas.
 
 use std::sync::Arc;
 
@@ -124,7 +124,7 @@ fn procedures_section(context: &ReportContext<'_>, profile: &BissProfile) -> Opt
                 ("report.biss_cw", result.average_cw, result.lowest_cw),
                 ("report.biss_ccw", result.average_ccw, result.lowest_ccw),
             ] {
-                // Without a result, the voltages are 0.
+                // If there is no result, the voltages are 0.
                 let (mark, verdict) = match average.byte() {
                     0 => (Mark::None, TEXTS.text("report.biss_untested")),
                     _ if lowest > PulseVoltage::LIMIT => (Mark::Good, Text::new("report.within")),
@@ -147,7 +147,7 @@ fn procedures_section(context: &ReportContext<'_>, profile: &BissProfile) -> Opt
     (!section.blocks.is_empty()).then_some(section)
 }
 
-/// Returns the named registers outside the data areas that the profile contains, decoded.
+/// Returns the decoded values of the named registers outside the data areas that the profile contains.
 fn data_sheet_section(context: &ReportContext<'_>, encoder: &Encoder) -> Option<Section> {
     let mut section = Section::new(context.say(TEXTS.text("report.biss_registers")));
     for group in encoder.table.groups() {

@@ -12,7 +12,7 @@ use crate::devices::biss::state::explain as words;
 pub type Review = review::Review<Biss>;
 pub type ReviewState = review::ReviewState<Biss>;
 
-/// Returns whether an operation is shown step by step, because an operator may be at the motor.
+/// Returns whether an operation is shown step by step, because it may require an operator at the motor.
 pub(super) fn is_guided(op: &Op) -> bool {
     op.needs_motor() || matches!(op, Op::FirePreset { .. })
 }

@@ -1,5 +1,5 @@
-//! Table of an encoder's registers: the direct registers first, then bank after bank. Each described register has one
-//! row, and so does every undescribed byte.
+//! The table of an encoder's registers, which starts with the direct registers and continues bank by bank. Every
+//! described register has a row, as does every undescribed byte.
 
 use super::memory::Memory;
 use crate::bits::ByteOrder;
@@ -33,7 +33,7 @@ pub struct Row {
 #[derive(Clone, Debug)]
 pub struct RegisterEntry<'a> {
     pub row: &'a Row,
-    /// Bytes in address order with edits applied, or `None` if the register was not read.
+    /// Bytes in ascending order of address with edits applied, or `None` if the register was not read.
     pub bytes: Option<Vec<u8>>,
     /// Whether the value has changed since the previous reading.
     pub has_changed: bool,
@@ -55,7 +55,7 @@ impl Table {
         &self.groups
     }
 
-    /// Returns the index of a bank's group. `None` means the direct registers.
+    /// Returns the index of the group for a bank, or for the direct registers if `bank` is `None`.
     pub fn position(&self, bank: Option<u8>) -> Option<usize> {
         self.groups.iter().position(|group| group.bank == bank)
     }
@@ -146,7 +146,7 @@ fn undescribed_register(address: RegisterAddress, access: Access) -> Register {
     }
 }
 
-/// Returns the name of a data sheet bank. The name is the same for every encoder that conforms to BP3.
+/// Returns the name of a data sheet bank, which is the same for every encoder that conforms to BP3.
 fn standard_bank_name(bank: u8) -> Option<Name> {
     [(EdsBank::Common, "EDS"), (EdsBank::Encoder, "EDS BP3")]
         .into_iter()

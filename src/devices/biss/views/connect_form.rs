@@ -1,4 +1,5 @@
-//! The connection form for a BiSS C encoder: over its configuration pin, over an adapter on its bus, or virtual.
+//! The connection form for BiSS C encoders, which are connected over the configuration pin, connected over an adapter
+//! on the bus, or virtual.
 
 use egui::Ui;
 

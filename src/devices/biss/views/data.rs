@@ -44,7 +44,7 @@ pub(super) fn page_ui(
                 *view = DataUiState { area: at, ..DataUiState::default() };
             }
         }
-        // An area that has not been read has this button in the middle.
+        // If the area has not been read, this button is shown in the middle.
         let (ready, is_read) =
             (encoder.session.is_ready(), shown.as_ref().is_some_and(|own| encoder.memory.area_bytes(own).is_some()));
         if is_read && enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &translate(theme, "data.read")).clicked() {
@@ -111,7 +111,7 @@ fn area_bytes_ui(
             typed_view(ui, theme, view.hex.to_read(wanted));
         });
     }
-    // Undo with the buttons of the edit bar behaves like undo with the keyboard.
+    // The undo buttons of the edit bar behave in the same way as the keyboard shortcuts.
     if actions.iter().any(|own| matches!(own, Action::Command(_, DeviceCommand::Undo | DeviceCommand::Redo))) {
         view.hex.move_to_change(wanted);
     }

@@ -34,7 +34,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     if !is_angle {
         row(ui, theme, &theme.translate("unit.steps"), theme.monospace(reading.position().to_string()));
     } else if ui.available_height() < LOW_PANEL_HEIGHT {
-        // In a low window, the plot needs the space.
+        // If the window is not high enough, the space is needed for the plot.
         let (turns, steps) = (theme.translate("live.turns"), theme.translate("live.step"));
         let words = format!("{turns} {} · {steps} {}", reading.turns, reading.steps);
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
@@ -56,8 +56,8 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     }
 }
 
-/// Draws the menu of values to read along with the position. It offers common registers, and all others can be selected
-/// in the register table.
+/// Draws the menu of values to read along with the position. It offers common registers. All other registers can be
+/// selected in the register table.
 pub(crate) fn watch_menu(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = theme.translate("live.watch");
     let Some(description) = &encoder.description else { return };

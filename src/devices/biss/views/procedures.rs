@@ -1,5 +1,5 @@
-//! The page for guided procedures: the selection and the motor, then the current task, the progress and the result of
-//! each step. Filter and preset are on the same page.
+//! The page for guided procedures. It shows the selection and the motor, and then the current task, the progress and
+//! the result of each step. It also contains the filter and the preset.
 
 use egui::{RichText, Ui};
 
@@ -230,14 +230,14 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         let layout = &identity.layout;
         labelled_number_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
         labelled_number_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
-        // Only the first error is shown, with the name of its field.
+        // Only the first error is shown, together with the name of its entry.
         show_error_below(
             ui,
             theme,
             form.parse_singleturn(layout).err().or(form.parse_multiturn(layout).err()).as_ref(),
         );
         let value = form.value(layout);
-        // The encoder uses the saved value and not the value in the fields.
+        // The encoder uses the saved value, not the entered value.
         let saved = encoder.survey.as_ref().and_then(|survey| survey.preset);
         let is_saved = saved.is_none() || value.as_ref().ok().copied() == saved;
         let ready = encoder.session.is_ready();

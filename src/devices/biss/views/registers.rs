@@ -20,7 +20,8 @@ pub(super) struct RegistersUiState {
     folded: bool,
 }
 
-/// Width of the bank list. On a page that is narrower than `BESIDE`, a drop-down list above the table is shown instead.
+/// Width of the bank list in points. On a page that is narrower than [`MIN_TWO_COLUMN_WIDTH`], a drop-down list above
+/// the table is shown instead.
 const BANK_LIST_WIDTH: f32 = 176.0;
 const MIN_TWO_COLUMN_WIDTH: f32 = 840.0;
 
@@ -41,7 +42,7 @@ pub(super) fn page_ui(
     let groups: Vec<RegisterGroup> =
         encoder.table.groups().iter().map(|own| register_group(theme, encoder, own)).collect();
     if !std::mem::replace(&mut view.folded, true) {
-        // Users look at one bank at a time, mostly at the direct registers.
+        // Users usually look at one bank at a time, most often at the direct registers.
         (1..groups.len()).for_each(|at| view.table.set_folded(at, true));
     }
     let beside = ui.available_width() >= MIN_TWO_COLUMN_WIDTH;
@@ -195,7 +196,7 @@ fn table_ui(
         let revert = start(place).map(|start| Biss::Revert { start, count: 1 });
         actions.extend(revert.map(|revert| Action::device(encoder.session.id, revert)));
     }
-    // Visible registers are read once automatically when nothing else is running.
+    // Visible registers are read once automatically if nothing else is running.
     let in_sight = encoder.table.groups().iter().enumerate().skip(output.groups.start).take(output.groups.len());
     let unread = |(at, own): &(usize, &Group)| !view.table.is_folded(*at) && encoder.should_read_bank(own);
     if let Some((_, own)) = in_sight.into_iter().find(unread) {

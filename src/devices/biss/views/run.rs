@@ -1,4 +1,4 @@
-//! Display of a running guided procedure: steps, current task, measured and allowed values, and the final report.
+//! The display of a running guided procedure: steps, current task, measured and allowed values, and the final report.
 
 use egui::{RichText, Ui};
 
@@ -86,7 +86,7 @@ fn step_row(
     let mut step = StepRow { title, state, word: translate(theme, word), ..StepRow::default() };
     match (reached, guide.step_detail()) {
         (StepStatus::Waits, Some(StepDetail::Demand(demand))) => {
-            // The recommended speed is marked on the gauges, which remain visible.
+            // The recommended speed is not listed, because it is already marked on the gauges.
             let lasting = demand.advice.iter().filter(|own| !matches!(own, OperatorAdvice::Speed { .. }));
             let notes: Vec<String> = lasting.map(|own| theme.format_text(&says::advice_text(*own))).collect();
             step.note = notes.join("\n");
@@ -105,7 +105,8 @@ fn step_row(
     step
 }
 
-/// Returns the gauges shown while the operator turns the motor. Their marks are the limits for the start of the run.
+/// Returns the gauges that are shown while the operator turns the motor. Their marks are the limits for starting the
+/// run.
 fn speed_gauges(theme: &Theme, demand: &OperatorPrompt) -> Vec<Gauge> {
     let OperatorTask::Turn(run) = demand.task else { return Vec::new() };
     let mut gauges = vec![speed(theme, run, demand)];
@@ -144,7 +145,7 @@ fn speed(theme: &Theme, run: MotorRun, demand: &OperatorPrompt) -> Gauge {
     let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
     let (allowed, accepted, best) =
         (run.allowed_speeds(), run.allowed_speeds().with_tolerance(), run.recommended_range());
-    // Standstill is shown as 0 regardless of sign.
+    // Standstill is shown as 0 without a sign.
     let rpm = demand.motion.map(|own| if own.rpm.abs() < 0.05 { 0.0 } else { own.rpm * sign });
     let is_best = best != allowed;
     let limits = TEXTS

@@ -1,4 +1,4 @@
-//! The electronic data sheet: contents of its two banks, with a unit for each field, and whether the checksums match.
+//! The electronic data sheet: the fields of both banks with their units, and whether the checksums match.
 
 use egui::{RichText, Ui};
 

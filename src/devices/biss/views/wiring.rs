@@ -1,4 +1,4 @@
-//! The wiring card: connector pins of the kit encoder, its supply and its clock.
+//! The wiring card: the connector pins, the supply and the clock of the kit encoder.
 
 use egui::Ui;
 
@@ -24,7 +24,7 @@ const PINS: [(&str, &str); 8] = [
 
 const NOTES: [&str; 3] = ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.others"];
 
-/// Card width from which the pins are shown in two columns.
+/// Minimum card width in points for showing the pins in two columns.
 const MIN_TWO_COLUMN_WIDTH: f32 = 640.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {
@@ -54,8 +54,8 @@ mod tests {
     use crate::devices::biss::state::TEXTS;
     use crate::ui::wiring::{assert_notes, assert_wires};
 
-    /// Issue 22.23: kit encoder manual, tables 1 (pins), 2 (supply) and 14 (preset), sections 2.1 (connector) and 2.3
-    /// (point to point, RS-422); UBICOM at 115200 baud.
+    /// Issue 22.23: expected values from the manual of the kit encoder, tables 1 (pins), 2 (supply) and 14 (preset),
+    /// and sections 2.1 (connector) and 2.3 (point to point, RS-422). UBICOM uses 115200 baud.
     #[test]
     fn the_wiring_card_matches_the_manual() {
         assert_wires(

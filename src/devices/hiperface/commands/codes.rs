@@ -1,5 +1,5 @@
-//! Access codes from the environment and from the option `--code`, which every command and the window accept. Messages
-//! never repeat text that may be an access code.
+//! Access codes from the environment and from the `--code` option, which every command and the window accept. Messages
+//! never repeat text that could be an access code.
 
 use std::str::FromStr;
 
@@ -27,7 +27,8 @@ struct CodeArg {
 impl FromStr for CodeArg {
     type Err = String;
 
-    /// Parses an access code with its number. The error message does not repeat the text, which may be a code.
+    /// Parses an access code number and its code. The error message does not repeat the text, because it may be an
+    /// access code.
     fn from_str(text: &str) -> std::result::Result<Self, String> {
         let form = || "an access code has the form N=HEX with N from 0 to 3, such as 2=1A".to_owned();
         let (number, code) = text.split_once('=').ok_or_else(form)?;

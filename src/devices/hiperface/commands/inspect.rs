@@ -205,7 +205,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     if let Some(table) = &table {
         output.write_stdout(table.header())?;
     }
-    // A status code that was announced during identification also applies to this position.
+    // A status code reported during identification also applies to this position.
     let mut codes_before = reported_codes(&runner);
     let job = || HiperfaceJob::Position(identity.geometry);
     try_readings(&mut runner, position, job, |runner, came| {

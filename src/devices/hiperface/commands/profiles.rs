@@ -122,7 +122,7 @@ fn report_locked_fields(output: &Output, saved: &SavedProfile, what: &str) {
     }
 }
 
-/// Returns the decisions given on the command line about data fields whose bytes have no known meaning.
+/// Returns the user's decisions, from the command line, about data fields that contain bytes of unknown meaning.
 fn parse_decisions(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     let mut answers = BTreeMap::new();
     for (given, copies) in [(&restore.copy, true), (&restore.leave, false)] {
@@ -138,8 +138,8 @@ fn parse_decisions(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     Ok(answers)
 }
 
-/// Reports the data fields with bytes of unknown meaning. Returns an error if the command line gives no decision for
-/// one of them. A dry run leaves such a field unchanged instead.
+/// Reports the data fields that contain bytes of unknown meaning. Returns an error if the command line contains no
+/// decision for one of them, except in a dry run, which leaves such a field unchanged.
 fn check_copy_decisions(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
     let words = |own: &UnknownMeaningField| explain::unknown_field(own).terminal_text();
     let fields = &prepared.unknown_fields;

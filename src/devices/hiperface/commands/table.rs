@@ -1,4 +1,4 @@
-//! Positions as CSV for scripts. The separators are commas and the decimal sign is a point in every language.
+//! Positions as CSV for scripts. In every language, the separator is a comma and the decimal sign is a point.
 
 use crate::devices::hiperface::procedures::PositionReading;
 use crate::devices::hiperface::protocol::{Geometry, StatusCode};
@@ -9,7 +9,7 @@ pub(super) struct PositionTable {
 }
 
 impl PositionTable {
-    /// Returns the table for an encoder. If the geometry is unknown, the table is that of a rotary encoder.
+    /// Returns the table for an encoder. An encoder of unknown geometry is treated as a rotary encoder.
     pub(super) fn for_geometry(geometry: Option<Geometry>) -> Self {
         PositionTable { linear: matches!(geometry, Some(Geometry::Linear { .. })) }
     }

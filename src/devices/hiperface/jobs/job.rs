@@ -18,8 +18,8 @@ use crate::devices::hiperface::protocol::{
 };
 use crate::store::EntryKind;
 
-/// Number of persistent writes that an encoder withstands. According to the manual, its counter, which is in the same
-/// EEPROM, can be incremented about a million times.
+/// Number of persistent writes that an encoder is expected to withstand. According to the manual, its counter, which is
+/// stored in the same EEPROM, can be incremented about a million times.
 pub const WEAR_LIMIT: u64 = 1_000_000;
 
 #[derive(Debug)]
@@ -31,7 +31,7 @@ pub enum HiperfaceJob {
     Status,
     /// Reads the position once. If the geometry is known, it is used to interpret the position.
     Position(Option<Geometry>),
-    /// Reads the position of the shaft at rest, and sine and cosine if the encoder provides them.
+    /// Reads the position while the shaft is at rest, and the sine and cosine signals if the encoder provides them.
     Rest,
     Read(Item),
     Save(SaveOptions),
@@ -93,7 +93,8 @@ pub enum Change {
         exact: bool,
         /// Whether to align the code tracks as well (63h).
         synchronise: bool,
-        /// Whether the user states that the encoder is a kit encoder. This is only needed if its type does not show it.
+        /// Whether the user states that the encoder is a kit encoder. This is only needed if the encoder type does not
+        /// reveal it.
         kit: bool,
     },
     /// Adds steps to the position at standstill, modulo the measuring range. This undoes setting a position, even if
@@ -152,7 +153,7 @@ pub struct Prepared {
     pub mounting_left: Vec<FieldRange>,
     /// Mounting values of another device that are written and must be set up again.
     pub mounting_written: Vec<FieldRange>,
-    /// Data fields whose bytes of unknown meaning differ from those of another encoder.
+    /// Data fields whose bytes of unknown meaning differ between the profile and the encoder.
     pub unknown_fields: Vec<UnknownMeaningField>,
     /// Data fields created by the undone write that are not deleted, because they have changed since then or are not
     /// the last fields.
@@ -162,7 +163,7 @@ pub struct Prepared {
     pub wanted_position: Option<u32>,
 }
 
-/// Type of a profile, and the different type of the encoder to which it is written.
+/// Type code in a profile, and the different type code of the encoder to which the profile is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TypeMismatch {
     pub profile: u8,
@@ -170,8 +171,8 @@ pub struct TypeMismatch {
 }
 
 impl Prepared {
-    /// Returns the values that must be set up again after the write. Mounting values of another encoder, and bytes of
-    /// unknown meaning, may be an offset between encoder and motor.
+    /// Returns the values that must be set up again after the write. Mounting values of another encoder and bytes of
+    /// unknown meaning may contain an offset between encoder and motor.
     pub fn redo(&self) -> Vec<RequiredSetup> {
         let values = self.mounting_written.iter().copied().map(RequiredSetup::Value);
         let copies = self.unknown_fields.iter().any(UnknownMeaningField::is_copied);
@@ -180,7 +181,7 @@ impl Prepared {
     }
 }
 
-/// Plan with the user's consent.
+/// A plan to which the user has consented.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 pub type Committed = crate::worker::CommitResult<WrittenChanges>;

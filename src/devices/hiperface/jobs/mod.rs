@@ -56,8 +56,8 @@ impl Hiperface {
         Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
     }
 
-    /// Stores status codes before they are displayed. Codes belong to the logbook of an encoder, so an unknown encoder
-    /// is identified first.
+    /// Stores status codes before they are displayed. An unknown encoder is identified first, because the codes are
+    /// stored in the logbook of the encoder.
     fn store_codes(&mut self, context: &mut SessionContext, codes: &[StatusCode]) {
         if codes.is_empty() {
             return;
@@ -76,7 +76,7 @@ impl Hiperface {
         status::record_codes(&context.store, &device, codes);
     }
 
-    /// Stores the status codes of samples. A persistent code occurs in many samples, but is not stored each time.
+    /// Stores the status codes of samples. A code that occurs in many consecutive samples is not stored every time.
     fn record_sampled_codes(&mut self, context: &mut SessionContext) {
         let codes = self.station.take_unlogged_codes();
         if !codes.is_empty() && self.status.mark_and_check_new(&codes, context.clock.now()) {
@@ -186,7 +186,7 @@ impl Device for Hiperface {
             return Some(unheard);
         }
         let line = &self.station.line;
-        // Errors on a failing line are reported together with the failure.
+        // If the line fails, its errors are reported together with the failure.
         if line.has_errors() || line.quality.counts() == self.told_troubles {
             return None;
         }

@@ -65,8 +65,8 @@ fn at_adapter(
     Box::new(AdapterSerialLink::new(wire, clock.clone(), &url.target, line, supply))
 }
 
-/// Parses the line settings, the settings of an adapter, and the configuration of the virtual encoder. The latter is used only by a link to a
-/// virtual encoder.
+/// Parses the line settings, the settings of an adapter, and the configuration of the virtual encoder. Only a link to a
+/// virtual encoder uses this configuration.
 fn read(url: &LinkUrl) -> Result<(Station, Config, AdapterParameters), OpenError> {
     if matches!(url.scheme, LinkScheme::Modbus | LinkScheme::Enip) {
         return Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, bridge:, replay:"));
@@ -77,7 +77,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config, AdapterParameters), OpenError
     let settings = simulator_settings(url, &keys, Config::KEYS)?;
     let adapter = AdapterParameters::read(url.query.pairs())?;
     if url.scheme == LinkScheme::Sim {
-        // The converter of the virtual encoder may echo. This is detected as with a real one.
+        // The converter of the virtual encoder may produce an echo, which is detected as it is for a real converter.
         station.line.echo = Echo::Unknown;
         let line = LinkParameters::KEYS.iter().filter(|key| !Config::KEYS.contains(key));
         check_parameters(&url.query, url.scheme, &line.chain(Config::KEYS).copied().collect::<Vec<_>>())?;

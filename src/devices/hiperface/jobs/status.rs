@@ -9,7 +9,7 @@ use crate::devices::hiperface::protocol::{KIND, StatusCode};
 use crate::store::{DeviceKey, EntryKind, Event, Logbook, Store};
 use crate::units::Moment;
 
-/// Time within which a code that live values report repeatedly is stored only once.
+/// Time for which a status code is not stored again if it occurs repeatedly during polling.
 const REPEAT_INTERVAL: Duration = Duration::from_secs(60);
 
 /// Status codes recorded recently while polling the position.
@@ -17,8 +17,8 @@ const REPEAT_INTERVAL: Duration = Duration::from_secs(60);
 pub(super) struct RecentStatusCodes(Vec<(StatusCode, Moment)>);
 
 impl RecentStatusCodes {
-    /// Returns whether any of these codes was not recorded in the last minute. Afterwards, all of the codes are
-    /// considered recorded.
+    /// Returns whether any of these codes has not been recorded within the last minute, and marks all of them as
+    /// recorded.
     pub(super) fn mark_and_check_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
         self.0.retain(|(_, kept)| now.duration_since(*kept) < REPEAT_INTERVAL);
         let mut is_new = false;
@@ -32,7 +32,7 @@ impl RecentStatusCodes {
     }
 }
 
-/// Records status codes in the log and the logbook. The log entry is made even if the logbook cannot be used.
+/// Records status codes in the log and in the logbook. They are written to the log even if the logbook cannot be used.
 pub(super) fn record_codes(store: &Store, device: &DeviceKey, codes: &[StatusCode]) {
     let words = codes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     tracing::info!("{} {}: status codes read: {words}", device.kind, device.serial_number);
@@ -44,7 +44,7 @@ pub(super) fn record_codes(store: &Store, device: &DeviceKey, codes: &[StatusCod
     }
 }
 
-/// Returns the key of an encoder that was not identified.
+/// Returns the key for an encoder that has not been identified.
 pub(super) fn unknown_device(is_virtual: bool) -> DeviceKey {
     DeviceKey::new(KIND, "", "", is_virtual)
 }

@@ -25,7 +25,7 @@ pub enum CheckStep {
     Limits,
     /// Status and content (commands 4Ch and 4Ah) of every data field.
     DataFields,
-    /// Repeated requests and damaged or late replies, during this check and earlier in the session.
+    /// Repeated requests and damaged or late replies since the start of the session.
     Line,
 }
 
@@ -63,8 +63,8 @@ pub enum CheckFinding {
     Line(LineQuality),
 }
 
-/// Runs the check, which ends early only if the encoder no longer replies. If `restart` is set, it begins with 53h to
-/// obtain the state after power-on.
+/// Runs the check, which ends early only if the encoder stops replying. If `restart` is set, the check first restarts
+/// the encoder with 53h, so that it examines the state after power-on.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the job is cancelled.
@@ -171,7 +171,7 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperfac
     Ok(HiperfaceStepResult { step: CheckStep::DataFields, verdict, findings })
 }
 
-/// Returns the verdict on the line. A line that needed repetitions works, but its wiring needs attention.
+/// Returns the verdict on the line. If requests had to be repeated, the line works, but its wiring needs attention.
 fn check_line(master: &mut Master<'_>) -> HiperfaceStepResult {
     let quality = master.station().line.quality.clone();
     let verdict = if quality.has_errors() { Verdict::Attention } else { Verdict::Good };

@@ -1,4 +1,4 @@
-//! Errors of a job with an encoder, with the details for their messages.
+//! Errors of jobs with an encoder, including the details for the error messages.
 
 use crate::devices::hiperface::profile::PlanItem;
 use crate::devices::hiperface::protocol::{AccessCodeNumber, Command, LineSettings, Reply, ReplyError, StatusCode};
@@ -69,7 +69,7 @@ pub enum Error {
     CodeGuardsNothing { number: AccessCodeNumber },
     #[error("the interface settings 0x{:02X} have a reserved format", settings.byte())]
     ReservedFormat {
-        /// Settings as read from the encoder, or as requested.
+        /// Settings that were read from the encoder or requested by the user.
         settings: LineSettings,
     },
 }
@@ -84,7 +84,7 @@ impl Error {
 pub enum ReadBackValue {
     #[error("{0}")]
     Value(String),
-    /// The data field behaves differently from the status that was written.
+    /// The data field does not behave in accordance with the status that was written.
     #[error("another status")]
     AnotherStatus,
 }
@@ -122,7 +122,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the device can no longer be reached, which makes further attempts useless.
+    /// Returns whether the device can no longer be reached, so that further attempts would be useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } => true,

@@ -23,7 +23,7 @@ pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataField
     }
 }
 
-/// Reads a complete field. If the access code is wrong, the field is returned without bytes.
+/// Reads a complete field. The returned field has no bytes if the access code is wrong.
 ///
 /// # Errors
 /// Returns an error if the encoder rejects the request for another reason or the exchange fails.
@@ -62,7 +62,7 @@ pub struct UnreadableField {
     pub why: Error,
 }
 
-/// Reads a field. The inner error contains the reason if only this field cannot be read.
+/// Reads a field. Returns an inner error with the reason if only this field cannot be read.
 ///
 /// # Errors
 /// Returns an error if the encoder no longer replies or the user cancels.
@@ -76,7 +76,7 @@ pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<Fiel
     Ok(separate_value_error(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
 }
 
-/// Returns an error as the inner `Err` if the encoder still replies to another request.
+/// Converts an error to an inner error if the encoder still replies to another request.
 ///
 /// # Errors
 /// Returns an error if the encoder no longer replies or the user cancels.
@@ -96,7 +96,7 @@ pub(super) fn separate_value_error<T>(
     }
 }
 
-/// Reads `count` bytes of a field from `address` on, in transfers of at most 128 bytes.
+/// Reads `count` bytes of a field, starting at `address`, in transfers of at most 128 bytes.
 ///
 /// A failed transfer is retried with half the size, until five consecutive transfers have failed. If the line has
 /// damaged any data before, each transfer must return the same bytes twice, because an XOR misses some pairs of flipped
@@ -115,7 +115,7 @@ pub fn read_range(
         return read_byte(master, field, address, code);
     }
     let mut bytes = Vec::with_capacity(count);
-    // A second reading must confirm the first one.
+    // A second reading must confirm the first.
     let mut first: Option<Vec<u8>> = None;
     let mut failures = 0;
     let mut in_a_row = 0;
@@ -164,9 +164,8 @@ pub fn read_range(
     Ok(bytes)
 }
 
-/// Reads one byte by means of a transfer that includes a neighbouring byte. A transfer of a single byte is avoided
-/// because its reply can equal the request, including the access code. The echo of an adapter could then be mistaken
-/// for the reply.
+/// Reads one byte in a transfer that includes an adjacent byte. The reply to a single-byte transfer can equal the
+/// request, including the access code, so an echo from the adapter could be mistaken for it.
 fn read_byte(master: &mut Master<'_>, field: u8, address: usize, code: AccessCode) -> Result<Vec<u8>, Error> {
     let start = address.saturating_sub(1);
     let pair = read_range(master, field, start, 2, code)?;

@@ -1,9 +1,9 @@
-//! Search for encoders with unknown settings.
+//! Searching for encoders with unknown settings.
 //!
-//! The search listens for a second before it sends its first byte. If it receives anything, a machine may be running,
-//! and nothing is sent. It probes with 52h, because 50h would remove codes from the queue of an encoder. It uses
-//! broadcast last, and only if the user states that a single encoder is connected, because several encoders would reply
-//! at once.
+//! The search listens for a second before it sends the first byte. If any bytes are received, a machine may be running,
+//! and nothing is sent. The search probes with 52h, because 50h would remove codes from the status queue of an encoder.
+//! The broadcast address is tried last, and only if the user states that a single encoder is connected, because several
+//! encoders would reply at the same time.
 
 use std::fmt;
 use std::time::Duration;
@@ -13,7 +13,7 @@ use super::{Error, Master};
 use crate::devices::hiperface::protocol::{Answer, BAUDS, BROADCAST, DeviceAddress, Reply, Request, Timing, TypeLabel};
 use crate::units::{Baud, CharacterFormat, Parity};
 
-/// Time for which the search listens for a running machine.
+/// Time for which the search listens for traffic from a running machine.
 pub const LISTEN: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -21,8 +21,8 @@ pub struct FindOptions {
     /// Whether the user states that exactly one encoder is connected. If no address replies, the broadcast address is
     /// tried as well.
     pub one_encoder: bool,
-    /// Maximum wait for the user to switch the encoder off and on. After the restart, the search finds the encoder with
-    /// its default settings.
+    /// Maximum time to wait for the user to switch the encoder off and on again. After the restart, the encoder is
+    /// searched for with its default settings.
     pub power_cycle: Option<Duration>,
 }
 
@@ -69,9 +69,9 @@ pub enum EncoderSearchResult {
         bytes: usize,
     },
     Searched {
-        /// Encoders in the order in which they replied. There may be none.
+        /// Encoders in the order in which they replied. The list may be empty.
         found: Vec<FoundEncoder>,
-        /// Whether all combinations were tried. It is false if the user cancelled the search.
+        /// Whether all combinations were tried, that is, whether the user did not cancel the search.
         complete: bool,
     },
 }
@@ -109,7 +109,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// Runs the search. If another device sends, returns the number of bytes received from it instead.
     fn run(&mut self, master: &mut Master<'_>, options: &FindOptions) -> Result<Option<usize>, Error> {
-        // A device server has a fixed format, so the encoder would be found once for each format tried.
+        // A device server has a fixed format. Trying several formats would find the same encoder several times.
         let formats = if master.can_set_format() { formats_by_likelihood() } else { vec![master.station().format] };
         let per_format = 32 + u64::from(options.one_encoder);
         let total = 1 + per_format * formats.len() as u64;
@@ -162,7 +162,7 @@ fn formats_by_likelihood() -> Vec<CharacterFormat> {
         .collect()
 }
 
-/// Sends a request with factory settings every tenth of a second, until an encoder that has just been switched on
+/// Sends a request with factory settings every tenth of a second until an encoder that has just been switched on
 /// replies.
 fn search_in_default_window(
     master: &mut Master<'_>,
@@ -181,7 +181,8 @@ fn search_in_default_window(
     Ok(None)
 }
 
-/// Sends one request. It is repeated only once after a damaged reply, which proves that a device is present.
+/// Sends a request, and repeats it once if the reply is damaged, because a damaged reply proves that a device is
+/// present.
 fn probe_address(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<FoundEncoder>, Error> {
     master.station().address = address;
     for _ in 0..2 {

@@ -17,9 +17,9 @@ pub struct Identity {
     /// Reply to 4Eh, or `None` if the encoder does not support the command.
     pub memory: Option<FreeMemory>,
     pub name: String,
-    /// Periods and turns given by the user, by the extended label, or by the table of types.
+    /// Periods and turns, as specified by the user, the extended label or the table of encoder types.
     pub geometry: Option<Geometry>,
-    /// Whether the encoder has no bearing, so that its code tracks are aligned with 63h. `None` means unknown.
+    /// Whether the encoder is a kit without a bearing, whose code tracks are aligned with 63h. `None` means unknown.
     pub kit: Option<bool>,
     /// Content of data field FFh, if the encoder has this field.
     pub extended_label: Option<Vec<u8>>,
@@ -59,7 +59,7 @@ pub fn recorded_identity(profile: &HiperfaceProfile, types: &EncoderTypes) -> Id
     }
 }
 
-/// Reads type label, serial number, memory and, for type code FFh, the extended label.
+/// Reads the type label, the serial number, the free memory and, for type code FFh, the extended label.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the encoder rejects a request. A rejection of 56h or 4Eh is not an error,
@@ -98,7 +98,7 @@ pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Erro
     }
 }
 
-/// Reads serial number and firmware, or returns empty strings if the encoder does not support the command.
+/// Reads the serial number and the firmware version. Returns empty strings if the encoder does not support the command.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the encoder rejects the request.
@@ -115,7 +115,7 @@ pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
     Ok(read_type_label(master)?.settings)
 }
 
-/// Reads the address of the encoder that replies to a request at the session's address. The latter may be broadcast.
+/// Reads the address of the encoder that replies at the session's address, which may be the broadcast address.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the encoder rejects the request.
@@ -123,7 +123,7 @@ pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
     master.request_with_time(&Request::ReadTypeLabel).map(|timed| timed.sender)
 }
 
-/// Reads the complete data field FFh, using 4Ch for its size and then 4Ah with code 0.
+/// Reads the complete data field FFh. Its size is read with 4Ch and its content with 4Ah and code 0.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the encoder has no extended label.
@@ -142,7 +142,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     Ok(master.station().take_undisplayed_codes())
 }
 
-/// Converts the rejection of an unsupported command to `None`, and returns any other error.
+/// Converts the rejection of an unsupported command to `None`. Any other error is returned.
 fn optional_value<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
     match result {
         Ok(value) => Ok(Some(value)),

@@ -1,5 +1,5 @@
-//! Host side of the serial line. It repeats requests, reads changes back, and collects announced status codes. Single
-//! exchanges are implemented in [`exchange`].
+//! The host side of the serial line, which repeats requests, reads back changes, and collects status codes that the
+//! encoder announces. Single exchanges are implemented in [`exchange`].
 //!
 //! A read is repeated at most five times within at most eight seconds. A write is never repeated without checking its
 //! effect.
@@ -44,7 +44,7 @@ impl<'a> Master<'a> {
         self.line.now()
     }
 
-    /// Runs `work` without reacting to cancellation. This is for steps that return the encoder to a safe state.
+    /// Runs `work` without reacting to cancellation, for steps that return the encoder to a safe state.
     pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.ignore_cancellation(true);
         let result = work(self);
@@ -78,7 +78,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Returns whether baud rate and parity can be set on this side. Otherwise, they are set at the far end of the
+    /// Returns whether the baud rate and parity can be set by the host. Otherwise, they are set at the far end of the
     /// link.
     pub fn can_set_format(&self) -> bool {
         self.line.ctx.wire.can_set_format()
@@ -92,7 +92,7 @@ impl<'a> Master<'a> {
         self.request_with_time(request).map(|timed| timed.reply)
     }
 
-    /// Runs `work`, in which every reply must be received twice. This is for values that will be stored.
+    /// Runs `work`, in which every reply must be received twice, for values that will be stored.
     pub fn run_double_checked<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -132,8 +132,9 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sends a request that changes the encoder, and returns how often it may have been executed. If the result of an
-    /// attempt is unclear, `is_done` reads it back. The request is repeated only if it was not executed.
+    /// Sends a request that changes the encoder, and returns how often it may have been executed. If it is unclear
+    /// whether an attempt succeeded, `is_done` reads back the result. The request is repeated only if it was not
+    /// executed.
     ///
     /// # Errors
     /// Returns an error if the encoder rejects the request or does not execute it in five attempts. Returns
@@ -161,7 +162,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sends a request that has no reply.
+    /// Sends a request to which no encoder replies.
     ///
     /// # Errors
     /// Returns an error if the connection fails, or [`Error::Cancelled`] if the job is cancelled.
@@ -210,7 +211,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads the status codes that a reply announces, and returns a rejection as an error.
+    /// Reads the status codes that a reply announces, and converts a rejection to an error.
     pub(super) fn resolve_status(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<TimedReply, Error> {
         self.station.line.clear_error();
         let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = &answered.answer;
@@ -224,9 +225,9 @@ impl<'a> Master<'a> {
     }
 
     /// Completes a request that changes the encoder. Unlike [`resolve_status`](Self::resolve_status), it leaves
-    /// announced status codes to the next exchange, which announces them again. A cancellation can therefore not occur
-    /// between a change and its counting. This is also necessary after 55h and 67h, because the encoder no longer
-    /// replies with the old settings.
+    /// announced status codes to the next exchange, which announces them again. As a result, a job cannot be cancelled
+    /// between a change and its counting. Furthermore, status codes cannot be read after 55h and 67h, because the
+    /// encoder no longer replies with the old settings.
     pub(super) fn acknowledge(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<(), Error> {
         if matches!(answered.answer, Answer::Reply { .. }) {
             self.station.line.clear_error();

@@ -1,5 +1,5 @@
-//! Procedures of a HIPERFACE encoder. Each uses a [`Master`], which sends requests, repeats those that may be repeated,
-//! and observes the timing of the protocol. "Manual" refers to SICK 8010701.
+//! Procedures for HIPERFACE encoders. They use a [`Master`], which sends requests, repeats them where this is safe, and
+//! observes the timing of the protocol. "Manual" refers to SICK 8010701.
 //!
 //! Every change to the memory of an encoder goes through [`mod@write`] with a plan and consent.
 

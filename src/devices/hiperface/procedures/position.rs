@@ -1,4 +1,4 @@
-//! Position, analogue values and counter, read once or as samples, and the standstill check.
+//! Reading the position, analogue values and the counter, either once or by polling, and checking for standstill.
 
 use std::time::Duration;
 
@@ -67,8 +67,8 @@ impl WatchedQuantity {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
-    /// Time at which the encoder sampled an analogue value. It is the falling edge of the reply's first start bit. For
-    /// a counter or a rejection, it is the time at which the reply was parsed.
+    /// Time at which the encoder sampled an analogue value, which is the falling edge of the reply's first start bit.
+    /// For the counter or a rejection, this is the time at which the reply was parsed.
     pub at: Moment,
     pub watch: WatchedQuantity,
     pub value: Result<i64, Error>,
@@ -87,7 +87,7 @@ impl WatchedReading {
     }
 }
 
-/// Reads a watched value once. A rejection is a valid result.
+/// Reads a watched value once. A rejection is not treated as an error.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
@@ -106,7 +106,7 @@ pub fn read_watched_value(master: &mut Master<'_>, what: WatchedQuantity) -> Res
     Ok(WatchedReading { at, watch: what, value, codes })
 }
 
-/// Reads the position like [`read_position`]. A temporary lack of a position is a valid result.
+/// Reads the position like [`read_position`], but does not treat a temporary lack of a position as an error.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the encoder rejects the request for another reason.
@@ -129,7 +129,8 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
     }
 }
 
-/// Reads an analogue channel (44h). It usually has 10 bits for 5 V, with a sign. Otherwise, see the data sheet.
+/// Reads an analogue channel (44h). Most channels have signed values with 10 bits for 5 V. For other channels, see the
+/// data sheet.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the channel does not exist.
@@ -196,7 +197,7 @@ pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) ->
     }
 }
 
-/// Returns the number of distinct positions. If the geometry is unknown, this is the number of all 32-bit words.
+/// Returns the number of distinct positions, which is 2³² if the geometry is unknown.
 pub(super) fn position_range(geometry: Option<Geometry>) -> u64 {
     geometry.and_then(Geometry::position_count).unwrap_or(1 << 32)
 }

@@ -8,14 +8,14 @@ use super::{Error, Master};
 use crate::devices::hiperface::protocol::{LineSettings, Request, StatusCode, Timing};
 use crate::units::CharacterFormat;
 
-/// Time to wait after the restart before the first request. It ends within the window from 100 to 900 ms, in which the
-/// encoder listens with factory settings.
+/// Time from the restart to the first request. It lies within the window from 100 to 900 ms in which the encoder
+/// listens with factory settings.
 const INTO_DEFAULT_WINDOW: Duration = Duration::from_millis(200);
-/// Margin added to the manual's times for the stored settings, because clocks differ.
+/// Margin added to the times in the manual for applying the stored settings, because clocks differ.
 const TIME_RESERVE: Duration = Duration::from_millis(100);
 
-/// Restarts the encoder, waits until it listens with its stored settings, and reads its complete status queue. The
-/// initialisation may have added up to four codes to the queue.
+/// Restarts the encoder, waits until it listens with its stored settings, and reads its complete status queue.
+/// Initialisation may have added up to four codes to the queue.
 ///
 /// If the stored settings are the factory settings, requests are sent within the default window. Otherwise, nothing is
 /// sent until the encoder has applied the stored settings, because a request within the window would keep the encoder

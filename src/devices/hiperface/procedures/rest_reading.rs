@@ -1,6 +1,5 @@
-//! High-accuracy reading of the shaft at rest, for commutation and synchronisation. It has the highest accuracy,
-//! because it uses both channels of an encoder: the absolute position, and sine and cosine if there are analogue
-//! channels for them.
+//! Reading the position with the highest accuracy while the shaft is at rest, for commutation and synchronisation. The
+//! absolute position is combined with the sine and cosine signals, if the encoder has analogue channels for them.
 
 use super::{Error, Master, ensure_standstill, read_analogue, read_position};
 use crate::devices::hiperface::protocol::Geometry;
@@ -10,7 +9,7 @@ pub struct RestPosition {
     pub raw: u32,
     /// Whether the position is within the measuring range and not invalidated by a status code.
     pub valid: bool,
-    /// Sine and cosine, if the encoder provides them.
+    /// Sine and cosine signals, if the encoder provides them.
     pub signals: Option<Signals>,
 }
 
@@ -34,14 +33,16 @@ impl Signals {
         Signals { sine_v: volts(sine), cosine_v: volts(cosine) }
     }
 
-    /// Returns the fraction of a period that one count resolves at the amplitude of these signals.
+    /// Returns the resolution of the position, which is the fraction of a period that one analogue count represents at
+    /// the amplitude of these signals.
     pub fn resolution_periods(&self) -> f64 {
         let amplitude = self.sine_v.hypot(self.cosine_v).max(Self::VOLTS_PER_COUNT);
         Self::VOLTS_PER_COUNT / amplitude / std::f64::consts::TAU
     }
 }
 
-/// Reads the position, then sine and cosine, then the position again. Sine and cosine are means of four readings.
+/// Reads the position, then sine and cosine, then the position again. The sine and cosine values are averages of four
+/// readings.
 ///
 /// # Errors
 /// Returns [`Error::Moving`] if the shaft moves, or another error if the exchange fails or there is no position.
@@ -76,9 +77,8 @@ fn read_signals(master: &mut Master<'_>) -> Result<Option<Signals>, Error> {
 mod tests {
     use super::*;
 
-    /// A level of 2.5 V equals 511.5 counts, and half a volt more equals 613.8 counts. 1/1023 of 5 V is 4.888 mV, which
-    /// is
-    /// 0.00978 rad of 0.5 V.
+    /// A level of 2.5 V equals 511.5 counts, and 3 V equals 613.8 counts. One count is 1/1023 of 5 V, or 4.888 mV,
+    /// which is 0.00978 rad at an amplitude of 0.5 V.
     #[test]
     fn counts_convert_to_volts_around_the_mean() {
         let signals = Signals::from_counts(613.8, 511.5);

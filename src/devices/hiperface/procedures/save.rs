@@ -1,4 +1,4 @@
-//! Reading the identity of an encoder and all values that can be restored.
+//! Reading the identity of an encoder and all restorable values.
 
 use super::{Error, Identity, Master, PolledSample, ReadPolicy, Survey, read_survey};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, RecordedValues};
@@ -7,12 +7,12 @@ use crate::profile::UnknownValues;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SaveOptions {
-    /// Whether a field with an unknown access code is treated as an error.
+    /// Whether a field with an unknown access code causes an error.
     pub complete: bool,
 }
 
-/// Reads the complete encoder. Every value except the position is read twice. A single reading is only protected by an
-/// XOR checksum, which is not sufficient for data that is stored for years.
+/// Reads all values of the encoder. Every value except the position is read twice, because an XOR checksum alone is not
+/// sufficient protection for data that may be stored for years.
 ///
 /// # Errors
 /// Returns an error if the exchange fails, or if a field cannot be read and [`complete`](SaveOptions::complete) is set.

@@ -17,7 +17,7 @@ use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity, SupplyVoltage};
 
 parameters! {
-    /// Line and encoder parameters of a link. The defaults are the factory settings.
+    /// Link parameters for the line and the encoder. The defaults are the factory settings.
     pub struct LinkParameters: UrlError {
         pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => BaudValues;
         pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::KEYWORDS;
@@ -27,7 +27,8 @@ parameters! {
         pub echo: Echo = Echo::Unknown, "echo" => Echo::KEYWORDS;
         /// Whether the encoder's time-out is 44 bits rather than 11 bits.
         pub long_timeout: bool = true, "timeout" => CustomNotation(AllowedValues::TimeoutBits, read_timeout);
-        /// Time allowed for a reply beyond the worst case of the protocol. `None` means the default of the link.
+        /// Additional time allowed for a reply, beyond the worst case of the protocol. `None` selects the default of
+        /// the link.
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
         pub periods: Option<u32> = None, "periods" => OptionalValue(CustomNotation(AllowedValues::Periods { most: MAX_PERIODS }, read_periods)), "connect.periods" like "128";
         pub turns: Option<u32> = None, "turns" => OptionalValue(CustomNotation(AllowedValues::MostTurns { most: MAX_PERIODS }, read_periods)), "connect.turns" like "4096";
@@ -35,7 +36,7 @@ parameters! {
 }
 
 parameters! {
-    /// Link parameters of an adapter with a serial line.
+    /// Link parameters for an adapter with a serial line.
     pub struct AdapterParameters: UrlError {
         /// Supply voltage that the adapter provides to the encoder, in millivolts, or `None` for no supply.
         pub millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(SUPPLY_RANGE)), "connect.supply" like "8";
@@ -57,7 +58,7 @@ impl AdapterParameters {
     }
 }
 
-/// The four access codes. Each is 55h unless the user has given another one.
+/// The four access codes. A code is 55h unless the user has specified another value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Codes([AccessCode; 4]);
 
@@ -79,7 +80,8 @@ impl Codes {
     }
 }
 
-/// Numbered access codes with which each session begins. If a number occurs twice, its last code applies.
+/// Access codes, with their numbers, that apply from the start of every session. If a number occurs twice, the last
+/// code applies.
 #[derive(Clone, Debug, Default)]
 pub struct InitialAccessCodes(Vec<(AccessCodeNumber, AccessCode)>);
 
@@ -106,9 +108,9 @@ pub struct Station {
     pub long_timeout: bool,
     pub line: LineState,
     pub codes: Codes,
-    /// Periods and turns given by the user for an encoder type that is not in the table.
+    /// Periods and turns, as specified by the user for an encoder type that is not in the table.
     pub geometry: Option<Geometry>,
-    /// Status codes in the order of reading. They are removed once they are displayed.
+    /// Status codes in the order in which they were read. They are removed once they have been displayed.
     pub codes_met: Vec<StatusCode>,
     /// Status codes for the logbook. This is their only copy, because 50h removes them from the encoder.
     codes_read: Vec<StatusCode>,
@@ -140,8 +142,8 @@ impl Station {
         }
     }
 
-    /// Creates a station from the parameters of its link and a margin. Missing parameters have their factory settings.
-    /// Parameters that do not concern the line are ignored.
+    /// Creates a station from link parameters and a margin. Factory settings replace missing parameters, and parameters
+    /// that do not concern the line are ignored.
     ///
     /// # Errors
     /// Returns an error with the allowed values if a value is invalid.
@@ -170,13 +172,13 @@ impl Station {
         self.codes_met.extend(codes);
     }
 
-    /// Takes the codes for the logbook. They must be stored before any of them is displayed.
+    /// Removes and returns the codes for the logbook. They must be stored before any of them is displayed.
     pub fn take_unlogged_codes(&mut self) -> Vec<StatusCode> {
         std::mem::take(&mut self.codes_read)
     }
 
-    /// Takes the number of missing or damaged replies to 50h since the last call. Each of them may have contained a
-    /// status code.
+    /// Returns the number of missing or damaged replies to 50h since the last call, and resets it. Each of these
+    /// replies may have contained a status code.
     pub fn take_missed_code_count(&mut self) -> u32 {
         std::mem::take(&mut self.unanswered_codes)
     }
@@ -232,7 +234,7 @@ fn read_periods(text: &str) -> Option<u32> {
     parse_whole(text).filter(|periods| (1..=MAX_PERIODS).contains(periods))
 }
 
-/// Returns the geometry given by `periods=` and `turns=`. The default is one turn.
+/// Returns the geometry specified by `periods=` and `turns=`. The default number of turns is 1.
 fn parse_geometry(link: &LinkParameters) -> Result<Option<Geometry>, RejectedParameter> {
     let turns = link.turns.unwrap_or(1);
     match link.periods {

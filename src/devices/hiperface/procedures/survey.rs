@@ -11,7 +11,7 @@ use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     pub identity: Identity,
-    /// Codes of the status queue in the encoder's order, and those announced during the survey.
+    /// Codes from the status queue, in the encoder's order, and codes announced during the survey.
     pub codes: Vec<StatusCode>,
     /// All data fields. A field has no bytes if its access code is unknown or if it is listed in `unreadable`.
     pub fields: Vec<FieldImage>,
@@ -20,11 +20,12 @@ pub struct Survey {
     /// Quality of the line at the end of the survey.
     pub line: LineQuality,
     pub counter: Option<u32>,
-    /// Position. It is `None` if the encoder did not report it for a reason that is not temporary.
+    /// Position, or `None` if the encoder permanently does not report a position.
     pub position: Option<PolledSample>,
 }
 
-/// Reads the status queue and then all other values. It is not an error if the encoder type does not support a feature.
+/// Reads the status queue and then all other values. Features that the encoder type does not support do not cause an
+/// error.
 ///
 /// # Errors
 /// Returns an error if the exchange fails, or if the encoder rejects a command that every type supports.
@@ -37,7 +38,7 @@ pub fn read_all_values(
     master.collect_codes()?;
     let mut survey = read_survey(master, types, progress, ReadPolicy::AsFarAsPossible)?;
     survey.codes = master.station().take_undisplayed_codes();
-    // A code that the encoder announced before also applies to this position.
+    // A code that the encoder announced earlier also applies to this position.
     let spoilt = survey.codes.iter().any(|code| code.invalidates_position());
     if let Some(PolledSample::Position(reading)) = &mut survey.position {
         reading.valid &= !spoilt;
@@ -45,7 +46,7 @@ pub fn read_all_values(
     Ok(survey)
 }
 
-/// Handling of data fields that cannot be read.
+/// The handling of data fields that cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ReadPolicy {
     AsFarAsPossible,
@@ -67,7 +68,7 @@ pub(super) fn read_survey(
         ReadPolicy::Whole => read_all_fields(master, count, progress)?,
         ReadPolicy::AsFarAsPossible => read_accessible_fields(master, count, &mut unreadable, progress)?,
     };
-    // A restore needs neither value, so a rejection does not end the reading.
+    // A restore requires neither value, so a rejection does not end the survey.
     let position = read_sample(master, identity.geometry);
     let position = separate_value_error(master, position)?.ok();
     let counter = read_counter(master);
@@ -76,7 +77,7 @@ pub(super) fn read_survey(
     Ok(Survey { identity, codes: Vec::new(), fields, unreadable, line, counter, position })
 }
 
-/// Reads all fields that can be read. The others are reported with their status, if it is known.
+/// Reads all readable fields. Unreadable fields are reported with their status, if known.
 fn read_accessible_fields(
     master: &mut Master<'_>,
     count: u8,

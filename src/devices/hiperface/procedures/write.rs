@@ -1,4 +1,4 @@
-//! Execution of a plan. The values on which it is based are read again. Each operation is then executed, and all
+//! Execution of a plan. The values on which the plan is based are read again, each operation is executed, and all
 //! changes are read back.
 
 pub use crate::profile::WrittenChanges;
@@ -27,7 +27,7 @@ pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Error, WrittenC
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EndState {
-    /// Fields that are still writable although they should be write-protected, because the encoder no longer replied.
+    /// Fields that should be write-protected but are still writable, because the encoder stopped replying.
     pub unlocked: Vec<u8>,
 }
 
@@ -51,8 +51,8 @@ impl Write for EncoderWriter<'_, '_> {
     type Written = WrittenChanges;
     type EndState = EndState;
 
-    /// Checks that this is the encoder for which the plan was made. The memory is compared as well, because two new
-    /// encoders can have the same identity.
+    /// Checks that the plan was made for this encoder. The memory is compared as well, because two new encoders can
+    /// have the same identity.
     fn confirm_base(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let label = read_type_label(master)?;
@@ -153,11 +153,11 @@ fn restore_write_protection(
     let now = match read_field_status(master, *field) {
         Ok(now) if now.is_writable() => now,
         Ok(_) => return Ok(()),
-        // The field had not been created yet.
+        // The field has not been created yet.
         Err(error) if error.is_rejection(StatusCode::NO_SUCH_FIELD) => return Ok(()),
         Err(error) => return Err(error),
     };
-    // The other changes of the plan are not made. Only the protection is restored.
+    // Only the protection is restored. Other changes of the plan are not made.
     let lock = Op::Define { field: *field, from: Some(now), to: now.with_write_enable(to.is_writable()) };
     let sent = execute(master, &lock, confirmed, range)?;
     done.write_cycles += u64::from(sent);
@@ -236,7 +236,8 @@ fn set_address(master: &mut Master<'_>, to: DeviceAddress) -> Result<u32, Error>
         master.station().address = to.byte();
         let moved = read_type_label(master).is_ok();
         master.station().address = before;
-        // An encoder that does not reply at the new address must reply at the old one, or it cannot be reached.
+        // An encoder that does not reply at the new address must reply at the old address. Otherwise, it cannot be
+        // reached.
         if moved { Ok(true) } else { read_type_label(master).map(|_| false) }
     })?;
     if before != BROADCAST {
@@ -253,7 +254,8 @@ fn reads_back_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus
     }
 }
 
-/// Returns whether an access code opens a field that it protects. Without such a field, the code cannot be tested.
+/// Returns whether the encoder accepts an access code for a field that it protects. Without such a field, the code
+/// cannot be tested.
 fn is_code_accepted(
     master: &mut Master<'_>,
     base: &Base,
@@ -288,7 +290,7 @@ fn verify_plan(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Res
             Op::Store { field, address, new, .. } => {
                 let status = read_field_status(master, *field)?;
                 let code = master.station().codes.get(status.code());
-                // A field that was shrunk afterwards no longer has all of the written bytes.
+                // A field whose size was reduced afterwards no longer contains all of the written bytes.
                 let size = status.size().bytes().saturating_sub(usize::from(*address)).min(new.len());
                 let expected = new.get(..size).unwrap_or_default();
                 let got = read_range(master, *field, usize::from(*address), size, code)?;
@@ -326,7 +328,7 @@ fn verify_plan(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Res
                 }
                 verified += 1;
             }
-            // A code cannot be read back. Only the reply of the encoder confirms it.
+            // An access code cannot be read back. Only the encoder's reply confirms the change.
             Op::ChangeCode { .. } => {}
         }
     }
@@ -337,7 +339,7 @@ fn mismatch_error(op: &Op, expected: String, got: String) -> Error {
     Error::NotVerified { item: op.plan_item(), expected, got: ReadBackValue::Value(got) }
 }
 
-/// Checks that no encoder replies at an address, because two encoders at one address can no longer be told apart.
+/// Checks that no encoder replies at an address, because two encoders with the same address cannot be distinguished.
 ///
 /// # Errors
 /// Returns [`Error::AddressTaken`] if anything is received, or another error if the connection fails or the job is
@@ -359,7 +361,7 @@ pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
     }
 }
 
-/// Reads all fields that require this access code. They show whether the code was changed.
+/// Reads all fields that require this access code, which shows whether the code was changed.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.

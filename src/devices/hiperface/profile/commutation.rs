@@ -1,6 +1,6 @@
-//! The commutation offset in the format in which this program stores it in a data field. The manual leaves the format
-//! open. The sixteen bytes fill a block of the EEPROM, and are recognised in a backup as a mounting value. See SICK
-//! 8010701, commutation, and section 5 of the project's sine/cosine reference.
+//! The format in which this program stores a commutation offset in a data field. The manual does not define a format.
+//! The sixteen bytes fill a block of the EEPROM, and are recognised in a backup as a mounting value. See SICK 8010701,
+//! commutation, and section 5 of the project's sine/cosine reference.
 
 use super::HiperfaceProfile;
 use crate::analysis::commutation::ElectricalAngle;
@@ -28,7 +28,7 @@ pub struct CommutationRecord {
     pub confirmed: bool,
 }
 
-/// Error for bytes that begin like a commutation record but are not valid.
+/// Error for bytes that begin like a commutation record but do not form a valid record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CommutationRecordError;
 
@@ -48,7 +48,7 @@ impl CommutationRecord {
         bytes
     }
 
-    /// Parses the record at the beginning of `bytes`, or returns `None` if there is no record.
+    /// Parses the record at the start of `bytes`, or returns `None` if there is no record.
     pub fn parse(bytes: &[u8]) -> Option<Result<Self, CommutationRecordError>> {
         if !bytes.starts_with(HiperfaceProfile::COMMUTATION_MAGIC) {
             return None;
@@ -77,7 +77,7 @@ fn crc(bytes: &[u8]) -> u16 {
 mod tests {
     use super::*;
 
-    /// Record with the offset of section 5 for four pole pairs; the CRC was calculated with Python's
+    /// Record with the offset from section 5 of the reference and four pole pairs. The CRC was calculated with Python's
     /// `binascii.crc_hqx(body, 0xFFFF)`.
     const RECORD: [u8; 16] =
         [0x43, 0x4F, 0x31, 0x01, 0x53, 0x05, 0x1E, 0xB8, 0x04, 0x00, 0x00, 0x00, 0x00, 0x00, 0xF2, 0x6A];
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn the_crc_matches_the_standard_check_value() {
-        // The check value of CRC-16/CCITT-FALSE for the digits 1 to 9.
+        // This is the published check value of CRC-16/CCITT-FALSE for the digits 1 to 9.
         assert_eq!(crc(b"123456789"), 0x29B1);
     }
 }

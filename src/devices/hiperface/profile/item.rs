@@ -1,11 +1,12 @@
-//! Names of items in an encoder: `field:1@3+2`, `status:1`, `analogue:0x48`, `counter`, `address`, `settings`.
+//! Names of the items in an encoder, such as `field:1@3+2`, `status:1`, `analogue:0x48`, `counter`, `address` and
+//! `settings`.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::devices::hiperface::protocol::AccessCodeNumber;
 
-/// Readable item of an encoder.
+/// An item of an encoder that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Item {
     /// A data field or a part of one.
@@ -33,7 +34,7 @@ pub struct FieldRange {
     pub count: Option<usize>,
 }
 
-/// Item that a plan confirms, changes and reads back.
+/// An item that a plan checks, changes and reads back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanItem {
     /// A readable item.

@@ -36,7 +36,7 @@ pub enum SingleValue {
 /// A single persistent write.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// Creates, changes or deletes a field with command 4Dh. A new status with E = 0 deletes the field.
+    /// Creates, changes or deletes a field with command 4Dh. If bit E of the new status is 0, the field is deleted.
     Define {
         /// Field number.
         field: u8,
@@ -53,7 +53,7 @@ pub enum Op {
         address: u8,
         /// Status of the field at the time of the write. It contains the number of the access code.
         status: DataFieldStatus,
-        /// Previous bytes. They are `None` if they are unknown or the field does not exist yet.
+        /// Previous bytes, or `None` if they are unknown or the field does not exist yet.
         old: Option<Vec<u8>>,
         /// New bytes, 1 to 128.
         new: Vec<u8>,
@@ -109,7 +109,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the item that is changed. If it is readable, `read` accepts its name.
+    /// Returns the item that the operation changes. If the item is readable, the `read` command accepts its name.
     pub fn plan_item(&self) -> PlanItem {
         PlanItem::Item(match self {
             Op::Define { field, .. } => Item::Status(*field),
@@ -124,8 +124,8 @@ impl Op {
         })
     }
 
-    /// Returns the changed item with its old and new value, for the logbook. A field status and line settings are bytes.
-    /// An access code has no value.
+    /// Returns the changed item with its old and new value, for the logbook. Field statuses and line settings are
+    /// recorded as bytes. Access codes are recorded without a value.
     pub fn changed_item(&self) -> ChangedItem {
         let byte = |byte: u8| Some(format!("{byte:02X}"));
         let number = |number: u32| Some(number.to_string());
@@ -142,7 +142,7 @@ impl Op {
         ChangedItem::new(self.plan_item(), old, new)
     }
 
-    /// Returns the number of changes as in a comparison, in which each byte of a data field is counted.
+    /// Returns the number of changes, counted as in a comparison. Each byte of a data field counts as one change.
     pub fn change_count(&self) -> u64 {
         match self {
             Op::Store { new, .. } => new.len() as u64,
@@ -150,8 +150,8 @@ impl Op {
         }
     }
 
-    /// Returns whether the operation makes a protected field writable. In that case, the operation that protects the
-    /// field again must be executed even if an operation in between fails.
+    /// Returns whether the operation makes a protected field writable. If so, the operation that restores the
+    /// protection must be executed even if an operation in between fails.
     pub fn removes_protection(&self) -> bool {
         matches!(self, Op::Define { from, to, .. }
             if to.exists() && to.is_writable() && from.is_none_or(|from| !from.is_writable()))

@@ -20,7 +20,8 @@ pub struct HiperfaceProfile {
     pub mounting: Vec<MountingMark>,
     /// Data fields in ascending order.
     pub fields: Vec<FieldImage>,
-    /// Fields that the write created, with their content. Only a backup has these, and restoring it deletes them.
+    /// Fields created by the write, with their content. Only a backup contains such fields. Restoring the backup
+    /// deletes them.
     pub created: Vec<FieldImage>,
     /// Unknown profile entries by field number.
     pub unknown_in_fields: Vec<(u8, UnknownValues)>,
@@ -71,7 +72,8 @@ pub struct RecordedValues {
     pub unknown: UnknownValues,
 }
 
-/// Marks a range of a data field as a mounting value, which is valid only for one encoder as mounted on its motor.
+/// Mark of a data field range that contains a mounting value, which is valid only for one encoder as mounted on its
+/// motor.
 pub type MountingMark = crate::profile::MountingMark<FieldRange>;
 
 /// A data field.

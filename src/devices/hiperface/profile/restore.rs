@@ -1,5 +1,5 @@
-//! Planning a restore. Only differences are written, in as few writes as possible, and without values that belong to
-//! the mounting of another encoder.
+//! Planning a restore. Only differences are written, in as few writes as possible. Mounting values of another encoder
+//! are not written.
 
 mod device;
 mod error;
@@ -31,8 +31,8 @@ pub struct RestoreOptions {
     pub allow_other_type: bool,
     /// Whether mounting values may be written to another encoder.
     pub with_mounting: bool,
-    /// Whether a field may be deleted and created again to change its size if it is not the last field. This also
-    /// affects all fields after it.
+    /// Whether a field other than the last may be deleted and created again to change its size. This also affects all
+    /// fields after it.
     pub recreate: bool,
     /// Decisions about data fields that contain bytes of unknown meaning and would be written to another encoder.
     /// `true` copies the field. A field without a decision is left unchanged.
@@ -57,7 +57,7 @@ pub struct DeviceState {
 pub struct Restore {
     /// Part of the result that is common to all kinds of device.
     pub common: crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange>,
-    /// Data fields whose bytes of unknown meaning differ from those of another encoder.
+    /// Data fields whose bytes of unknown meaning differ between the profile and the encoder.
     pub unknown_fields: Vec<UnknownMeaningField>,
     /// Data fields created by the write that are not deleted, because they have changed since then or are not the last
     /// fields.

@@ -1,10 +1,12 @@
-//! Undoing a write to an encoder: splitting it into bytes, and instructions for items that the backup cannot restore.
+//! Undoing a write to an encoder: splitting changes into single bytes, and instructions for items that the backup
+//! cannot restore.
 
 use super::{HiperfaceProfile, Item};
 use crate::devices::hiperface::protocol::DataFieldStatus;
 use crate::profile::{ChangedItem, Redo, single_bytes};
 
-/// Splits bytes of a field. Bytes of a field that is created or deleted belong to its status.
+/// Splits a change of field bytes into single bytes. The bytes of a created or deleted field belong to the change of
+/// its status.
 pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
     match item.item.parse() {
         Ok(Item::Field(_)) if item.old.is_none() => Vec::new(),
@@ -25,7 +27,7 @@ pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
 impl HiperfaceProfile {
     /// Returns the instruction for an item that this backup cannot restore.
     pub(super) fn redo_item(&self, item: &ChangedItem) -> Option<Redo> {
-        // The content of a field that was only created is unknown, and it may have been used since.
+        // The content of a field that was only created is unknown, and data may have been stored in it since.
         let is_known = |field: u8| self.created.iter().any(|own| own.number == field);
         let old = || item.old.clone().unwrap_or_default();
         Some(match item.item.parse() {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Broadcast address. Every encoder on the line replies to it with its own address. It is allowed only if a single
+/// Broadcast address, to which every encoder on the line replies with its own address. It may be used only if a single
 /// encoder is connected or the command has no reply.
 pub const BROADCAST: u8 = 0xFF;
 

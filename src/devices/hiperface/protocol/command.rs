@@ -38,11 +38,12 @@ pub struct CommandRow {
     pub name: &'static str,
     /// Whether access code 0 is required.
     pub code0: bool,
-    /// Maximum processing time, without the transfer and the protocol time-out. It is zero if the command has no reply.
+    /// Maximum processing time, excluding the transfer and the protocol time-out. It is zero if the command has no
+    /// reply.
     pub max_time: Duration,
     /// Number of bytes between the command byte and the checksum of the request. For command 4Bh, this is the minimum.
     pub request_payload: usize,
-    /// Whether the command changes data that the encoder keeps without power.
+    /// Whether the command changes non-volatile data.
     pub persistent: bool,
 }
 
@@ -57,7 +58,7 @@ const fn row(
     CommandRow { command, name, code0, max_time: Duration::from_millis(max_ms), request_payload, persistent }
 }
 
-/// Command table of the manual, in its order. The times are the "maximale Antwortzeit".
+/// Command table in the order of the manual. The times are the manual's "maximale Antwortzeit".
 #[rustfmt::skip]
 pub const COMMANDS: [CommandRow; 20] = [
     //                                      name                                code0  ms  payload persistent
@@ -84,7 +85,8 @@ pub const COMMANDS: [CommandRow; 20] = [
 ];
 
 impl Command {
-    /// Returns the command with this command byte, or `None` if the byte is not assigned. The error bit is ignored.
+    /// Returns the command with the given command byte, or `None` if the byte is not assigned. The error bit is
+    /// ignored.
     pub fn from_byte(byte: u8) -> Option<Self> {
         COMMANDS.iter().map(|row| row.command).find(|command| command.byte() == byte & 0x7F)
     }

@@ -1,4 +1,5 @@
-//! Data fields: the partitions of the encoder's EEPROM (manual, "Datenspeicherung und Verwaltung", figure 28).
+//! Data fields, which are the partitions of the encoder's EEPROM (manual, "Datenspeicherung und Verwaltung", figure
+//! 28).
 
 use std::fmt;
 
@@ -13,7 +14,7 @@ pub const MAX_TRANSFER: usize = 128;
 pub struct AccessCodeNumber(u8);
 
 impl AccessCodeNumber {
-    /// Access code 0, which also protects the encoder's own settings.
+    /// Access code 0, which also protects the settings of the encoder.
     pub const ZERO: AccessCodeNumber = AccessCodeNumber(0);
 
     /// Creates an access code number 0 to 3, or returns `None` for a greater number.
@@ -63,7 +64,7 @@ impl fmt::Debug for AccessCode {
     }
 }
 
-/// Size of a data field: 16, 32 and so on up to 128 bytes.
+/// Size of a data field, which is a multiple of 16 bytes from 16 to 128.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FieldSize(u8);
 

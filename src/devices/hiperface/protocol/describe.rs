@@ -1,4 +1,4 @@
-//! Description of captured frames for `decode` and the trace. Access codes are never included.
+//! Descriptions of captured frames for `decode` and the trace. They never contain access codes.
 
 use super::{
     AccessCode, AccessCodeNumber, Answer, Command, DataFieldStatus, DeviceAddress, Frame, FrameError, LineSettings,
@@ -17,7 +17,7 @@ pub enum FrameDetail {
     },
     /// The frame is a request.
     Request(Arguments),
-    /// The frame is not a request, and it cannot be recognised as a reply without its request.
+    /// The frame is not a request. Without its request, it cannot be recognised as a reply.
     NoRequest(RequestError),
     /// The encoder rejected the request with this status code.
     Refused(StatusCode),
@@ -92,7 +92,7 @@ pub fn describe_frame(bytes: &[u8], request: Option<&Request>) -> Result<Vec<Fra
     Ok(facts)
 }
 
-/// Parses a frame as the reply to an unknown request, if its length rules out a request.
+/// Parses a frame as the reply to an unknown request if its length rules out that it is a request.
 fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<Answer> {
     let code = AccessCode::FACTORY;
     let candidate = match (Command::from_byte(frame.command)?, frame.payload) {
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn access_codes_are_omitted_from_request_descriptions() {
-        // The manual's examples: code 66h opens field 1, code 2 becomes 66h.
+        // In the manual's examples, access code 66h opens field 1, and access code 2 is changed to 66h.
         let cases = [
             ("40 4B 01 05 02 66 08 15 76", Arguments::Store { field: 1, address: 5, data: vec![0x08, 0x15] }),
             ("40 4F 02 55 66 3E", Arguments::Code(AccessCodeNumber::new(2).unwrap())),

@@ -1,5 +1,5 @@
-//! Encoder types: periods and turns for the type code in the reply to 52h. The table is data
-//! (`assets/devices/hiperface/encoder_types.ron`), so users can add encoders.
+//! Encoder types, which define the periods and turns for each type code in the reply to 52h. The built-in table is the
+//! file `assets/devices/hiperface/encoder_types.ron`, and users can add their own encoders.
 
 use std::ops::RangeInclusive;
 
@@ -14,7 +14,7 @@ pub struct EncoderType {
     pub code: u8,
     /// Family name from the data sheet.
     pub name: String,
-    /// Periods and turns. `None` means that the extended label or the user must provide them.
+    /// Periods and turns, or `None` if the extended label or the user must provide them.
     pub geometry: Option<Geometry>,
     /// Whether the encoder is a kit without a bearing. Its code tracks are aligned with 63h after mounting.
     pub kit: bool,
@@ -49,7 +49,7 @@ pub enum TypeTableError {
     },
 }
 
-/// Numeric entry of a row. It is displayed with its name in the file.
+/// Numeric entry of a row, which is displayed by its name in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GeometryEntry {
     /// Periods per turn.
@@ -107,7 +107,7 @@ impl EncoderTypes {
 
     /// Returns the built-in table.
     pub fn built_in() -> Self {
-        // A test checks that the table can be parsed. An empty table would only make every type unknown.
+        // A test checks that the table can be parsed. With an empty table, every type would be unknown.
         Self::parse(Self::BUILT_IN).unwrap_or(EncoderTypes(Vec::new()))
     }
 
@@ -126,8 +126,8 @@ impl EncoderTypes {
 }
 
 impl Row {
-    /// Upper limit of periods, and of periods times turns. The position word has 32 bits, of which five count the steps
-    /// within a period.
+    /// Upper limit for the number of periods, and for the product of periods and turns. Five of the 32 bits of the
+    /// position word count the steps within a period.
     const MAX_PERIODS_AND_TURNS: u32 = 1 << 27;
 
     fn into_encoder_type(self) -> Result<EncoderType, TypeTableError> {

@@ -6,11 +6,11 @@ use super::{Geometry, checksum};
 /// Extended label of an encoder with type code FFh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExtendedLabel {
-    /// Whether the stored checksum is the XOR of all other bytes. The algorithm is not public (`U`), so a mismatch only
-    /// causes a warning.
+    /// Whether the stored checksum equals the XOR of all other bytes. The algorithm is not public (`U`), so a mismatch
+    /// only causes a warning.
     pub checksum_fits: bool,
-    /// Flags in byte 01h. Bit 0 means linear, and bit 1 means bipolar counting. The byte is displayed as it is, because
-    /// another public source inverts bit 1.
+    /// Flags in byte 01h. Bit 0 means linear, and bit 1 means bipolar counting. The byte is displayed unchanged,
+    /// because another public source inverts the meaning of bit 1.
     pub flags: u8,
     /// Geometry of the encoder, or `None` if one of its numbers is zero or too large.
     pub geometry: Option<Geometry>,
@@ -20,8 +20,8 @@ pub struct ExtendedLabel {
     pub parameters: Vec<LabelParameter>,
 }
 
-/// Limit value on the extended label. Only the data sheet of the encoder defines the meaning of each number (`U`). If
-/// command 44h can read a quantity, the first word of the quantity is its analogue channel.
+/// Limit value on the extended label. Only the data sheet of the encoder defines the meaning of each limit number
+/// (`U`). If command 44h can read a quantity, the first limit word of the quantity is its analogue channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LabelParameter {
     /// Number of the limit: 0 to 14 in the first set, 15 to 29 in the second, 30 to 44 in the third.
@@ -39,13 +39,13 @@ pub enum LabelPart {
     Flags,
     /// Periods per revolution, or period length in nanometres, in bytes 02h to 05h.
     Resolution(u32),
-    /// Number of revolutions, or coded range in periods, in bytes 06h to 09h.
+    /// Number of revolutions, or coded range in signal periods, in bytes 06h to 09h.
     Range(u32),
     /// Designation in bytes 0Ah to 1Bh.
     Designation,
     /// Selector word of a set: bits 0 to 14 mark valid limits, and bit 15 indicates another set.
     Selector(u16),
-    /// Limit value. It is unused if its bit in the selector word is not set.
+    /// Limit value, which is unused unless its bit in the selector word is set.
     Limit {
         /// Number of the limit.
         number: u8,
@@ -96,9 +96,9 @@ impl ExtendedLabel {
         })
     }
 
-    /// Returns pairs of an analogue channel and its maximum reading, for quantities that command 44h can read. Only the
-    /// data sheet defines the pairs (`U`), so any two parameters with consecutive numbers are assumed to form one. Such
-    /// a pair is used only for a remark, and only if its channel replies.
+    /// Returns analogue channels, each with its maximum reading, for quantities that command 44h can read. Only the
+    /// data sheet defines which parameters form such a pair (`U`). Therefore, any two parameters with consecutive
+    /// numbers are assumed to form a pair, which is used only for a remark and only if the channel replies.
     pub fn limits(&self) -> Vec<(u8, i16)> {
         let mut limits = Vec::new();
         let mut rest = self.parameters.as_slice();
@@ -186,7 +186,7 @@ impl ExtendedLabel {
 mod tests {
     use super::*;
 
-    /// Returns the 64-byte synthetic label of the reference, with an XOR checksum.
+    /// Returns the synthetic 64-byte label from the reference, with an XOR checksum.
     fn label() -> Vec<u8> {
         let mut bytes = crate::bits::parse_hex(
             "53 00 00 00 00 10 00 00 10 00 53 45 4C 33 37 2D 48 46 42 30 2D 4B 30 32 20 20 20 20 00 03 00 48 00 73",
@@ -223,7 +223,7 @@ mod tests {
         bytes[1] = 0x01;
         bytes[2..6].copy_from_slice(&1_000_000u32.to_be_bytes());
         bytes[6..10].copy_from_slice(&5_000u32.to_be_bytes());
-        bytes[0x1C..0x1E].copy_from_slice(&[0xC0, 0x00]); // parameter 14, and another selector
+        bytes[0x1C..0x1E].copy_from_slice(&[0xC0, 0x00]); // parameter 14, and another selector word follows
         bytes[0x1E + 28..0x1E + 30].copy_from_slice(&(-40i16).to_be_bytes());
         bytes[0x3C..0x3E].copy_from_slice(&[0x00, 0x01]);
         bytes[0x3E..0x40].copy_from_slice(&[0x12, 0x34]);

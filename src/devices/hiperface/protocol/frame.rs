@@ -1,11 +1,11 @@
-//! Frames: address, command byte, payload and XOR checksum (manual, "Das Übertragungsprotokoll").
+//! Frames, which consist of address, command byte, payload and XOR checksum (manual, "Das Übertragungsprotokoll").
 
-/// Returns the XOR of all bytes, which is zero for a complete valid frame.
+/// Returns the XOR of all bytes, which is zero for a complete and valid frame.
 pub fn checksum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)
 }
 
-/// Frame with a valid checksum. The command defines the meaning of the payload.
+/// A frame with a valid checksum. The command determines the meaning of the payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
     /// Address byte as received: 40h to 5Fh, or FFh in a broadcast.
@@ -70,14 +70,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Frames of the manual's example, "Beispiel zur Datenfelddefinition", each with whether its printed checksum is
-    /// right.
+    /// Frames from the manual's example, "Beispiel zur Datenfelddefinition", each with a flag that states whether its
+    /// printed checksum is correct.
     const MANUAL_EXAMPLE: [(&[u8], bool); 11] = [
         (&[0x40, 0x4E, 0x0E], true),
         (&[0x40, 0x4E, 0x08, 0x00, 0x06], true),
         (&[0x40, 0x4D, 0x00, 0xC9, 0x55, 0x91], true),
         (&[0x40, 0x4D, 0x00, 0xC9, 0xC4], true),
-        (&[0x40, 0x4D, 0x01, 0xE0, 0x55, 0x69], false), // misprint: B9 is right
+        (&[0x40, 0x4D, 0x01, 0xE0, 0x55, 0x69], false), // misprint: should be B9
         (&[0x40, 0x4D, 0x01, 0xE0, 0x55, 0xB9], true),
         (&[0x40, 0x4D, 0x01, 0xE0, 0xEC], true),
         (&[0x40, 0x4F, 0x02, 0x55, 0x66, 0x3E], true),

@@ -1,5 +1,5 @@
-//! Settings byte of the serial interface, which 52h reads and 57h and 67h set. See the manual, figure 42. The order of
-//! bits 7 and 6 is derived from the order in the figure.
+//! The settings byte of the serial interface, which is read with 52h and set with 57h and 67h. See figure 42 of the
+//! manual. The positions of bits 7 and 6 are derived from their order in the figure.
 
 use std::fmt;
 

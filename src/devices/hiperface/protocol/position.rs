@@ -1,11 +1,12 @@
-//! The position word: 5 bits per signal period, right-aligned (manual, "Position lesen").
+//! The position word, which is right-aligned and has five bits for the steps within a signal period (manual, "Position
+//! lesen").
 
 use std::fmt;
 
 /// Number of position steps per signal period, always 32.
 pub const STEPS_PER_PERIOD: u32 = 32;
 
-/// Geometry of an encoder, which converts steps to an angle or a distance.
+/// Geometry of an encoder, used to convert steps to an angle or a distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Geometry {
     /// A rotary encoder.
@@ -19,7 +20,7 @@ pub enum Geometry {
     Linear {
         /// Length of a signal period in nanometres, at least 1.
         period_nm: u32,
-        /// Coded range in periods, or 0 if unknown.
+        /// Coded range in signal periods, or 0 if unknown.
         periods: u32,
     },
 }
@@ -129,10 +130,10 @@ impl fmt::Display for Position {
     }
 }
 
-/// Returns the value in `range` that is nearest to `wanted` and has the same five lowest bits as `now`. Of two equally
-/// near values, it returns the lower one. Setting this value preserves the phase between the absolute value and the
-/// sine signal, because the five lowest bits equal the five highest bits of the arctangent. See the manual, "Position
-/// setzen".
+/// Returns the value in `range` that is nearest to `wanted` and has the same five lowest bits as `now`. If two values
+/// are equally near, the lower one is returned. Setting this value preserves the phase between the absolute value and
+/// the sine signal, because the five lowest bits equal the five highest bits of the arctangent. See the manual,
+/// "Position setzen".
 pub fn nearest_in_phase(now: u32, wanted: u32, range: Option<u64>) -> u32 {
     let phase = u64::from(now % STEPS_PER_PERIOD);
     let wanted = u64::from(wanted);

@@ -1,8 +1,8 @@
-//! Replies of an encoder. A reply repeats the address and the command, followed by the requested data. See the manual,
-//! "Fehlerbehandlung".
+//! Replies of an encoder. A reply contains the address and the command of the request, followed by the requested data.
+//! See the manual, "Fehlerbehandlung".
 //!
-//! The manual does not print the layouts of the replies to 55h, 57h and 67h (`U`). They are accepted with and without
-//! the repeated argument.
+//! The manual does not specify the layouts of the replies to 55h, 57h and 67h (`U`). These replies are accepted with
+//! and without the repeated argument.
 
 use super::{
     Command, DataFieldStatus, DeviceAddress, Frame, FrameError, FreeMemory, LineSettings, Request, SerialLabel,
@@ -26,7 +26,7 @@ pub enum Reply {
     FieldStatus(DataFieldStatus),
     /// Free memory, in reply to 4Eh.
     FreeMemory(FreeMemory),
-    /// Status codes, in reply to 50h. There is usually one, but some encoders send up to four.
+    /// Status codes, in reply to 50h. Most encoders send one code, but some send up to four.
     Status(Vec<StatusCode>),
     /// Type label, in reply to 52h.
     TypeLabel(TypeLabel),
@@ -99,7 +99,7 @@ pub struct ReplyLength {
 
 impl Request {
     /// Returns the possible lengths of the reply, or `None` for a request without a reply. The bytes `received` so far
-    /// decide between a reply and a rejection.
+    /// determine whether the reply is a rejection.
     pub fn reply_length(&self, received: &[u8]) -> Option<ReplyLength> {
         let rejected = received.get(1).is_some_and(|command| command & 0x7F == Command::ReadStatus.byte());
         let payload = |min, max| Some(ReplyLength { min: min + 3, max: max + 3 });

@@ -1,5 +1,5 @@
-//! Requests of the host, and their conversion to and from bytes. See the manual, "Die Befehle". The argument order of
-//! 43h, 46h and 56h is from public implementations (`P`).
+//! Requests of the host and their conversion to and from bytes. See the manual, "Die Befehle". The argument order of
+//! 43h, 46h and 56h is taken from public implementations (`P`).
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::bits::MaskedBytes;
 
-/// Request without the address of the encoder.
+/// A request to an encoder, without the address.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
     /// Reads the absolute position (42h).
@@ -28,7 +28,7 @@ pub enum Request {
     },
     /// Reads the 24-bit counter (46h).
     ReadCounter,
-    /// Increments the counter (47h). This wears the EEPROM, which withstands about a million writes.
+    /// Increments the counter (47h). Every increment wears the EEPROM, which withstands about a million writes.
     IncrementCounter,
     /// Clears the counter (49h).
     ClearCounter {
@@ -182,7 +182,7 @@ impl Request {
         let bytes = frame.emit();
         let mut secret: Vec<usize> = codes.iter().map(|at| at + 2).collect();
         if !secret.is_empty() {
-            secret.push(bytes.len() - 1); // the checksum is an XOR: it reveals the code
+            secret.push(bytes.len() - 1); // the XOR checksum would reveal the code
         }
         MaskableFrame { bytes, secret }
     }
@@ -294,7 +294,7 @@ impl Request {
         }))
     }
 
-    /// Checks the ranges that the frame alone determines. The encoder checks all others.
+    /// Checks the argument ranges that are known from the frame alone. The encoder checks all other ranges.
     fn check_ranges(request: Result<Self, RequestError>) -> Result<Self, RequestError> {
         match request? {
             Request::ReadData { count, .. } if count == 0 || usize::from(count) > MAX_TRANSFER => {
@@ -310,7 +310,7 @@ impl Request {
     }
 }
 
-/// Bytes of a request in which those that reveal an access code are marked.
+/// The bytes of a request, with marks on those that would reveal an access code.
 #[derive(Clone, PartialEq, Eq)]
 pub struct MaskableFrame {
     bytes: Vec<u8>,

@@ -1,5 +1,5 @@
-//! Status codes that an encoder reports in reply to 50h. The manual leaves the list to each data sheet. This list is
-//! from the data sheets of SEK34/SEL34 and DME and from B&R error 7013 (`P`).
+//! Status codes that an encoder reports in reply to 50h. The manual refers to the data sheets for the codes. This list
+//! is taken from the data sheets of SEK34/SEL34 and DME, and from B&R error 7013 (`P`).
 
 use std::fmt;
 
@@ -76,8 +76,8 @@ impl StatusCode {
     pub const WRITE_PROTECTED: StatusCode = StatusCode(0x0E);
     /// Wrong access code for the data field (0Fh).
     pub const WRONG_CODE: StatusCode = StatusCode(0x0F);
-    /// Rejected change of a field's size (10h). Only the last field can change its size, and only within the free
-    /// memory.
+    /// Rejected change of the size of a field (10h). Only the size of the last field can be changed, and only within
+    /// the free memory.
     pub const SIZE_FIXED: StatusCode = StatusCode(0x10);
     /// Access beyond the end of the data field (11h).
     pub const OUT_OF_FIELD: StatusCode = StatusCode(0x11);

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::{LineSettings, Request};
 use crate::units::CharacterFormat;
 
-/// Times of the protocol for the settings of a line.
+/// Protocol times for specific line settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
     /// Duration of one 11-bit character.
@@ -35,8 +35,8 @@ impl Timing {
     }
 
     /// Returns the maximum time from the first bit of a request to the last bit of its reply. It is the sum of both
-    /// transfers, the time-out and the processing time. For a request without a reply, it is one transfer and the
-    /// time-out.
+    /// transfers, the time-out and the processing time. For a request without a reply, it is the sum of one transfer
+    /// and the time-out.
     pub fn worst_case(&self, request: &Request) -> Duration {
         let sent = request.emit(0).bytes().len();
         let reply = request.reply_length(&[]).map_or(0, |length| length.max);
@@ -55,8 +55,8 @@ mod tests {
     use super::*;
     use crate::units::{Baud, Parity};
 
-    /// Worst cases in 0.1 ms at 9600 8E1 with the default time-out were calculated by hand from 11 and 44 bits and the
-    /// manual's maximum times.
+    /// The expected worst cases, in units of 0.1 ms at 9600 8E1 with the default time-out, were calculated by hand from
+    /// 11 bits per character, 44 bits of time-out and the manual's maximum times.
     #[test]
     fn worst_case_durations_at_9600_baud() {
         let timing = Timing::from_settings(LineSettings::FACTORY).unwrap();

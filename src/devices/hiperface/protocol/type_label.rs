@@ -11,12 +11,12 @@ pub struct TypeLabel {
     pub encoder_type: u8,
     /// Size of the EEPROM in units of 16 bytes.
     pub eeprom_units: u8,
-    /// Byte with the hardware and software options and the HIPERFACE version. Its layout is not public.
+    /// Byte with the hardware options, the software options and the HIPERFACE version. Its layout is not public.
     pub options: u8,
 }
 
 impl TypeLabel {
-    /// Type code of encoders that are described by their extended label.
+    /// Type code of encoders that have an extended label.
     pub const EXTENDED: u8 = 0xFF;
 
     /// Returns the EEPROM size in bytes, including the part used by the encoder itself.
@@ -43,8 +43,8 @@ impl SerialLabel {
     /// Maximum payload length, with a version of 20 characters.
     pub const MAX_PAYLOAD: usize = 9 + 20 + 8;
 
-    /// Parses the payload, in which the firmware version is between the first nine and the last eight bytes. Returns
-    /// `None` unless there are from [17](Self::MIN_PAYLOAD) to [37](Self::MAX_PAYLOAD) bytes. Bytes that are not
+    /// Parses the payload, in which the firmware version lies between the first nine and the last eight bytes. Returns
+    /// `None` unless the payload has [17](Self::MIN_PAYLOAD) to [37](Self::MAX_PAYLOAD) bytes. Bytes that are not
     /// printable ASCII are written as `\xNN`.
     pub fn parse(payload: &[u8]) -> Option<Self> {
         if payload.len() > Self::MAX_PAYLOAD {

@@ -1,7 +1,7 @@
-//! Tests of frames, requests and replies against the golden vectors of `tests/vectors/hiperface.txt`, and with damage
-//! and noise.
+//! Tests of frames, requests and replies against the golden vectors in `tests/vectors/hiperface.txt`, and of damaged
+//! frames and noise.
 //!
-//! [`table`] has the vectors as entered values.
+//! [`table`] contains the same vectors as Rust values.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ mod table;
 
 const FILE: &str = include_str!("../../../../tests/vectors/hiperface.txt");
 
-/// The kind of a line, given by its first character.
+/// The kind of a line in the vector file, as indicated by its first character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Request,
@@ -26,7 +26,7 @@ enum Kind {
     SingleByte,
 }
 
-/// A line of the file, with the `=` line under it and the request above it.
+/// A line of the vector file, together with the `=` line after it and the request before it.
 #[derive(Debug)]
 struct Line {
     number: usize,
@@ -36,7 +36,7 @@ struct Line {
     request: Option<Vec<u8>>,
 }
 
-/// Returns the bytes of a text, in which `0*30` means thirty zero bytes.
+/// Parses bytes written in hexadecimal digits. The notation `0*30` means thirty zero bytes.
 fn bytes(text: &str) -> Vec<u8> {
     text.split(' ')
         .flat_map(|word| match word.strip_prefix("0*") {
@@ -87,7 +87,7 @@ fn lines_of_kind(kind: Kind) -> impl Iterator<Item = Line> {
 }
 
 impl Line {
-    /// Returns the request above the line and its address.
+    /// Returns the request that precedes the line, and the address of the request.
     fn requested_frame(&self) -> (Request, u8) {
         let bytes = self.request.as_deref().unwrap();
         (Request::parse(&Frame::parse(bytes).unwrap()).unwrap(), bytes[0])
@@ -233,7 +233,7 @@ fn the_label_in_the_file_parses() {
     assert_eq!(label, expected);
 }
 
-/// Neither of the two lists may grow without the other.
+/// A vector must not be added to only one of the two lists.
 #[test]
 fn file_and_table_have_the_same_requests_and_replies() {
     let mut file = BTreeSet::new();
@@ -253,7 +253,7 @@ fn file_and_table_have_the_same_requests_and_replies() {
     assert_eq!(table.difference(&file).collect::<Vec<_>>(), Vec::<&String>::new(), "only in the table");
 }
 
-/// Returns noise, half of it as valid frames that pass the checksum.
+/// Returns random bytes. Half of them are frames with a valid checksum.
 fn noise_bytes() -> impl Strategy<Value = Vec<u8>> {
     let payload = proptest::collection::vec(any::<u8>(), 0..160);
     let command = prop_oneof![any::<u8>(), (0..COMMANDS.len()).prop_map(|at| COMMANDS[at].command.byte())];

@@ -13,8 +13,7 @@ parameters! {
     }
 }
 
-/// Virtual encoder with factory settings. The settings of a virtual adapter can request it on the adapter's serial
-/// line.
+/// A virtual encoder with factory settings, which can be requested on the serial line of a virtual adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct AttachableEncoder;
 

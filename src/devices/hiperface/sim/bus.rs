@@ -1,6 +1,6 @@
-//! The line between the UART of the host and the encoders. It transports every character with its start and end, in
-//! time order. It adds the echo of the converter, noise, and the effects of simultaneous transmissions or different
-//! settings. It does not interpret bytes. For half duplex and pull-ups, see the manual, "Parameterkanal".
+//! The line between the UART of the host and the encoders. It transmits characters in time order, each with its start
+//! and end time, and simulates the echo of the converter, noise, collisions and mismatched settings. Bytes are not
+//! interpreted. For half duplex and pull-ups, see the manual, "Parameterkanal".
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use crate::sim::SimulatedFaults;
 use crate::sim::line::{LineConditions, SerialCharacter, TransitQueue, VirtualLine};
 use crate::units::{CharacterFormat, Moment, Parity};
 
-/// Line with one or several encoders, from the perspective of the host. The line is created from a [`Config`].
+/// A line with one or more encoders, as seen by the host. The line is created from a [`Config`].
 #[derive(Clone)]
 pub struct Bus {
     encoders: Vec<Encoder>,
@@ -39,7 +39,7 @@ struct CharacterInTransit {
     format: CharacterFormat,
 }
 
-/// Period during which a device drives the line.
+/// A period during which a device drives the line.
 #[derive(Clone, Copy, Debug)]
 struct LineDrivePeriod {
     talker: LineDriver,
@@ -47,7 +47,7 @@ struct LineDrivePeriod {
     end: Moment,
 }
 
-/// Next event on the line. If several events are simultaneous, the one listed first takes precedence.
+/// The next event on the line. If several events are simultaneous, the first variant takes precedence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderActs(usize),
@@ -60,7 +60,7 @@ impl Bus {
     /// character still in transit.
     const LONGEST_CHARACTER: Duration = Duration::from_millis(20);
 
-    /// Creates the line described by `config`. Its encoders have been powered for a long time.
+    /// Creates the line described by `config`, with encoders that have been powered on for a long time.
     pub fn new(config: &Config) -> Self {
         Bus {
             encoders: (0..config.encoders).map(|index| Encoder::new(config, index)).collect(),
@@ -80,7 +80,7 @@ impl Bus {
         self.encoders.get(index)
     }
 
-    /// Returns a mutable reference to an encoder, for example to turn its shaft or to heat it.
+    /// Returns a mutable reference to an encoder, for example to change the speed of its shaft or its temperature.
     pub fn encoder_mut(&mut self, index: usize) -> Option<&mut Encoder> {
         self.encoders.get_mut(index)
     }
@@ -118,7 +118,7 @@ impl Bus {
         let collides = self.has_collision(&travelling);
         let SerialCharacter { start, end, byte, flipped } = travelling.character;
         for (index, encoder) in self.encoders.iter_mut().enumerate() {
-            // An encoder that sends receives only its own bytes.
+            // While an encoder sends, it receives only its own bytes.
             if travelling.talker == LineDriver::Encoder(index) {
                 continue;
             }
@@ -135,7 +135,7 @@ impl Bus {
 
     fn deliver_to_host(&mut self) {
         let Some((_, travelling)) = self.to_host.pop() else { return };
-        // The usual driver setting passes on bytes with a wrong parity bit unchanged.
+        // With the usual driver setting, bytes with a wrong parity bit are passed on unchanged.
         let clean = !self.has_collision(&travelling) && travelling.format == self.wires.host;
         let byte = if clean { travelling.character.byte } else { garbage_byte(&mut self.wires.rng) };
         self.wires.inbox.push(byte);
@@ -170,8 +170,8 @@ impl Bus {
     }
 }
 
-/// Returns the byte that a receiver outputs for an unreadable character. It is never an address, so it cannot begin a
-/// frame.
+/// Returns the byte that a receiver outputs for an unreadable character. The byte is never an address, so it cannot
+/// start a frame.
 fn garbage_byte(rng: &mut Rng) -> u8 {
     rng.u8(0x80..0xFF)
 }

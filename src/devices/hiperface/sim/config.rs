@@ -34,9 +34,9 @@ parameters! {
 }
 
 impl Config {
-    /// Parses percent-decoded keys and values. If a key is repeated, its last value applies. Numbers are decimal or
-    /// hexadecimal with the prefix `0x`. Several encoders have consecutive addresses and serial numbers, starting with
-    /// those of the first.
+    /// Parses percent-decoded keys and values. If a key is repeated, its last value applies. Numbers are decimal, or
+    /// hexadecimal with the prefix `0x`. If there are several encoders, they have consecutive addresses and serial
+    /// numbers, starting with those specified for the first encoder.
     ///
     /// # Errors
     /// Returns an error with the key and the allowed values if a key or a value is invalid.
@@ -67,12 +67,13 @@ impl Config {
         format!("{own:<9}")
     }
 
-    /// Returns periods and turns of the requested type, or those of the model if the type is unknown.
+    /// Returns the geometry of the requested type, or that of the model if the type is unknown.
     pub(super) fn geometry(&self, types: &EncoderTypes) -> Geometry {
         self.encoder_type.and_then(|code| types.find(code)?.geometry).unwrap_or(self.model.geometry)
     }
 
-    /// Returns whether the requested type has no bearing. If the type is unknown, this is taken from the model.
+    /// Returns whether the requested type is a kit without a bearing. If the type is unknown, the model determines the
+    /// result.
     pub(super) fn is_kit(&self, types: &EncoderTypes) -> bool {
         self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
     }

@@ -1,5 +1,5 @@
-//! Electronics of an encoder: its data and the effects of its twenty commands (manual, "Die Befehle"). Timing and
-//! frames are implemented in [`encoder`](super::encoder).
+//! The electronics of an encoder: its data, and the effects of the twenty commands on this data (manual, "Die
+//! Befehle"). Timing and frames are implemented in [`encoder`](super::encoder).
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -13,7 +13,7 @@ use crate::devices::hiperface::protocol::{
 };
 use crate::units::Moment;
 
-/// Number of EEPROM writes by command.
+/// Number of EEPROM writes for each command.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wear(BTreeMap<u8, u32>);
 
@@ -31,8 +31,8 @@ impl Wear {
     }
 }
 
-/// Status codes waiting to be read with command 50h, oldest first. The queue holds four codes. Further codes are lost
-/// while it is full.
+/// Status codes that wait to be read with command 50h, oldest first. The queue holds four codes. While it is full,
+/// further codes are lost.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StatusQueue(VecDeque<StatusCode>);
 
@@ -54,7 +54,7 @@ impl StatusQueue {
     }
 }
 
-/// Virtual encoder without its line.
+/// A virtual encoder without its line.
 #[derive(Clone, Debug)]
 pub(super) struct EncoderElectronics {
     model: Model,
@@ -75,7 +75,7 @@ pub(super) struct EncoderElectronics {
 impl EncoderElectronics {
     /// Maximum of the 24-bit counter.
     const COUNTER_END: u32 = 0x00FF_FFFF;
-    /// Analogue channel of the sine signal, as in the data sheets.
+    /// Analogue channel of the sine signal, as specified in the data sheets.
     const SINE: u8 = 0x00;
     const COSINE: u8 = 0x01;
     const TEMPERATURE: u8 = 0x48;
@@ -103,7 +103,7 @@ impl EncoderElectronics {
         electronics
     }
 
-    /// Restarts the electronics after power-on or reset. RAM content is lost, and monitoring starts again.
+    /// Restarts the electronics after power-on or reset. The content of the RAM is lost, and monitoring starts again.
     pub(super) fn restart(&mut self) {
         self.queue = StatusQueue::default();
         self.watch_temperature(i16::MIN);
@@ -119,7 +119,8 @@ impl EncoderElectronics {
         command != Command::Synchronise || self.kit
     }
 
-    /// Executes a request at time `at`, and returns the data of its reply. 53h has no effect and no data here.
+    /// Executes a request at time `at`, and returns the data of its reply. This function does not restart the encoder
+    /// for 53h, and returns no data for it.
     ///
     /// # Errors
     /// Returns the status code with which the encoder rejects the request. In this case, nothing has changed.
@@ -211,7 +212,7 @@ impl EncoderElectronics {
         }
     }
 
-    /// Writes only the first half of the bytes of 4Bh, as after a power failure.
+    /// Executes only the first half of a store (4Bh), which simulates a power failure.
     ///
     /// # Errors
     /// Returns the same errors as a complete store.
@@ -263,7 +264,7 @@ fn factory_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
     let mut memory = Memory::new(model.user_blocks);
     if let Some(size) = FieldSize::from_bytes(model.name_plate.len()) {
         let status = DataFieldStatus::new(size, AccessCodeNumber::ZERO, true);
-        // If the name plate does not fit, the field is omitted.
+        // If the name plate does not fit into the memory, the field is omitted.
         let _ = memory
             .define_field(0, status, AccessCode::FACTORY)
             .and_then(|()| memory.store_bytes(0, 0, model.name_plate, AccessCode::FACTORY));

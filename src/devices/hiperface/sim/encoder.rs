@@ -1,15 +1,15 @@
 //! A virtual encoder on the line, with its power-up windows, processing times and line settings. See the manual,
-//! "Dialog Timing", figure 38 "Einschaltverhalten", and "Fehlerbehandlung". The effects of commands are in
-//! [`electronics`](super::electronics). Only the [`Bus`](super::Bus) knows about other senders.
+//! "Dialog Timing", figure 38 "Einschaltverhalten", and "Fehlerbehandlung". The effects of commands are implemented in
+//! [`electronics`](super::electronics), and collisions with other senders in the [`Bus`](super::Bus).
 //!
 //! ```text
 //! off ── power ──▶ INIT (deaf) ── 100 ms ──▶ DEFAULT (factory settings) ── 900 ms ──▶ SWITCH (deaf) ── 200 ms ──▶ USER
 //!                                               └── plausible command: keeps the factory settings
 //! listening ── silence ≥ time-out ──▶ executing ──▶ talking ──▶ listening
 //! ```
-//! Assumptions where the manual leaves the behaviour open (`U`): If bytes are lost because the encoder processes a
-//! request or sends, the rest of their frame is lost too. The encoder's own reply ends a frame immediately. A damaged
-//! broadcast is not answered.
+//! The manual leaves some behaviour open (`U`). In this model, if bytes are lost because the encoder is processing a
+//! request or sending, the rest of their frame is lost too. The encoder's own reply ends a frame immediately. The
+//! encoder does not reply to a damaged broadcast.
 
 use std::time::Duration;
 
@@ -24,11 +24,11 @@ use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ResponseTimes {
-    /// Typical times as observed. The position takes 3.7 ms, a store 20 ms plus 1.5 ms per byte, and any other command
-    /// half of its maximum time.
+    /// Typical times, as observed. Reading the position takes 3.7 ms, a store takes 20 ms plus 1.5 ms per byte, and any
+    /// other command takes half of its maximum time.
     #[default]
     Typical,
-    /// Always the maximum time from the manual's table.
+    /// Always the maximum times from the manual's table.
     Worst,
 }
 
@@ -37,7 +37,7 @@ impl ResponseTimes {
     const STORE: Duration = Duration::from_millis(20);
     const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
 
-    /// Returns the processing time of a frame. For a rejected frame, this is the time that a status reply takes.
+    /// Returns the processing time of a frame. A rejected frame takes as long as a status request.
     fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
         let longest = |command: Command| command.row().max_time;
         match (self, verdict) {
@@ -62,7 +62,7 @@ pub(super) struct ReceivedCharacter {
     pub(super) intact: bool,
 }
 
-/// Reply that the encoder begins to send.
+/// A reply that the encoder starts to send.
 #[derive(Clone)]
 pub(super) struct Transmission {
     pub(super) start: Moment,
@@ -70,8 +70,8 @@ pub(super) struct Transmission {
     pub(super) bytes: Vec<u8>,
 }
 
-/// Virtual encoder on a [`Bus`](super::Bus), whose clock it uses. It has no `Debug` implementation, because frames may
-/// contain access codes.
+/// A virtual encoder on a [`Bus`](super::Bus), whose clock it uses. It has no `Debug` implementation, because frames
+/// may contain access codes.
 #[derive(Clone)]
 pub struct Encoder {
     electronics: EncoderElectronics,
@@ -168,7 +168,7 @@ impl Encoder {
         self.electronics.shaft.position(at)
     }
 
-    /// Changes the speed of the shaft from `now` on.
+    /// Changes the speed of the shaft, starting at `now`.
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
         self.electronics.shaft.set_rpm(now, rpm);
     }
@@ -178,7 +178,7 @@ impl Encoder {
         self.electronics.set_temperature(celsius);
     }
 
-    /// Adds a monitoring code to the status queue. The code is lost if four are already waiting.
+    /// Adds a monitoring code to the status queue. The code is lost if the queue already contains four codes.
     pub fn queue_code(&mut self, code: StatusCode) {
         self.electronics.queue.push(code);
     }
@@ -188,7 +188,7 @@ impl Encoder {
         self.electronics.stored_settings
     }
 
-    /// Returns the settings with which the encoder listens at time `at`, or `None` while it does not listen.
+    /// Returns the settings with which the encoder listens at time `at`, or `None` if it does not listen at that time.
     pub fn active_settings_at(&self, at: Moment) -> Option<LineSettings> {
         if self.silent {
             return None;
@@ -254,7 +254,8 @@ impl Encoder {
         }
     }
 
-    /// Records the start of a received character. All actions due earlier must already have been [executed](Self::run_due_action).
+    /// Records the start of a received character. All actions that were due earlier must already have been
+    /// [executed](Self::run_due_action).
     pub(super) fn handle_input(&mut self, heard: ReceivedCharacter) {
         let Some(settings) = self.active_settings_at(heard.start) else { return };
         let Some(timing) = Timing::from_settings(settings) else { return };
@@ -275,7 +276,8 @@ impl Encoder {
         }
     }
 
-    /// Executes the action due at `at`, the time returned by [`next_action_time`](Self::next_action_time).
+    /// Executes the action that is due at `at`, which is the time returned by
+    /// [`next_action_time`](Self::next_action_time).
     pub(super) fn run_due_action(&mut self, at: Moment) -> Option<Transmission> {
         match std::mem::replace(&mut self.activity, Activity::Listening(None)) {
             Activity::Listening(Some(reception)) => {
@@ -288,7 +290,7 @@ impl Encoder {
     }
 
     fn handle_frame_end(&mut self, at: Moment, reception: &IncomingFrame) {
-        // A frame that ends while the settings change is lost.
+        // A frame is lost if it ends while the settings change.
         let Some(settings) = self.active_settings_at(at) else { return };
         let broadcast = match reception.bytes.first() {
             Some(&BROADCAST) => true,
@@ -325,7 +327,7 @@ impl Encoder {
         Request::parse(frame).map_err(|error| error.status())
     }
 
-    /// Completes the processing of a request: applies its effect and starts the reply.
+    /// Completes the processing of a request by applying its effect and starting the reply.
     fn start_reply(
         &mut self,
         at: Moment,
@@ -349,7 +351,7 @@ impl Encoder {
             Err(code) => (Command::ReadStatus, &[code.byte()][..]),
         };
         let bytes = Frame { address, command: command.byte() | error_bit, payload }.emit();
-        // The settings were in use when the request was received, so they contain no reserved values.
+        // The request was received with these settings, so they contain no reserved values.
         let talk =
             Timing::from_settings(settings).map_or(Duration::ZERO, |timing| timing.time_of_characters(bytes.len()));
         self.activity = Activity::Talking { until: at + talk };
@@ -360,7 +362,7 @@ impl Encoder {
         Some(Transmission { start: at, settings, bytes })
     }
 
-    /// Returns whether power was lost during this store. In this case, only half of its bytes are written.
+    /// Returns whether power is lost during this store, so that only half of its bytes are written.
     fn is_power_lost_during(&mut self, request: &Request) -> bool {
         let Request::StoreData { field, address, code, data } = request else { return false };
         if self.electronics.memory.check_store_request(*field, *address, data.len(), *code).is_err() {
@@ -372,7 +374,7 @@ impl Encoder {
     }
 }
 
-/// Checks parity, checksum and length, in the order of the reference.
+/// Checks parity, checksum and length, in the order specified by the reference.
 fn validate_frame(reception: &IncomingFrame) -> Result<Frame<'_>, StatusCode> {
     if !reception.intact {
         return Err(StatusCode::PARITY);

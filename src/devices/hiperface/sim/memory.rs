@@ -1,9 +1,11 @@
-//! EEPROM of an encoder: consecutive data fields and four access codes (manual, "Datenspeicherung und Verwaltung").
-//! Requests are rejected with the status codes of the reference. The order of the checks is field (12h), range (11h),
-//! access code (0Fh), write enable (0Eh), size (10h). Frames, time and wear are not handled here.
+//! The EEPROM of an encoder, with consecutive data fields and four access codes (manual, "Datenspeicherung und
+//! Verwaltung"). Requests are rejected with the status codes specified by the reference. The checks are, in this order,
+//! field (12h), range (11h), access code (0Fh), write enable (0Eh) and size (10h). This module does not handle frames,
+//! time or wear.
 //!
-//! Assumptions where the manual leaves the behaviour open (`U`): Bytes that were never written are FFh. The bytes of a
-//! deleted field remain and reappear in a field created in their place. Changing a field requires its current code.
+//! The manual leaves some behaviour open (`U`). In this model, bytes that were never written are FFh. The bytes of a
+//! deleted field remain in the memory, and reappear in a field created in its place. Changing a field requires its
+//! current access code.
 
 use std::ops::Range;
 
@@ -20,11 +22,11 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Status of the extended label: E set, WE clear, code 0, no code required, 64 bytes.
+    /// Status of the extended label, which exists, is write-protected, requires no access code and has 64 bytes.
     const LABEL_STATUS: DataFieldStatus = DataFieldStatus::from_byte(0x83);
 
-    /// Creates the memory of an encoder with the given number of 16-byte blocks. It contains no fields, and all access
-    /// codes have their factory values.
+    /// Creates a memory with the given number of 16-byte blocks. It contains no fields, and all access codes have their
+    /// factory values.
     pub fn new(blocks: u8) -> Self {
         Memory {
             bytes: vec![0xFF; usize::from(blocks) * FieldSize::BLOCK],
@@ -52,7 +54,7 @@ impl Memory {
     /// Returns the free memory (4Eh).
     pub fn free_memory(&self) -> FreeMemory {
         let blocks = (self.bytes.len() - self.used_bytes()) / FieldSize::BLOCK;
-        // Both numbers fit, because a memory has at most 255 blocks and a field has at least one.
+        // Both numbers fit into a byte, because a memory has at most 255 blocks and a field has at least one.
         let byte = |count: usize| u8::try_from(count).unwrap_or(u8::MAX);
         FreeMemory { blocks: byte(blocks), fields: byte(self.fields.len()) }
     }
@@ -77,7 +79,7 @@ impl Memory {
     }
 
     pub fn code(&self, number: AccessCodeNumber) -> AccessCode {
-        // A number is 0 to 3, so the fallback is never used.
+        // Access code numbers are 0 to 3, so the fallback is never used.
         self.codes.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
     }
 
@@ -192,8 +194,8 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns the status of a field if the field is not reserved for the encoder and `code` is the access code of the
-    /// field. The code is required even if CE is 0.
+    /// Returns the status of a field, provided that the field is not reserved for the encoder and `code` is its access
+    /// code. The access code is required even if CE is 0.
     fn check_field_access(&self, field: u8, code: AccessCode) -> Result<DataFieldStatus, StatusCode> {
         let present = self.status(field)?;
         self.check_code(present.code(), code)?;
@@ -231,7 +233,7 @@ mod tests {
         DataFieldStatus::from_byte(byte)
     }
 
-    /// Returns a memory of 8 blocks with field 0 (32 bytes) and field 1 (16 bytes).
+    /// Returns a memory with eight blocks that contains field 0 (32 bytes) and field 1 (16 bytes).
     fn two_fields() -> Memory {
         let mut memory = Memory::new(8);
         memory.define_field(0, status(0xC9), CODE).unwrap();
@@ -269,7 +271,7 @@ mod tests {
     #[test]
     fn invalid_definitions_are_refused() {
         let mut memory = two_fields();
-        // what, field, status, code, answer
+        // description, field, status, code, expected result
         let cases = [
             ("a number is left out", 3, 0xC8, CODE, StatusCode::NO_SUCH_FIELD),
             ("deleting the next", 2, 0x48, CODE, StatusCode::NO_SUCH_FIELD),
@@ -294,7 +296,7 @@ mod tests {
         let code2 = AccessCodeNumber::new(2).unwrap();
         memory.change_code(code2, CODE, AccessCode::new(0x66)).unwrap();
         assert_eq!(memory.change_code(code2, CODE, CODE), Err(StatusCode::WRONG_CODE));
-        // Field 1 moves from code 2 to code 0: code 2 is required.
+        // Changing field 1 from access code 2 to 0 requires code 2.
         assert_eq!(memory.define_field(1, status(0xC8), CODE), Err(StatusCode::WRONG_CODE));
         assert_eq!(memory.define_field(1, status(0xC8), AccessCode::new(0x66)), Ok(()));
         assert_eq!(memory.read(1, 0, 1, CODE), Ok(&[0xFF][..]));

@@ -1,5 +1,5 @@
-//! The virtual HIPERFACE encoder: one or several on a line, with the timing, power-up states, memory and error replies
-//! of the manual. Where the manual leaves the behaviour open (`U`), the assumption is documented.
+//! Virtual HIPERFACE encoders, one or more on a line, with the timing, power-up states, memory and error replies
+//! specified by the manual. Where the manual leaves the behaviour open (`U`), the assumption is documented.
 //!
 //! | file | content |
 //! |---|---|

@@ -1,14 +1,14 @@
-//! The shaft or scale that the encoder measures: its position as an exact function of time, and the sine and cosine
+//! The shaft or scale that the encoder measures, with its position as an exact function of time and its sine and cosine
 //! signals (manual, "Position lesen", "Position setzen"). The position word is the mechanical position plus an offset.
-//! The analogue signals depend on the mechanical position only. As in a real encoder, setting a position may therefore
-//! break their phase.
+//! The analogue signals depend only on the mechanical position. As in a real encoder, setting a position may therefore
+//! change the phase between position word and signals.
 
 use std::f64::consts::TAU;
 
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::units::Moment;
 
-/// Shaft that turns at constant speed.
+/// A shaft that turns at constant speed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Shaft {
     geometry: Geometry,
@@ -22,7 +22,7 @@ pub(super) struct Shaft {
 impl Shaft {
     /// Speed in 1/min above which no absolute position is available. The value is from data sheets.
     pub(super) const MAX_RPM: f64 = 6000.0;
-    /// Number of values of the position word, which has 32 bits.
+    /// Number of values of the 32-bit position word.
     const WORD: u64 = 1 << 32;
     /// Analogue counts per volt, with 10 bits for 5 V.
     const COUNTS_PER_VOLT: f64 = 1023.0 / 5.0;
@@ -57,8 +57,8 @@ impl Shaft {
         self.offset = (u64::from(position) % range + range - self.integer_steps(at)) % range;
     }
 
-    /// Returns the sine signal in counts of 10 bits for 5 V. It has a mean of 2.5 V and 1 V from peak to peak, and
-    /// rises through the mean at the start of a period.
+    /// Returns the sine signal in counts, with 10 bits for 5 V. The signal has a mean of 2.5 V and 1 V from peak to
+    /// peak, and rises through the mean at the start of a period.
     pub(super) fn sine_at(&self, at: Moment) -> i16 {
         Self::to_counts(self.phase(at).sin())
     }
@@ -79,7 +79,7 @@ impl Shaft {
     }
 
     fn integer_steps(&self, at: Moment) -> u64 {
-        self.steps_at(at) as u64 // not negative, below the range
+        self.steps_at(at) as u64 // never negative, and below the range
     }
 
     /// Returns the mechanical position in steps, from 0 to just below the range.
@@ -135,7 +135,8 @@ mod tests {
         assert!(!shaft.can_reach(0x0100_0000));
     }
 
-    /// Values at quarter periods are 511 counts for 2.5 V (01FFh in the reference), 613 for 3 V, and 409 for 2 V.
+    /// At quarter periods, the expected values are 511 counts for 2.5 V (01FFh in the reference), 613 counts for 3 V
+    /// and 409 counts for 2 V.
     #[test]
     fn the_signals_repeat_every_period() {
         for (position, sine, cosine) in [(0, 511, 613), (8, 613, 511), (16, 511, 409), (24, 409, 511)] {

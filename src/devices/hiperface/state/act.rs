@@ -58,7 +58,7 @@ impl Encoder {
         }
     }
 
-    /// Starts or stops reading a value in addition to the position.
+    /// Starts or stops reading a value along with the position.
     fn watch_value(&mut self, what: WatchedQuantity, on: bool) {
         let mut watched = self.record.watched_values();
         watched.retain(|own| *own != what);
@@ -89,7 +89,7 @@ impl Encoder {
     pub(super) fn edit_bytes(&mut self, field: u8, address: usize, bytes: &[u8], services: &mut Services) {
         let allowed = match (&self.session.phase, self.field(field)) {
             _ if self.session.is_writing() => Err(Text::new("session.busy")),
-            // A profile can always be edited. The write protection that it records only applies to the encoder.
+            // A profile can always be edited, because the recorded write protection applies only to the encoder.
             (Phase::Offline, _) | (_, None) => Ok(()),
             (_, Some(image)) => self.reason_not_editable(image).map_or(Ok(()), Err),
         };

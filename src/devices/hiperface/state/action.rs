@@ -12,10 +12,10 @@ use crate::profile::PlanId;
 
 pub enum HiperfaceAction {
     ReadStatus,
-    /// Starts or stops reading a value while the position is polled.
+    /// Starts or stops reading a value along with the position.
     Watch(WatchedQuantity, bool),
     ReadAnalogue(u8),
-    /// Reads position, sine and cosine while the shaft is at rest.
+    /// Reads the position, sine and cosine while the shaft is at rest.
     ReadRest,
     ReadCounter,
     Check {
@@ -37,7 +37,8 @@ pub enum HiperfaceAction {
     },
     Revert(FieldRange),
     Plan(Change),
-    /// Prepares the plan of a restore again with other options. Any other plan is prepared again unchanged.
+    /// Prepares the plan again. A restore is planned with the given options. Any other plan is prepared without
+    /// changes.
     PlanAgain(RestoreOptions),
     /// Permits or forbids writing to an encoder that has reached its limit of write cycles.
     ForceWear(bool),

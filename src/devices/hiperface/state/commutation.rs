@@ -1,7 +1,8 @@
-//! The commutation assistant. It determines the offset between encoder and motor from the position at which the motor
-//! rests while a static vector is energised. It supports both methods of the manual. The assistant neither energises
-//! the motor nor writes to the encoder: its result is an edit of the memory or a position to set, and both go through
-//! the review of a write. See SICK 8010701, commutation, and section 5 of the project's sine/cosine reference.
+//! The commutation assistant, which determines the offset between encoder and motor from the position at which the
+//! motor rests while a static vector is energised. It supports both methods of the manual. The assistant does not
+//! energise the motor or write to the encoder. Its result is an edit of the memory or a position to set. Both are
+//! reviewed before they are written. See SICK 8010701, commutation, and section 5 of the project's sine/cosine
+//! reference.
 
 mod act;
 mod form;
@@ -27,9 +28,9 @@ pub enum CommutationAction {
     Read(VectorSlot),
     Use(VectorSlot),
     Clear,
-    /// Enters the offset in the memory as an edit. This is method 1 of the manual.
+    /// Enters the offset in the memory as an edit, which is method 1 of the manual.
     Store,
-    /// Plans the setting of the position, which is then reviewed. This is method 2 of the manual.
+    /// Plans to set the position and starts the review, which is method 2 of the manual.
     Set,
 }
 
@@ -39,13 +40,13 @@ pub struct Commutation {
     /// Reason why the last action was not executed.
     pub problem: Option<Text>,
     readings: [Option<RestReading>; 3],
-    /// Slot of the last reading. The shaft is assumed to be still at this position.
+    /// Slot of the last reading. The shaft is assumed not to have moved since.
     last: Option<VectorSlot>,
     asked: Option<PendingReading>,
 }
 
-/// Reading in progress. It contains the source and the phase from the form at the time of the request, because the user
-/// may edit the form in the meantime.
+/// A reading in progress, with the source and the phase that the form contained when it was requested. The user may
+/// edit the form in the meantime.
 #[derive(Debug)]
 struct PendingReading {
     slot: VectorSlot,
@@ -72,7 +73,7 @@ pub enum PositionKind {
         /// Resolution in signal periods, or `None` if the phase was typed.
         resolution_periods: Option<f64>,
     },
-    /// Absolute position without the analogue signals, taken at the middle of its step.
+    /// Absolute position without the analogue signals, assumed to be at the middle of its step.
     Absolute,
     Typed,
 }
@@ -113,7 +114,7 @@ impl Commutation {
         (self.readings, self.last, self.problem) = ([None; 3], None, None);
     }
 
-    /// Stores a reading in the slot that requested it, if any.
+    /// Stores a reading in the slot for which it was requested, if any.
     pub(super) fn accept_position(&mut self, rest: RestPosition, geometry: Option<Geometry>) {
         let Some(asked) = self.asked.take() else { return };
         match asked.to_reading(rest, geometry) {
@@ -122,8 +123,8 @@ impl Commutation {
         }
     }
 
-    /// Handles a failed job. Returns whether the job was the requested reading. In that case, its error is shown with
-    /// the request.
+    /// Handles a failed job. Returns whether the job was the requested reading, whose error is then shown with the
+    /// request.
     pub(super) fn handle_failure(&mut self, why: &Text) -> bool {
         let own = self.asked.take().is_some();
         if own {
@@ -180,7 +181,7 @@ fn fine_reading(
     resolution: Option<f64>,
 ) -> Result<RestReading, Text> {
     let steps = u64::from(STEPS_PER_PERIOD);
-    // An unknown range is treated as one that never wraps.
+    // If the range is unknown, the position is assumed never to wrap.
     let periods = geometry.and_then(Geometry::position_count).map_or(1 << 32, |range| range / steps);
     let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(periods) };
     let synchronised = synchroniser.combine(raw.into(), phase).map_err(|_| TEXTS.text("commutation.half_apart"))?;
@@ -232,7 +233,7 @@ mod tests {
         assert_eq!(read(Source::Absolute, "", rest(40, Some((0.5, 0.0)))).unwrap().kind, PositionKind::Absolute);
         let typed = read(Source::Typed, "0,27", rest(40, None)).unwrap();
         assert!((typed.fine_periods - 1.27).abs() < 1e-12);
-        // SKM36: the last step of the range and a phase beyond its end.
+        // SKM36 at the last step of the range, with a phase beyond the end of the range.
         let around = read(Source::Typed, "0.01", rest(0x00FF_FFFF, None)).unwrap();
         assert!((around.fine_periods - 0.01).abs() < 1e-12, "{around:?}");
     }

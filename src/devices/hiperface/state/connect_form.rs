@@ -1,4 +1,4 @@
-//! The connection form for HIPERFACE encoders, and the link that it builds. The form does not open the link.
+//! The connection form for HIPERFACE encoders, which creates a link but does not open it.
 
 use super::search::EncoderSearchForm;
 use crate::app::Text;
@@ -31,8 +31,8 @@ pub enum LinkKind {
     Replay,
 }
 
-/// Input fields of the connection form. An empty field selects the default. Fields of other connection types keep their
-/// content, which is not part of the link.
+/// Entries of the connection form. An empty entry selects the default. Entries for other kinds of connection are kept,
+/// but are not part of the link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkForm {
     pub kind: LinkKind,
@@ -54,7 +54,7 @@ pub struct LinkForm {
     pub leave_supply: bool,
     /// Values of the remaining parameters, as entered.
     pub typed: EnteredValues,
-    /// Link parameters that the form cannot show, with their values.
+    /// Names and values of link parameters that the form cannot show.
     pub rest: Vec<(String, String)>,
 }
 
@@ -135,7 +135,7 @@ impl FormModel for LinkForm {
 }
 
 impl LinkForm {
-    /// Returns the names of the virtual encoders, starting with the default.
+    /// Returns the names of the virtual encoder models, starting with the default.
     pub fn model_names() -> impl Iterator<Item = &'static str> {
         MODELS.iter().map(|model| model.name)
     }

@@ -1,4 +1,4 @@
-//! Memory edits as a draft, which survives a crash.
+//! Drafts of the edits in an encoder's memory, which survive a crash.
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;
@@ -9,7 +9,7 @@ use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::profile::ProfileDocument;
 use crate::store::DeviceKey;
 
-/// Edited bytes. Each has its field number, its index in the field and its new value.
+/// Edited bytes, each with its field number, its index in the field and its new value.
 pub(crate) type Edits = Vec<(u8, usize, u8)>;
 
 impl HasSession for Encoder {

@@ -69,13 +69,13 @@ impl Kind for Hiperface {
 
 impl Encoder {
     /// Reads the encoder. If there are access codes to use, the encoder is identified first, because the codes belong
-    /// to one specific encoder.
+    /// to a specific encoder.
     pub(super) fn read_encoder(&mut self, services: &mut Services) {
         let identify = self.session.just_connected && !self.access_codes.is_empty();
         self.submit(if identify { HiperfaceJob::Identify } else { HiperfaceJob::Survey }, services);
     }
 
-    /// Passes the next access code to the session. Reads the encoder if no access code is left.
+    /// Passes the next access code to the session, or reads the encoder if no access code is left.
     fn submit_access_codes(&mut self, services: &mut Services) {
         match self.codes_due.pop() {
             Some((number, code)) => self.submit(HiperfaceJob::UseCode { number, code }, services),
@@ -89,8 +89,8 @@ impl Encoder {
         self.codes.get_or_insert_default().extend(codes);
     }
 
-    /// Updates the session after a write with a new address, new access codes and the position offset. Only this
-    /// program stores the offset, because the encoder does not report it.
+    /// Updates the address, the access codes and the position offset of the session after a write. The offset is stored
+    /// only by this program, because the encoder does not report it.
     pub(super) fn apply_operations(&mut self, ops: &[Op], services: &mut Services) {
         for op in ops {
             match op {
@@ -102,7 +102,7 @@ impl Encoder {
                 }
                 Op::SetPosition { from, to, .. } => {
                     self.position_set = Some((*from, *to));
-                    // The readings refer to the previous zero position.
+                    // Earlier readings refer to the previous zero position.
                     self.commutation.forget_readings();
                     let steps = i64::from(*to) - i64::from(*from);
                     let text = Text::new("session.position_set").with("from", from).with("to", to);
@@ -234,7 +234,7 @@ impl SessionEvents for Encoder {
     }
 
     /// Returns whether the error means that the encoder does not respond. Invalid bytes are interpreted in this way
-    /// only right after connecting.
+    /// only immediately after connecting.
     fn is_no_response(&self, error: &JobError) -> bool {
         let cause = match error {
             JobError::Device(cause) => cause,
@@ -274,14 +274,14 @@ impl SessionEvents for Encoder {
         begun
     }
 
-    /// Handles a failed job. The rejection of an analogue channel is treated as a result of the reading.
+    /// Handles a failed job. If the encoder rejects an analogue channel, this is treated as the result of the reading.
     fn handle_failed_job(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);
         services.end_job(self.session.id, id, JobState::Failed(why.clone()));
         let stands_there = self.handle_rest_failure(&why);
         if let (Some(Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) = (self.asked.take(), error) {
-            // The encoder does not have this channel. This is a result, shown where the reading was requested.
+            // The encoder does not have this channel, which is shown where the reading was requested.
             self.analogue.insert(channel, Err(why));
             self.session.mark_replying();
             return;

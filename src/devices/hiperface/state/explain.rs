@@ -41,7 +41,7 @@ use crate::devices::hiperface::procedures::write::{InterruptedWrite, WrittenChan
 use crate::devices::hiperface::profile::{PlanError, RequiredSetup, UnknownMeaningField};
 use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 
-/// Returns the messages for a job that ended early. There is at least one message.
+/// Returns one or more messages for a job that ended early.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder_error_text(error)],
@@ -53,7 +53,7 @@ pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns the messages for an interrupted write: progress, result, and location of the backup.
+/// Returns the messages for an interrupted write, with the progress, the result and the location of the backup.
 pub fn interruption_text(interrupted: &InterruptedWrite, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let done = &interrupted.done;
     let mut texts = vec![match &interrupted.cause {
@@ -78,7 +78,7 @@ pub fn interruption_text(interrupted: &InterruptedWrite, backup: &Path, planned:
     texts
 }
 
-/// Returns the reason why the connection was lost, or `None` if it can still be used.
+/// Returns the reason why the connection was lost, or `None` if the connection can still be used.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     match error.device()? {
         Error::Link(error) => Some(link_error_text(error)),
@@ -86,7 +86,7 @@ pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     }
 }
 
-/// Returns the message for a completed write. If no value was read back, the message says that the encoder has
+/// Returns the message for a completed write. If no value was read back, the message states that the encoder has
 /// acknowledged the write.
 pub fn written_text(written: &WrittenChanges) -> Text {
     let id = if written.verified == 0 { "session.acknowledged" } else { "session.written" };
@@ -193,7 +193,7 @@ pub fn other_type(types: TypeMismatch) -> Text {
     TEXTS.text("review.other_type").with("profile", type_name(profile)).with("device", type_name(device))
 }
 
-/// Returns the name and the code of an encoder type. Unknown types have only the code.
+/// Returns the name and the code of an encoder type, or only the code if the type is unknown.
 fn type_name(code: u8) -> String {
     match EncoderTypes::built_in().find(code) {
         Some(own) => format!("{} ({code:02X}h)", own.name),

@@ -1,4 +1,4 @@
-//! Parsing typed codes, addresses and channels. The error messages name the valid values.
+//! Parsing of access codes, addresses and channels that the user has entered. The error messages name the valid values.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{
@@ -15,7 +15,7 @@ pub fn access_code(text: &str) -> Result<AccessCode, Text> {
     byte(text).map(AccessCode::new).ok_or_else(|| TEXTS.text("entry.code"))
 }
 
-/// Parses a new access code. The user types it twice, because the code cannot be read back.
+/// Parses a new access code, which the user types twice because it cannot be read back.
 ///
 /// # Errors
 /// Returns an error if an entry is invalid or the entries differ. The message does not repeat the entries.

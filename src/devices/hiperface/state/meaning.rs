@@ -1,4 +1,4 @@
-//! Explanation of frames in the trace. A reply is explained together with the request before it.
+//! Explanations of frames in the trace. A reply is explained together with the preceding request.
 
 use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::devices::hiperface::procedures::ReplyDamage;
@@ -6,7 +6,7 @@ use crate::devices::hiperface::protocol::{Answer, Frame, FrameDetail, Reply, Req
 use crate::devices::hiperface::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
-/// Decoder that explains frames in the order of transmission. It remembers the last request.
+/// A decoder that explains frames in the order of transmission and remembers the last request.
 #[derive(Debug, Default)]
 pub(super) struct FrameDecoder {
     request: Option<(u8, Request)>,
@@ -44,7 +44,8 @@ impl FrameDecoder {
             Ok(facts) => facts,
             Err(error) => return FrameExplanation::from_error(words::damage_text(&ReplyDamage::Reply(error.into()))),
         };
-        // The heading already contains the facts of the request. Only the other facts of the reply are added.
+        // If the request is known, the heading of the reply is omitted, because it only repeats the heading of the
+        // request.
         let known = |facts: &FrameDetail| asked.is_some() && matches!(facts, FrameDetail::Heading { .. });
         let meaning: Vec<Text> = facts.iter().filter(|facts| !known(facts)).map(words::detail_text).collect();
         let fault = answer.filter(is_status_report).map(|_| TraceFault::Reported);
@@ -79,8 +80,8 @@ mod tests {
         TraceEntry { at: Moment::START, direction, bytes: MaskedBytes::unmasked(bytes) }
     }
 
-    /// Damaged replies are marked, and their explanation names the error (issue 22.11). The frames belong to commands
-    /// in the manual and were corrupted deliberately.
+    /// Issue 22.11: damaged replies are marked, and their explanation names the error. The frames are replies to
+    /// commands in the manual and were corrupted deliberately.
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let position = [0x40, 0x42, 0x02];

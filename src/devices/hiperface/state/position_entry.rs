@@ -1,5 +1,5 @@
-//! Input of a position in steps, degrees, turns and degrees, or millimetres. Conversions are exact: a position that is
-//! shown in a unit and read back in the same unit is the same number of steps.
+//! Entry of a position in steps, degrees, turns and degrees, or millimetres. A position that is shown in one of these
+//! units and parsed in the same unit yields the same number of steps.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
@@ -15,14 +15,14 @@ const NANOMETRES: u128 = 1_000_000;
 pub enum PositionUnit {
     #[default]
     Steps,
-    /// Degrees from position 0, beyond 360 in an encoder with several turns.
+    /// Degrees from position 0, which exceed 360 in an encoder with several turns.
     Degrees,
     /// Whole turns, and degrees within the turn.
     TurnsAndDegrees,
     Millimetres,
 }
 
-/// A position as typed. The number of turns is only used for [`PositionUnit::TurnsAndDegrees`].
+/// A position as typed by the user. The number of turns is only used for [`PositionUnit::TurnsAndDegrees`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PositionEntry {
     pub unit: PositionUnit,
@@ -55,7 +55,7 @@ impl PositionUnit {
 }
 
 impl PositionEntry {
-    /// Creates an input field that contains a position in the given unit. A decimal point separates the decimals.
+    /// Creates an entry that contains a position in the given unit, with a decimal point.
     pub fn of(steps: u32, unit: PositionUnit, geometry: Option<Geometry>) -> Self {
         let own = |value: String| PositionEntry { unit, turns: String::new(), value };
         match (unit, geometry.and_then(|geometry| Some((geometry, geometry.steps_per_turn()?)))) {
@@ -76,11 +76,11 @@ impl PositionEntry {
         }
     }
 
-    /// Returns the position in steps. Steps are decimal, or hexadecimal with the prefix `0x`. An angle or a distance is
-    /// rounded to the nearest step.
+    /// Returns the position in steps. An entry in steps may be decimal, or hexadecimal with the prefix `0x`. An angle
+    /// or a distance is rounded to the nearest step.
     ///
     /// # Errors
-    /// Returns an error with the range if the entry is not a position of the encoder.
+    /// Returns an error with the valid range if the entry is not a position of the encoder.
     pub fn steps(&self, geometry: Option<Geometry>) -> Result<u32, Text> {
         let last =
             geometry.and_then(Geometry::position_count).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));
@@ -162,7 +162,7 @@ fn whole(text: &str) -> Option<u128> {
     text.parse().ok().filter(|_| is_number)
 }
 
-/// Parses a decimal number and multiplies it by a fraction. The result is rounded to the nearest whole number.
+/// Parses a decimal number, multiplies it by a fraction and rounds the result to the nearest whole number.
 fn nearest(text: &str, (above, below): (u128, u128)) -> Option<u128> {
     let text = text.trim_end_matches('°').trim_end().replace(',', ".");
     let (before, behind) = text.split_once('.').unwrap_or((&text, ""));
@@ -176,8 +176,8 @@ fn nearest(text: &str, (above, below): (u128, u128)) -> Option<u128> {
     Some(number.checked_mul(above)?.checked_add(below / 2)? / below.max(1))
 }
 
-/// Formats `steps` times the fraction. The result has at least `least` decimals, and enough to distinguish consecutive
-/// steps.
+/// Formats the product of `steps` and the fraction, with at least `least` decimals and enough decimals to distinguish
+/// consecutive steps.
 fn ratio(steps: u128, (above, below): (u128, u128), least: u32) -> String {
     let below = below.max(1);
     let decimals = (least..DIGITS as u32).find(|own| above * 10_u128.pow(*own) > below).unwrap_or(DIGITS as u32);
@@ -209,9 +209,9 @@ mod tests {
             (Steps, "", "16777215", 16_777_215),
             (Degrees, "", "90", 1024),
             (Degrees, "", "90 °", 1024),
-            // 0.5° are 5.69 steps.
+            // 0.5° is 5.69 steps.
             (Degrees, "", "0,5", 6),
-            // Two turns and a half.
+            // Two and a half turns.
             (Degrees, "", "900", 10_240),
             (TurnsAndDegrees, "2", "180", 10_240),
             // 224 turns and 116.807°, which are 1329.003 steps: 224 · 4096 + 1329.
@@ -243,7 +243,7 @@ mod tests {
             (Degrees, "", "NaN"),
             (Degrees, "", "1e2"),
             (Degrees, "", "1.2.3"),
-            // 4096 turns are one too many.
+            // 4096 turns exceed the range.
             (Degrees, "", "1474560"),
             (Degrees, "", "99999999999999999999"),
             (TurnsAndDegrees, "", "10"),

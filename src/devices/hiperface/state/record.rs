@@ -51,7 +51,7 @@ impl Record {
         }
     }
 
-    /// Selects the values to record in addition to the position.
+    /// Sets the values to record along with the position.
     pub(super) fn set_watched(&mut self, watched: &[WatchedQuantity]) {
         self.track.set_watched(watched);
     }

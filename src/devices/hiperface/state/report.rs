@@ -1,4 +1,5 @@
-//! Values of an encoder in a report: identity, interface, extended label, and the data fields as a map and as bytes.
+//! The values of an encoder in a report: identity, interface, extended label, and the data fields as a map and as
+//! bytes.
 
 use std::ops::Range;
 
@@ -14,13 +15,13 @@ use crate::drawing::{Drawing, DrawingLabel, DrawingShape, LabelAlign};
 use crate::profile::ProfileDocument;
 use crate::report::{Block, CellStyle, Fact, Mark, Section};
 
-/// Bytes in a block of the memory.
+/// Size of a memory block in bytes.
 const BLOCK_BYTES: usize = 16;
-/// Blocks in a row of the map.
+/// Number of blocks in a row of the map.
 const MAP_ROW: u32 = 32;
-/// Size of a block in the map.
+/// Side length of a block in the map.
 const BLOCK: u32 = 20;
-/// Print colours of the fields, on which black text is legible.
+/// Colours of the fields, chosen so that black text remains legible in print.
 const COLOURS: [&str; 6] = ["#b8dcff", "#ffd9a0", "#cdebc9", "#e2d3f7", "#ffd0cb", "#e4e2b4"];
 const UNUSED: &str = "#ffffff";
 const BORDER: &str = "#8a939b";
@@ -119,7 +120,7 @@ fn memory_section(context: &ReportContext<'_>, profile: &HiperfaceProfile) -> Se
     section
 }
 
-/// Returns the bytes of a field. Bytes that depend on the mounting have their meaning beside them.
+/// Returns the bytes of a field. The meanings of mounting values are shown next to their bytes.
 fn field_block(context: &ReportContext<'_>, profile: &HiperfaceProfile, field: &FieldImage) -> Block {
     let Some(bytes) = &field.bytes else {
         return Block::Paragraph(context.say(TEXTS.text("report.hf_locked")));

@@ -8,7 +8,7 @@ use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::procedures::RestPosition;
 use crate::devices::hiperface::protocol::Geometry;
 
-/// Reading at rest that the user has requested outside the commutation assistant.
+/// A reading at rest that the user has requested outside the commutation assistant.
 #[derive(Debug, Default)]
 pub(super) struct RestReadingRequest {
     is_under_way: bool,
@@ -34,8 +34,8 @@ impl Encoder {
         self.commutation.accept_position(rest, geometry);
     }
 
-    /// Handles a failed job. Returns whether the job was a reading at rest. The error of such a reading is displayed
-    /// next to the request.
+    /// Handles a failed job. Returns whether the job was a reading at rest, whose error is then displayed next to the
+    /// request.
     pub(super) fn handle_rest_failure(&mut self, why: &Text) -> bool {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Err(why.clone()));

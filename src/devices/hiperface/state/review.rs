@@ -1,4 +1,4 @@
-//! Review of a write to a HIPERFACE encoder: the permits, warnings and cost of its plan.
+//! Review of a write to a HIPERFACE encoder: permissions, warnings and costs of the plan.
 
 use crate::app::Text;
 use crate::app::explain::cycle_count_text;

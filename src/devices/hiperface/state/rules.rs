@@ -1,5 +1,5 @@
-//! Rules of the encoder for data fields, which are checked before an action is offered. The check makes the same plan
-//! as the write, from the memory as last read.
+//! The encoder's rules for data fields, which are checked before an action is offered. The check creates the same plan
+//! as the write, based on the memory that was last read.
 
 use super::StagedEdits;
 use crate::app::Text;
@@ -11,7 +11,7 @@ use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, Fie
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain;
 
-/// Permission for an action. The error is the reason why the action is not allowed.
+/// Permission for an action, or the reason why the action is not allowed.
 pub type ActionPermission = Result<(), Text>;
 
 /// Checks whether a field of this size can be created.
@@ -36,8 +36,8 @@ pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &StagedEdits) -> A
     check_edits_preserved(staged, field.number, 0)
 }
 
-/// Checks whether the protection and access code of the field can be changed. For such a change, the encoder requires
-/// the access code of the field.
+/// Checks whether the protection and the access code of the field can be changed, for which the encoder requires the
+/// access code of the field.
 pub fn status(field: &FieldImage) -> ActionPermission {
     match field.bytes {
         Some(_) => Ok(()),
@@ -110,7 +110,7 @@ fn plan_permission(plan: Result<HiperfacePlan, PlanError>) -> ActionPermission {
 mod tests {
     use super::*;
 
-    /// A plan that deletes an edited field is rejected, for example a restore that creates fields again.
+    /// A plan that deletes an edited field is rejected. An example is a restore that creates fields again.
     #[test]
     fn a_plan_that_deletes_an_edited_field_is_refused() {
         let status = DataFieldStatus::from_byte(0xC8);

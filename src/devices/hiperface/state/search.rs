@@ -1,4 +1,4 @@
-//! Search for encoders with unknown settings on a line. It tries every baud rate, parity and address.
+//! The search for encoders with unknown settings on a line, which tries every baud rate, parity and address.
 
 use crossbeam_channel::Receiver;
 
@@ -25,7 +25,7 @@ pub struct Search {
     pub(crate) url: LinkUrl,
     pub(crate) options: FindOptions,
     pub(crate) line: Option<LiveSession<Hiperface>>,
-    /// Receiver that is disconnected when the attempt to open the link has ended.
+    /// Receiver that is disconnected as soon as the attempt to open the link has ended.
     pub(crate) over: crossbeam_channel::Receiver<()>,
     pub found: Vec<FoundEncoder>,
     /// Message about the result of the search, or `None` while the search is running.
@@ -110,13 +110,13 @@ impl Search {
     pub(crate) fn stop(&mut self) {
         match &mut self.line {
             Some(line) => line.stop(),
-            // The link is still being opened, which may never end.
+            // The link is still being opened, and this attempt may never end.
             None => self.end = Some(TEXTS.text("find.cut_short").with("count", 0)),
         }
     }
 }
 
-/// Search function of the connection form.
+/// The search function of the connection form.
 #[derive(Default)]
 pub struct EncoderSearchForm {
     pub search: Option<Search>,
@@ -180,7 +180,7 @@ impl Finder for EncoderSearchForm {
         let search = finder.and_then(|finder| finder.search.as_mut());
         match (search.filter(|search| search.number == number && search.is_running()), result) {
             (Some(search), result) => search.handle_opened(result, services),
-            // The search ended while its link was being opened, so the link is not needed.
+            // The search has ended while its link was being opened, so the link is not needed.
             (None, Ok(opened)) => opened.close_unused(SessionId(number), services),
             (None, Err(_)) => {}
         }

@@ -1,22 +1,22 @@
-//! Data fields of the encoder with the edited bytes. The plan of a write is made from the differences. This module does
-//! not write anything to the encoder.
+//! The data fields of the encoder together with the edited bytes. A write is planned from the differences. This module
+//! does not write anything to the encoder.
 //!
-//! Edits survive a new reading. An edited byte keeps its edited value, and all other bytes take the value from the
-//! encoder. If a field cannot be read because its access code is unknown, its edits are kept until the field is
+//! Edits are kept when the encoder is read again. Edited bytes keep their edited values, and all other bytes are
+//! updated. If a field cannot be read because its access code is unknown, its edits are kept until the field is
 //! readable.
 
 use crate::app::{EditBase, Edits};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 
-/// Data fields with edited bytes, which are addressed by field and index.
+/// Data fields with edited bytes, which are identified by field number and index.
 pub type StagedEdits = Edits<Vec<FieldImage>>;
 
 impl EditBase for Vec<FieldImage> {
     type Location = (u8, usize);
     type Value = u8;
 
-    /// Returns whether a byte differs from the encoder's byte. In a field that could not be read, every byte is treated
-    /// as different.
+    /// Returns whether a byte differs from the byte in the encoder. In a field that could not be read, every byte is
+    /// considered different.
     fn is_edit(&self, (field, address): (u8, usize), byte: u8) -> bool {
         let image = self.iter().find(|image| image.number == field);
         match image.map(|image| (&image.bytes, image.status)) {
@@ -125,7 +125,7 @@ impl StagedEdits {
         self.iter().map(|((field, address), byte)| (field, address, byte))
     }
 
-    /// Adopts the edits of a draft. Edits of missing bytes and edits without effect are dropped.
+    /// Adopts the edits of a draft. Edits of missing bytes and edits that change nothing are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = (u8, usize, u8)>) {
         self.edit_values(draft.into_iter().map(|(field, address, byte)| ((field, address), byte)));
     }
@@ -199,7 +199,7 @@ mod tests {
         let mut staged = staged();
         staged.edit_bytes(0, 0, &[1, 2]).unwrap();
         let mut now = [0; 16];
-        now[1] = 2; // written meanwhile, by this program or another one
+        now[1] = 2; // written in the meantime by this or another program
         now[9] = 9;
         staged.refresh(fields(&now));
         assert!(staged.is_edited(0, 0) && !staged.is_edited(0, 1));

@@ -1,4 +1,4 @@
-//! Text catalogue of HIPERFACE.
+//! The text catalogue for HIPERFACE.
 
 use crate::app::Catalogue;
 

@@ -32,7 +32,7 @@ const MIN_TWO_COLUMN_WIDTH: f32 = 700.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let mut form = encoder.commutation.form.clone();
-    // The report is below the shorter of two columns, or at the end of a single column.
+    // The report is shown below the shorter of two columns, or at the end of a single column.
     let wide = ui.available_width() >= MIN_TWO_COLUMN_WIDTH;
     split(
         ui,
@@ -103,7 +103,8 @@ fn limits_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     two_numbers_ui(ui, theme, ("commutation.current", current, ""), ("commutation.time", time, ""));
 }
 
-/// Draws two numbers in one row if there is enough space. Each has the ID of its name, its text and its hint.
+/// Draws two number fields, in one row if there is enough space. Each field is given by the text ID of its name, its
+/// text and its hint.
 fn two_numbers_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -168,7 +169,7 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
             let limit = number_ui(ui, theme, "commutation.limit", &mut form.limit_deg, "5");
             limit.on_hover_text(translate(theme, "commutation.limit_hint"));
         }
-        // The card of the offset names the entry that is missing or invalid.
+        // The offset card names the missing or invalid entry.
     });
 }
 
@@ -221,7 +222,7 @@ fn second_vector_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Fo
     });
 }
 
-/// Draws a message in a space of constant height, so that the layout does not shift when the message appears or
+/// Draws a message in a space of fixed height, so that the layout does not shift when the message appears or
 /// disappears.
 pub(super) fn fixed_height_message_ui(ui: &mut Ui, theme: &Theme, message: RichText) {
     let room = egui::vec2(ui.available_width(), MESSAGE_LINES * theme.sizes.body * 1.4);
@@ -249,7 +250,7 @@ fn slot_ui(
     let beside = ui.available_width() >= MIN_ONE_LINE_WIDTH;
     ui.horizontal_wrapped(|ui| {
         let allowed = check_can_read(commutation, encoder.session.is_ready());
-        // All buttons have the same width, which aligns the entries in a column.
+        // All buttons have the same width, so that the entries are aligned in a column.
         let size = egui::vec2(READ_BUTTON_WIDTH.min(ui.available_width()), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.set_min_width(size.x);
@@ -257,7 +258,7 @@ fn slot_ui(
                 actions.push(assistant_action(encoder, Assistant::Read(slot)));
             }
         });
-        // The labels differ between the readings, for screen readers.
+        // Each reading has its own label for screen readers.
         let label = format!("{} · {}", translate(theme, slot.keyword()), translate(theme, "commutation.fine"));
         let response = text_entry(ui, typed, POSITION_WIDTH, &label, &translate(theme, "commutation.or_type"));
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
@@ -274,7 +275,7 @@ fn slot_ui(
     }
 }
 
-/// Draws the position of a slot and its source. The height is one line even without a reading.
+/// Draws the position of a slot and its source. Without a reading, an empty line is drawn.
 fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: VectorSlot) {
     let Some(reading) = encoder.commutation.reading_of(slot) else {
         ui.label(theme.monospace("–").color(theme.palette.muted));

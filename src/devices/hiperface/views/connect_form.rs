@@ -1,4 +1,4 @@
-//! The connection form of a HIPERFACE encoder, and the search for one with unknown settings.
+//! The connection form for HIPERFACE encoders, and the search for encoders with unknown settings.
 
 use std::time::Duration;
 
@@ -29,7 +29,7 @@ pub(crate) struct SearchUiState {
     power_cycle: bool,
 }
 
-/// Time for switching the supply of the encoder off and on.
+/// Time for the user to switch the supply of the encoder off and on again.
 const POWER_CYCLE: Duration = Duration::from_secs(30);
 
 pub(crate) struct HiperfaceConnectForm;

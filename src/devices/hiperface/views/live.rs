@@ -1,4 +1,4 @@
-//! The large display of the position, and the values read along with it.
+//! The large display of the position and of the values read along with it.
 
 use egui::{RichText, Ui};
 
@@ -35,7 +35,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     let Some(reading) = reading else { return unknown_rows(ui, theme, &["live.turns", "live.step", "live.raw"]) };
     let place = position.and_then(|position| Some((position.turns()?, position.steps()?)));
     if ui.available_height() < LOW_PANEL_HEIGHT {
-        // In a low window, the plot needs the space.
+        // If the window is not high enough, the space is needed for the plot.
         let mut words = format!("{:08X}h", reading.raw);
         if let Some((turns, steps)) = place {
             words = format!(

@@ -101,7 +101,7 @@ fn memory_map_ui(
         })
         .collect();
     let free_blocks = memory.map_or(0, |memory| usize::from(memory.blocks));
-    // At least eight free blocks are drawn if available, because a field can grow to eight.
+    // If available, at least eight free blocks are drawn, because a field can have up to eight blocks.
     let taken: usize = fields.iter().map(|field| field.blocks).sum();
     let a_line = (ui.available_width() / 48.0) as usize;
     let shown_free = free_blocks.min(a_line.saturating_sub(taken).max(8));
@@ -199,7 +199,7 @@ fn field_ui(
             typed_view(ui, theme, view.hex.to_read(bytes));
         });
     }
-    // The undo buttons of the edit bar move the cursor, as the keys do.
+    // The undo buttons of the edit bar move the cursor in the same way as the keyboard shortcuts.
     if actions.iter().any(|own| matches!(own, Action::Command(_, DeviceCommand::Undo | DeviceCommand::Redo))) {
         view.hex.move_to_change(bytes);
     }
@@ -215,7 +215,7 @@ fn field_ui(
     }));
 }
 
-/// Draws the selected field and its actions. A disabled action shows the reason.
+/// Draws the selected field and its actions. A disabled action shows why it is disabled.
 fn field_header_ui(
     ui: &mut Ui,
     theme: &Theme,

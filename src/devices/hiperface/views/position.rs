@@ -1,5 +1,5 @@
-//! The card that sets the position: the new position in a selectable unit, its meaning in the other units, and the
-//! undo.
+//! The card for setting the position, with the new position in a selectable unit, its value in the other units, and a
+//! button to undo the last change.
 
 use egui::Ui;
 
@@ -40,7 +40,7 @@ pub(super) fn card_ui(
         paragraph(ui, theme.label(translate(theme, "position_card.words")));
         let place = |steps: Option<u32>| {
             let words = steps.map(|steps| theme.format_text(&position_text(steps, geometry)));
-            // Steps and angle are on separate lines even if there is no value, so that nothing below moves.
+            // Steps and angle are on separate lines even if there is no value, so that the layout below does not shift.
             theme.monospace(words.unwrap_or_else(|| "– · ".to_owned()).replace(" · ", "\n"))
         };
         row(ui, theme, &translate(theme, "position_card.now"), place(encoder.record.last().map(|own| own.raw)));
@@ -72,7 +72,7 @@ pub(super) fn card_ui(
     });
 }
 
-/// Draws the input field for the new position, along with its unit. If the unit is changed, the typed position is
+/// Draws the input field for the new position and its unit. If the user changes the unit, the typed position is
 /// converted.
 fn entry_ui(ui: &mut Ui, theme: &Theme, geometry: Option<Geometry>, own: &mut PositionEntry) {
     let units = PositionUnit::available(geometry);
@@ -102,7 +102,8 @@ fn entry_ui(ui: &mut Ui, theme: &Theme, geometry: Option<Geometry>, own: &mut Po
     });
 }
 
-/// Draws the last change of the position with a button to undo it. The encoder cannot report the change.
+/// Draws the last change of the position with a button to undo it. The change is recorded by this program, because the
+/// encoder does not report it.
 fn undo_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, geometry: Option<Geometry>, actions: &mut Vec<Action>) {
     let Some((from, to)) = encoder.position_set else { return };
     let steps = i64::from(from) - i64::from(to);

@@ -1,5 +1,5 @@
 //! The setup page: position, synchronisation, address, line settings, access codes and restart. Every permanent change
-//! goes through the review.
+//! is reviewed first.
 
 use egui::Ui;
 

@@ -1,5 +1,5 @@
 //! The wiring card: the eight wires with their signals, and the line termination. Pins and wire colours depend on the
-//! encoder type and are in its data sheet.
+//! encoder type and are specified in its data sheet.
 
 use egui::Ui;
 
@@ -11,7 +11,7 @@ use crate::ui::wiring::wires_ui;
 
 const WIRE_WIDTH: f32 = 56.0;
 
-/// Wire names from the manual, each with its signal.
+/// Wire names in the manual, each with its signal.
 const WIRES: [(&str, &str); 8] = [
     ("US", "wiring.supply"),
     ("GND", "wiring.ground"),
@@ -41,9 +41,10 @@ mod tests {
     use crate::devices::hiperface::state::TEXTS;
     use crate::ui::wiring::{assert_notes, assert_wires};
 
-    /// Issue 22.23: HIPERFACE manual, "Hardware im Regler" (eight lines, 7 to 12 V, typically 8 V, overall screen,
-    /// twisted in pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485), figure 15 (130 Ω and 1 kΩ built in; BUS version:
-    /// at most 8, no 130 Ω, terminated at the one farthest from the master).
+    /// Issue 22.23: expected values from the HIPERFACE manual: "Hardware im Regler" (eight lines, 7 to 12 V, typically
+    /// 8 V, overall screen, twisted pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485) and figure 15 (built-in resistors
+    /// of 130 Ω and 1 kΩ; in the bus version, at most eight encoders without 130 Ω, and a terminator at the encoder
+    /// farthest from the master).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         assert_wires(

@@ -1,4 +1,4 @@
-//! Packets of the bridge protocol, each terminated by 00.
+//! Decoding of bridge protocol packets, which are terminated by a byte 00.
 
 use serde_json::Map;
 
@@ -59,7 +59,7 @@ fn explain_message(packet: &Packet) -> Result<Vec<String>, String> {
     }
 }
 
-/// Returns the name of an operation, as used in the reference.
+/// Returns the name of an operation as used in the reference.
 fn name(operation: Operation) -> &'static str {
     match operation {
         Operation::Hello => "HELLO",
@@ -168,7 +168,7 @@ fn hello_reply_lines(hello: &Hello) -> Vec<String> {
     ]
 }
 
-/// Describes a frame that an adapter has read. The CRC is checked by the host.
+/// Describes a frame that an adapter has read. The host checks the CRC.
 fn explain_frame(t_s: f64, status: BissStatus, raw: u64) -> Result<Vec<String>, String> {
     let bad = match status {
         BissStatus::OK => {

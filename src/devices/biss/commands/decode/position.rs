@@ -1,5 +1,5 @@
-//! Position frames of the kit encoder: 16 multiturn bits, 17 singleturn bits, error, warning, CRC-6. A position word
-//! consists of the multiturn and singleturn bits only.
+//! Position frames of the kit encoder, which consist of 16 multiturn bits, 17 singleturn bits, an error bit, a warning
+//! bit and a CRC-6. A position word consists only of the multiturn and singleturn bits.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -12,7 +12,7 @@ use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 /// Number of bytes that hold a right-justified frame.
 pub(super) const BYTES: usize = 6;
 
-/// Number of hexadecimal digits in a position word of 33 bits, as shown by `position` and in the window.
+/// Number of hexadecimal digits in a 33-bit position word, as shown by the `position` command and in the window.
 pub(super) const WORD_DIGITS: usize = 9;
 
 /// Decodes the bytes of one frame. Returns `None` if the number of bytes is wrong or surplus bits are set.
@@ -40,7 +40,7 @@ pub(super) fn explain_position_word(raw: u64, shown: String) -> FrameExplanation
     FrameExplanation { compact: shown.clone(), shown, meaning, more }
 }
 
-/// Describes turns, steps and angle, and adds them to the JSON.
+/// Describes the turns, steps and angle of a position, and adds them to the JSON output.
 fn describe_position(layout: &Layout, reading: &PositionData, raw: u64, more: &mut Map<String, Json>) -> String {
     let (turns, steps, degrees) = (reading.multiturn, reading.singleturn, layout.degrees_of(reading));
     let pairs = [("raw", json!(raw)), ("turns", json!(turns)), ("steps", json!(steps)), ("degrees", json!(degrees))];

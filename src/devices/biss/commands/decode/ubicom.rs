@@ -1,4 +1,4 @@
-//! Sequences of UBICOM frames. Register numbers are interpreted low byte first.
+//! Decoding of UBICOM frames. Register numbers are interpreted low byte first.
 
 use super::form_map;
 use crate::bits::{ByteOrder, hex, hex_compact};
@@ -7,7 +7,8 @@ use crate::cli::decode::FrameExplanation;
 use crate::devices::biss::commands::register_text;
 use crate::devices::biss::protocol::{Layout, RegisterAddress};
 
-/// Decodes frames. `requested` is the request before the frames. It is replaced by the last request among them.
+/// Decodes frames. `requested` is the request that precedes the frames. It is replaced with the last request in the
+/// frames.
 pub(super) fn explain_frames(bytes: &[u8], requested: &mut Option<Request>) -> Vec<FrameExplanation> {
     let mut explained = Vec::new();
     let mut request = *requested;
@@ -32,7 +33,7 @@ pub(super) fn explain_frames(bytes: &[u8], requested: &mut Option<Request>) -> V
     explained
 }
 
-/// Returns the length of the first frame in the bytes, according to its header.
+/// Returns the length of the first frame according to its header.
 fn first_frame_length(bytes: &[u8]) -> usize {
     match bytes {
         [_, _, _, low, high, ..] => usize::from(u16::from_le_bytes([*low, *high])) + Frame::OVERHEAD,
@@ -75,7 +76,7 @@ fn explain_payload(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<V
     Ok(lines)
 }
 
-/// Returns the number of a register, with its name if the kit encoder has it.
+/// Returns the number of a register, followed by its name if the kit encoder has the register.
 fn register_number_text(register: u16) -> String {
     match RegisterAddress::from_global(register) {
         None => format!("0x{register:04X}, which is behind the last"),

@@ -1,5 +1,5 @@
 //! Single exchanges over an adapter on the bus. An exchange reads a frame, or accesses a register by bank and address.
-//! The selected bank is cached while the encoder cannot have restarted unnoticed. The cache is cleared after every
+//! The selected bank is cached as long as the encoder cannot have restarted unnoticed. The cache is cleared after every
 //! failure.
 
 use std::time::Duration;
@@ -14,12 +14,12 @@ use crate::devices::biss::protocol::{FrameError, RegisterAddress};
 use crate::link::line::LineError;
 use crate::units::Moment;
 
-/// Slave number of an encoder that is the only one on its line.
+/// Slave number of a single encoder on the line.
 const SLAVE: u8 = 0;
-/// Maximum time since the last reply for which a restart of the encoder can be ruled out. A restart takes 500 ms (EDS
-/// 02:0Eh).
+/// Maximum time since the last reply within which the encoder cannot have restarted unnoticed. A restart takes 500 ms
+/// (data sheet, 02:0Eh).
 const BANK_TRUST: Duration = Duration::from_millis(200);
-/// Pause between two attempts, since the adapter reports a missing encoder immediately.
+/// Pause between two attempts, required because the adapter reports a missing encoder immediately.
 const PAUSE: Duration = Duration::from_millis(20);
 /// Number of consecutive frames with wrong checksums after which noise is ruled out as the cause (`U`: not documented).
 const WRONG_FRAMES: u32 = 16;
@@ -115,8 +115,8 @@ impl<'a> Master<'a> {
     pub(super) fn write_bus_once(&mut self, address: RegisterAddress, value: u8) -> AttemptResult<WriteReaction> {
         Ok(match self.write_register_once(address, value)? {
             Ok(reads) if reads == value => Ok(WriteReaction::Yes),
-            // A command register may be cleared as soon as the command is executed (`U`). The status register shows the
-            // result.
+            // A command register may be cleared as soon as the command is executed (`U`). The result can be read from
+            // the status register.
             Ok(0) if self.station.is_command_register(address) => Ok(WriteReaction::Yes),
             Ok(reads) => Ok(WriteReaction::No(Some(reads))),
             Err(trouble) => Err(trouble),
@@ -162,8 +162,8 @@ impl<'a> Master<'a> {
         Ok(Err(trouble))
     }
 
-    /// Clears the settings that the adapter may have lost in a reset. A cancellation clears only the bank and the bus
-    /// settings.
+    /// Discards cached settings that the adapter may have lost in a reset. After a cancellation, only the bank and the
+    /// bus settings are discarded.
     fn handle_possible_reset(&mut self, failure: &Failure) {
         if matches!(failure, Failure::Line(LineError::Cancelled)) {
             (self.station.bank, self.station.bus) = (None, None);
@@ -214,8 +214,8 @@ impl<'a> Master<'a> {
         Ok(Err(ExchangeError::NoFrame(no_frame)))
     }
 
-    /// Reads more frames if five had wrong checksums and none has ever been correct. Some of them are correct if the
-    /// cause is noise, and none if the widths are wrong.
+    /// Reads more frames if five frames had wrong checksums and none has ever been correct. If the cause is noise, some
+    /// of these frames are correct. If the widths are wrong, none of them are.
     pub(super) fn recheck_frame_widths(&mut self, failed: Error) -> Result<PositionReading, Error> {
         if self.station.good_frames {
             return Err(failed);
@@ -235,7 +235,8 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads a frame after a register access without a reply. The result shows whether the line itself is at fault.
+    /// Reads a frame after a register access to which no reply was received. The result shows whether the line itself
+    /// is at fault.
     pub(super) fn diagnose_line(&mut self, failed: Error) -> Error {
         let Error::NoReply { tries, .. } = failed else { return failed };
         match self.read_frame_once() {
@@ -260,7 +261,7 @@ impl<'a> Master<'a> {
         self.wait(PAUSE)
     }
 
-    /// Returns the maximum duration of an exchange, which has up to two attempts.
+    /// Returns the maximum duration of an exchange with up to two attempts.
     pub(super) fn max_bus_exchange_duration(&self) -> Duration {
         2 * (REPEAT_AFTER + self.station.line.margin)
     }

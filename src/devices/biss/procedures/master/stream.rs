@@ -1,4 +1,5 @@
-//! Streaming frames. The adapter handles no other requests during a stream, so any other request ends the stream first.
+//! Streams of frames. During a stream, the adapter does not process other requests, so any other request ends the
+//! stream first.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -16,8 +17,8 @@ const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
 impl Master<'_> {
     /// Returns the next frames of a stream, and starts the stream if necessary. The interval is `period_us`
-    /// microseconds, or the shortest that the adapter supports. Returns `None` over the configuration pin, which has no
-    /// streams.
+    /// microseconds, or the shortest interval that the adapter supports. Returns `None` over the configuration pin,
+    /// which does not support streams.
     ///
     /// # Errors
     /// Starting a stream returns the same errors as [`position`](Self::position). A running stream returns an error if
@@ -28,7 +29,7 @@ impl Master<'_> {
         }
         let streamed = StreamKind::Biss { period_us };
         if self.station.flow.as_ref().is_none_or(|flow| flow.stream_kind() != streamed) {
-            // This also checks the wiring and the widths.
+            // Reading the position also checks the wiring and the widths.
             self.position()?;
             let after = self.station.streamed_until;
             self.station.flow = Some(SampleStream::start(&mut self.adapter_host(), streamed, after)?);
@@ -74,7 +75,7 @@ impl Master<'_> {
         }
     }
 
-    /// Records that a stream has failed, and ends the stream in the adapter if possible.
+    /// Handles the failure of a stream, and ends the stream in the adapter if possible.
     fn stream_failed(&mut self, error: Error) -> Error {
         if !matches!(error, Error::Cancelled) && self.stop_frame_stream().is_err() {
             // Identifying the adapter again sends HELLO, which ends all streams.

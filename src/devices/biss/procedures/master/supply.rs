@@ -1,4 +1,4 @@
-//! Supply of the encoder by an adapter. It is switched on if requested, and restored at the end of the session.
+//! The supply of the encoder by an adapter, which is switched on if requested and restored at the end of the session.
 
 use std::time::Duration;
 
@@ -7,8 +7,8 @@ use crate::devices::biss::procedures::Error;
 use crate::devices::biss::procedures::station::{Supply, Transport};
 use crate::devices::biss::protocol::DeviceMode;
 
-/// Time allowed for a store that a register write may have started. No status register shows its end, and its duration
-/// is not published (`U`).
+/// Time allowed for a store that a register write may have started. No status register indicates when the store is
+/// complete, and its duration is not published (`U`).
 const STORE_TIME: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
@@ -24,15 +24,16 @@ impl Master<'_> {
         self.wait(Supply::POWER_UP)
     }
 
-    /// Returns whether the encoder has power from any supply. An encoder that sends a frame has power.
+    /// Returns whether the encoder has power from any supply. This is the case if it sends a frame.
     fn has_power(&mut self) -> bool {
         let bits = self.station.frame_layout().bits();
         let ones = u64::MAX >> (64 - u32::from(bits.clamp(1, 64)));
         matches!(self.read_frame_once(), Ok(Ok((raw, _))) if raw != 0 && raw != ones)
     }
 
-    /// Switches the supply off at the end of a session, unless it was on before or is to remain on. It also remains on
-    /// while a store, a calibration or a restart may be in progress, because cutting the power would lose encoder data.
+    /// Switches off the supply at the end of a session, unless it was on before or should remain on. The supply also
+    /// remains on while a store, a calibration or a restart may be in progress, because data in the encoder could be
+    /// lost.
     ///
     /// # Errors
     /// Returns an error if the adapter fails.
@@ -55,8 +56,8 @@ impl Master<'_> {
         if self.station.unfinished {
             return Ok(true);
         }
-        // Nothing was written in this session, but an encoder that does not reply may be busy with an operation started
-        // earlier.
+        // Nothing was written in this session, but an encoder that does not reply may be busy with an earlier
+        // operation.
         let Some(written_at) = self.station.written_at else { return Ok(!self.has_power()) };
         let since = self.now().duration_since(written_at);
         self.wait(STORE_TIME.saturating_sub(since))?;

@@ -1,6 +1,7 @@
 //! Single exchanges over the configuration pin. An exchange sends a request and receives bytes until the reply is
 //! complete or has timed out. Bytes that are not part of a frame are skipped, and a frame that pauses for 20 ms is
-//! abandoned. The echo is recognised by its length, which no reply has. See reference UBICOM 1 and 2.
+//! abandoned. The echo is recognised by its length, because no reply has this length. See sections 1 and 2 of the
+//! UBICOM reference.
 
 use std::time::Duration;
 
@@ -18,7 +19,8 @@ use crate::units::Moment;
 
 /// Length in bytes of the longest frame, which is the reply to 03h.
 const LONGEST_FRAME: usize = PositionWord::BYTES + Frame::OVERHEAD;
-/// Time after the reply time-out during which bytes may still arrive. Bytes that keep arriving later are noise.
+/// Time after the reply time-out during which bytes may still arrive. Bytes that keep arriving after this time are
+/// noise.
 const NOISE: Duration = Duration::from_secs(1);
 
 struct TimedReply {
@@ -29,7 +31,7 @@ struct TimedReply {
 struct ReceivedBytes {
     receiver: Receiver,
     sent: Vec<u8>,
-    /// The first received bytes, for the trace.
+    /// First bytes that were received, for the trace.
     raw: Vec<u8>,
     bytes: usize,
     echo_heard: bool,
@@ -158,7 +160,7 @@ impl Master<'_> {
         // The receiver returns whole frames only.
         let parsed = Reply::parse(&Frame::parse(frame).ok()?, request.command());
         match parsed {
-            // Bytes before the echo belong to the reply to an earlier request.
+            // Bytes before the echo belong to a reply to an earlier request.
             Ok(_) if self.station.line.echo == Echo::On && !received.echo_heard => {
                 received.damage = Some(ReplyDamage::Echo)
             }
@@ -174,7 +176,7 @@ impl Master<'_> {
         state.record_answer_start(at);
         state.echo.record_echo(received.echo_heard);
         if received.receiver.skipped_count() > 0 || received.damage.is_some() {
-            // This reply has a correct checksum, but the line has damaged other bytes.
+            // The checksum of this reply is correct, but the line has damaged other bytes.
             state.damaged += 1;
             state.quality.damaged += 1;
             self.station.noisy = true;

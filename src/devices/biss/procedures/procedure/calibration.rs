@@ -1,5 +1,5 @@
-//! Singleturn calibration. It has a counterclockwise and a clockwise run of about five seconds each, during which the
-//! encoder may not reply. See manual 6.4.
+//! Singleturn calibration, which consists of a counterclockwise and a clockwise run of about five seconds each. The
+//! encoder may not reply during a run. See manual 6.4.
 
 use std::time::Duration;
 
@@ -32,7 +32,7 @@ impl ProcedureContext<'_, '_> {
             .filter(|_| self.description.procedure(ProcedureKind::FilterSelection).is_some())
         {
             let code = self.master.read(filter)?;
-            // An old firmware has one filter and reports 0.
+            // An old firmware has only one filter and reports 0.
             if code == PositionFilter::Dynamic.byte() {
                 return Err(Failure::NotBalanced { code });
             }
@@ -55,7 +55,8 @@ impl ProcedureContext<'_, '_> {
         Ok(Outcome::Calibrated(CalibrationReport { celsius, counterclockwise, clockwise }))
     }
 
-    /// Performs one calibration run. Cancellation does not interrupt the second run, because that would lose the table.
+    /// Performs one calibration run. Cancellation does not interrupt the second run, because the calibration table
+    /// would be lost.
     fn run_calibration(&mut self, run: MotorRun, procedure: &Procedure) -> Result<(), Failure> {
         self.begin_step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;
@@ -83,8 +84,8 @@ impl ProcedureContext<'_, '_> {
             return self.run(&course, procedure, explain);
         }
         let ended = self.run_uncancellable(|guide| guide.run(&course, procedure, explain));
-        // A successful run saves the table, and a failed one loses it. Nothing changes only if the run was never
-        // started.
+        // If the run succeeds, the table is saved. If it fails, the table is lost. The table remains unchanged only if
+        // the run was never started.
         if !matches!(ended, Err(Failure::Device(Error::Cancelled | Error::Refused { .. }))) {
             self.count_write_cycle();
         }

@@ -1,5 +1,6 @@
-//! Writing motor and OEM data (manual 6.5). The manual never mentions selecting the bank to write. This implementation
-//! selects the target bank after opening the area, and bank 0 before reading the status, as [`Master`] always does.
+//! Writing motor and OEM data (manual 6.5). The manual does not mention that the bank to write must be selected. This
+//! implementation selects the target bank after opening the area, and bank 0 before reading the status, as [`Master`]
+//! always does.
 //!
 //! [`Master`]: crate::devices::biss::procedures::Master
 

@@ -16,7 +16,7 @@ pub enum Failure {
     Wiegand {
         run: MotorRun,
         status: WiegandStatus,
-        /// Error code, whose meaning is not published.
+        /// Error code of unpublished meaning.
         code: u8,
     },
     /// The active filter is not the balanced one.

@@ -1,5 +1,5 @@
-//! Parts shared by all procedures: device modes, commands, statuses, the operator at the motor, restarts, and the
-//! return to operation. The possible states of the encoder are tracked, so that they can be reported after the link is
+//! Functions shared by all procedures: device modes, commands, statuses, the operator at the motor, restarts, and the
+//! return to operation. The possible states of the encoder are tracked, so that they can be reported if the link is
 //! lost.
 
 use std::sync::Arc;
@@ -16,18 +16,18 @@ use crate::devices::biss::protocol::{
     Description, DeviceMode, Lock, Procedure, ProcedureKind, RegisterAddress, Role, Temperature,
 };
 
-/// Time that the encoder needs for a restart, during which nothing is sent to it (data sheet, 02:0Eh).
+/// Time that the encoder needs for a restart (data sheet, 02:0Eh). Nothing is sent during this time.
 const RESTART: Duration = Duration::from_millis(500);
 /// Time limit for a restart.
 const RESTART_TIMEOUT: Duration = Duration::from_secs(5);
-/// Time limit for the silence of a calibrating encoder, which lasts about five seconds (manual 6.4).
+/// Time limit for the silence of an encoder during a calibration run, which takes about five seconds (manual 6.4).
 pub(super) const SILENCE_LIMIT: Duration = Duration::from_secs(10);
 /// Interval at which a status register is polled.
 const STATUS_POLL_INTERVAL: Duration = Duration::from_millis(100);
-/// Interval between position readings. At 2000 rpm, half a turn takes 15 ms. At longer intervals, turns of an encoder
-/// without a multiturn would be missed.
+/// Interval between position readings. At 2000 rpm, half a turn takes 15 ms. At longer intervals, the turns of an
+/// encoder without multiturn would be missed.
 const SAMPLING: Duration = Duration::from_millis(10);
-/// Interval at which the operator is asked for an answer.
+/// Interval at which the operator is prompted for an answer.
 const QUESTION_INTERVAL: Duration = Duration::from_millis(200);
 /// Duration of a motor speed measurement.
 const SPEED_MEASUREMENT_TIME: Duration = Duration::from_secs(1);
@@ -36,8 +36,8 @@ const STANDSTILL_MEASUREMENT_TIME: Duration = Duration::from_millis(250);
 const MODE: Duration = Duration::from_millis(500);
 /// Time limit for an expected status.
 const STATUS: Duration = Duration::from_secs(5);
-/// Duration of silence after which an encoder is considered to have started calibrating (`U`: not documented). A
-/// damaged reply causes a shorter silence.
+/// Duration of silence after which the encoder is assumed to have started the calibration (`U`: not documented). The
+/// silence after a damaged reply is shorter.
 const START_SILENCE: Duration = Duration::from_secs(1);
 
 pub(in crate::devices::biss::procedures) struct ProcedureContext<'g, 'm> {
@@ -140,7 +140,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         self.standing.activity = activity;
     }
 
-    /// Returns the encoder to operation and clears the password. Does not send anything if the encoder is already in
+    /// Returns the encoder to operation and clears the password. Nothing is sent if the encoder is already in
     /// operation.
     pub(in crate::devices::biss::procedures) fn return_to_operation(&mut self) -> Result<(), Error> {
         let Some(lock) = self.description.lock().filter(|_| !self.standing.is_in_operation()) else { return Ok(()) };
@@ -177,8 +177,8 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         }
     }
 
-    /// Sends a command. No error is returned if it is uncertain whether the encoder received the command. In this case,
-    /// the next exchange must check the status or the written values.
+    /// Sends a command. If it is uncertain whether the encoder received the command, no error is returned, and the next
+    /// exchange must check the status or the written values.
     pub(super) fn command(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         match self.master.write(procedure.command, command) {
             Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),
@@ -186,7 +186,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         }
     }
 
-    /// Sends the command that writes the flash. From then on, the flash is considered written unless a reply proves
+    /// Sends the command that writes the flash. After that, the flash is considered written unless a reply proves
     /// otherwise.
     pub(super) fn save(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         let before = self.standing.activity;
@@ -223,7 +223,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         }
     }
 
-    /// Runs `work` with cancellation ignored.
+    /// Runs `work` without reacting to cancellation.
     pub(super) fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.master.ignore_cancellation(true);
         let result = work(self);
@@ -232,7 +232,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
     }
 
     /// Starts a run, polls the status until the run is complete, and reports the progress. `explain` converts an
-    /// unexpected status to a failure. The status read before the command is ignored until it changes.
+    /// unexpected status to a failure. The status from before the command is ignored until it changes.
     pub(super) fn run(
         &mut self,
         course: &RunProgress,
@@ -255,7 +255,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
             begun |= course.run.is_calibration() && self.master.now().duration_since(requested) >= START_SILENCE;
             let waits = status == course.before || !begun;
             if waits && elapsed < STATUS {
-                // Not started yet.
+                // The run has not started yet.
             } else if status == course.before || (waits && status == course.done) {
                 // The start command was not received.
                 let expected = course.active;
@@ -281,7 +281,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         self.standing.record_possible_restart();
         let Some(lock) = self.description.lock() else { return Ok(()) };
         let standing = &mut self.standing;
-        // After a restart another bank is selected.
+        // A restart resets the selected bank.
         self.master.station().bank = None;
         // The written value is read back, even after cancellation.
         self.master.run_uncancellable(|master| {
@@ -291,8 +291,8 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         Ok(())
     }
 
-    /// Assigns a task at the motor to the operator. Measures repeatedly until the conditions are met and the operator
-    /// confirms.
+    /// Gives the operator a task at the motor. The shaft is measured repeatedly until the conditions are met and the
+    /// operator confirms.
     pub(super) fn run_operator_task(&mut self, task: OperatorTask) -> Result<OperatorDecision, Failure> {
         self.begin_step(ProcedureStep::Await(task));
         let begun = self.master.now();
@@ -305,7 +305,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         loop {
             let measured = self.measure_shaft(task, &mut monitor)?;
             if !is_told {
-                // Answers from before the question was displayed are ignored.
+                // Answers given before the prompt was displayed are ignored.
                 self.operator.on_task_start();
                 is_told = true;
             }
@@ -321,12 +321,12 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         }
     }
 
-    /// Reads positions until the next question to the operator. The temperature is also read if the task depends on it.
+    /// Reads positions until the next prompt to the operator. The temperature is also read if the task depends on it.
     fn measure_shaft(&mut self, task: OperatorTask, monitor: &mut SpeedMonitor) -> Result<ShaftReading, Failure> {
         let mut measured = ShaftReading::default();
         let end = self.master.now() + QUESTION_INTERVAL;
         loop {
-            // Between the runs of a calibration the encoder may still be silent.
+            // Between the two calibration runs, the encoder may still be silent.
             let reading = match task {
                 OperatorTask::Turn(MotorRun::CalibrationClockwise) => {
                     self.master.with_reply_timeout(SILENCE_LIMIT, Master::position)
@@ -382,8 +382,8 @@ fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mu
     ended
 }
 
-/// Returns the encoder from any mode to operation and clears the password. The result is the previous mode. A running
-/// calibration is allowed to finish, because leaving it would lose the table.
+/// Returns the encoder from any mode to operation, clears the password, and returns the previous mode. A running
+/// calibration is allowed to finish, because the table would be lost if it were aborted.
 pub(super) fn return_to_operation(
     master: &mut Master<'_>,
     description: &Description,
@@ -398,7 +398,7 @@ pub(super) fn return_to_operation(
             ended?;
         }
         if DeviceMode::new(master.read(lock.mode_at)?) != DeviceMode::OPERATION {
-            // The password is also required to leave the mode.
+            // Leaving the mode requires the password as well.
             unlock(master, lock, standing)?;
             set_mode(master, lock, DeviceMode::OPERATION, standing)?;
         }
@@ -415,7 +415,7 @@ pub(super) fn return_to_operation(
     Err(Error::StaysUnlocked { mode: stays })
 }
 
-/// Sends the command that a procedure requires before its mode is left. A rejection is ignored.
+/// Sends the command that ends a procedure before its mode is left. A rejection is ignored.
 fn end_procedure(master: &mut Master<'_>, description: &Description, mode: DeviceMode) -> Result<(), Error> {
     use crate::devices::biss::protocol::{CalibrationStatus, DataCommand, DataStatus, WiegandCommand};
     let Some(procedure) = description.procedures().iter().find(|own| own.mode == mode.byte()) else { return Ok(()) };

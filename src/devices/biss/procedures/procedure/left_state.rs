@@ -1,10 +1,10 @@
-//! The state of an encoder as inferred from its replies. It is reported if the link is lost during a procedure.
+//! The state of an encoder, as inferred from its replies. It is reported if the link is lost during a procedure.
 
 use super::MotorRun;
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::DeviceMode;
 
-/// The possible values of a quantity. There is more than one if a reply is missing.
+/// The possible values of a quantity. If a reply is missing, there is more than one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PossibleValues<T>(Vec<T>);
 
@@ -18,10 +18,10 @@ pub struct LeftState {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
-    /// The encoder is not doing anything that a loss of the link would interrupt.
+    /// The encoder performs no operation that a loss of the link would interrupt.
     Nothing,
     Running(MotorRun),
-    /// Values have been entered but not saved, and are discarded when the mode is left or power is lost.
+    /// Values have been entered but not saved. They are discarded when the mode is left or power is lost.
     Entered,
     /// The flash has been or may have been written. Either the old or the new values are stored.
     Saving,
@@ -33,7 +33,7 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
         PossibleValues(vec![value])
     }
 
-    /// Returns all possible values in the order in which they would have been reached.
+    /// Returns all possible values, in the order in which the encoder would have reached them.
     pub fn as_slice(&self) -> &[T] {
         &self.0
     }
@@ -52,11 +52,11 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
         }
     }
 
-    /// Updates the possible values after `after` was written. They depend on the result of the write.
+    /// Updates the possible values according to the result of writing `after`.
     pub(super) fn update_after_write(&mut self, after: T, ended: &Result<(), Error>) {
         match ended {
             Ok(()) => *self = PossibleValues::new(after),
-            // The value was not sent, or not accepted.
+            // The value was not sent or not accepted.
             Err(Error::Cancelled | Error::Refused { .. }) => {}
             Err(_) => self.add_possible(after),
         }

@@ -1,7 +1,7 @@
-//! The guided procedures (manual 6.3 to 6.7). Each is straight-line code from entering its device mode to returning to
-//! operation. A procedure instructs the operator at the motor through an [`Operator`], reports every [`ProcedureStep`],
-//! and always ends in operation mode with the password cleared. If the encoder is out of reach, the known [`LeftState`]
-//! is reported instead, and [`return_to_operation`] completes the return later.
+//! The guided procedures (manual 6.3 to 6.7). A procedure is straight-line code from entering its device mode to
+//! returning to operation. It instructs the operator at the motor through an [`Operator`], reports every
+//! [`ProcedureStep`], and always ends in operation mode with the password cleared. If the encoder cannot be reached,
+//! the known [`LeftState`] is reported instead, and [`return_to_operation`] completes the return later.
 //!
 //! | file | content |
 //! |---|---|
@@ -52,7 +52,7 @@ pub enum Outcome {
     },
     PresetStored {
         value: PresetValue,
-        /// Width of the singleturn in bits.
+        /// Width of the singleturn position in bits.
         singleturn_bits: u8,
     },
     PresetFired {
@@ -91,9 +91,8 @@ impl ProcedureContext<'_, '_> {
     }
 }
 
-/// Returns an encoder to operation and clears the password. The result is the previous mode. This also works after the
-/// link was lost or another host changed the mode. If the encoder is silent because it is calibrating, the function
-/// waits for it.
+/// Returns an encoder to operation, clears the password, and returns the previous mode. This also works after the link
+/// was lost or another host changed the mode. If the encoder is silent during a calibration, the function waits for it.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the encoder does not return to operation.

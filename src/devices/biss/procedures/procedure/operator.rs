@@ -1,5 +1,5 @@
-//! The operator at the motor during a procedure: tasks, measurements and confirmations. In the window the operator is a
-//! user, and in a test a script. On a production line, there may be no operator.
+//! The operator at the motor during a procedure: tasks, measurements and confirmations. In the window, the operator is
+//! a user. In a test, the operator is a script. On a production line, there may be no operator.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -9,13 +9,13 @@ use super::ShaftMotion;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MotorRun {
     CalibrationCounterclockwise,
-    /// Second calibration run. If it fails, the table is lost.
+    /// Second calibration run. If it fails, the calibration table is lost.
     CalibrationClockwise,
     WiegandClockwise,
     WiegandCounterclockwise,
 }
 
-/// Inclusive range of speeds in revolutions per minute.
+/// An inclusive range of speeds in revolutions per minute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedRange {
     pub least: f64,
@@ -73,7 +73,7 @@ impl MotorRun {
     }
 
     /// Returns the maximum speed variation, in revolutions per minute, at which the motor is considered steady. The
-    /// limit depends on the speed, because the accuracy of the speed measurement does.
+    /// limit depends on the speed, because the accuracy of the measurement depends on it.
     pub fn accepted_fluctuation(self, rpm: f64) -> f64 {
         match self.max_fluctuation() {
             Some(fluctuation) => fluctuation + rpm.abs() * SpeedRange::MEASURING_TOLERANCE,
@@ -81,7 +81,7 @@ impl MotorRun {
         }
     }
 
-    /// Speed variation, relative to the speed, above which a motor is not steady (`U`: not documented).
+    /// Relative speed variation above which a motor is not considered steady (`U`: not documented).
     const MAX_FLUCTUATION: f64 = 0.05;
 }
 
@@ -129,7 +129,7 @@ pub enum OperatorAdvice {
     Speed { recommended: SpeedRange },
     /// If this run fails, the calibration table is lost (manual 6.4).
     TableAtRisk,
-    /// The encoder marks its positions as invalid. The speed is calculated from them anyway.
+    /// The encoder marks its positions as invalid, but the speed is still calculated from them.
     Marked,
 }
 
@@ -140,7 +140,7 @@ pub struct OperatorPrompt {
     pub motion: Option<ShaftMotion>,
     /// Temperature of the encoder, if the procedure depends on it.
     pub celsius: Option<i16>,
-    /// Conditions due to which the run cannot start yet.
+    /// Conditions that must be met before the run can start.
     pub blockers: Vec<StartBlocker>,
     pub advice: Vec<OperatorAdvice>,
     pub waited: Duration,
@@ -205,7 +205,7 @@ impl OperatorPrompt {
 pub(super) struct ShaftReading {
     pub(super) motion: Option<ShaftMotion>,
     pub(super) celsius: Option<i16>,
-    /// Whether positions are marked as invalid.
+    /// Whether the encoder marks its positions as invalid.
     pub(super) marked: bool,
     pub(super) unreadable: bool,
 }
@@ -218,7 +218,7 @@ pub enum OperatorAnswer {
     /// Skip this part and continue with the next.
     Skip,
     Cancel,
-    /// Give up because no operator is present. The conditions that are not met are reported.
+    /// Give up because no operator is present. The unmet conditions are reported.
     GiveUp,
 }
 
@@ -226,11 +226,11 @@ pub trait Operator {
     /// Prepares for a new task by discarding confirmations of earlier ones.
     fn on_task_start(&mut self) {}
 
-    /// Asks the operator for an answer. Called a few times per second, each time with a new measurement.
+    /// Asks the operator for an answer. This function is called several times per second with new measurements.
     fn ask(&mut self, demand: &OperatorPrompt) -> OperatorAnswer;
 }
 
-/// A substitute for an operator. It starts as soon as all conditions are met, and gives up after a time limit.
+/// A substitute for an operator, which starts as soon as all conditions are met and gives up after a time limit.
 #[derive(Clone, Copy, Debug)]
 pub struct UnattendedOperator {
     pub patience: Duration,
@@ -244,7 +244,7 @@ impl UnattendedOperator {
 impl Operator for UnattendedOperator {
     fn ask(&mut self, demand: &OperatorPrompt) -> OperatorAnswer {
         let hopeless = demand.blockers.iter().any(|blocker| matches!(blocker, StartBlocker::Temperature { .. }));
-        // With a measurement, the reason for giving up can be more specific.
+        // After a measurement, a more specific reason for giving up can be reported.
         let measures =
             if demand.blockers == [StartBlocker::Measuring] { Self::FIRST_MEASUREMENT_TIME } else { Duration::ZERO };
         if demand.is_ready() {
@@ -257,12 +257,12 @@ impl Operator for UnattendedOperator {
     }
 }
 
-/// A channel for the answers of an operator in another thread. Clones share the channel.
+/// A channel for answers of an operator in another thread. Clones share the channel.
 #[derive(Clone, Debug, Default)]
 pub struct OperatorChannel(Arc<Mutex<Option<(OperatorTask, OperatorAnswer)>>>);
 
 impl OperatorChannel {
-    /// Answers the current task. An answer is ignored if it is for another task or was sent before the task was given.
+    /// Answers a task. The answer is ignored if another task is current or the task has not been given yet.
     pub fn answer_task(&self, to: OperatorTask, answer: OperatorAnswer) {
         *self.lock_slot() = Some((to, answer));
     }
@@ -298,7 +298,7 @@ mod tests {
         OperatorPrompt::new(task, measured, Duration::ZERO)
     }
 
-    /// Manual 6.3 and 6.4.
+    /// The limits are taken from manual 6.3 and 6.4.
     #[test]
     fn a_start_requires_direction_speed_and_stability() {
         let (first, second) = (MotorRun::CalibrationCounterclockwise, MotorRun::CalibrationClockwise);

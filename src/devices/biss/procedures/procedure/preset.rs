@@ -1,5 +1,5 @@
-//! Preset. The value is stored, or the current shaft position is set to it. In both cases, the encoder restarts. See
-//! manual 6.7.
+//! Preset, which stores a preset value or sets the current shaft position to it. In both cases, the encoder restarts.
+//! See manual 6.7.
 
 use super::guide::{OperatorDecision, ProcedureContext};
 use super::{Activity, Failure, OperatorTask, Outcome, ProcedureStep};
@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::{
     PresetCommand, PresetStatus, PresetValue, Procedure, ProcedureKind, RegisterAddress,
 };
 
-/// Reciprocal of the allowed jitter around the new value, in revolutions. The jitter is 0.35°.
+/// Reciprocal of the allowed jitter around the new value, in revolutions. The allowed jitter is 0.35°.
 const PRESET_JITTER_DIVISOR: u64 = 1024;
 
 impl ProcedureContext<'_, '_> {
@@ -76,7 +76,7 @@ fn preset(from: &PositionReading, parts: PresetParts, value: PresetValue) -> u64
     u64::from(turns) << from.singleturn_bits | u64::from(steps)
 }
 
-/// Returns the number of steps from `place` to the position of the reading, in the shorter direction.
+/// Returns the number of steps from `place` to the position of the reading, measured in the shorter direction.
 fn shortest_distance(place: u64, reading: &PositionReading) -> u64 {
     let bits = u32::from(reading.position_word().bits);
     let mask = 1_u64.checked_shl(bits).map_or(u64::MAX, |range| range - 1);

@@ -1,5 +1,5 @@
-//! Motion of the shaft, calculated from its positions: direction, speed, variation and standstill. The monitor sends no
-//! requests.
+//! The motion of the shaft, calculated from its positions: direction, speed, speed variation and standstill. The
+//! monitor sends no requests.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -13,7 +13,7 @@ pub(super) struct SpeedMonitor {
     window: i64,
     unwrap: Option<PositionUnwrapper>,
     steps_per_turn: f64,
-    /// Positions of the window, oldest first. The first one is at or before the start of the window.
+    /// Positions in the window, oldest first. The first position is at or before the start of the window.
     places: VecDeque<(SampleTime, i64)>,
 }
 
@@ -21,7 +21,7 @@ pub(super) struct SpeedMonitor {
 pub struct ShaftMotion {
     /// Mean speed in revolutions per minute, positive for clockwise rotation, in which positions increase.
     pub rpm: f64,
-    /// Maximum deviation from the mean speed in a quarter of the measurement, in revolutions per minute.
+    /// Maximum deviation from the mean speed in any quarter of the measurement, in revolutions per minute.
     pub spread: f64,
     pub travel: f64,
 }
@@ -36,7 +36,7 @@ impl ShaftMotion {
 }
 
 impl SpeedMonitor {
-    /// Number of parts of the window in which the speed is evaluated separately.
+    /// Number of parts into which the window is divided. The speed of each part is evaluated separately.
     const PARTS: i32 = 4;
 
     pub(super) fn with_window(window: Duration) -> Self {
@@ -64,7 +64,7 @@ impl SpeedMonitor {
         }
     }
 
-    /// Returns the measured motion, or `None` until positions for the whole measuring window have arrived.
+    /// Returns the measured motion, or `None` until positions for the whole window have arrived.
     pub(super) fn motion(&self) -> Option<ShaftMotion> {
         let ((first, _), (last, _)) = (self.places.front()?, self.places.back()?);
         if last.nanoseconds_since(*first) < self.window {
@@ -94,7 +94,7 @@ impl SpeedMonitor {
     }
 }
 
-/// Returns the slope of a least squares fit, or `None` for fewer than two points.
+/// Returns the slope of a least-squares fit, or `None` if there are fewer than two points.
 fn slope(places: &[(f64, f64)]) -> Option<f64> {
     let count = places.len() as f64;
     let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / count;
@@ -129,7 +129,8 @@ mod tests {
         }
     }
 
-    /// Measures positions every 20 ms for 1.2 s; `turns` gives the position for a time in seconds.
+    /// Returns the motion measured from positions every 20 ms for 1.2 s. `turns` returns the position at a time in
+    /// seconds.
     fn measured(multiturn_bits: u8, turns: impl Fn(f64) -> f64) -> ShaftMotion {
         let mut gauge = SpeedMonitor::with_window(Duration::from_secs(1));
         for at in (0..=1200).step_by(20) {
@@ -141,7 +142,8 @@ mod tests {
 
     #[test]
     fn a_steady_shaft_yields_speed_and_direction() {
-        // 500 rpm are 25/3 revolutions per second, across the end of the range and without counted turns.
+        // The shaft crosses the end of the range, or the encoder does not count turns. 500 rpm is 25/3 revolutions per
+        // second.
         for (bits, rpm) in [(16, 500.0), (16, -500.0), (16, 2000.0), (0, 700.0), (0, -300.0)] {
             let motion = measured(bits, |seconds| 0.25 + seconds * rpm / 60.0);
             assert!((motion.rpm - rpm).abs() < 0.01 && motion.spread < 0.02, "{bits} {rpm}: {motion:?}");
@@ -150,7 +152,8 @@ mod tests {
         }
     }
 
-    /// Speed rising from 490 to 510 rpm within the second, so that the quarters have 492.5, 497.5, 502.5 and 507.5 rpm.
+    /// The speed rises from 490 to 510 rpm within one second, so that the mean speeds of the quarters are 492.5, 497.5,
+    /// 502.5 and 507.5 rpm.
     #[test]
     fn an_accelerating_shaft_is_unsteady() {
         let motion = measured(16, |seconds| {
@@ -168,7 +171,7 @@ mod tests {
         };
         assert!(tremble(16.0).is_still(), "16 steps are 1/8192 of a revolution");
         assert!(!tremble(18.0).is_still());
-        // The shaft moved by half a degree within the second.
+        // The shaft moves by half a degree per second.
         assert!(!measured(16, |seconds| seconds / 720.0).is_still());
     }
 

@@ -1,5 +1,5 @@
-//! Test of the Wiegand sensor. Pulses are collected over 515 revolutions clockwise, then counterclockwise. See manual
-//! 6.3.
+//! The test of the Wiegand sensor, which collects pulses during 515 clockwise revolutions and then during 515
+//! counterclockwise revolutions. See manual 6.3.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use crate::devices::biss::protocol::{Procedure, ProcedureKind, WiegandCommand, W
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiegandReport {
     pub result: WiegandResult,
-    /// Whether the result is saved in the encoder. The saved result shows after a restart.
+    /// Whether the result is saved in the encoder. The saved result can be read after a restart.
     pub saved: bool,
     pub clockwise: Option<ShaftMotion>,
     pub counterclockwise: Option<ShaftMotion>,
@@ -59,7 +59,7 @@ impl ProcedureContext<'_, '_> {
             let statuses = [WiegandStatus::WaitForDirection, WiegandStatus::Counterclockwise, WiegandStatus::Complete];
             (WiegandCommand::StartCounterclockwise, statuses)
         };
-        // At the slowest permitted speed, this takes 62 s.
+        // At the lowest permitted speed, this takes 62 s.
         let rpm =
             motion.map_or(run.allowed_speeds().least, |motion| motion.rpm.abs()).max(run.allowed_speeds().least / 2.0);
         let expected = Duration::from_secs_f64(f64::from(WiegandResult::REVOLUTIONS) / rpm * 60.0);
@@ -84,8 +84,8 @@ impl ProcedureContext<'_, '_> {
         })
     }
 
-    /// Saves the result. Only the status of the encoder confirms this, because the result cannot be read back before a
-    /// restart.
+    /// Saves the result. Only the status of the encoder confirms the save, because the result cannot be read back
+    /// before a restart.
     fn save_result(&mut self, procedure: &Procedure) -> Result<(), Failure> {
         self.begin_step(ProcedureStep::Save);
         self.set_activity(Activity::Saving);

@@ -1,4 +1,4 @@
-//! Tests of single changes and guided runs, case by case.
+//! Tests of plans for single changes and guided procedures.
 
 use super::*;
 use crate::devices::biss::profile::test_profiles::{data_areas, profile, set_bank_bytes};
@@ -47,7 +47,8 @@ fn edits_of_an_area_need_one_save_and_skip_equal_bytes() {
     assert_eq!(changes, [(0, 1), (0, 4), (0, 9)], "of two edits of one register the later counts");
 }
 
-/// Manual, appendix 9.1: which registers are commands, read-only, or the lock.
+/// Registers according to appendix 9.1 of the manual: commands, lock registers, read-only registers, and registers that
+/// can be written.
 #[test]
 fn registers_owned_by_a_procedure_are_not_written_directly() {
     let kit = kit();
@@ -66,7 +67,8 @@ fn registers_owned_by_a_procedure_are_not_written_directly() {
     let plan =
         plan_edits(&kit, &[], &[(at("0x40"), Some(2)), (at("0x50"), None)], &[edit("0x40", &[3]), edit("0x50", &[1])]);
     let plan = plan.unwrap();
-    // The bank selection is not stored; whether the other one is, is not known.
+    // The bank selection is not stored. It is unknown whether the other register is stored, so it may cost a write
+    // cycle.
     assert_eq!(items(&plan), [("0x40".to_owned(), 0), ("0x50".to_owned(), 1)]);
     assert_eq!(plan.base.registers, [(at("0x40"), 2)]);
     let same = plan_edits(&kit, &[], &[(at("0x40"), Some(2))], &[edit("0x40", &[2])]).unwrap();
@@ -153,7 +155,7 @@ fn a_motor_that_needs_this_encoder_is_refused() {
         let error = plan_mounting(&kit(), &device(), &run, MotorSource::ThisEncoder).unwrap_err();
         assert_eq!(error, PlanError::DrivenByThisEncoder);
     }
-    // A run without a motor does not ask for one.
+    // Steps that need no motor can be planned in any case.
     assert!(plan_mounting(&kit(), &device(), &run(false, None), MotorSource::ThisEncoder).is_ok());
     let mut dynamic = device();
     dynamic.filter = Some(PositionFilter::Dynamic);

@@ -1,4 +1,4 @@
-//! Tests of plans, case by case.
+//! Tests of restore plans.
 
 use super::*;
 use crate::devices::biss::profile::test_profiles::{data_areas, profile, set_bank_bytes};
@@ -20,7 +20,7 @@ fn with_preset(profile: &mut BissProfile, singleturn: u32, multiturn: u32) {
     profile.preset = Some(PresetSetting { value, unknown: Default::default() });
 }
 
-/// Returns the operations in short form with their cost.
+/// Returns the operations in a short notation, with their cost in write cycles.
 fn ops(restore: &Restore) -> Vec<String> {
     let short = |op: &Op| {
         let cost = crate::profile::Operation::write_cycles(op);
@@ -40,7 +40,7 @@ fn planned(profile: &BissProfile, device: &DeviceState) -> Restore {
     plan_restore(profile, device, RestoreOptions::default()).unwrap()
 }
 
-/// By the issue: three bytes of one bank are three registers and one save.
+/// Changing three bytes in one bank changes three registers but requires only one save.
 #[test]
 fn differences_in_an_area_need_one_save() {
     let now = profile("1");
@@ -52,7 +52,7 @@ fn differences_in_an_area_need_one_save() {
     assert_eq!(restore.plan.ops[0].compared_items(), 3);
     assert_eq!(restore.plan.write_cycles(), 1);
     assert_eq!(restore.plan.base.banks, [Bank::filled_with(0x24, 0)]);
-    // Filter, six registers of the preset value, all but three of 64 banks.
+    // These are the filter, six registers of the preset value, and all but three registers of 64 banks.
     assert_eq!(restore.unchanged, 1 + 6 + 64 * 64 - 3);
     assert_eq!((restore.missing, restore.mounting_left), (vec![], vec![]));
 }
@@ -97,7 +97,7 @@ fn restore_plans_for_each_case() {
     for (label, change, expected, cycles) in cases {
         let mut now = profile("1");
         let mut wanted = now.clone();
-        // Banks that the profile does not mention are left alone.
+        // Banks that the profile does not contain remain unchanged.
         if label.starts_with("a profile") {
             set_bank_bytes(&mut now, 0x24, &[(0, 0x55)]);
         }
@@ -125,7 +125,8 @@ fn a_bank_marked_empty_in_the_profile_is_cleared() {
     assert_eq!(required_banks(&partial, &data_areas()), [0x25]);
 }
 
-/// Issue 22.9: another kind of encoder needs its own permission; the one for another serial number is not enough.
+/// Issue 22.9: another kind of encoder requires a separate permission. The permission for another serial number is not
+/// sufficient.
 #[test]
 fn another_kind_needs_a_separate_permission() {
     let mut wanted = profile("1");
@@ -176,17 +177,17 @@ fn another_encoder_keeps_its_mounting() {
     let all = ["OEM data 0x24:0x00:00>01 0x24:0x01:00>02 0x24:0x02:00>03 (1)", "0x01:0x02+6 (1)"];
     assert_eq!(ops(&restore), all);
     assert_eq!(restore.mounting_left, []);
-    // Issue 22.7: values from another mounting are named if they are written.
+    // Issue 22.7: mounting values of another encoder are reported if they are written.
     let written: Vec<String> = restore.mounting_written.iter().map(ToString::to_string).collect();
     assert_eq!(written, ["0x01:0x02+6", "0x24:0x01+2"]);
     assert_eq!(planned(&wanted, &device(&profile("1"))).mounting_written, []);
-    // On the encoder itself nothing is left out.
+    // In the encoder from which the profile was read, all values are restored.
     assert_eq!(ops(&planned(&wanted, &device(&profile("1")))), all);
     assert_eq!(ops(&plan_data_areas(&wanted, &now).unwrap()), all[..1]);
 }
 
-/// Issue 22.9: another device ID, or a position of another width, is another type, which needs its own permission;
-/// another serial number needs the other one as well.
+/// Issue 22.9: an encoder with another device ID or position width is of another type, which requires a separate
+/// permission. If the serial number differs as well, both permissions are required.
 #[test]
 fn another_type_needs_a_separate_permission() {
     let mut wanted = profile("1");
@@ -202,7 +203,8 @@ fn another_type_needs_a_separate_permission() {
             let error = plan_restore(&wanted, &now, refused).unwrap_err();
             assert!(matches!(error, PlanError::TypeMismatch(_)), "{error}");
         }
-        // The same number of another type is another encoder: it keeps its mounting.
+        // An encoder of another type is another encoder even if the serial numbers are equal, so mounting values are
+        // not written.
         let type_only = RestoreOptions { allow_other_type: true, ..RestoreOptions::default() };
         let restore = plan_restore(&wanted, &now, type_only).unwrap();
         assert_eq!((ops(&restore).len(), restore.mounting_left.len()), (0, 1));
@@ -211,7 +213,7 @@ fn another_type_needs_a_separate_permission() {
         assert!(matches!(error, PlanError::OtherDevice { .. }), "{error}");
         assert!(plan_restore(&wanted, &now, RestoreOptions { allow_other_type: true, ..device_only }).is_ok());
     }
-    // A width that is unknown on one side counts as equal.
+    // A width that is unknown on one side matches any width.
     assert!(plan_restore(&wanted, &unknown, RestoreOptions::default()).is_ok());
 }
 
@@ -270,7 +272,7 @@ fn values_the_encoder_cannot_have_are_reported_or_refused() {
     assert_eq!(error, PlanError::NoBank { bank: 0x24 });
 }
 
-/// An area without an opening command is written register by register; the cost is not known.
+/// An area without an opening command is written register by register, at an assumed cost of one write cycle each.
 #[test]
 fn an_area_without_a_procedure_is_written_directly() {
     let mut now = device(&profile("1"));
@@ -282,7 +284,7 @@ fn an_area_without_a_procedure_is_written_directly() {
     assert_eq!(restore.plan.write_cycles(), 2);
 }
 
-/// The effect of the ready-made profiles on an encoder as delivered, with another serial number.
+/// Restores the ready-made profiles to an encoder with factory settings and another serial number.
 #[test]
 fn ready_made_profiles_plan_the_expected_writes() {
     let read = |name: &str| {
@@ -305,8 +307,8 @@ fn ready_made_profiles_plan_the_expected_writes() {
     let all = plan("servo-motor-data.ron", RestoreOptions { with_mounting: true, ..other });
     assert_eq!((all.mounting_left, all.plan.write_cycles()), (vec![], 2));
     assert_eq!(all.plan.base.banks.len(), 3, "nothing else is touched");
-    // A commutation record as stored by HIPERFACE encoders, of a motor with four pole pairs: 5299h is the result of
-    // Python's `binascii.crc_hqx(record, 0xFFFF)` for the bytes before it.
+    // The profile contains a commutation record, as used in HIPERFACE encoders, for a motor with four pole pairs. 5299h
+    // is the result of Python's `binascii.crc_hqx(record, 0xFFFF)` for the bytes before it.
     let record = [0x43, 0x4F, 0x31, 0x00, 0x1C, 0x71, 0xC7, 0x1C, 0x04, 0x00, 0x00, 0x00, 0x00, 0x00, 0x52, 0x99];
     assert_eq!(read("servo-motor-data.ron").bank(4).unwrap().bytes[32..48], record);
 }

@@ -66,7 +66,7 @@ fn emitted_profiles_parse_back() {
     document.note = Some("two\nlines".to_owned());
     let text = document.emit();
     assert_eq!(ProfileDocument::parse(&text, BissProfile::FORMATS), Ok(document));
-    // Lines that a user looks for.
+    // These lines are the most relevant for a user.
     for line in [
         "    device: \"biss\",",
         "        profile_id: 0x6129,",
@@ -215,7 +215,7 @@ fn a_mark_covers_its_registers() {
     assert_eq!(profile.mounting.len(), count, "an encoder without a preset value has nothing of the kind");
 }
 
-/// Issue 22.26: one changed value changes the text at one point.
+/// Issue 22.26: changing a value changes the text at a single location.
 #[test]
 fn a_change_edits_only_its_value() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/biss.ron"));

@@ -3,8 +3,8 @@
 use super::super::crc::crc4;
 use super::{REGISTERS, REST_CYCLES, append_crc4};
 
-/// The encoder side of the control channel, driven cycle by cycle. Each cycle starts with a call of
-/// [`next_cds`](Self::next_cds) and ends with a call of [`receive_cdm`](Self::receive_cdm).
+/// The encoder's side of the control channel, driven cycle by cycle. A cycle starts with a call to
+/// [`next_cds`](Self::next_cds) and ends with a call to [`receive_cdm`](Self::receive_cdm).
 #[derive(Clone, Debug)]
 pub struct Encoder {
     slave: u8,
@@ -37,12 +37,11 @@ enum State {
     Rest,
     /// Ignoring a frame that is unintelligible or addressed to another encoder.
     Ignoring,
-    /// Receiving the head of a frame. `bits` contains the `cycle` bits received so far, with the first one in the
-    /// highest bit.
+    /// Receiving the head of a frame. `bits` contains the `cycle` bits received so far, with the first bit at the top.
     Head { bits: u32, cycle: u8 },
-    /// About to send the start bit S. For a read, the value must be known first.
+    /// About to send the start bit S. For a read, this requires the value.
     Start { address: u8, access: Access },
-    /// Sending DATA and CRC4. After the start bit S, `sent` bits of `word` have been sent. For a write, received bits
+    /// Sending DATA and CRC4. `sent` bits of `word` have been sent after the start bit S. For a write, received bits
     /// are appended to `word`.
     Data { address: u8, access: Access, word: u16, sent: u8 },
 }
@@ -55,19 +54,19 @@ enum Access {
 }
 
 impl Encoder {
-    /// Number of bits in the header, which consists of S, CTS, ID, ADR and CRC4.
+    /// Number of bits in the header: S, CTS, ID, ADR and CRC4.
     const HEADER_BITS: u8 = 16;
-    /// Number of bits in the head, which consists of the header, R and W.
+    /// Number of bits in the head: the header, R and W.
     const HEAD_BITS: u8 = 18;
     const WORD_BITS: u8 = 12;
 
-    /// Creates the control channel of an encoder. `slave` is its number on the line, 0 to 7, which is 0 for a kit
-    /// encoder.
+    /// Creates the control channel of an encoder. `slave` is its number on the line, 0 to 7. A kit encoder has number
+    /// 0.
     pub fn new(slave: u8) -> Self {
         Encoder { slave: slave & 7, zeros: 0, state: State::Rest }
     }
 
-    /// Returns the CDS bit of the cycle that begins.
+    /// Starts a cycle, and returns its CDS bit.
     pub fn next_cds(&mut self) -> bool {
         match self.state {
             State::Rest | State::Ignoring | State::Start { access: Access::Read(None), .. } => false,
@@ -90,7 +89,7 @@ impl Encoder {
         }
     }
 
-    /// Receives the CDM bit of the cycle that ends, and returns the resulting event, if any.
+    /// Ends a cycle with its CDM bit, and returns the resulting event, if any.
     pub fn receive_cdm(&mut self, bit: bool) -> Option<Event> {
         let rested = self.zeros >= REST_CYCLES;
         self.zeros = if bit { 0 } else { self.zeros.saturating_add(1) };
@@ -154,7 +153,7 @@ fn begin_transfer(address: u8, access: Access) -> (State, Option<Event>) {
     }
 }
 
-/// Handles one bit of DATA and CRC4. `sent` counts the bits and includes the current one.
+/// Handles one bit of DATA and CRC4. `sent` is the number of bits sent, including the current one.
 fn transfer_bit(address: u8, access: Access, word: u16, bit: bool, sent: u8) -> (State, Option<Event>) {
     if access != Access::Write {
         return (State::Data { address, access, word, sent }, None);

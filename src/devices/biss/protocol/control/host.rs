@@ -3,8 +3,8 @@
 use super::super::crc::crc4;
 use super::{ControlError, MAX_WAIT_CYCLES, REST_CYCLES, Request};
 
-/// The host side of the control channel, driven cycle by cycle. Only one request runs at a time, and the line is idle
-/// between requests.
+/// The host's side of the control channel, driven cycle by cycle. Requests are processed one at a time, and the line is
+/// idle between them.
 #[derive(Clone, Debug)]
 pub struct Host {
     /// Number of consecutive cycles with CDM = 0. The counter saturates.
@@ -26,7 +26,7 @@ pub struct Step {
 #[derive(Clone, Debug)]
 enum State {
     Rest,
-    /// Sending the head in cycles 0 to 18. `bits` contains the CDM bits, the first one in bit 18.
+    /// Sending the head in cycles 0 to 18. `bits` contains the CDM bits, the first of which is bit 18.
     Head {
         request: Request,
         bits: u32,
@@ -37,7 +37,7 @@ enum State {
         transfer: Transfer,
         cycles: u8,
     },
-    /// Transferring DATA and CRC4, of which `received` bits have arrived.
+    /// Transferring DATA and CRC4. `received` bits have arrived.
     Data {
         transfer: Transfer,
         word: u16,
@@ -56,7 +56,7 @@ impl Transfer {
         self.request.address.saturating_add(u8::try_from(self.values.len()).unwrap_or(u8::MAX))
     }
 
-    /// Returns the DATA or CRC4 bit that the host sends at index `at`. The bit at 0 is sent first.
+    /// Returns the DATA or CRC4 bit that the host sends at index `at`. The bit at index 0 is sent first.
     fn bit(&self, at: u8) -> bool {
         self.request.data(self.values.len()) << at & 0x800 != 0
     }
@@ -90,7 +90,7 @@ impl Host {
         self.waiting.is_some() || !matches!(self.state, State::Rest)
     }
 
-    /// Abandons the request. The encoder discards it during the zeros before the next request.
+    /// Abandons the request, which the encoder discards during the zeros before the next request.
     pub fn abandon(&mut self) {
         self.waiting = None;
         self.restart_zeros();
@@ -123,7 +123,7 @@ impl Host {
     }
 
     fn send_head(&mut self, request: Request, bits: u32, cycle: u8, cds: bool) -> Step {
-        // Bit that the encoder must send in this cycle, if known.
+        // The bit that the encoder must send in this cycle, if known.
         let expected = match cycle {
             17 => Some(request.is_read()),
             18 => Some(!request.is_read()),
@@ -182,7 +182,7 @@ impl Host {
         Step { cdm: false, outcome: Some(Err(error)) }
     }
 
-    /// Restarts the count of zeros before the next request, since zeros within a frame may have been data.
+    /// Restarts the count of zeros before the next request, because zeros within a frame may have been data.
     fn restart_zeros(&mut self) {
         self.state = State::Rest;
         self.zeros = 0;

@@ -1,11 +1,11 @@
-//! Tests of the control frame: published bit strings in both directions, host and encoder connected to each other, and
-//! damage.
+//! Tests of the control frame with published bit strings in both directions, with host and encoder connected to each
+//! other, and with damaged bits.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// Reference 3: CDM, first bit left.
+/// CDM bits of read requests from section 3 of the reference, in the order of transmission.
 const READS: [(u8, &str); 11] = [
     (0x00, "11000000000001101010000000000000"),
     (0x05, "11000000010110011010000000000000"),
@@ -31,7 +31,8 @@ const WRITES: [(u8, u8, &str); 10] = [
     (0x03, 0x80, "11000000001100110111000000000010"),
     (0x04, 0x01, "11000000010010100110000000111000"),
 ];
-/// Reference 3: CDS for a read of 4Bh, lock bits and the repeated R and W before it, P after it.
+/// CDS bits from section 3 of the reference for a read that returns 4Bh. The lock bits and the echoed R and W precede
+/// the value, and P follows it.
 const CDS_4B: &str = "010000000000000001010100101101100";
 
 fn bits(text: &str) -> Vec<bool> {
@@ -42,18 +43,18 @@ fn text(bits: &[bool]) -> String {
     bits.iter().map(|bit| if *bit { '1' } else { '0' }).collect()
 }
 
-/// A host and an encoder on a line, with the registers of the encoder.
+/// A line with a host, an encoder and the encoder's registers.
 struct Line {
     host: Host,
     encoder: Encoder,
     registers: [u8; 128],
-    /// Cycles until an answer is there.
+    /// Number of cycles until the encoder has a value to send.
     processing: u8,
-    /// The bits on the line since the first 1 of the host.
+    /// Bits on the line, starting with the first 1 that the host sends.
     cdm: Vec<bool>,
     cds: Vec<bool>,
     events: Vec<Event>,
-    /// Inverts this bit of CDM or CDS, counted from the start bit.
+    /// Index of the CDM bit to invert, counted from the start bit.
     flip_cdm: Option<usize>,
     flip_cds: Option<usize>,
 }
@@ -75,7 +76,7 @@ impl Line {
         }
     }
 
-    /// Adds another encoder that has been on the line for a long time.
+    /// Replaces the encoder with one that has the given number and has been on the line for a long time.
     fn attach(&mut self, slave: u8) {
         self.encoder = Encoder::new(slave);
         (0..REST_CYCLES).for_each(|_| assert_eq!(self.encoder.receive_cdm(false), None));
@@ -136,7 +137,7 @@ fn published_writes_match() {
     }
 }
 
-/// Each side by itself, against the literal bits of the other.
+/// Tests the encoder and the host separately, each with the published bits of the other side.
 #[test]
 fn published_reply_matches() {
     let (_, cdm) = READS[4];
@@ -191,7 +192,7 @@ fn unknown_slaves_and_damaged_requests_get_no_reply() {
     line.attach(3);
     assert_eq!(line.ask(Request::read(3, 0x66, 1).unwrap()), Ok(vec![0xC3]));
     assert_eq!(line.ask(Request::read(0, 0x66, 1).unwrap()), Err(ControlError::NoSlave(0)));
-    // A head with a damaged checksum is not answered.
+    // The encoder does not reply to a head with a damaged checksum.
     line.attach(0);
     line.flip_cdm = Some(14);
     assert_eq!(line.ask(Request::read(0, 0x66, 1).unwrap()), Err(ControlError::Rejected(0x66)));
@@ -202,14 +203,15 @@ fn unknown_slaves_and_damaged_requests_get_no_reply() {
 fn a_command_is_ignored() {
     let mut encoder = Encoder::new(0);
     (0..REST_CYCLES).for_each(|_| assert_eq!(encoder.receive_cdm(false), None));
-    // S, CTS = 0, CMD 01, CRC4 C; the following bits would read a register, but none is accessed.
+    // The bits are S, CTS = 0, CMD 01 and CRC4 C. The bits after them would read a register, but no register is
+    // accessed.
     for bit in bits("1000000000011100101000000000000") {
         encoder.next_cds();
         assert_eq!(encoder.receive_cdm(bit), None);
     }
 }
 
-/// After any traffic on the line, fourteen zeros return it to rest.
+/// Fourteen zeros return the line to the idle state after any traffic.
 #[test]
 fn fourteen_zeros_reset_every_cycle() {
     let (_, _, write) = WRITES[2];
@@ -220,7 +222,7 @@ fn fourteen_zeros_reset_every_cycle() {
             line.encoder.next_cds();
             line.encoder.receive_cdm(*bit);
         }
-        // The host aborts there, and repeats the request.
+        // The host aborts the write here and sends another request.
         let read = line.ask(Request::read(0, 0x66, 1).unwrap());
         assert_eq!(read, Ok(vec![0xC3]), "cut at {cut}");
     }
@@ -243,8 +245,8 @@ fn an_aborted_request_leaves_the_host_ready() {
     assert!(host.run_cycle(false).cdm);
 }
 
-/// A flipped bit of the encoder's answer never results in a wrong value read, and one of the host's never in a wrong
-/// value written.
+/// A flipped bit in the encoder's reply never yields a wrong value, and a flipped bit in a request never writes a wrong
+/// value.
 #[test]
 fn any_single_flipped_bit_is_detected() {
     let read = || Request::read(0, 0x66, 1).unwrap();
@@ -252,7 +254,7 @@ fn any_single_flipped_bit_is_detected() {
         let mut line = Line::new(0);
         line.flip_cds = Some(cycle);
         let read = line.ask(read());
-        // Lock bits of other encoders and the zeros after them carry no data.
+        // The lock bits of other encoders and the zeros after them contain no data.
         let carries_nothing = matches!(cycle, 0 | 2..=16);
         assert_eq!(read.is_ok(), carries_nothing, "CDS {cycle}: {read:?}");
         assert!(read.is_err() || read == Ok(vec![0xC3]), "CDS {cycle}");

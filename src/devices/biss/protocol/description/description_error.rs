@@ -1,5 +1,5 @@
-//! Errors in a description file. The RON parser passes on only the message of an error. Therefore, the error is stored
-//! in this module until the parser has reported its position.
+//! Errors in a description file. The RON parser reports only the message of an error. Therefore, this module stores the
+//! error until the parser has reported its position.
 
 use std::cell::Cell;
 
@@ -13,7 +13,7 @@ use super::register::{Register, Role};
 /// The kind of error in a description file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DescriptionErrorKind {
-    /// The file does not have the form of a description. Contains the message of the RON parser.
+    /// The content of the file is not a description. The string is the message of the RON parser.
     #[error("{0}")]
     Form(String),
     /// The address is not valid for a direct register.
@@ -68,10 +68,10 @@ pub enum DescriptionErrorKind {
     /// The factor or offset is not a finite number.
     #[error("\"{0}\": factor and offset must be finite numbers")]
     Endless(String),
-    /// The row lists values that trigger a save, but the register cannot be written.
+    /// Values that trigger a save are specified for a register that cannot be written.
     #[error("\"{0}\": a read-only register cannot have \"saves\" values")]
     SavesNothing(String),
-    /// The first bank of an area comes after its last.
+    /// The first bank of an area comes after its last bank.
     #[error("\"{name}\": the first bank (0x{first:02X}) comes after the last bank (0x{last:02X})")]
     Banks {
         /// Name of the area.
@@ -90,7 +90,7 @@ pub enum DescriptionErrorKind {
     /// The German name is empty.
     #[error("\"{0}\": the German name is empty")]
     GermanEmpty(String),
-    /// A German name is given for an English name that is not used in the description.
+    /// A German name is specified for an English name that is not used in the description.
     #[error("german: the description does not contain the name \"{0}\"")]
     GermanNeedless(String),
 }

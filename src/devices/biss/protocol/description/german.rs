@@ -1,5 +1,5 @@
-//! The German names of a description. They are listed separately from the English ones, so that a name used in many
-//! rows is translated once. An entry for a name that the description does not use is an error, reported with its
+//! The German names of a description. They are listed separately from the English names, so that a name used in several
+//! rows is translated only once. An entry for a name that the description does not use is reported as an error with its
 //! position.
 
 use std::collections::BTreeMap;
@@ -17,8 +17,8 @@ use super::name::Name;
 pub(super) struct GermanNames(BTreeMap<String, String>);
 
 impl GermanNames {
-    /// Adds the German names to the English ones. `text` is the content of the file, which is searched for the position
-    /// of an unused entry.
+    /// Adds the German names to the English names. `text` is the content of the file, which is searched for the
+    /// position of an unused entry.
     pub(super) fn translate<'a>(
         mut self,
         names: impl Iterator<Item = &'a mut Name>,

@@ -1,4 +1,4 @@
-//! A described register: its address, width, meaning and write cost.
+//! A described register, with its address, width, meaning and write cost.
 
 use super::super::address::RegisterAddress;
 use super::super::status::Firmware;
@@ -14,7 +14,7 @@ pub struct Register {
     pub width: u8,
     /// Name in the manual.
     pub name: Name,
-    /// Purpose of the register for the program, if it has one.
+    /// Purpose of the register, if the program uses it.
     pub role: Option<Role>,
     /// Permitted access.
     pub access: Access,
@@ -76,7 +76,7 @@ pub enum Access {
     Rw,
 }
 
-/// The way in which a register value is decoded.
+/// The method by which a register value is decoded.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ValueDecoding {
@@ -119,7 +119,7 @@ pub enum DecodedValue<'a> {
     Text(String),
 }
 
-/// A range of banks without separately defined registers. Each byte is a separate value.
+/// A range of banks without individually defined registers. Each byte is a separate value.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Area {
     /// Name in the manual.

@@ -1,4 +1,4 @@
-//! Tests of the built-in descriptions against the reference, and of the locations of errors.
+//! Tests of the built-in descriptions against the reference, and of the positions of errors.
 
 use proptest::prelude::*;
 
@@ -29,7 +29,7 @@ fn both_built_in_descriptions_parse() {
     assert_eq!(all, Descriptions::built_in());
 }
 
-/// Reference 4, "Direct": address, width, access, default.
+/// The expected address, width, access and default values are taken from section 4, "Direct", of the reference.
 #[test]
 fn kit_encoder_registers_match_the_reference() {
     use Access::{R, Rw};
@@ -79,7 +79,7 @@ fn kit_encoder_registers_match_the_reference() {
     assert_eq!((lock.password_at, lock.password, lock.mode_at), (at("0x6B"), 0x2A, at("0x6A")));
 }
 
-/// Reference 5.
+/// Expected values from section 5 of the reference.
 #[test]
 fn procedure_registers_match_the_reference() {
     let kit = kit();
@@ -109,7 +109,7 @@ fn procedure_registers_match_the_reference() {
     );
 }
 
-/// The words of the file are those of the code, which the simulator and the procedures use.
+/// Checks that the description uses the same names, widths and defaults as the tables of the data sheet.
 #[test]
 fn the_file_agrees_with_the_protocol_tables() {
     let kit = kit();

@@ -1,10 +1,11 @@
-//! Tests of the data sheet in the reference field by field, of checksums, and of sheets without a frame layout.
+//! Tests of each field of the data sheet in the reference, of checksums, and of data sheets without a valid frame
+//! layout.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// Returns bank 2 of the reference, composed by hand.
+/// Returns bank 2 from the reference, assembled by hand.
 fn common() -> [u8; 64] {
     let mut bank = [0; 64];
     for (offset, bytes) in [
@@ -20,7 +21,7 @@ fn common() -> [u8; 64] {
     bank
 }
 
-/// Returns bank 3 of the reference.
+/// Returns bank 3 from the reference.
 fn encoder() -> [u8; 64] {
     let mut bank = [0; 64];
     for (offset, bytes) in [
@@ -41,7 +42,7 @@ fn with_checksum(mut bank: [u8; 64]) -> [u8; 64] {
     bank
 }
 
-/// Reference 4: checksums F4 and 31, and every field.
+/// The checksums F4h and 31h and all field values are taken from section 4 of the reference.
 #[test]
 fn published_data_sheet_parses() {
     let eds = Eds::parse(EdsBank::Common, common()).unwrap();

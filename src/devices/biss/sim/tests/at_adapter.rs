@@ -1,4 +1,4 @@
-//! Tests of the kit encoder at the virtual adapter from the perspective of a host.
+//! Tests of the kit encoder on the bus of a virtual adapter, from the perspective of a host.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ fn behind_adapter(query: &str) -> Host {
     Host::to(query, &[&AttachableEncoder])
 }
 
-/// The golden frame of the BiSS reference: MT 1234, ST 18000.
+/// Reads the golden frame of the BiSS reference, with multiturn 1234h and singleturn 18000h.
 #[test]
 fn a_frame_is_read() {
     let mut host = behind_adapter("");
@@ -20,7 +20,7 @@ fn a_frame_is_read() {
     host.expect(BISS, Reply::BissConfig { clock_hz: 2_000_000 });
     let t_us = host.now.since_start().as_micros() as u64;
     host.expect(Request::BissRead, Reply::BissRead { t_us, status: BissStatus::OK, raw: 0x24_6980_00CF });
-    // Fewer and more bits than the encoder sends.
+    // The host reads fewer or more bits than the encoder sends.
     let of_width = |data_bits| Request::BissConfig { clock_hz: 7_000_000, data_bits, crc_bits: 6, timeout_us: 18 };
     for (data_bits, expected) in [(31, 0x24_6980_00CF >> 4), (39, 0x24_6980_00CF << 4)] {
         host.expect(of_width(data_bits), Reply::BissConfig { clock_hz: 6_666_666 });
@@ -48,22 +48,22 @@ fn registers_are_read_and_written_by_bank() {
     host.expect(read(0x66), Reply::BissRegisterRead { value: 0x4B });
     host.expect(write(0x40, 0x02), read_back(0x02));
     host.expect(read(0x05), Reply::BissRegisterRead { value: 0x1C });
-    host.expect(write(0x6A, 0x07), read_back(0x00)); // without the password
+    host.expect(write(0x6A, 0x07), read_back(0x00)); // rejected without the password
     host.expect(write(0x6B, 0x2A), read_back(0x2A));
     host.expect(write(0x6A, 0x07), read_back(0x07));
     host.expect(write(0x40, 0x01), read_back(0x01));
-    host.expect(write(0x00, 0x01), read_back(0x01)); // preset, and a restart
+    host.expect(write(0x00, 0x01), read_back(0x01)); // preset, followed by a restart
     host.refuses(read(0x66), ErrorCode::NO_ANSWER);
     host.now = host.now + Duration::from_millis(500);
     host.expect(read(0x6A), Reply::BissRegisterRead { value: 0x00 });
     assert_eq!(host.adapter.device::<Encoder>().unwrap().flash().write_cycles(), 1);
     host.expect(write(0x40, 0x44), read_back(0x44));
-    host.refuses(read(0x00), ErrorCode::NO_ANSWER); // no such bank
+    host.refuses(read(0x00), ErrorCode::NO_ANSWER); // the bank does not exist
     host.refuses(Request::BissRegisterRead { slave: 1, address: 0x66 }, ErrorCode::NO_ANSWER);
     host.refuses(read(0x80), ErrorCode::BAD_ARGUMENT);
 }
 
-/// 20 000 frames per second for a second: every one of them, in order, each with its position.
+/// Streams 20,000 frames per second for one second. Every frame arrives, in order and with the correct position.
 #[test]
 fn a_fast_stream_has_no_gap() {
     let mut host = behind_adapter("rpm=600&position=0");
@@ -82,7 +82,7 @@ fn a_fast_stream_has_no_gap() {
         assert_eq!((data.t0_us, data.period_us, data.width), (start_us + 50 * count, 50, 6));
         for (status, raw) in &data.values {
             let PositionData { multiturn, singleturn, error, .. } = layout.parse(*raw).unwrap();
-            // Ten revolutions per second from the start.
+            // The shaft makes ten revolutions per second from the start.
             let steps = (start_us + 50 * count) * 10 * (1 << 17) / 1_000_000;
             let found = u64::from(multiturn) << 17 | u64::from(singleturn);
             assert!(found.abs_diff(steps) <= 1 && !error && *status == BissStatus::OK, "{count}: {found} {steps}");

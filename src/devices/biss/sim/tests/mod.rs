@@ -1,5 +1,5 @@
-//! Tests of the virtual kit encoder from the perspective of a host, in virtual time. Expected values are the manual's
-//! and the reference's; none is computed by the code under test.
+//! Tests of the virtual kit encoder from the perspective of a host, in virtual time. Expected values are taken from the
+//! manual and the reference. None of them are calculated by the code under test.
 
 mod at_adapter;
 mod modes;
@@ -14,14 +14,14 @@ use super::*;
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::units::Moment;
 
-/// Host that accesses registers by name, without a line.
+/// A host that accesses registers by name, without a line.
 struct Host {
     encoder: Encoder,
     now: Moment,
 }
 
 impl Host {
-    /// Creates a host with the query of a `sim:` link.
+    /// Creates a host for the virtual encoder described by the query of a `sim:` link.
     fn with(query: &str) -> Self {
         Host { encoder: Encoder::new(&config(query)), now: Moment::START }
     }
@@ -45,7 +45,7 @@ impl Host {
         assert_eq!(self.read(register), value, "{register}");
     }
 
-    /// Enters a device mode, as at the start of every procedure.
+    /// Enters a device mode, as every procedure does at its start.
     #[track_caller]
     fn enter(&mut self, mode: u8) {
         self.put("0x6B", 0x2A);
@@ -65,7 +65,7 @@ impl Host {
         self.encoder.can_access_registers(self.now)
     }
 
-    /// Returns the multiturn and singleturn.
+    /// Returns the multiturn and singleturn position.
     fn position(&mut self) -> Option<(u32, u32)> {
         self.encoder.position_at(self.now).map(|reading| (reading.multiturn, reading.singleturn))
     }

@@ -1,4 +1,4 @@
-//! Tests of the device modes (reference 5, last table) and of restarts.
+//! Tests of the device modes (last table in section 5 of the reference) and of restarts.
 
 use super::*;
 
@@ -15,7 +15,7 @@ fn a_mode_needs_the_password() {
         host.enter(mode);
         host.put("0x6A", 0x00);
         host.expect("0x6A", 0x00);
-        host.expect("0x6B", 0x2A); // it is not reset by mode 00
+        host.expect("0x6B", 0x2A); // mode 00 does not reset the password
     }
     host.put("0x6B", 0x00);
     assert!(!host.write("0x6A", 0x01));
@@ -33,7 +33,7 @@ fn nonexistent_modes_are_ignored() {
     assert!(!host.write("0x6A", 0x05), "only from operation");
     host.expect("0x6A", 0x04);
     host.put("0x6B", 0x00);
-    host.put("0x6A", 0x00); // returning is always possible
+    host.put("0x6A", 0x00); // returning to operation is always possible
 }
 
 #[test]

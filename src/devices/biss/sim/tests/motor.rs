@@ -1,4 +1,5 @@
-//! Tests of the procedures that need a turning motor: durations, results, failures (reference 5.1 and 5.2).
+//! Tests of the procedures that need a turning motor: durations, results and failures (sections 5.1 and 5.2 of the
+//! reference).
 
 use super::*;
 
@@ -59,14 +60,14 @@ fn a_failure_of_the_second_run_loses_the_table() {
         host.wait(5.0);
         host
     };
-    // The motor still turns in the other direction.
+    // The motor still turns in the direction of the first run.
     let mut host = after_first_run();
     host.put("0x00:0x00", 0x02);
     assert!(host.answers(), "this one answers while it runs");
     host.wait(1.0);
     host.expect("0x00:0x01", 0x30);
     assert!(!host.encoder.flash().is_calibrated());
-    // The mode is left, the speed changes, power is lost.
+    // The table is also lost if the mode is left, the speed changes or power is lost.
     for end in [0, 1, 2] {
         let mut host = after_first_run();
         host.turn(500.0);
@@ -80,7 +81,7 @@ fn a_failure_of_the_second_run_loses_the_table() {
         assert!(!host.encoder.flash().is_calibrated(), "{end}");
         assert_eq!(host.encoder.flash().write_cycles(), 0);
     }
-    // Left in the first run, the table stays.
+    // If the mode is left during the first run, the table remains.
     let mut host = Host::with("rpm=-500");
     host.enter(0x01);
     host.put("0x00:0x00", 0x01);
@@ -99,7 +100,7 @@ fn the_second_run_needs_the_first() {
     assert!(!host.write("0x00:0x00", 0x01), "it runs already");
 }
 
-/// Reference 5.1: 515 revolutions, 61.8 s at 500 and 15.45 s at 2000 revolutions per minute.
+/// According to section 5.1 of the reference, 515 revolutions take 61.8 s at 500 rpm and 15.45 s at 2000 rpm.
 #[test]
 fn a_wiegand_test_takes_515_revolutions_each_way() {
     for (rpm, seconds) in [(500.0, 61.8), (2000.0, 15.45)] {
@@ -120,7 +121,7 @@ fn a_wiegand_test_takes_515_revolutions_each_way() {
         let result = ["0x00:0x09", "0x00:0x0A", "0x00:0x0B", "0x00:0x0C"].map(|register| host.read(register));
         assert_eq!(result, [63, 58, 63, 58]);
         host.put("0x00:0x06", 0x05);
-        host.expect("0x00:0x11", 0); // visible after a restart
+        host.expect("0x00:0x11", 0); // the saved result can be read only after a restart
         host.put("0x00:0x06", 0x03);
         host.expect("0x00:0x07", 0x00);
         host.put("0x6A", 0x00);
@@ -151,7 +152,7 @@ fn a_motor_that_pauses_only_takes_longer() {
 
 #[test]
 fn a_wiegand_test_fails_with_the_matching_status() {
-    // The motor was not reversed.
+    // The motor has not been reversed for the second run.
     let mut host = Host::with("rpm=1000&calibration-silent=off");
     host.enter(0x02);
     assert!(!host.write("0x00:0x06", 0x02), "the first run comes first");
@@ -163,7 +164,7 @@ fn a_wiegand_test_fails_with_the_matching_status() {
     host.expect("0x00:0x07", 0x30);
     host.put("0x00:0x06", 0x03);
     host.expect("0x00:0x07", 0x00);
-    // No pulses.
+    // The sensor generates no pulses.
     let mut host = Host::with("rpm=1000&pulses=0,0");
     host.enter(0x02);
     host.put("0x00:0x06", 0x01);
@@ -178,7 +179,7 @@ fn the_motor_handle_turns_the_shaft() {
     let motor = host.encoder.motor();
     host.wait(1.0);
     assert_eq!(host.position(), Some((1, 0)));
-    // The shaft follows from the next request on.
+    // The shaft follows the motor from the next request on.
     motor.set_rpm(-120.0);
     assert_eq!(host.position(), Some((1, 0)));
     host.wait(0.25);
@@ -211,7 +212,8 @@ fn a_reversing_motor_reverses_when_a_procedure_waits() {
     host.expect("0x00:0x01", 0x22);
     assert_eq!(host.encoder.motor().rpm(), 500.0, "no request is pending");
     host.put("0x6A", 0x00);
-    // After the calibration the motor turns in the direction that the Wiegand test needs first: 61.8 s each way.
+    // After the calibration, the motor turns in the direction that the Wiegand test requires first. The test takes 61.8
+    // s in each direction.
     host.enter(0x02);
     host.put("0x00:0x06", 0x01);
     host.wait(62.0);
@@ -220,7 +222,7 @@ fn a_reversing_motor_reverses_when_a_procedure_waits() {
     host.put("0x00:0x06", 0x02);
     host.wait(62.0);
     host.expect("0x00:0x07", 0x06);
-    // A motor that does not reverse by itself is left as it is.
+    // A motor without automatic reversal keeps its direction.
     let mut host = Host::with("rpm=-500");
     host.enter(0x01);
     host.put("0x00:0x00", 0x01);

@@ -1,9 +1,10 @@
-//! Tests of the registers in operation: the appendix of the manual, temperature, errors, warnings.
+//! Tests of the registers in operation mode: register table in the appendix of the manual, temperature, errors and
+//! warnings.
 
 use super::*;
 use crate::devices::biss::protocol::{Descriptions, ErrorRegister};
 
-/// Every register with a default in the description has that value.
+/// Every register for which the description contains a default has this value.
 #[test]
 fn a_new_encoder_has_factory_settings() {
     let mut host = Host::with("");
@@ -51,7 +52,7 @@ fn writes_to_read_only_registers_are_refused() {
     }
 }
 
-/// Manual 6.8: set from 125 °C on, cleared below 123 °C.
+/// According to manual 6.8, the warning is set at 125 °C and above, and cleared below 123 °C.
 #[test]
 fn the_temperature_warning_has_a_hysteresis() {
     let mut host = Host::with("");

@@ -1,9 +1,9 @@
-//! Tests of saved values (data, filter, preset), of the wear of the flash, and of a loss of power during a save.
+//! Tests of saved values (data, filter and preset), wear of the flash, and a loss of power during a save.
 
 use super::*;
 use crate::devices::biss::protocol::PositionFilter;
 
-/// Reference 5.3.
+/// Follows section 5.3 of the reference: OEM data is written only after its area has been opened, and is saved once.
 #[test]
 fn oem_data_is_written_as_in_the_reference() {
     let mut host = Host::with("cycles=10");
@@ -62,7 +62,7 @@ fn cancelled_or_abandoned_writes_are_discarded() {
     host.expect("0x00:0x1B", 0x01);
 }
 
-/// Reference 5.4.
+/// Follows section 5.4 of the reference: a filter is selected and saved, and the encoder restarts with it.
 #[test]
 fn the_filter_is_selected_as_in_the_reference() {
     let mut host = Host::with("cycles=0");
@@ -84,7 +84,7 @@ fn the_filter_is_selected_as_in_the_reference() {
     assert_eq!((host.encoder.flash().filter(), host.encoder.flash().write_cycles()), (PositionFilter::Dynamic, 1));
 }
 
-/// Reference 5.5: 270°.
+/// Follows section 5.5 of the reference: a preset value of 270° is stored first, and the position is then set to it.
 #[test]
 fn the_position_is_preset_as_in_the_reference() {
     let mut host = Host::with("cycles=0&position=0x12345");
@@ -133,10 +133,10 @@ fn a_preset_beyond_the_range_is_refused() {
     let mut host = Host::with("cycles=0");
     host.enter(0x07);
     host.put("0x01:0x00", 0x02);
-    host.put("0x01:0x04", 0x02); // 2¹⁷
+    host.put("0x01:0x04", 0x02); // singleturn 2¹⁷
     assert!(!host.write("0x01:0x00", 0x03));
     host.put("0x01:0x04", 0x01);
-    host.put("0x01:0x07", 0x01); // 2¹⁶ revolutions
+    host.put("0x01:0x07", 0x01); // multiturn 2¹⁶
     assert!(!host.write("0x01:0x00", 0x03));
     assert!(host.answers() && host.encoder.flash().write_cycles() == 0);
 }

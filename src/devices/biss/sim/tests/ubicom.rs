@@ -1,4 +1,4 @@
-//! Tests of the configuration pin's line: frames of the reference, timing, noise and silence.
+//! Tests of the line to the configuration pin: frames from the reference, timing, noise and silence.
 
 use super::*;
 use crate::bits::{hex, parse_hex};
@@ -15,7 +15,7 @@ impl Line {
         Line { port: UbicomPort::new(&config(query)), now: Moment::START }
     }
 
-    /// Returns all bytes until the line is idle, and the time of the last one.
+    /// Receives until the line is idle. Returns the bytes in hexadecimal, and the time of the last byte.
     fn receive(&mut self) -> (String, Moment) {
         let (mut bytes, mut last) = (Vec::new(), self.now);
         while let Some(at) = self.port.poll_at() {
@@ -46,17 +46,17 @@ impl Line {
 }
 
 const READ_TEMPERATURE: &str = "80 01 01 02 00 26 00 55";
-/// 4Bh: 25 °C.
+/// Reply with the temperature 4Bh, which means 25 °C.
 const TEMPERATURE: &str = "80 01 01 01 00 4B 31";
 
-/// UBICOM reference 6.
+/// Requests and replies from section 6 of the UBICOM reference.
 #[test]
 fn published_exchanges_match() {
     let mut line = Line::with("temperature=25");
     line.expect(READ_TEMPERATURE, TEMPERATURE);
     line.expect("80 01 01 02 00 C5 00 B6", "80 01 01 01 00 1C 60");
     line.expect("80 01 03 01 00 01 79", "80 01 03 05 00 00 80 69 24 00 69");
-    line.expect("80 01 02 03 00 2A 00 07 48", "80 01 02 01 00 A0 DB"); // no password: refused
+    line.expect("80 01 02 03 00 2A 00 07 48", "80 01 02 01 00 A0 DB"); // rejected without the password
     line.expect("80 01 02 03 00 2B 00 2A 24", "80 01 02 01 00 90 EB");
     line.expect("80 01 02 03 00 2A 00 07 48", "80 01 02 01 00 90 EB");
     for (position, reply) in [
@@ -68,14 +68,14 @@ fn published_exchanges_match() {
     }
 }
 
-/// The probe of UBICOM reference 2.
+/// Sends the probe from section 2 of the UBICOM reference.
 #[test]
 fn the_probe_reveals_the_byte_order() {
     Line::with("").expect("80 01 01 02 00 01 00 7A", "80 01 01 01 00 02 7A");
     Line::with("order=high-first").expect("80 01 01 02 00 01 00 7A", "80 01 01 01 00 01 7B");
 }
 
-/// Eight bytes, a millisecond, seven bytes, at 86.8 µs each.
+/// The expected time is eight bytes, one millisecond and seven bytes, at 86.8 µs per byte.
 #[test]
 fn an_exchange_takes_the_expected_time() {
     let mut line = Line::with("");
@@ -89,18 +89,18 @@ fn an_exchange_takes_the_expected_time() {
     assert!((52_301..=52_303).contains(&micros), "{micros}");
 }
 
-/// UBICOM reference 6, "Negative".
+/// Invalid requests from section 6, "Negative", of the UBICOM reference.
 #[test]
 fn invalid_requests_get_no_reply() {
     let mut line = Line::with("temperature=25");
     let silent = [
         "80 01 01 02 00 26 00 54", // wrong checksum
         "80 01 01 03 00 26 00 54", // LEN 3 with two bytes
-        "80 02 01 02 00 26 00 54", // another node
+        "80 02 01 02 00 26 00 54", // addressed to another node
         "80 01 04 01 00 01 78",    // unknown command
         "80 01 03 01 00 02 78",    // unknown position
         "80 01 01 02 00 40 11 2A", // unknown bank
-        "80 01 01 02 00 00 7B",    // the manual's example, a byte too short
+        "80 01 01 02 00 00 7B",    // the manual's example, which is one byte too short
     ];
     for request in silent {
         line.expect(request, "");
@@ -115,7 +115,7 @@ fn a_partial_frame_is_discarded_after_20_ms() {
     line.port.on_bytes(line.now, &[0x80, 0x01, 0x01, 0x02]);
     assert_eq!(line.receive().0, "");
     line.expect(READ_TEMPERATURE, TEMPERATURE);
-    // Continued in time, it is a frame.
+    // If the rest of a frame arrives in time, the frame is complete.
     let request = parse_hex(READ_TEMPERATURE).unwrap();
     line.port.on_bytes(line.now, &request[..3]);
     line.port.poll(line.now);
@@ -135,7 +135,7 @@ fn a_request_while_the_encoder_is_busy_is_lost() {
     let mut line = Line::with("temperature=25");
     line.expect(&format!("{READ_TEMPERATURE} {READ_TEMPERATURE}"), TEMPERATURE);
     line.wait(1.0);
-    // It sends from 1.69 to 2.30 ms; a frame that started in between is incomplete.
+    // The encoder sends from 1.69 to 2.30 ms. Part of a request that starts during this time is lost.
     line.port.on_bytes(line.now, &parse_hex(READ_TEMPERATURE).unwrap());
     line.wait(0.0018);
     line.expect(READ_TEMPERATURE, TEMPERATURE);
@@ -191,7 +191,7 @@ fn a_wrong_baud_rate_yields_no_frame() {
     line.expect(READ_TEMPERATURE, TEMPERATURE);
 }
 
-/// A store during which the encoder loses its power is not answered; opening the link restores the power.
+/// The encoder does not reply to a store during which it loses power. Opening the link again restores the power.
 #[test]
 fn reopening_the_link_revives_a_dead_encoder() {
     let mut line = Line::with("fault=die-in-store:1");
@@ -208,8 +208,8 @@ fn reopening_the_link_revives_a_dead_encoder() {
     assert_eq!(line.port.encoder().motor().rpm(), 0.0);
 }
 
-/// Issue 22.18: bytes beyond the buffer of a UART are lost, so that the line is not busy for longer than its buffer
-/// lasts.
+/// Issue 22.18: bytes that exceed the buffer of a UART are lost, so that the line becomes idle as soon as the buffer is
+/// empty.
 #[test]
 fn the_encoder_answers_after_a_flood_of_bytes() {
     let mut line = Line::with("temperature=25");
@@ -217,7 +217,7 @@ fn the_encoder_answers_after_a_flood_of_bytes() {
         line.port.on_bytes(line.now, &[0x55; 512]);
     }
     line.receive();
-    // 512 characters of 10 bits at 115200 bit/s.
+    // 512 characters of 10 bits take 44 ms at 115200 bit/s.
     assert!(line.now.since_start() < Duration::from_millis(50), "{:?}", line.now);
     line.wait(0.1);
     line.expect(READ_TEMPERATURE, TEMPERATURE);

@@ -83,7 +83,7 @@ fn bit_text(id: &'static str, bit: u8, own: Option<&Name>) -> Text {
     TEXTS.text(id).with("bit", bit).with_text("name", flag_text(own))
 }
 
-/// Returns the name of a status bit.
+/// Returns the name of a status bit for display.
 pub fn flag_text(name: Option<&Name>) -> Text {
     name.map_or_else(|| TEXTS.text("biss_status.unknown_bit"), name_text)
 }

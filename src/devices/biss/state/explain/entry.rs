@@ -1,4 +1,4 @@
-//! Reasons for rejecting a profile.
+//! Messages about rejected profile entries.
 
 use crate::app::Text;
 use crate::devices::biss::profile::EntryError;

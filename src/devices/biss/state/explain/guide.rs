@@ -1,4 +1,4 @@
-//! Texts for guided procedures: steps, operator tasks, obstacles to a start, and results.
+//! Texts for guided procedures: steps, operator tasks, reasons why a run cannot start, and results.
 
 use crate::app::{Severity, Text};
 use crate::devices::biss::procedures::procedure::{
@@ -81,7 +81,7 @@ pub fn blocker_text(blocker: StartBlocker) -> Text {
         StartBlocker::Measuring => TEXTS.text("guide.measuring"),
         StartBlocker::NoPosition => TEXTS.text("guide.no_position"),
         StartBlocker::NotTurning => TEXTS.text("guide.standing"),
-        // With fewer decimals, such a speed would be shown as zero.
+        // With the displayed number of decimals, such a speed would be shown as zero.
         StartBlocker::Turning { rpm } if rpm.abs() < 0.05 => TEXTS.text("guide.creeping"),
         StartBlocker::Turning { rpm } => TEXTS.text("guide.turning").with_number("rpm", rpm, 1),
         StartBlocker::WrongDirection => TEXTS.text("guide.wrong_direction"),
@@ -107,14 +107,14 @@ pub fn advice_text(advice: OperatorAdvice) -> Text {
     }
 }
 
-/// Returns the text about the requirements of a calibration for the motor and the encoder.
+/// Returns the text about the requirements that the motor and the encoder must meet for a calibration.
 pub fn calibration_requirements_text() -> Text {
     let run = MotorRun::CalibrationCounterclockwise;
     let text = speed_range_text(TEXTS.text("mounting_card.calibrate_words"), run.allowed_speeds());
     temperature_range_text(text.with_number("best", run.recommended_range().midpoint(), 0))
 }
 
-/// Returns the text about the requirements of a Wiegand test for the motor.
+/// Returns the text about the requirements that the motor must meet for a Wiegand test.
 pub fn wiegand_requirements_text() -> Text {
     with_revolutions(speed_range_text(
         TEXTS.text("mounting_card.wiegand_words"),
@@ -179,7 +179,7 @@ pub fn report_lines(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
             |words| TEXTS.text("guide.of_operation").with_text("what", procedure_text(op)).with_text("words", words);
         return lines.into_iter().map(|words| (Severity::Note, named(words))).collect();
     }
-    // The first line states the action or the verdict, and the other lines add details.
+    // The first line states the action or the verdict. The other lines add details.
     let severity = |at: usize| match own {
         Outcome::Tested(report) => match at {
             0 => pulse_severity(report.result.lowest_cw).max(pulse_severity(report.result.lowest_ccw)),
@@ -247,7 +247,7 @@ mod tests {
         }
     }
 
-    /// In manual 6.3, the average minus four standard deviations must be above 5.3 V.
+    /// According to manual 6.3, the average minus four standard deviations must be above 5.3 V.
     #[test]
     fn a_wiegand_result_is_compared_with_the_limit() {
         let result = WiegandResult {
@@ -267,7 +267,7 @@ mod tests {
         assert_eq!(weights, [Severity::Warning, Severity::Good, Severity::Warning, Severity::Note]);
     }
 
-    /// In manual 6.7, 18000h at 17 bits is 270°.
+    /// According to manual 6.7, 18000h at 17 bits is 270°.
     #[test]
     fn a_stored_preset_value_is_shown_as_an_angle() {
         let value = PresetValue::new(0x18000, 2).unwrap();
@@ -276,7 +276,7 @@ mod tests {
         assert!(texts[0].to_string_in(German).contains("270,000° (Schritt 98304), Umdrehung 2"), "{texts:?}");
     }
 
-    /// A speed that rounds to zero is not shown as the reason for a shaft that is not at rest.
+    /// If the shaft is not at rest, the message does not state a speed that is rounded to zero.
     #[test]
     fn a_creeping_shaft_is_not_reported_at_zero_rpm() {
         let words = |rpm| blocker_text(StartBlocker::Turning { rpm }).to_string_in(German);

@@ -1,5 +1,5 @@
-//! Texts for writes: changes, operations of a plan, planning errors, results, reasons for an interruption, and the
-//! state in which the encoder was left.
+//! Texts for writes: changes, operations of a plan, planning errors, results, causes of an interruption, and the state
+//! in which the encoder was left.
 
 use std::path::Path;
 
@@ -83,7 +83,7 @@ fn register_run_texts(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
     RegisterRange::from_addresses(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
 }
 
-/// Returns a preset value as angle, step and turn, for a singleturn position of the given width.
+/// Returns a preset value as angle, step and turn, for a singleturn position with the given width.
 pub fn preset_value_text(value: PresetValue, singleturn_bits: u8) -> Text {
     preset_text("biss_op.preset_value", value, singleturn_bits)
 }
@@ -110,8 +110,8 @@ pub fn written_text(written: &WrittenValues) -> Text {
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// Returns the messages for an interrupted write, which state the progress, the cause, the state in which the encoder
-/// was left, and the location of the backup.
+/// Returns the messages for an interrupted write, with the progress, the cause, the state in which the encoder was
+/// left, and the location of the backup.
 pub(super) fn interruption_text(
     interrupted: &InterruptedWrite,
     backup: &Path,
@@ -134,7 +134,7 @@ pub(super) fn interruption_text(
         (Some(register), _) => TEXTS.text("biss_write.unclear").with("register", register),
         // The table may be lost even without a write, and no backup contains it.
         (None, ChangeKind::Calibration) => TEXTS.text("write.backup_calibration"),
-        // An operation that may have been executed is counted as a write cycle if it costs one.
+        // An operation that may have been executed counts as a write cycle if it costs one.
         _ if done.write_cycles == 0 && done.written == 0 => Text::new("write.untouched"),
         (None, ChangeKind::Restore) => Text::new("write.backup"),
         (None, ChangeKind::Bytes) => TEXTS.text("biss_write.bytes"),
@@ -269,8 +269,8 @@ mod tests {
         (words(English), words(German))
     }
 
-    /// Each kind of change has its own remedy, also in terminal output. Data that may have changed is never reported as
-    /// unchanged.
+    /// The messages suggest a specific remedy for each kind of change, in terminal output as well. Data that may have
+    /// changed is never reported as unchanged.
     #[test]
     fn the_remedy_for_an_interrupted_write_matches_its_kind() {
         let last = |interrupted: &InterruptedWrite, kind| {
@@ -386,7 +386,7 @@ mod tests {
         assert!(idle[3].contains("Return the encoder to operation"), "{idle:?}");
     }
 
-    /// Covers every code in manual 6.3 and 6.4, each with its cause and remedy.
+    /// Covers every failure code in manual 6.3 and 6.4. The message states its cause and its remedy.
     #[test]
     fn failures_name_cause_and_remedy() {
         let (first, second) = (MotorRun::CalibrationCounterclockwise, MotorRun::CalibrationClockwise);

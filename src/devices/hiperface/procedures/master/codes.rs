@@ -1,13 +1,13 @@
-//! Reading the status queue. 50h removes a code from the encoder, so a lost reply may have contained one. For this
-//! reason, late replies are accepted, and codes that may have been lost are counted.
+//! Reading the status queue. 50h removes a code from the encoder, so a lost reply may have contained a code. Therefore,
+//! late replies are accepted, and codes that may have been lost are counted.
 
 use super::Master;
 use crate::devices::hiperface::procedures::Error;
 use crate::devices::hiperface::protocol::{Answer, Reply, Request, StatusCode};
 
-/// Maximum number of codes in the queue of an encoder, plus one reply that shows its end.
+/// Maximum number of codes in the queue of an encoder, plus one reply that indicates the end of the queue.
 const MAX_CODES: usize = 5;
-/// Number of replies without a new code after which reading the queue is abandoned.
+/// Number of replies without a new code after which the queue is no longer read.
 const MAX_REPEATED: u32 = 5;
 /// Length of a reply to 50h in bytes: address, command, one to four codes, checksum.
 const REPLY: std::ops::RangeInclusive<usize> = 4..=7;
@@ -31,14 +31,15 @@ impl Master<'_> {
             repeated += u32::from(seen.len() == before);
         }
         if repeated == MAX_REPEATED {
-            // A late reply does not repeat this often. The encoder announces the same code again as soon as it is read.
+            // These replies are too many to be late duplicates. The encoder announces the same code again as soon as it
+            // is read.
             self.station.unanswered_codes = self.station.unanswered_codes.saturating_sub(repeated);
         }
         Ok(())
     }
 
-    /// Reads the next codes from the queue, and returns whether more codes follow. `seen` contains the codes of each
-    /// earlier reply.
+    /// Reads the next codes from the queue, and returns whether more codes follow. `seen` contains the codes of all
+    /// earlier replies.
     fn next_codes(&mut self, seen: &mut Vec<Vec<StatusCode>>) -> Result<bool, Error> {
         self.detect_echo()?;
         let mut tries = 0;
@@ -77,8 +78,8 @@ impl Master<'_> {
         }
     }
 
-    /// Records the status codes in a reply to command 50h. A reply equal to an earlier one may be a late duplicate. In
-    /// this case, its codes are already known, and the reply to the current request may be missing.
+    /// Records the status codes in a reply to command 50h. A reply that equals an earlier one may be a late duplicate.
+    /// If so, its codes are already known, and the reply to the current request may be missing.
     fn record_reply_codes(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
         if seen.contains(&codes) {
             return;
@@ -93,7 +94,7 @@ impl Master<'_> {
         Ok(self.line.receive_late_bytes(&mut self.station.line, tries, quiet)?)
     }
 
-    /// Finds replies to 50h in bytes that were skipped.
+    /// Finds replies to 50h in skipped bytes.
     fn find_replies(&self, bytes: &[u8]) -> Vec<Codes> {
         let (mut rest, mut found) = (bytes, Vec::new());
         while let [_, behind @ ..] = rest {

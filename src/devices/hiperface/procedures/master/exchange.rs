@@ -1,7 +1,8 @@
 //! Single exchanges with the timing of the protocol (manual, "Dialog Timing"): dead time, request, reply, dead time.
 //!
-//! A reply of known length ends with its last byte, any other with silence. The host listens during the following dead
-//! time. A byte received then means that the frame was longer than expected, so the whole frame is discarded.
+//! A reply of known length ends with its last byte. Any other reply ends with silence. The host keeps listening during
+//! the dead time that follows. A byte received during this time means that the frame was longer than expected, so the
+//! whole frame is discarded.
 
 use std::time::Duration;
 
@@ -13,7 +14,7 @@ use crate::devices::hiperface::protocol::{Answer, Command, MaskableFrame, Reques
 use crate::link::LinkError;
 use crate::units::Moment;
 
-/// Status codes that show that the request was damaged on the line. `LENGTH` is one of them, because the checksum
+/// Status codes which indicate that the request was damaged on the line. They include `LENGTH`, because the checksum
 /// remains valid if a byte 00h is lost.
 const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
 
@@ -129,7 +130,8 @@ impl Master<'_> {
             }
             let first = self.strip_echo(&line, frame).filter(|reply| !begun && !reply.is_empty());
             if let Some(reply) = first {
-                // A converter delivers several characters at once, so the first of them was complete earlier.
+                // A converter may deliver several characters at once, so the first character was complete at an earlier
+                // time.
                 first_at = match self.line.ctx.wire.reply_start() {
                     Some(start) => start + timing.character,
                     None => self.now() - timing.time_of_characters(reply.len() - 1),

@@ -4,7 +4,7 @@ use super::*;
 use crate::profile::testing::{assert_edit_in_place, edit_profile};
 use crate::profile::{ProfileDocument, ProfileError};
 
-/// Profile as written by a user.
+/// A profile as a user might write it by hand.
 const SHORT: &str = r#"(
     schema: 1, device: "hiperface",
     identity: (serial_number: "A1", encoder_type: 0x37),
@@ -12,7 +12,7 @@ const SHORT: &str = r#"(
     fields: [(number: 0, status: 0xC8, bytes: "00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F")],
 )"#;
 
-/// Returns the same profile with the comments of a user and CR LF line ends.
+/// Returns a profile with a user's comments and CR LF line ends.
 fn commented_profile() -> String {
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/hiperface.ron")).replace('\n', "\r\n")
 }
@@ -98,7 +98,7 @@ fn profile_errors_name_their_location() {
     }
 }
 
-/// Issue 22.17: the user's own entries are in `extra`, in any structure.
+/// Issue 22.17: users may store their own entries, of any structure, in `extra`.
 #[test]
 fn user_entries_are_kept() {
     let text = SHORT
@@ -118,7 +118,7 @@ fn user_entries_are_kept() {
     assert!(matches!(&error, ProfileError::Shape { path, .. } if path == "extra"), "{error}");
 }
 
-/// Issue 22.17: entries outside the schema in a file from before `extra` are moved into it, and named.
+/// Issue 22.17: unknown entries in a file that predates `extra` are moved to `extra` and reported by name.
 #[test]
 fn unknown_entries_of_older_files_move_to_extra() {
     let text = SHORT.replace("schema: 1,", "schema: 1, owner: \"CK\",").replace("number: 0,", "number: 0, label: 3,");
@@ -130,7 +130,7 @@ fn unknown_entries_of_older_files_move_to_extra() {
     assert_eq!((again.beyond, again.unknown, again.body), (Vec::new(), document.unknown, document.body));
 }
 
-/// Issue 22.17: nothing of a newer schema is lost, because nothing of it is written.
+/// Issue 22.17: a profile with a newer schema cannot be written, so its unknown entries are not lost.
 #[test]
 fn a_newer_schema_is_read_only() {
     let newer = SHORT.replace("schema: 1,", "schema: 7, feilds: 1,").replace("number: 0,", "number: 0, statsu: 3,");
@@ -143,14 +143,15 @@ fn a_newer_schema_is_read_only() {
     assert_eq!(zero, Err(ProfileError::Schema { found: 0, known: 1 }));
 }
 
-/// Issue 22.26: one changed value changes the text at one point.
+/// Issue 22.26: changing a value changes the text at a single location.
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut HiperfaceProfile| own.interface.address = 0x41;
     assert_edit_in_place(&commented_profile(), edit, "address: 64", "address: 0x41");
 }
 
-/// Issue 22.26: bytes in lines of another length are rewritten, which is reported; the rest stays.
+/// Issue 22.26: bytes with custom line breaks are reformatted, and the lost comment is reported. All other text remains
+/// unchanged.
 #[test]
 fn bytes_with_custom_line_breaks_are_reformatted() {
     let (_, carried) = edit_profile(&commented_profile(), |_, own: &mut HiperfaceProfile| {

@@ -1,12 +1,12 @@
-//! Comparison of an encoder with the one from which a profile was read.
+//! Comparison of an encoder with the encoder from which a profile was read.
 
 use super::{PlanError, RestoreOptions};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 
-/// Checks that the encoder is the one from which the profile was read. Encoders without a serial number never match.
+/// Checks that the profile was read from this encoder. The check always fails for an encoder without a serial number.
 ///
 /// # Errors
-/// Returns [`PlanError::OtherDevice`] or [`PlanError::TypeMismatch`] if it is another encoder.
+/// Returns [`PlanError::OtherDevice`] or [`PlanError::TypeMismatch`] if the profile was read from another encoder.
 pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_type: u8) -> Result<(), PlanError> {
     if !is_same_device(profile, serial_number) {
         return Err(PlanError::OtherDevice {
@@ -14,14 +14,14 @@ pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_typ
             device: serial_number.to_owned(),
         });
     }
-    // Serial numbers of different types may coincide.
+    // Encoders of different types may have the same serial number.
     if profile.identity.encoder_type != encoder_type {
         return Err(PlanError::TypeMismatch { profile: profile.identity.encoder_type, device: encoder_type });
     }
     Ok(())
 }
 
-/// Checks that the encoder is the one from which the profile was read, unless the options allow another one.
+/// Checks that the profile was read from this encoder, unless the options allow another encoder.
 ///
 /// # Errors
 /// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`] if the encoder is not allowed.

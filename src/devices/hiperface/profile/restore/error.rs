@@ -1,4 +1,4 @@
-//! Reasons why a profile cannot be restored, or an edit cannot be planned.
+//! Reasons why a profile cannot be restored or an edit cannot be planned.
 
 use crate::devices::hiperface::protocol::AccessCodeNumber;
 

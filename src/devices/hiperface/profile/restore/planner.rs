@@ -86,7 +86,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Returns the first field that must change its size although other fields follow it.
+    /// Returns the first field that must change its size even though other fields follow it.
     pub(super) fn first_field_to_recreate(&self, allowed: bool) -> Result<Option<u8>, PlanError> {
         let last = self.device.fields.last().map(|field| field.number);
         for target in &self.wanted {
@@ -129,7 +129,7 @@ impl Planner<'_> {
         self.wanted.iter().find(|field| field.number == number)
     }
 
-    /// Returns the fields of the profile. If fields are created again, those that exist only in the encoder are added.
+    /// Returns the fields of the profile. If fields are created again, fields that exist only in the encoder are added.
     pub(super) fn target_fields(&self, recreated: Option<u8>) -> Vec<FieldImage> {
         let mut targets = self.wanted.clone();
         if let Some(first) = recreated {
@@ -157,7 +157,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Plans a new field. All of its bytes are written, because its initial content is unknown. Write protection comes
+    /// Plans a new field. All of its bytes are written, because its initial content is unknown. Write protection is set
     /// afterwards.
     pub(super) fn create(&mut self, target: &FieldImage) {
         let writable = target.status.with_write_enable(true);
@@ -212,7 +212,8 @@ impl Planner<'_> {
         }
     }
 
-    /// Returns the parts of a range that may be written. For another encoder, they may exclude mounting values.
+    /// Returns the parts of a range that may be written. Mounting values may be excluded if the profile is from another
+    /// encoder.
     fn writable_parts(&mut self, field: u8, range: Range<usize>) -> Vec<Range<usize>> {
         if !self.is_other {
             return vec![range];

@@ -1,4 +1,4 @@
-//! Tests of plans, case by case.
+//! Tests of restore plans.
 
 use super::super::{Interface, MountingMark, Op, ProfileIdentity, RecordedValues};
 use super::*;
@@ -48,7 +48,8 @@ fn device(free_blocks: u8, fields: Vec<FieldImage>) -> DeviceState {
     }
 }
 
-/// Returns the operations in short form: `C9>A9` defines a field, `@3+2` stores bytes.
+/// Returns the operations in a short notation. For example, `C9>A9` changes the status of a field, and `@3+2` writes
+/// two bytes from index 3.
 fn ops(profile: &HiperfaceProfile, device: &DeviceState, options: RestoreOptions) -> Result<Vec<String>, PlanError> {
     let restore = plan_restore(profile, device, options)?.common;
     let short = |op: &Op| match op {
@@ -152,14 +153,14 @@ fn another_encoder_keeps_its_mounting() {
     assert_eq!(ops(&wanted, &now, other.clone()).unwrap(), ["0@2+1", "0@20+1"]);
     let restore = plan_restore(&wanted, &now, other.clone()).unwrap().common;
     assert_eq!((restore.mounting_left, restore.mounting_written), (vec![FieldRange::new(0, 3, 2)], vec![]));
-    // Issue 22.7: values written to the other encoder are named as well.
+    // Issue 22.7: mounting values written to another encoder are reported as well.
     let with_mounting = RestoreOptions { with_mounting: true, ..other };
     assert_eq!(ops(&wanted, &now, with_mounting.clone()).unwrap(), ["0@2+3", "0@20+1"]);
     let restore = plan_restore(&wanted, &now, with_mounting).unwrap().common;
     assert_eq!((restore.mounting_left, restore.mounting_written), (vec![], vec![FieldRange::new(0, 3, 2)]));
 }
 
-/// Issue 22.8: bytes of unknown meaning are written to another encoder only after an answer, field by field.
+/// Issue 22.8: bytes of unknown meaning are written to another encoder only if the user has agreed for each field.
 #[test]
 fn bytes_of_unknown_meaning_are_copied_only_on_request() {
     let mut wanted =
@@ -198,26 +199,26 @@ fn bytes_of_unknown_meaning_are_copied_only_on_request() {
     for (label, copy, with_mounting, expected) in cases {
         assert_eq!(ops(&wanted, &now, options(copy, with_mounting)).unwrap(), expected, "{label}");
     }
-    // A field that is left out is created without content if another one must come after it.
+    // A skipped field is created without content if another field must be created after it.
     let empty = device(10, vec![]);
     assert_eq!(
         ops(&wanted, &empty, options(&[(2, true)], false)).unwrap(),
         ["0:new C8", "1:new 88", "2:new C8", "2@0+16"]
     );
-    // In a field with values of the mounting, which are allowed, unknown bytes stay, and so does its protection.
+    // If a field contains mounting values that may be written, its unknown bytes and its protection remain unchanged.
     let mixed = FieldRange::new(0, 0, 2);
     let mut wanted = profile("B", vec![field(0, 0x88, &[(0, 1), (1, 2), (9, 9)])]);
     wanted.mounting.push(MountingMark { item: mixed, meaning: String::new(), unknown: Default::default() });
     let now = device(10, vec![field(0, 0xC8, &[])]);
     assert_eq!(ops(&wanted, &now, options(&[(0, false)], true)).unwrap(), ["0@0+2"]);
     assert_eq!(ops(&wanted, &now, options(&[(0, false)], false)).unwrap(), [""; 0]);
-    // On the encoder itself no answer is needed.
+    // The encoder from which the profile was read requires no decision.
     let own = device(10, vec![field(0, 0xC8, &[])]);
     let own = DeviceState { serial_number: "B".to_owned(), ..own };
     assert_eq!(plan_restore(&wanted, &own, RestoreOptions::default()).unwrap().unknown_fields, []);
 }
 
-/// Issue 22.9: another type needs its own permission; the one for another serial number is not enough.
+/// Issue 22.9: another type requires a separate permission. The permission for another serial number is not sufficient.
 #[test]
 fn another_type_needs_a_separate_permission() {
     let mut wanted = profile("B", vec![]);
@@ -235,7 +236,7 @@ fn another_type_needs_a_separate_permission() {
         let options = RestoreOptions { allow_other_device, allow_other_type, ..RestoreOptions::default() };
         assert_eq!(ops(&wanted, &now, options), expected, "{allow_other_device} {allow_other_type}");
     }
-    // Two types may count their serial numbers separately: the same number on another type is another encoder.
+    // Encoders of different types may have the same serial number, so an encoder of another type is another encoder.
     let mut wanted = profile("A", vec![field(0, 0xC8, &[(0, 1)])]);
     wanted.identity.encoder_type = 0x32;
     let options = RestoreOptions { allow_other_type: true, ..RestoreOptions::default() };
@@ -269,8 +270,8 @@ fn unchanged_bytes_are_counted() {
     assert_eq!(restore.plan.write_cycles(), 1);
 }
 
-/// Issue 22.12: a before-image deletes the fields that the write created, from the last one on, and only if they are
-/// unchanged. Any other file leaves surplus fields.
+/// Issue 22.12: restoring a backup deletes the fields that the write created, starting with the last one, if they are
+/// unchanged. Other profiles never delete surplus fields.
 #[test]
 fn restoring_a_backup_deletes_fields_its_write_created() {
     let wanted = profile("A", vec![field(0, 0xC9, &[(0, 1)]), field(1, 0xA8, &[(3, 7)]), field(2, 0xC8, &[])]);
@@ -290,17 +291,17 @@ fn restoring_a_backup_deletes_fields_its_write_created() {
     assert_eq!((undone.created_left, undone.common.missing), (vec![], vec![]));
     assert_eq!(undone.common.plan.base.field_count, 3);
     assert_eq!(undone.common.plan.base.fields.len(), 3, "all of them are read again before anything is deleted");
-    // Changed since: it is left in place, and so are the fields before it.
+    // If the last field has changed since the write, it and the created fields before it are not deleted.
     let mut changed = wanted.fields.clone();
     changed[2].bytes.as_mut().unwrap()[5] = 9;
     let now = after(vec![field(0, 0xC8, &[]), changed[1].clone(), changed[2].clone()]);
     let left = plan_restore(&image, &now, RestoreOptions::default()).unwrap();
     assert_eq!((left.created_left, left.common.plan.is_empty()), (vec![1, 2], true));
     assert_eq!(left.common.missing, [FieldRange::whole_field(1), FieldRange::whole_field(2)]);
-    // A field came after them.
+    // Another field follows the created ones.
     let now = after(vec![field(0, 0xC8, &[]), wanted.fields[1].clone(), wanted.fields[2].clone(), field(3, 0xC8, &[])]);
     assert_eq!(plan_restore(&image, &now, RestoreOptions::default()).unwrap().created_left, [1, 2]);
-    // Another encoder, and another file.
+    // Nothing is deleted in another encoder, or by a profile that is not a backup.
     let options = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
     let other = DeviceState { serial_number: "Z".to_owned(), ..after(wanted.fields.clone()) };
     let onto_other = plan_restore(&image, &other, options).unwrap();

@@ -1,11 +1,11 @@
-//! Fields created by a write, which are removed when its backup is restored.
+//! Deletion of fields created by a write when its backup is restored.
 
 use super::DeviceState;
 use crate::devices::hiperface::profile::{FieldImage, HiperfacePlan, HiperfaceProfile, Op};
 use crate::devices::hiperface::protocol::FreeMemory;
 
-/// Returns the created fields to delete, and the numbers of the other created fields. A field is deleted only if it is
-/// unchanged since the write and no field remains after it.
+/// Returns the created fields to delete, and the numbers of the remaining created fields. A field is deleted only if it
+/// has not changed since the write and no field remains after it.
 pub(super) fn deletable_created_fields(profile: &HiperfaceProfile, device: &DeviceState) -> (Vec<FieldImage>, Vec<u8>) {
     let (mut undone, mut left) = (Vec::new(), Vec::new());
     for now in device.fields.iter().rev() {

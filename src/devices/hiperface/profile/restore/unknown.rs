@@ -1,4 +1,5 @@
-//! Data fields of another encoder with bytes of unknown meaning, which may contain an offset between encoder and motor.
+//! Data fields with bytes of unknown meaning in a profile of another encoder. They may contain an offset between
+//! encoder and motor.
 
 use super::{DeviceState, RestoreOptions};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile};
@@ -28,7 +29,7 @@ impl UnknownMeaningField {
     }
 }
 
-/// Returns the data fields that differ from another encoder's profile in bytes other than mounting values.
+/// Returns the data fields in which bytes other than mounting values differ from the profile of another encoder.
 pub(super) fn unknown_fields(
     profile: &HiperfaceProfile,
     device: &DeviceState,

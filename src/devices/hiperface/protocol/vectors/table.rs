@@ -1,4 +1,4 @@
-//! The golden vectors as values: the request of the host, the bytes on the line, and the meaning of the encoder's
+//! The golden vectors as Rust values: the request of the host, the bytes on the line, and the meaning of the encoder's
 //! reply.
 
 use super::bytes;
@@ -94,7 +94,7 @@ fn type_label(encoder_type: u8) -> Reply {
     Reply::TypeLabel(TypeLabel { settings, encoder_type, eeprom_units: 0x80, options: 0x01 })
 }
 
-/// Returns all requests of the reference, with their replies.
+/// Returns all requests in the reference, with their replies.
 #[rustfmt::skip]
 pub(super) fn all_vectors() -> Vec<Vector> {
     let serial = SerialLabel {
@@ -103,7 +103,7 @@ pub(super) fn all_vectors() -> Vec<Vector> {
         firmware_date: "01.02.16".to_owned(),
     };
     vec![
-        // Manual, example of a data field definition.
+        // Example of a data field definition in the manual.
         standard_vector(Request::FreeMemory, "40 4E 0E")
             .with_reply("40 4E 08 00 06", free_memory_reply(8, 0))
             .with_reply("40 4E 06 01 09", free_memory_reply(6, 1))
@@ -171,7 +171,7 @@ pub(super) fn all_vectors() -> Vec<Vector> {
             "40 56 47 42 30 34 35 30 31 37 39 56 31 2E 32 33 30 31 2E 30 32 2E 31 36 61",
             Reply::Serial(serial),
         ),
-        // Address and interface, each with and without the argument repeated.
+        // Address and interface. The replies exist with and without the repeated argument.
         standard_vector(set_address(0x41), "40 55 41 55 01")
             .with_empty_reply("40 55 41 54").with_empty_reply("40 55 15").with_empty_reply("41 55 41 55").with_empty_reply("41 55 14"),
         standard_vector(set_address(0x45), "40 55 45 55 05"),
@@ -210,7 +210,7 @@ fn requests_and_replies_match_the_table() {
     }
 }
 
-/// Requests with different access codes compare as unequal, although the codes are never shown.
+/// Requests with different access codes are not equal, even though the codes are never shown.
 #[test]
 fn requests_with_other_codes_are_not_equal() {
     assert_ne!(read(1, 5, 2, CODE), read(1, 5, 2, CODE_66));
@@ -266,7 +266,8 @@ fn silence_inside_a_request_leaves_no_frame() {
         let line = bytes(vector.bytes);
         for gap in 1..line.len() {
             let (head, tail) = line.split_at(gap);
-            // An XOR can fit by chance, as in the first half of 40 43 00 …; then the command or its length does not.
+            // An XOR checksum may match by chance, as in the first half of 40 43 00 …. In this case, the command or its
+            // length is wrong.
             for half in [head, tail] {
                 let request = Frame::parse(half).map(|frame| Request::parse(&frame));
                 assert!(!matches!(request, Ok(Ok(_))), "{} cut at {gap}", vector.bytes);

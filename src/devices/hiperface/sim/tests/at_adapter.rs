@@ -1,11 +1,11 @@
-//! Tests of the encoder at the serial line of the virtual adapter from the perspective of a host.
+//! Tests of the encoder on the serial line of a virtual adapter, from the perspective of a host.
 
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::tests::Host;
 use crate::devices::hiperface::sim::AttachableEncoder;
 
-/// The reference's status request and its reply; the times are those of HIPERFACE: eleven bits per character, 44 bits
-/// of silence, half of the five milliseconds that the command may take.
+/// Sends the status request from the reference. The expected times are eleven bits per character, 44 bits of silence,
+/// and half of the maximum of 5 ms for the command.
 #[test]
 fn the_adapters_uart_reaches_a_hiperface_encoder() {
     let mut host = Host::to("uart=hiperface", &[&AttachableEncoder]);
@@ -22,11 +22,11 @@ fn the_adapters_uart_reaches_a_hiperface_encoder() {
     };
     assert_eq!(rx, [0x40, 0x50, 0x00, 0x10]);
     assert_eq!(t_us - sent, 3_437 + 4_583 + 2_500);
-    // No encoder has the other address: the wait ends with the time-out, after three characters.
+    // No encoder has this address, so the transfer ends with the time-out after three characters.
     let sent = host.now.since_start().as_micros() as u64;
     let nothing = Reply::UartTransfer { t_us: sent + 3_437 + 20_000, rx: vec![] };
     host.expect(transfer(&[0x41, 0x50, 0x11]), nothing);
-    // At another speed there is no reply either.
+    // At a different baud rate, there is no valid reply.
     host.ask(Request::UartConfig { baud: 19_200, parity: 2, turnaround_us: 0 });
     let Some(Message::Reply(Reply::UartTransfer { rx, .. })) = host.ask(transfer(&[0x40, 0x50, 0x10])) else {
         panic!()

@@ -1,4 +1,4 @@
-//! Tests of the golden vectors, the manual's example, rejections, the status queue and wear.
+//! Tests of the golden vectors, the example in the manual, rejections, the status queue and wear.
 
 use super::*;
 use crate::devices::hiperface::protocol::{Command, StatusCode};
@@ -9,7 +9,7 @@ fn the_manuals_example_works_with_the_right_checksum() {
     host.expect("40 4E 0E", "40 4E 08 00 06");
     host.expect("40 4D 00 C9 55 91", "40 4D 00 C9 C4");
     host.expect("40 4E 0E", "40 4E 06 01 09");
-    host.expect("40 4D 01 E0 55 69", "40 50 0A 1A"); // printed wrong
+    host.expect("40 4D 01 E0 55 69", "40 50 0A 1A"); // misprinted checksum
     host.expect("40 4D 01 E0 55 B9", "40 4D 01 E0 EC");
     host.expect("40 4E 0E", "40 4E 05 02 09");
     host.expect("40 4C 01 0D", "40 4C 01 E0 ED");
@@ -124,7 +124,7 @@ fn requests_are_checked_in_order() {
         assert_eq!(host.ask(request), reply, "{what}");
     }
     assert_eq!(host.encoder().wear().total(), 0);
-    host.expect("40 50 10", "40 50 00 10"); // a refusal leaves nothing in the queue
+    host.expect("40 50 10", "40 50 00 10"); // a rejection adds nothing to the queue
     host.expect("41 42 03", "");
     host.expect("41 42 04", "");
 }
@@ -147,7 +147,7 @@ fn queued_status_codes_flag_every_reply() {
     host.expect("40 50 10", "40 D0 1C 8C");
     host.expect("40 50 10", "40 D0 1D 8D");
     host.expect("40 50 10", "40 D0 1E 8E");
-    host.expect("40 50 10", "40 50 01 11"); // the fifth was lost
+    host.expect("40 50 10", "40 50 01 11"); // the fifth code was lost
     host.expect("40 50 10", "40 50 00 10");
     host.expect("40 42 02", "40 42 00 0E 05 31 38");
 }
@@ -180,9 +180,9 @@ fn heat_warns_once_and_again_after_a_reset() {
 
 #[test]
 fn a_moving_shaft_is_sampled_when_the_reply_starts() {
-    // 60/min are 4096 steps per second: 4.096 steps per millisecond.
+    // At 60 rpm, the shaft moves by 4096 steps per second, or 4.096 steps per millisecond.
     let mut host = Host::with("rpm=60&position=0");
-    // 3 characters, 44 bits of silence, 3.7 ms: the reply starts after 11.72 ms, at step 48.004.
+    // After 3 characters, 44 bits of silence and 3.7 ms, the reply starts at 11.72 ms and step 48.004.
     host.expect("40 42 02", "40 42 00 00 00 30 32");
     let mut host = Host::with("rpm=60&position=0&pace=worst");
     host.expect("40 42 02", "40 42 00 00 00 49 4B"); // 18.02 ms: step 73.8

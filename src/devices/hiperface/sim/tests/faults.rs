@@ -1,4 +1,4 @@
-//! Tests of noise, silence, a failing supply and arbitrary input.
+//! Tests of noise, silence, power failures and random input.
 
 use proptest::prelude::{Just, Strategy, any, prop_oneof, proptest};
 
@@ -9,7 +9,7 @@ const POSITION: &str = "40 42 00 0E 05 31 38";
 
 #[test]
 fn a_flipped_bit_is_a_parity_error_if_parity_is_on() {
-    // Some of the requests keep their address byte; those are rejected for their parity.
+    // Requests whose address byte is intact are rejected because of their parity.
     let refused = |settings: u8, fault: &str| {
         let mut host = Host::with(&format!("settings={settings}&fault={fault}&seed=11"));
         host.set_format(settings);
@@ -59,7 +59,7 @@ fn a_delay_comes_before_each_reply() {
 fn silence_after_some_frames_is_permanent() {
     let mut host = Host::with("fault=silent-after:3");
     host.expect("40 42 02", POSITION);
-    host.expect("41 42 03", ""); // not addressed to it
+    host.expect("41 42 03", ""); // addressed to another encoder
     host.expect("40 42 03", "40 50 0A 1A");
     host.expect("40 47 07", "40 47 07");
     host.expect("40 47 07", "");
@@ -74,7 +74,7 @@ fn silence_after_some_frames_is_permanent() {
 fn power_can_fail_in_the_second_store() {
     let mut host = Host::with("fault=die-in-store:2&settings=0xE4");
     host.expect("40 4B 00 00 04 55 DE AD BE EF 78", "40 4B 00 00 04 0F");
-    host.expect("40 4B 00 00 04 66 DE AD BE EF 4B", "40 50 0F 1F"); // refused: no store
+    host.expect("40 4B 00 00 04 66 DE AD BE EF 4B", "40 50 0F 1F"); // rejected, so nothing is stored
     host.expect("40 4B 00 00 03 55 01 02 03 5D", "");
     assert_eq!(host.encoder().memory().field_bytes(0).unwrap()[..4], [0x01, 0x02, 0xBE, 0xEF]);
     assert_eq!(host.encoder().wear().write_count(Command::StoreData), 2);
@@ -86,7 +86,7 @@ fn power_can_fail_in_the_second_store() {
     host.expect("40 42 02", POSITION);
     host.expect("40 4B 00 00 03 55 01 02 03 5D", "40 4B 00 00 03 08");
     host.bus.connect(host.now);
-    host.expect("40 42 02", POSITION); // its power was on all the time
+    host.expect("40 42 02", POSITION); // the power was never off
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn bytes_received_before_opening_are_discarded() {
     host.expect("40 50 10", "40 50 00 10");
 }
 
-/// Returns random bytes, sometimes with a valid beginning or a whole request.
+/// Returns random bytes, some of which start like a request or form a complete request.
 fn noise() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![
         proptest::collection::vec(any::<u8>(), 0..200),
@@ -130,7 +130,7 @@ proptest! {
         let query = format!("encoders={encoders}&seed={seed}&echo=on&fault=drop:0.01,flip:0.01,garbage:0.01,die-in-store:2");
         let mut host = Host::with(&query);
         for (micros, bytes, settings, what) in calls {
-            // Not always forward.
+            // Time may also run backwards.
             host.now = if what == 0 { Moment::START } else { host.now + Duration::from_micros(micros) };
             match what {
                 1 => host.bus.power_cycle(host.now),

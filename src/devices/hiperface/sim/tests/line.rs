@@ -5,10 +5,11 @@ use crate::units::{Baud, Parity};
 
 const POSITION: &str = "40 42 00 0E 05 31 38";
 
-/// Manual: 42h at 9600 takes 16.04…26.04 ms from the first bit of the request to the last of the reply.
+/// According to the manual, 42h at 9600 baud takes 16.04 to 26.04 ms from the first bit of the request to the last bit
+/// of the reply.
 #[test]
 fn durations_at_9600_baud() {
-    // request, shortest and longest in ms (the reference's table of total durations)
+    // request, minimum and maximum in ms (from the reference's table of total durations)
     let cases = [
         ("40 42 02", 16.04, 26.05),
         ("40 43 00 00 00 00 55 56", 17.2, 57.3),
@@ -53,7 +54,7 @@ fn a_store_takes_effect_at_the_end_of_its_processing() {
 fn bytes_arrive_character_by_character() {
     let mut host = Host::with("");
     host.send("40 42 02");
-    assert_eq!(host.bus.poll(host.now + ms(12.8)), [0u8; 0]); // the first has passed at 12.87 ms
+    assert_eq!(host.bus.poll(host.now + ms(12.8)), [0u8; 0]); // the first byte is complete at 12.87 ms
     assert_eq!(host.bus.poll(host.now + ms(13.0)), [0x40]);
     assert_eq!(host.bus.poll(host.now + ms(15.3)), [0x42, 0x00]);
     assert_eq!(host.receive().0, "0E 05 31 38");
@@ -73,7 +74,7 @@ fn a_gap_of_the_timeout_splits_the_frame() {
     let mut host = Host::with("");
     host.send("40 42");
     host.wait(CHARACTER * 2 + ms(4.6));
-    // The rest arrives while the first half is checked, and is lost.
+    // The rest is lost, because it arrives while the first half is being checked.
     host.expect("02", "40 50 0A 1A");
     host.expect("40 42 02", POSITION);
 }
@@ -121,7 +122,7 @@ fn a_mismatched_format_yields_garbage_in_both_directions() {
         host.set_format(settings);
         host.expect("40 42 02", "");
     }
-    // The reply itself: the host changes its format while the encoder works.
+    // The host changes its format while the encoder processes the request, so the reply is garbled.
     host.set_format(0xE4);
     host.send("40 42 02");
     host.wait(ms(10.0));
@@ -144,7 +145,7 @@ fn several_encoders_answer_under_their_addresses() {
     host.expect("42 42 00", "42 42 00 0E 05 31 3A");
     host.expect("43 42 01", "");
     assert_eq!(host.bus.encoders().len(), 3);
-    // "GB0450180": own serial numbers
+    // "GB0450180": each encoder has its own serial number
     host.expect("41 56 17", "41 56 47 42 30 34 35 30 31 38 30 56 31 2E 32 33 30 31 2E 30 32 2E 31 36 66");
 }
 
@@ -176,8 +177,8 @@ fn one_long_poll_equals_many_short_ones() {
     }
 }
 
-/// Issue 22.18: bytes beyond the buffer of a UART are lost, so that the line is not busy for longer than its buffer
-/// lasts.
+/// Issue 22.18: bytes that exceed the buffer of a UART are lost, so that the line becomes idle as soon as the buffer is
+/// empty.
 #[test]
 fn the_encoder_answers_after_a_flood_of_bytes() {
     let mut host = Host::with("");

@@ -1,5 +1,5 @@
-//! Tests of the virtual encoder from the perspective of a host, in virtual time. Expected bytes are the manual's and
-//! the reference's; none is computed by the code under test.
+//! Tests of the virtual encoder from the perspective of a host, in virtual time. Expected bytes are taken from the
+//! manual and the reference. None of them are calculated by the code under test.
 
 mod at_adapter;
 mod commands;
@@ -15,13 +15,13 @@ use crate::devices::hiperface::protocol::LineSettings;
 use crate::sim::ByteDevice;
 use crate::units::{CharacterFormat, Moment};
 
-/// Host that receives until the line is idle and then observes the dead time.
+/// A host that receives until the line is idle, and then observes the dead time.
 struct Host {
     bus: Bus,
     now: Moment,
 }
 
-/// 9600 8E1: one character.
+/// Duration of a character at 9600 8E1.
 const CHARACTER: Duration = Duration::from_nanos(1_145_833);
 
 fn ms(milliseconds: f64) -> Duration {
@@ -33,7 +33,7 @@ impl Host {
         Host { bus: Bus::new(config), now: Moment::START }
     }
 
-    /// Creates a host with the query of a `sim:` link.
+    /// Creates a host for the virtual encoder described by the query of a `sim:` link.
     fn with(query: &str) -> Self {
         let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
         let pairs: Vec<_> = query.split('&').filter_map(pair).collect();
@@ -44,7 +44,7 @@ impl Host {
         self.bus.on_bytes(self.now, &parse_hex(request).unwrap());
     }
 
-    /// Returns all bytes as hex until the line is idle, and the time of the last one.
+    /// Receives until the line is idle. Returns the bytes in hexadecimal, and the time of the last byte.
     fn receive(&mut self) -> (String, Moment) {
         let (mut bytes, mut last) = (Vec::new(), self.now);
         while let Some(at) = self.bus.poll_at() {
@@ -96,7 +96,7 @@ impl Host {
     }
 }
 
-/// Returns an encoder with eight blocks of memory and no fields, as in the manual's example.
+/// Returns the settings of an encoder with eight blocks of memory and no fields, as in the manual's example.
 fn blank() -> Config {
     let mut config = Config::default();
     config.model.user_blocks = 8;

@@ -1,10 +1,11 @@
-//! Tests of figure 38: deaf, factory settings, deaf, stored settings; and of commands 57h and 67h.
+//! Tests of commands 57h and 67h, and of the power-up sequence in figure 38, in which the encoder is deaf, uses factory
+//! settings, is deaf again, and then uses the stored settings.
 
 use super::*;
 
 const POSITION: &str = "40 42 00 0E 05 31 38";
 
-/// Returns an encoder with stored settings of 19200 8E1 that has just been power-cycled.
+/// Returns the host of an encoder with stored settings of 19200 8E1 that has just been power-cycled.
 fn restarted() -> Host {
     let mut host = Host::with("settings=0xE5");
     host.bus.power_cycle(host.now);
@@ -21,7 +22,7 @@ fn after_power_up_the_stored_settings_apply() {
 
 #[test]
 fn settings_change_through_the_power_up_windows() {
-    // start of the request in ms after power-on, settings of the host, answered
+    // start of the request in ms after power-on, settings of the host, whether the encoder replies
     let cases = [
         ("INIT", 0.0, 0xE4, false),
         ("end of INIT", 98.0, 0xE4, false),
@@ -120,7 +121,7 @@ fn stored_data_survives_a_power_cycle() {
 fn a_power_cut_truncates_a_reply() {
     let mut host = Host::with("");
     host.send("40 42 02");
-    host.wait(ms(14.0)); // the reply started at 11.7 ms: one character has passed, one is in transit
+    host.wait(ms(14.0)); // the reply started at 11.7 ms, so one character has arrived and one is in transit
     host.bus.power_cycle(host.now);
     assert_eq!(host.receive().0, "40 42");
 }

@@ -26,8 +26,8 @@ impl Encoder {
                 match self.if_verified(|own| own.commutation.bytes(own.geometry(), &own.staged)) {
                     Ok((field, address, bytes)) => {
                         self.edit_bytes(field, address, &bytes, services);
-                        // The location is now fixed, so that another store replaces this offset even if another
-                        // location is then empty.
+                        // The location is stored in the form, so that the next offset replaces this one even if another
+                        // location is empty.
                         (self.commutation.form.field, self.commutation.form.address) =
                             (Some(field), address.to_string());
                         let is_there = |(at, byte): (usize, &u8)| self.staged.byte(field, at) == Some(*byte);

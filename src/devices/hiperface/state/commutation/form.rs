@@ -1,4 +1,4 @@
-//! The form of the commutation assistant, and the parsing of its entries.
+//! The form of the commutation assistant and the parsing of its entries.
 
 use crate::analysis::arctan::Phase;
 use crate::analysis::commutation::Motor;
@@ -7,12 +7,12 @@ use crate::app::number::{MAX_PERIODS, parse_in_range, parse_integer};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
-/// Entries of the commutation assistant. An empty number of periods selects that of the encoder type.
+/// Entries of the commutation assistant. If the number of periods is empty, that of the encoder type is used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Form {
     /// Whether the user has confirmed that the controller is disabled.
     pub disabled: bool,
-    /// Whether the user has confirmed that the motor is uncoupled and without load.
+    /// Whether the user has confirmed that the motor is uncoupled and has no load.
     pub uncoupled: bool,
     /// Whether the user has confirmed that the brake is released.
     pub released: bool,
@@ -32,7 +32,7 @@ pub struct Form {
     pub source: Source,
     /// Position within a period, as entered, if it was measured with another device.
     pub phase: String,
-    /// Permitted difference in electrical degrees between approaching from either side, as entered.
+    /// Permitted difference, in electrical degrees, between approaches from opposite sides, as entered.
     pub limit_deg: String,
     /// Angle from the first to the second vector in electrical degrees, as entered.
     pub second_deg: String,
@@ -45,7 +45,7 @@ pub struct Form {
     pub field: Option<u8>,
     /// Index of the first byte, as entered, or empty for the proposed index.
     pub address: String,
-    /// Signal period of the position to set with method 2, as entered.
+    /// Signal period of the position that method 2 sets, as entered.
     pub period: String,
 }
 
@@ -54,18 +54,18 @@ pub enum VectorSlot {
     OneSide,
     /// Rest position after an approach from the other side.
     OtherSide,
-    /// Rest position in the second vector.
+    /// Rest position with the second vector.
     Second,
 }
 
 /// Vector that is energised during a reading, named by its wiring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnergisedVector {
-    /// Current into U, returning through V and W: 0°.
+    /// Current into U that returns through V and W, at 0°.
     UAgainstBoth,
-    /// Current into U, returning through V: −30°.
+    /// Current into U that returns through V, at −30°.
     UAgainstV,
-    /// Current into U, returning through W: 30°.
+    /// Current into U that returns through W, at 30°.
     UAgainstW,
     Other,
 }
@@ -83,7 +83,7 @@ pub enum Source {
 pub enum Storage {
     /// Commutation record of sixteen bytes.
     Record,
-    /// Offset as a number of four bytes, most significant byte first.
+    /// Offset as a four-byte number, most significant byte first.
     Number,
 }
 
@@ -95,11 +95,11 @@ pub struct OffsetInputs {
     /// Whether the position decreases as the electrical angle increases.
     pub reversed: bool,
     pub vector_turns: f64,
-    /// Permitted difference in electrical degrees between approaching from either side.
+    /// Permitted difference, in electrical degrees, between approaches from opposite sides.
     pub limit_deg: f64,
 }
 
-/// Maximum number of pole pairs that is accepted. It exceeds that of any motor.
+/// Maximum accepted number of pole pairs, which exceeds that of any motor.
 const MAX_POLE_PAIRS: u32 = 500;
 
 impl VectorSlot {
@@ -143,7 +143,7 @@ impl Form {
         Ok((current?, time?))
     }
 
-    /// Returns the problems with the current limit and the time limit. An empty entry is not reported.
+    /// Returns the errors in the entries for the current limit and the time limit. Empty entries are not reported.
     pub fn limit_problems(&self) -> (Option<Text>, Option<Text>) {
         let typed = |text: &str| !text.trim().is_empty();
         let (current, time) = self.current_and_time_limits();
@@ -155,7 +155,7 @@ impl Form {
         (current, parse_in_range(TEXTS.text("commutation.time"), &self.time_s, 0.1, 600.0))
     }
 
-    /// Checks that all steps before energising the motor are confirmed and all limits are entered.
+    /// Checks that the user has confirmed all preparations and entered all limits before the motor is energised.
     ///
     /// # Errors
     /// Returns an error that names a missing or invalid entry.
@@ -197,7 +197,7 @@ impl Form {
         Ok(parse_in_range(TEXTS.text("commutation.second_angle"), &self.second_deg, 1.0, 170.0)? / 360.0)
     }
 
-    /// Returns the typed position within a period.
+    /// Returns the entered position within a period.
     ///
     /// # Errors
     /// Returns an error if the entry is invalid.
@@ -205,7 +205,7 @@ impl Form {
         phase(&self.phase)
     }
 
-    /// Returns the typed position of a slot in signal periods.
+    /// Returns the entered position of a slot in signal periods.
     ///
     /// # Errors
     /// Returns an error if the entry is invalid.
@@ -219,7 +219,7 @@ impl Form {
         parse_in_range(TEXTS.text("commutation.fine"), text, 0.0, f64::from(1_u32 << 27))
     }
 
-    /// Returns the typed number of signal periods per revolution, or that of the encoder type if the entry is empty.
+    /// Returns the entered number of signal periods per revolution, or that of the encoder type if the entry is empty.
     ///
     /// # Errors
     /// Returns an error if the entry is invalid.
@@ -241,7 +241,7 @@ impl Form {
     /// Returns the numbers from which the offset is calculated.
     ///
     /// # Errors
-    /// Returns an error with the reason if an entry is invalid. Only the first one is reported.
+    /// Returns an error with the reason if an entry is invalid. Only the first invalid entry is reported.
     pub fn inputs(&self, geometry: Option<Geometry>) -> Result<OffsetInputs, Text> {
         let pole_pairs = parse_integer(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MAX_POLE_PAIRS)?;
         let periods = self.signal_periods(geometry)?;

@@ -1,4 +1,4 @@
-//! Location of the offset in the memory. The assistant proposes a free location, and warns before other data is
+//! The location of the offset in the memory. The assistant proposes a free location, and warns before other data is
 //! replaced. This module does not change the memory.
 
 use super::{Commutation, Storage};
@@ -19,8 +19,9 @@ pub struct OffsetLocation {
 }
 
 impl Commutation {
-    /// Returns the location that the user has entered, or otherwise a proposed location. The proposal is an existing
-    /// record that can be replaced, or else an empty block in the last writable field that has one.
+    /// Returns the location that the user has entered, or otherwise a proposed location. The proposed location is an
+    /// existing record that can be replaced or, if there is none, an empty block in the last writable field that has
+    /// one.
     ///
     /// # Errors
     /// Returns an error if no field has enough space or the typed address is invalid.
@@ -41,8 +42,8 @@ impl Commutation {
         Ok(OffsetLocation { field, address })
     }
 
-    /// Returns a warning that names the data that the offset would replace. Returns `None` if the location is empty or
-    /// already contains an offset.
+    /// Returns a warning with the data that the offset would replace, or `None` if the location is empty or already
+    /// contains an offset.
     pub fn replacement_warning(&self, geometry: Option<Geometry>, staged: &StagedEdits) -> Option<Text> {
         let (field, address, bytes) = self.bytes(geometry, staged).ok()?;
         let places = address..address + bytes.len();
@@ -60,8 +61,8 @@ impl Commutation {
     }
 }
 
-/// Returns the first block of a field that satisfies `holds`. A block has the size of a commutation record. A plain
-/// number also occupies a whole block, because zeros between other numbers may be data.
+/// Returns the first block of a field that satisfies `holds`. A block has the size of a commutation record. An offset
+/// that is stored as a number also occupies a whole block, because zeros between other numbers may be data.
 fn first(field: &FieldImage, holds: impl Fn(&[u8]) -> bool) -> Option<OffsetLocation> {
     let block = field.bytes.as_deref()?.chunks_exact(CommutationRecord::BYTES).position(holds)?;
     Some(OffsetLocation { field: field.number, address: block * CommutationRecord::BYTES })
@@ -86,8 +87,8 @@ mod tests {
     use super::*;
     use crate::devices::hiperface::protocol::DataFieldStatus;
 
-    /// Returns a memory with status bytes as in section 4Dh of the manual: D8h and DAh are writable with 16 and 48
-    /// bytes, and 89h is protected.
+    /// Returns a memory with status bytes as defined for command 4Dh in the manual. D8h and DAh are writable fields of
+    /// 16 and 48 bytes, and 89h is a write-protected field.
     fn memory(fields: &[(u8, &[u8])]) -> StagedEdits {
         let image = |(number, (status, bytes)): (u8, &(u8, &[u8]))| FieldImage {
             number,
@@ -130,8 +131,8 @@ mod tests {
         assert_eq!(proposed_location(&both, Storage::Record, Some(0)), Ok((0, 0)), "in the field that is chosen");
     }
 
-    /// The existing record is that of the reference: offset 5305 1EB8h, four pole pairs, CRC from Python's
-    /// `binascii.crc_hqx`.
+    /// The existing record is taken from the reference. It has the offset 5305 1EB8h, four pole pairs, and a CRC
+    /// calculated with Python's `binascii.crc_hqx`.
     #[test]
     fn an_existing_record_is_proposed_for_replacement() {
         let record = [0x43, 0x4F, 0x31, 0x00, 0x53, 0x05, 0x1E, 0xB8, 4, 0, 0, 0, 0, 0, 0x2A, 0x23];

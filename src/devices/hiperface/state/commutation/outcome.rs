@@ -1,5 +1,5 @@
-//! Results of the commutation readings: the mean of both approaches, the offset, its verification with a second vector,
-//! the bytes for method 1, and the position for method 2.
+//! Results of the commutation readings: the mean of both approaches, the offset and its verification with a second
+//! vector, the bytes for method 1, and the position for method 2.
 
 use super::{Commutation, OffsetInputs, OffsetLocation, PositionKind, RestReading, Source, Storage, VectorSlot};
 use crate::analysis::arctan::Phase;
@@ -11,11 +11,11 @@ use crate::devices::hiperface::profile::{CommutationRecord, CommutationRecordErr
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::{ActionPermission, StagedEdits, TEXTS};
 
-/// Step size in electrical degrees from which method 2 is rejected. At such a step size, the torque may have the wrong
-/// sign (`U`: not documented).
+/// Step size in electrical degrees at or above which method 2 is rejected, because the torque may have the wrong sign
+/// (`U`: not documented).
 const UNUSABLE_DEG: f64 = 90.0;
-/// Step size in electrical degrees from which a warning is given. At such a step size, the torque is reduced to cos 30°
-/// or less (`U`: not documented).
+/// Step size in electrical degrees at or above which the user is warned, because the torque is reduced to cos 30° or
+/// less (`U`: not documented).
 const WEAK_TORQUE_DEG: f64 = 30.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,9 +23,10 @@ pub struct CommutationOffset {
     /// Rest position of the shaft in signal periods, within a revolution.
     pub fine_periods: f64,
     pub shaft_deg: f64,
-    /// Difference in electrical degrees between approaching from either side, or `None` for a single typed position.
+    /// Difference, in electrical degrees, between approaches from opposite sides, or `None` for a single typed
+    /// position.
     pub apart_deg: Option<f64>,
-    /// Electrical offset. The electrical angle is pole pairs × shaft angle − offset.
+    /// Electrical offset, where the electrical angle is pole pairs × shaft angle − offset.
     pub angle: ElectricalAngle,
     /// Resolution of the readings in electrical degrees, if known.
     pub resolution_deg: Option<f64>,
@@ -81,7 +82,7 @@ impl Commutation {
             PositionKind::Absolute => Some(1.0 / f64::from(STEPS_PER_PERIOD)),
             PositionKind::Typed => None,
         });
-        // The coarser resolution applies to the mean.
+        // The mean has the coarser of both resolutions.
         let resolution = resolution.collect::<Option<Vec<f64>>>().and_then(|all| all.into_iter().reduce(f64::max));
         Ok(CommutationOffset {
             fine_periods,
@@ -135,7 +136,7 @@ impl Commutation {
         matches!(self.second_vector_result(geometry), Some(Ok((Verdict::Ok, _))))
     }
 
-    /// Returns whether both approaches gave identical readings, which suggests that the shaft was not turned.
+    /// Returns whether both approaches gave identical readings, which suggests that the shaft has not been turned.
     pub fn are_sides_identical(&self) -> bool {
         let is_fine = |reading: &&RestReading| matches!(reading.kind, PositionKind::Fine { .. });
         let [one, other] =
@@ -143,8 +144,8 @@ impl Commutation {
         one.is_some() && one == other
     }
 
-    /// Checks whether the offset may be used. Either the second vector must confirm it, or the user must have chosen to
-    /// do without a second vector.
+    /// Checks whether the offset may be used. It must be confirmed by a second vector, unless the user has chosen to
+    /// omit the second vector.
     ///
     /// # Errors
     /// Returns an error if an entry or a reading is missing or unusable.
@@ -185,7 +186,7 @@ impl Commutation {
         Ok((field, address, bytes))
     }
 
-    /// Returns the position to set with method 2. The shaft must still be at the rest position last read.
+    /// Returns the position to set with method 2. The shaft must not have moved since the last reading.
     ///
     /// # Errors
     /// Returns an error if an entry or a reading is missing, or if method 2 cannot be used.
@@ -210,7 +211,7 @@ impl Commutation {
         let off_step = here.raw.map_or(0, |raw| (raw % STEPS_PER_PERIOD).abs_diff(value % STEPS_PER_PERIOD));
         Ok(PositionSetting {
             value,
-            // A difference of one step is due to rounding.
+            // A difference of one step may be due to rounding.
             exact: off_step.min(STEPS_PER_PERIOD - off_step) > 1,
             remaining_deg: if remaining > 180.0 { remaining - 360.0 } else { remaining },
             verdict: if step >= WEAK_TORQUE_DEG { Verdict::Warn } else { Verdict::Ok },
@@ -232,7 +233,7 @@ pub fn stored(staged: &StagedEdits) -> Vec<StoredRecord> {
     found
 }
 
-/// Checks whether the position may be read. All previous steps of the assistant must be complete.
+/// Checks whether the position may be read, for which all previous steps of the assistant must be complete.
 pub fn check_can_read(commutation: &Commutation, ready: bool) -> ActionPermission {
     commutation.form.check_prepared()?;
     if commutation.form.source == Source::Typed {
@@ -241,7 +242,8 @@ pub fn check_can_read(commutation: &Commutation, ready: bool) -> ActionPermissio
     if ready { Ok(()) } else { Err(TEXTS.text("commutation.not_ready")) }
 }
 
-/// Returns the signed distance between two positions in signal periods, in the shorter direction within a revolution.
+/// Returns the signed distance between two positions in signal periods, measured in the shorter direction within a
+/// revolution.
 fn signed_distance(from: f64, to: f64, periods: u32) -> f64 {
     let turn = f64::from(periods);
     let forward = (to - from).rem_euclid(turn);

@@ -1,4 +1,4 @@
-//! Tests of the connection form: conversion from and to links, and messages about invalid entries.
+//! Tests of the connection form: conversion to and from links, and messages about invalid entries.
 
 use super::*;
 use crate::app::Language;
@@ -53,7 +53,7 @@ fn the_entries_match_the_link() {
     let adapter = form("bridge:tcp:[::1]:4001?voltage=8");
     assert_eq!((adapter.kind, adapter.network, adapter.host.as_str()), (LinkKind::Adapter, true, "[::1]"));
     assert_eq!(adapter.typed.get("voltage"), "8");
-    // The other kinds of connection have no supply.
+    // Other kinds of connection cannot supply the encoder.
     let serial_again = LinkForm { kind: LinkKind::Serial, port: "COM3".to_owned(), ..adapter };
     assert_eq!(serial_again.url().unwrap().to_string(), "serial:COM3");
     let tcp = form("tcp:[::1]:4001");

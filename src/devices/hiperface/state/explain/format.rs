@@ -1,4 +1,4 @@
-//! Texts for the data of an encoder in both languages. The English texts are those of the protocol tables.
+//! Texts for the data of an encoder, in both languages. The English texts are the same as in the protocol tables.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{DataFieldStatus, Geometry, LineSettings, Position, StatusCode};
@@ -72,7 +72,7 @@ pub fn geometry_text(geometry: Geometry) -> Text {
             TEXTS.text("geometry.multiturn").with("periods", periods).with("turns", turns)
         }
         Geometry::Linear { period_nm, .. } => {
-            // The number of decimals is sufficient for a whole number of nanometres.
+            // There are enough decimals to show whole nanometres.
             let decimals = (0..6u32).find(|decimals| period_nm.is_multiple_of(10u32.pow(6 - decimals))).unwrap_or(6);
             let decimals = usize::try_from(decimals).unwrap_or(6);
             TEXTS.text("geometry.linear").with_number("millimetres", f64::from(period_nm) * 1e-6, decimals)
@@ -80,7 +80,7 @@ pub fn geometry_text(geometry: Geometry) -> Text {
     }
 }
 
-/// Describes a position by turns and degrees, or in millimetres.
+/// Describes a position in turns and degrees, or in millimetres.
 pub fn position_text(position: Position) -> Text {
     match (position.turns(), position.degrees(), position.millimetres()) {
         (Some(turn), Some(degrees), _) => {

@@ -68,7 +68,7 @@ fn define_texts(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -
     }
 }
 
-/// Returns the old and new text of each property that differs between two field statuses.
+/// Returns the old and new texts of all properties that differ between two field statuses.
 fn changed_status_properties(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
     let size = |status: DataFieldStatus| TEXTS.text("op.size").with("size", status.size().bytes());
     let code = |status: DataFieldStatus| TEXTS.text("op.code").with("code", status.code());
@@ -119,7 +119,7 @@ mod tests {
         let words: Vec<String> =
             operation_texts(&define(Some(0xE8), 0xA9), None).texts().map(|text| text.to_string_in(German)).collect();
         assert_eq!(words, ["Datenfeld 1", "16 Bytes, beschreibbar", "32 Bytes, schreibgeschützt"]);
-        // 4096 steps a turn: 10,240 are two turns and a half.
+        // With 4096 steps per turn, 10,240 steps are two and a half turns.
         let turns = Some(Geometry::Rotary { periods: 128, turns: 4096 });
         let set = operation_texts(&Op::SetPosition { from: 0, to: 10_240, synchronise: false }, turns);
         let words: Vec<String> = set.texts().map(|text| text.to_string_in(German)).collect();

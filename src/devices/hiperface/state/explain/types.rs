@@ -1,5 +1,5 @@
-//! Messages about a user-defined table of encoder types that cannot be used, and about links that cannot be opened for
-//! this reason.
+//! Messages about a user-defined table of encoder types that cannot be used, and about links that cannot be opened
+//! because of such a table.
 
 use crate::app::Text;
 use crate::app::explain::{self as general, syntax_error_text};

@@ -1,4 +1,4 @@
-//! Tests of long recordings with known times and values.
+//! Tests of recordings with known times and values.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use super::*;
 use crate::analysis::history::Flags;
 use crate::units::Moment;
 
-/// 32 steps per period, 4096 per turn; 4096 turns.
+/// Geometry with 32 steps per period, 4096 steps per turn, and 4096 turns.
 const SKM36: Geometry = Geometry::Rotary { periods: 128, turns: 4096 };
 const RANGE: i64 = 4096 * 4096;
 
@@ -29,7 +29,7 @@ fn line<'a>(record: &'a Record, heading: &str) -> &'a Series {
     record.track.recorder.series().iter().find(|line| line.heading == heading).unwrap()
 }
 
-/// Returns the time in nanoseconds, the value in the unit of the samples, and the flags of each sample.
+/// Returns the time in nanoseconds, the value in the recorded unit and the flags of each sample.
 fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
     let line = line(record, heading);
     let history = record.track.recorder.history(line).unwrap();
@@ -41,7 +41,7 @@ fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
 fn a_single_position_read_keeps_the_polled_samples() {
     let mut record = Record::default();
     record.add_samples((0..=10).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
-    // It was read in between, and is reported after those.
+    // This position was read between polled samples but is reported after them.
     record.add_samples(vec![position(550_000, 550)], 0, Some(SKM36));
     record.add_samples((11..=20).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
     let positions = samples(&record, "position");
@@ -49,7 +49,7 @@ fn a_single_position_read_keeps_the_polled_samples() {
     assert!(
         positions.iter().enumerate().all(|(at, own)| *own == (at as i64 * 100_000_000, at as f64 * 100.0, Flags::NONE))
     );
-    // 100 steps in 100 ms, from a quarter of a second on.
+    // The speed is 100 steps in 100 ms, and is available after a quarter of a second.
     assert!(samples(&record, "speed").iter().skip(3).all(|own| own.1 == 1000.0));
     assert_eq!(record.last().unwrap().raw, 2000);
 }
@@ -80,7 +80,7 @@ fn lines_break_at_missing_samples() {
     let hour = 3_600_000_000_000;
     assert_eq!(samples(&record, "position"), [(0, 5.0, Flags::NONE), (hour, 6.0, Flags::BREAK)]);
     assert_eq!(samples(&record, "temperature"), [(0, 40.0, Flags::NONE), (hour, 30.0, Flags::BREAK)]);
-    // A wall clock that was set back does not reverse time.
+    // Recorded times never decrease, even if the system clock has been set back.
     record.begin_session(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
     record.add_samples(vec![position(0, 7)], 0, Some(SKM36));
     assert_eq!(samples(&record, "position").last().unwrap().0, hour + 1);
@@ -95,14 +95,14 @@ fn lines_break_between_stop_and_start() {
     record.track.poll(None, false);
     record.track.poll(every, true);
     record.add_samples(vec![position(150_000, 2), position(200_000, 3)], 0, Some(SKM36));
-    // After more than four intervals and 0.4 s a sample is missing, whether the shaft is stopped or not.
+    // After more than four intervals and 0.4 s, a sample is considered missing, even if the shaft is at standstill.
     record.add_samples(vec![position(790_000, 4), position(1_400_000, 5)], 0, Some(SKM36));
     let breaks: Vec<bool> = samples(&record, "position").iter().map(|own| own.2.contains(Flags::BREAK)).collect();
     assert_eq!(breaks, [false, false, true, false, false, true]);
 }
 
-/// Ten minutes at 1 kHz, at 600 rpm round the end of the range, with a pause of three seconds every ten thousand
-/// samples.
+/// Records ten minutes at 1 kHz and 600 rpm across the end of the range, with a pause of three seconds every ten
+/// thousand samples.
 #[test]
 fn a_long_recording_keeps_every_break_and_wrap() {
     let mut record = Record::default();
@@ -131,13 +131,13 @@ fn a_long_recording_keeps_every_break_and_wrap() {
     }
     let speed = history.statistics(1, history.indices()).unwrap();
     let rpm = 60.0 / 4096.0;
-    // A step is 1/4096 of a turn, over a quarter of a second.
+    // The speed is measured over a quarter of a second, with a resolution of 1/4096 turn.
     assert!(
         (speed.min.to_f64() * rpm - 600.0).abs() < 0.1 && (speed.max.to_f64() * rpm - 600.0).abs() < 0.1,
         "{speed:?}"
     );
-    // After each pause there is no speed until a quarter of a second has passed.
+    // After each pause, no speed is available for a quarter of a second.
     assert_eq!(speed.bad, 60 * 250);
-    // Four columns of eight bytes, and a third more for the pyramid and the block being filled.
+    // The memory holds four columns of eight bytes, plus one third for the pyramid and the incomplete block.
     assert!(recorder.memory() < 600_000 * 32 * 4 / 3, "{}", recorder.memory());
 }
