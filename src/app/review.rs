@@ -11,6 +11,7 @@ pub use undone::UndoneEntry;
 use super::session::Kind;
 use super::{Severity, Text, explain};
 use crate::profile::{Plan, PlanId};
+use crate::store::EntryUid;
 use crate::worker::commit::PlannedWrite;
 use crate::worker::{CommitResult, is_incomplete, is_uncounted};
 
@@ -69,6 +70,11 @@ impl<K: Reviewable> Review<K> {
         self.permits.clear();
         self.undone = Some(undone);
         self
+    }
+
+    /// Returns the entry of the logbook that the write undoes, if any.
+    pub(in crate::app) fn undone_entry(&self) -> Option<&EntryUid> {
+        self.undone.as_ref().map(UndoneEntry::uid)
     }
 
     /// Returns a review for which the plan is requested again.
@@ -137,8 +143,8 @@ impl<K: Reviewable> Review<K> {
     }
 
     fn warnings(&self, prepared: &K::Prepared) -> Vec<Text> {
-        let kept = self.undone.as_ref().map(UndoneEntry::kept_texts).unwrap_or_default();
-        kept.into_iter().chain(K::warnings(prepared)).collect()
+        let of_undo = self.undone.iter().flat_map(UndoneEntry::warnings);
+        of_undo.chain(K::warnings(prepared)).collect()
     }
 
     /// Returns the permissions to offer to the user: those already granted, and those that would change the plan.

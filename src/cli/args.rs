@@ -20,7 +20,7 @@ use super::commands::{Commands, KindOptions};
 use super::undo::UndoneEntry;
 use crate::app::TypeMap;
 use crate::link::LinkUrl;
-use crate::store::{AssetName, EntryId, LogbookServer};
+use crate::store::{AssetName, EntryId, EntryUid, LogbookServer};
 use crate::worker::SessionLog;
 
 /// Help heading of the options that every command has.
@@ -288,7 +288,7 @@ pub struct Restore {
     pub(super) asset: AssetArgs,
     /// The write that the restore undoes. Set by the command undo.
     #[arg(skip)]
-    pub(super) undone: Option<UndoneEntry>,
+    pub(super) undone: Option<Box<UndoneEntry>>,
 }
 
 impl Restore {
@@ -297,7 +297,7 @@ impl Restore {
         Restore {
             file,
             dry_run: undo.dry_run,
-            consent: ConsentArgs { ..undo.consent },
+            consent: ConsentArgs { undoes: Some(undone.uid().clone()), ..undo.consent },
             allow_other_device: false,
             allow_other_type: false,
             copy: Vec::new(),
@@ -305,7 +305,7 @@ impl Restore {
             with_mounting: false,
             recreate: false,
             asset: AssetArgs { name: None },
-            undone: Some(undone),
+            undone: Some(Box::new(undone)),
         }
     }
 }
@@ -330,6 +330,9 @@ pub struct ConsentArgs {
     /// Write even if the limit of write cycles is reached or their number is unknown.
     #[arg(long)]
     pub force_wear: bool,
+    /// The entry of the logbook that the write undoes. Set by the command undo.
+    #[arg(skip)]
+    pub(super) undoes: Option<EntryUid>,
 }
 
 #[derive(Args)]

@@ -40,7 +40,7 @@ pub fn confirm_plan<P: PlannedWrite>(
         }
     }
     let granted = Consent::to(prepared.plan().id());
-    Ok(ApprovedPlan { prepared, consent: granted, force_wear: consent.force_wear })
+    Ok(ApprovedPlan { prepared, consent: granted, force_wear: consent.force_wear, undoes: consent.undoes.clone() })
 }
 
 /// Rejects a write if the device has reached its limit of write cycles, or if its write cycles are unknown. This

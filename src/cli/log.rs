@@ -13,7 +13,7 @@ use super::runner::to_failure;
 use super::user_store::{exchange_entries, user_store};
 use super::{Failure, Result, Success};
 use crate::app::{Text, explain};
-use crate::store::{Entry, EntryFilter, EntryId, EntryKind, Logbook, Outcome};
+use crate::store::{Entry, EntryFilter, EntryId, EntryKind, LinkedEntry, Logbook, Outcome};
 
 /// Parses a time with its offset, or a date, which begins at midnight of the system's time zone.
 pub(super) fn parse_date(text: &str) -> std::result::Result<Timestamp, String> {
@@ -124,11 +124,17 @@ fn entry_json(entry: &Entry) -> Json {
         "bench": entry.origin.bench,
         "version": entry.origin.version,
         "backup": entry.backup,
+        "undoes": entry.undoes.map(|own| own.id.to_string()),
+        "undone_by": entry.undone_by.map(|own| own.id.to_string()),
     })
 }
 
+pub(super) fn local_time(at: Timestamp) -> String {
+    at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S").to_string()
+}
+
 fn entry_text(entry: &Entry) -> String {
-    let time = entry.at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S");
+    let time = local_time(entry.at);
     let device = &entry.device;
     let virtual_mark = if device.is_virtual { " (virtual)" } else { "" };
     let asset = entry.asset.as_ref().map(|asset| format!(" at {asset}")).unwrap_or_default();
@@ -155,6 +161,11 @@ fn entry_text(entry: &Entry) -> String {
     }
     for item in &entry.items {
         text.push_str(&format!("    {item}\n"));
+    }
+    for (relation, link) in [("undoes", entry.undoes), ("undone by", entry.undone_by)] {
+        if let Some(LinkedEntry { id, at }) = link {
+            text.push_str(&format!("    {relation}: entry {id} of {}\n", local_time(at)));
+        }
     }
     if let Some(backup) = entry.backup.as_ref().filter(|_| entry.kind != EntryKind::Backup) {
         text.push_str(&format!("    backup: {}\n", backup.display()));

@@ -5,12 +5,12 @@ use serde_json::{Value as Json, json};
 
 use super::args::{CommonArgs, Restore, UndoArgs};
 use super::commands::DeviceCommands;
-use super::log::{entry_with_number, no_backup};
+use super::log::{entry_with_number, local_time, no_backup};
 use super::output::Output;
 use super::profiles::load_profile_to_write;
 use super::{Failure, Result};
 use crate::profile::{ChangedSince, KeptItem, Redo, UndoneWrite};
-use crate::store::{DeviceKey, Entry, EntryId, UndoObstacle};
+use crate::store::{DeviceKey, Entry, EntryId, EntryUid, UndoObstacle};
 use crate::worker::commit::PlannedWrite;
 
 /// Number of changed values that a refusal names.
@@ -20,6 +20,7 @@ const NAMED: usize = 3;
 #[derive(Clone)]
 pub(crate) struct UndoneEntry {
     entry: EntryId,
+    uid: EntryUid,
     device: DeviceKey,
     write: UndoneWrite,
     /// Items that cannot be undone, with an instruction for the user.
@@ -40,10 +41,14 @@ pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Res
         let lines = kept.iter().map(|(item, instead)| format!("{item} cannot be undone: {instead}."));
         return Err(Failure::Failed(lines.take(NAMED).collect()));
     }
+    if let Some(earlier) = entry.undone_by {
+        let (id, by) = (entry.id, earlier.id);
+        output.print_message(&format!("Entry {id} was already undone by entry {by}, on {}.", local_time(earlier.at)));
+    }
     for (item, instead) in &kept {
         output.print_message(&format!("{item} is not undone: {instead}."));
     }
-    let undone = UndoneEntry { entry: entry.id, device: entry.device, write, kept };
+    let undone = UndoneEntry { entry: entry.id, uid: entry.uid, device: entry.device, write, kept };
     let restore = Restore::of_backup(file, undo, undone);
     kind.restore(common, output, &restore, profile)
 }
@@ -89,6 +94,10 @@ fn obstacle(entry: &Entry, why: UndoObstacle) -> Failure {
 }
 
 impl UndoneEntry {
+    pub(super) fn uid(&self) -> &EntryUid {
+        &self.uid
+    }
+
     /// Rejects the undo on a different device, or if values have changed since the write.
     fn check<P: PlannedWrite>(&self, common: &CommonArgs, prepared: &P) -> Result<()> {
         let (id, of) = (self.entry, &self.device);

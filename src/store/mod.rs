@@ -31,9 +31,10 @@ pub use files::{
 pub use folders::BaseFolders;
 pub use log_file::LogFile;
 pub use logbook::{
-    AssetName, AssetNameError, Contact, DeviceHold, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent,
-    KeyringError, Logbook, LogbookError, LogbookErrorKind, LogbookServer, Origin, OtherHolder, Outcome, Password,
-    ServerAddress, ServerAddressError, ServerError, ServerErrorKind, Transferred, UndoObstacle, UserName, WriteResult,
+    AssetName, AssetNameError, Contact, DeviceHold, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, EntryUid, Event,
+    Intent, KeyringError, LinkedEntry, Logbook, LogbookError, LogbookErrorKind, LogbookServer, Origin, OtherHolder,
+    Outcome, Password, ServerAddress, ServerAddressError, ServerError, ServerErrorKind, Transferred, UndoObstacle,
+    UserName, WriteResult,
 };
 
 use crate::profile::Cause;

@@ -18,7 +18,7 @@ use crate::profile::{
     Body, ChangedItem, ConfirmedPlan, Consent, InterruptedWriteOf, Operation, OperationError, Plan, ProfileDocument,
     Write, WriteRecord,
 };
-use crate::store::{DeviceKey, EntryId, EntryKind, FileError, Intent, Logbook, LogbookError, Outcome, Store};
+use crate::store::{DeviceKey, EntryId, EntryKind, EntryUid, FileError, Intent, Logbook, LogbookError, Outcome, Store};
 
 /// Maximum time for each request to the server of the logbook, before the write cycles of this computer have to do.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
@@ -36,6 +36,8 @@ pub struct ApprovedPlan<P> {
     pub consent: Consent,
     /// Whether to write even if the device is worn, or its write cycles are unknown.
     pub force_wear: bool,
+    /// The entry of the logbook that the write undoes, if any.
+    pub undoes: Option<EntryUid>,
 }
 
 /// A write whose before-image is saved and which is recorded in the logbook.
@@ -166,7 +168,7 @@ pub fn write_plan<P: PlannedWrite, W: Write<Base = P::Base, Op = P::Op>, E>(
     write: &mut W,
     tell: &mut dyn FnMut(Progress<&P::Op>),
 ) -> Result<CommitResult<W::Written>, WritePlanError<P, W, E>> {
-    let ApprovedPlan { prepared, consent, force_wear } = agreed;
+    let ApprovedPlan { prepared, consent, force_wear, undoes } = agreed;
     let plan = prepared.plan();
     if plan.is_empty() {
         return Ok(CommitResult::default());
@@ -176,7 +178,8 @@ pub fn write_plan<P: PlannedWrite, W: Write<Base = P::Base, Op = P::Op>, E>(
     let confirmed =
         ConfirmedPlan::confirm(plan, *consent, write).ok_or(NotStarted::OtherPlan)?.map_err(JobError::Device)?;
     let items = plan.ops.iter().flat_map(|op| prepared.changed_items(op)).collect();
-    let intent = Intent { kind: prepared.entry_kind(), items, planned_cycles: cost, backup: None };
+    let intent =
+        Intent { kind: prepared.entry_kind(), items, planned_cycles: cost, backup: None, undoes: undoes.clone() };
     let intended = WriteIntent::record(store, &prepared.device(is_virtual), intent, &prepared.before_image());
     let intended = intended.map_err(NotStarted::NotKept)?;
     if let (Err(why), false) = (&intended.entry, *force_wear || cost == 0) {

@@ -101,6 +101,33 @@ fn what_changed_since_is_not_overwritten() {
     // Nothing is left to undo.
     let again = device.undo(&first);
     assert_eq!((again.status, &again.json()["written"]), (Some(0), &json!(0)), "{again:?}");
+    let undo = device.last_entry();
+    assert!(again.err.contains(&format!("Entry {first} was already undone by entry {undo}, on 20")), "{again:?}");
+}
+
+/// An undo names the entry that it undoes, in both directions, and in the text as well.
+#[test]
+fn an_undo_names_its_entry() {
+    let device = Device::start("hiperface");
+    let write = device.write("field:0@3+2", "C0FF");
+    assert_eq!(device.undo(&write).status, Some(0));
+    let undo = device.last_entry();
+    let links = |entry: &str| {
+        let log = device.bench.run(&["log", "--json"]).out;
+        let mut entries = log.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
+        let found = entries.find(|own| own["entry"] == entry).unwrap();
+        (found["undoes"].clone(), found["undone_by"].clone())
+    };
+    assert_eq!(links(&undo), (json!(write), Value::Null));
+    assert_eq!(links(&write), (Value::Null, json!(undo)));
+    let text = device.bench.run(&["log"]).out;
+    for line in [format!("    undoes: entry {write} of 20"), format!("    undone by: entry {undo} of 20")] {
+        assert_eq!(text.matches(&line).count(), 1, "{line}: {text}");
+    }
+    // With the undo undone, the values of the write are in the device again.
+    assert_eq!(device.undo(&undo).status, Some(0));
+    assert_eq!(links(&write), (Value::Null, Value::Null));
+    assert_eq!(links(&undo), (json!(write), json!(device.last_entry())));
 }
 
 /// Other parameters than those of the write stay as they are.

@@ -38,7 +38,12 @@ fn change(session: &mut Session<Hiperdrive>, change: Change) -> Result<Committed
         other => panic!("{other:?}"),
     };
     let consent = Consent::to(prepared.plan.id());
-    match session.run_inline(HiperdriveJob::Commit(Box::new(Commit { prepared, consent, force_wear: false })))? {
+    match session.run_inline(HiperdriveJob::Commit(Box::new(Commit {
+        prepared,
+        consent,
+        force_wear: false,
+        undoes: None,
+    })))? {
         HiperdriveOutput::Committed(done) => Ok(*done),
         other => panic!("{other:?}"),
     }

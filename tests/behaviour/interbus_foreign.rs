@@ -40,7 +40,7 @@ fn prepare(session: &mut Session<Interbus>) -> Result<Prepared, JobError> {
 
 fn commit(session: &mut Session<Interbus>, prepared: Prepared) -> Result<u64, JobError> {
     let consent = Consent::to(prepared.plan.id());
-    let job = InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false }));
+    let job = InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false, undoes: None }));
     match session.run_inline(job)? {
         InterbusOutput::Committed(done) => Ok(done.written.verified),
         other => panic!("{other:?}"),

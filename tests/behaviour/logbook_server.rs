@@ -12,7 +12,7 @@ use jiff::Timestamp;
 use serde_json::Value;
 
 use super::postgres::{PASSWORD, Postgres};
-use super::support::{Bench, Ran};
+use super::support::{Bench, Ran, Simulated};
 
 const WRITE: [&str; 7] = ["write", "hiperface", "field:0@3+2", "C0FF", "--yes", "--link", "sim:"];
 const LIMIT: Duration = Duration::from_secs(5);
@@ -45,6 +45,26 @@ fn benches_see_the_entries_of_each_other_and_their_wear_adds_up() {
     assert_eq!((one.logbook().write_cycles(&device), two.logbook().write_cycles(&device)), (Ok(2), Ok(2)));
     // Without the server, everything that was received is still here.
     assert_eq!(entries(&one.run(&["log", "--json"])).len(), 4);
+}
+
+/// The undo of one bench marks the write in the logbook of another one.
+#[test]
+fn an_undo_names_its_entry_on_every_bench() {
+    let Some(server) = Postgres::start() else { return };
+    let (one, two) = (Bench::new(), Bench::new());
+    let simulated = Simulated::start(&one, &["hiperface", "--listen", "127.0.0.1:0"]);
+    let link = format!("tcp:{}", simulated.place);
+    let run = |words: &[&str]| {
+        let ran = one.run_with_server(&server.url(), &[words, &["--yes", "--link", &link]].concat());
+        assert_eq!(ran.status, Some(0), "{ran:?}");
+    };
+    run(&["write", "hiperface", "field:0@3+2", "C0FF"]);
+    let write = entries(&one.run(&["log", "--json"])).into_iter().find(|entry| entry["what"] == "write").unwrap();
+    run(&["undo", write["entry"].as_str().unwrap()]);
+    let elsewhere = entries(&two.run_with_server(&server.url(), &["log", "--json"]));
+    let of = |what: &str| elsewhere.iter().find(|entry| entry["what"] == what).unwrap();
+    assert_eq!((&of("restore")["undoes"], &of("write")["undoes"]), (&of("write")["entry"], &Value::Null));
+    assert_eq!(of("write")["undone_by"], of("restore")["entry"]);
 }
 
 /// The setting does the same as the environment variable.
@@ -190,7 +210,10 @@ fn each_problem_of_the_server_is_explained_and_work_goes_on() {
     server.sql("DROP FUNCTION full_disk CASCADE");
     server.sql("UPDATE logbook SET schema = 99");
     check(&url, PASSWORD, &["schema 99", "newer version", "Update the program"]);
-    server.sql("UPDATE logbook SET schema = 1; DROP TABLE hold; GRANT SELECT ON logbook TO guest");
+    server.sql(
+        "UPDATE logbook SET schema = 1; DROP TABLE hold; ALTER TABLE event DROP COLUMN undoes;
+         GRANT SELECT ON logbook TO guest",
+    );
     check(&guest, PASSWORD, &["older schema 1", "owner of the tables"]);
     let count = |table: &str| server.sql(&format!("SELECT count(*) FROM {table}"))[0].parse::<usize>().unwrap();
     let (written, sent) = (entries(&bench.run(&["log", "--json"])).len(), count("event"));
@@ -198,7 +221,8 @@ fn each_problem_of_the_server_is_explained_and_work_goes_on() {
     // The owner updates the tables, and everything that waited is sent.
     check(&url, PASSWORD, &[]);
     assert_eq!((count("hold"), count("event")), (0, written + 2));
-    assert_eq!(server.sql("SELECT schema FROM logbook"), ["2"]);
+    assert_eq!(server.sql("SELECT schema FROM logbook"), ["3"]);
+    assert_eq!(server.sql("SELECT count(*) FROM event WHERE undoes IS NOT NULL"), ["0"]);
     assert!(!bench.everything_kept().contains(PASSWORD));
 }
 
@@ -311,7 +335,7 @@ fn writer() {
         let description = format!("{name} {number}");
         if number % 5 == 0 {
             let items = vec![encoder_studio::profile::ChangedItem::new(&description, None, None)];
-            let intent = Intent { kind: EntryKind::Write, items, planned_cycles: 2, backup: None };
+            let intent = Intent { kind: EntryKind::Write, items, planned_cycles: 2, backup: None, undoes: None };
             let id = logbook.record_intent(Timestamp::now(), &device(), &intent).unwrap();
             logbook.record_outcome(id, Timestamp::now(), Outcome::Done, 1).unwrap();
         } else {

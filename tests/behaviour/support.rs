@@ -66,7 +66,7 @@ impl Bench {
         let mut logbook = self.logbook();
         let spent = cycles - logbook.write_cycles(device).unwrap();
         let items = vec![ChangedItem::new("long ago", None, None)];
-        let intent = Intent { kind: EntryKind::Write, items, planned_cycles: spent, backup: None };
+        let intent = Intent { kind: EntryKind::Write, items, planned_cycles: spent, backup: None, undoes: None };
         let id = logbook.record_intent(Timestamp::now(), device, &intent).unwrap();
         logbook.record_outcome(id, Timestamp::now(), Outcome::Done, spent).unwrap();
     }

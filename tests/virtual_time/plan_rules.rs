@@ -62,7 +62,7 @@ fn a_consent_to_another_plan_writes_nothing() {
     let shown = desk.prepare(store(0, 0, vec![1])).unwrap();
     let other = desk.prepare(store(0, 0, vec![2])).unwrap();
     let sent = desk.tap().sent.len();
-    let commit = Commit { prepared: other, consent: Consent::to(shown.plan.id()), force_wear: false };
+    let commit = Commit { prepared: other, consent: Consent::to(shown.plan.id()), force_wear: false, undoes: None };
     desk.run(HiperfaceJob::Commit(Box::new(commit))).unwrap_err();
     assert_eq!(desk.tap().sent.len(), sent, "not even asked");
     assert_eq!(desk.wear(), 0);

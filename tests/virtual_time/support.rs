@@ -256,7 +256,7 @@ impl Desk {
 
     fn commit_with(&mut self, prepared: &Prepared, force_wear: bool) -> Result<Committed, JobError> {
         let (prepared, consent) = (prepared.clone(), Consent::to(prepared.plan.id()));
-        match self.run(HiperfaceJob::Commit(Box::new(Commit { prepared, consent, force_wear })))? {
+        match self.run(HiperfaceJob::Commit(Box::new(Commit { prepared, consent, force_wear, undoes: None })))? {
             HiperfaceOutput::Committed(committed) => Ok(committed),
             other => panic!("{other:?}"),
         }

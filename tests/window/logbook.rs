@@ -84,6 +84,50 @@ fn a_write_is_undone_after_a_review() {
     assert_eq!((undone.kind, undone.items[0].new.as_deref()), (EntryKind::Restore, Some("45")));
 }
 
+/// Issue 30: an undo and its write name each other, and each leads to the other.
+#[test]
+fn an_undo_and_its_write_lead_to_each_other() {
+    let mut screen = after_a_write();
+    select_first_entry(&mut screen);
+    let link = |id, entry: &Entry| {
+        let at = entry.at.to_zoned(jiff::tz::TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S").to_string();
+        Text::new(id).with("time", at).to_string_in(Language::English)
+    };
+    screen.click("undo.button");
+    screen.until("the way back is planned", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+    screen.click("review.write");
+    screen.until("it is undone", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Done(..)))
+            && studio.hiperface().unwrap().session.is_ready()
+    });
+    screen.click("review.close");
+    let [undo, write, _] = recorded_entries(&screen).try_into().unwrap();
+    // A filter hides the write.
+    screen.act(Action::ShowTab(LOGBOOK_TAB));
+    screen.act(Action::SearchLogbook(EntryFilter { what: Some(EntryKind::Restore), ..EntryFilter::default() }));
+    screen.until("only the undo is shown", |studio| entry_count(studio) == Some(1));
+    select_first_entry(&mut screen);
+    let undoes = link("undo.undoes", &write);
+    screen.harness.get_by_label(&undoes).click();
+    screen.until("all entries of the device are shown", |studio| entry_count(studio) == Some(3));
+    let undone_by = link("undo.undone_by", &undo);
+    assert!(screen.shows("45  →  58"), "the write is selected");
+    screen.harness.get_by_label(&undone_by).click();
+    screen.steps();
+    assert!(screen.shows("58  →  45"), "the undo is selected");
+    for language in [Language::German, Language::English] {
+        screen.act(Action::SetLanguage(language));
+        screen.check_language();
+    }
+    // A second undo says that the write was undone already.
+    screen.command(DeviceCommand::UndoWrite(Box::new(write)));
+    screen.until("there is nothing to do", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+    screen.act(Action::ShowTab(Tab::named("Hiperface")));
+    let minutes = undo.at.to_zoned(jiff::tz::TimeZone::system()).strftime("%Y-%m-%d %H:%M").to_string();
+    let already = Text::new("undo.already").with("time", minutes).to_string_in(Language::English);
+    assert!(screen.shows(&already) && !screen.has_button("review.write"));
+}
+
 /// Issue 30: what has changed since is named, and then nothing can be written.
 #[test]
 fn an_undo_refuses_a_value_that_has_changed_since() {

@@ -1,18 +1,22 @@
 //! The undo of a write of the logbook: the check whether values have changed since, and what is not undone.
 
+use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
 use crate::app::Text;
 use crate::app::explain::{literal_text, redo_text, truncated_list};
 use crate::profile::{Body, ChangedSince, KeptItem, UndoneWrite};
-use crate::store::Entry;
+use crate::store::{Entry, EntryUid};
 use crate::worker::commit::PlannedWrite;
 
 /// An entry of the logbook that a restore of its backup undoes.
 #[derive(Clone, Debug)]
 pub struct UndoneEntry {
+    uid: EntryUid,
     /// Local time of the entry.
     at: String,
+    /// Local time at which the entry was undone before, if it was.
+    undone_at: Option<String>,
     write: UndoneWrite,
 }
 
@@ -23,8 +27,8 @@ impl UndoneEntry {
     /// Returns a text for each item if none of them can be undone.
     pub(in crate::app) fn new(entry: &Entry, backup: &mut Body) -> Result<Self, Vec<Text>> {
         let write = UndoneWrite::new(&entry.items, backup);
-        let at = entry.at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M").to_string();
-        let undone = UndoneEntry { at, write };
+        let undone_at = entry.undone_by.map(|own| minutes(own.at));
+        let undone = UndoneEntry { uid: entry.uid.clone(), at: minutes(entry.at), undone_at, write };
         if undone.write.has_effect() { Ok(undone) } else { Err(undone.kept_texts()) }
     }
 
@@ -36,8 +40,21 @@ impl UndoneEntry {
         self.write.concerns(item)
     }
 
+    pub(super) fn uid(&self) -> &EntryUid {
+        &self.uid
+    }
+
+    /// Returns the remark that the entry was undone before, and describes the items that are not undone.
+    pub(super) fn warnings(&self) -> impl Iterator<Item = Text> {
+        self.already_undone().into_iter().chain(self.kept_texts())
+    }
+
+    fn already_undone(&self) -> Option<Text> {
+        self.undone_at.as_ref().map(|at| Text::new("undo.already").with("time", at))
+    }
+
     /// Describes the items that are not undone, with what to do instead.
-    pub(super) fn kept_texts(&self) -> Vec<Text> {
+    fn kept_texts(&self) -> Vec<Text> {
         let kept =
             |own: &KeptItem| Text::new("undo.kept").with("item", &own.item).with_text("instead", redo_text(&own.redo));
         truncated_list(self.write.kept(), kept)
@@ -47,9 +64,14 @@ impl UndoneEntry {
     pub(super) fn rejection<P: PlannedWrite>(&self, prepared: &P) -> Option<Vec<Text>> {
         let planned = prepared.plan().ops.iter().flat_map(|op| prepared.changed_items(op));
         let changed = self.write.changed_since(planned);
-        let texts = std::iter::once(Text::new("undo.changed")).chain(truncated_list(&changed, changed_text));
+        let first = self.already_undone().into_iter().chain([Text::new("undo.changed")]);
+        let texts = first.chain(truncated_list(&changed, changed_text));
         (!changed.is_empty()).then(|| texts.collect())
     }
+}
+
+fn minutes(at: Timestamp) -> String {
+    at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M").to_string()
 }
 
 fn changed_text(changed: &ChangedSince) -> Text {

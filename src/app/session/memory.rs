@@ -207,6 +207,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
             prepared: (**prepared).clone(),
             consent: Consent::to(shown),
             force_wear: review.force_wear,
+            undoes: review.undone_entry().cloned(),
         })
     }
 

@@ -44,6 +44,17 @@ impl fmt::Display for EntryId {
     }
 }
 
+/// Identifier of an entry, which is the same on every bench.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct EntryUid(pub(super) String);
+
+/// A reference to another entry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LinkedEntry {
+    pub id: EntryId,
+    pub at: Timestamp,
+}
+
 /// Type of event that an entry records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EntryKind {
@@ -165,6 +176,8 @@ pub struct Intent {
     pub planned_cycles: u64,
     /// Path of the backup taken before the write.
     pub backup: Option<PathBuf>,
+    /// The entry that the write undoes.
+    pub undoes: Option<EntryUid>,
 }
 
 /// An event that writes nothing to the device.
@@ -197,6 +210,7 @@ impl Event {
 pub struct Entry {
     /// Identifier of the entry. Later entries have greater identifiers.
     pub id: EntryId,
+    pub uid: EntryUid,
     pub kind: EntryKind,
     /// Time of the event. For a write, this is the time directly before its first byte.
     pub at: Timestamp,
@@ -211,6 +225,10 @@ pub struct Entry {
     /// Path of the backup taken before the write. Invalid Unicode in the path is replaced.
     pub backup: Option<PathBuf>,
     pub origin: Origin,
+    /// The entry that this write undoes.
+    pub undoes: Option<LinkedEntry>,
+    /// The last write that undid this one completely and was not undone itself.
+    pub undone_by: Option<LinkedEntry>,
     /// Result of the write. `None` means that the write is still running or that the program died during the write.
     pub conclusion: Option<WriteResult>,
 }

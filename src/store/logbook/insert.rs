@@ -5,7 +5,7 @@ use std::path::Path;
 use jiff::Timestamp;
 use rusqlite::{Connection, TransactionBehavior, named_params};
 
-use super::entry::{DeviceKey, EntryId, EntryKind, Event, Origin};
+use super::entry::{DeviceKey, EntryId, EntryKind, EntryUid, Event, Origin};
 use super::{AssetName, query};
 use crate::profile::ChangedItem;
 
@@ -15,6 +15,8 @@ pub(super) struct Further<'e> {
     pub planned_cycles: u64,
     /// Asset to which the device is assigned from this event on.
     pub asset: Option<&'e AssetName>,
+    /// The entry that this event undoes.
+    pub undoes: Option<&'e EntryUid>,
 }
 
 pub(super) fn event(
@@ -27,9 +29,10 @@ pub(super) fn event(
 ) -> rusqlite::Result<EntryId> {
     let Origin { bench, user, version } = origin;
     let sql = "INSERT INTO event (uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
-                                  planned_cycles, backup, bench, user, version, asset)
+                                  planned_cycles, backup, bench, user, version, asset, undoes)
                VALUES (lower(hex(randomblob(16))), :at, :what, :kind, :device_type, :serial_number, :is_virtual,
-                       :description, :items, :planned_cycles, :backup, :bench, :user, :version, :asset)";
+                       :description, :items, :planned_cycles, :backup, :bench, :user, :version, :asset,
+                       :undoes)";
     let parameters = named_params! {
         ":at": at.to_string(),
         ":what": event.kind.keyword(),
@@ -45,6 +48,7 @@ pub(super) fn event(
         ":user": user,
         ":version": version,
         ":asset": further.asset.map(AssetName::as_str),
+        ":undoes": further.undoes.map(|own| &own.0),
     };
     database.execute(sql, parameters)?;
     Ok(EntryId(database.last_insert_rowid()))

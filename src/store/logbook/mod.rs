@@ -27,7 +27,8 @@ use rusqlite::{Connection, named_params};
 
 pub use asset::{AssetName, AssetNameError};
 pub use entry::{
-    DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Event, Intent, Origin, Outcome, UndoObstacle, WriteResult,
+    DeviceKey, Entry, EntryFilter, EntryId, EntryKind, EntryUid, Event, Intent, LinkedEntry, Origin, Outcome,
+    UndoObstacle, WriteResult,
 };
 pub use error::{LogbookError, LogbookErrorKind};
 pub use server::{
@@ -85,14 +86,14 @@ impl Logbook {
         intent: &Intent,
     ) -> Result<EntryId, LogbookError> {
         let description = intent.items.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-        let Intent { kind, items, planned_cycles, backup } = intent.clone();
+        let Intent { kind, items, planned_cycles, backup, undoes } = intent.clone();
         let added = insert::event(
             &self.database,
             &self.origin,
             at,
             device,
             &Event { kind, description, items, backup },
-            Further { planned_cycles, asset: None },
+            Further { planned_cycles, asset: None, undoes: undoes.as_ref() },
         );
         added.map_err(|error| self.database_error(error))
     }

@@ -25,6 +25,7 @@ pub(super) struct EventRow {
     pub user: Option<String>,
     pub version: String,
     pub asset: Option<String>,
+    pub undoes: Option<String>,
 }
 
 /// A row of the table `result`.
@@ -103,7 +104,7 @@ pub(super) fn first_waiting(database: &Connection, limit: u32) -> rusqlite::Resu
     let mut outbox = database.prepare_cached("SELECT id, uid, is_result FROM outbox ORDER BY id LIMIT ?1")?;
     let mut event = database.prepare_cached(
         "SELECT uid, at, what, kind, device_type, serial_number, is_virtual, description, items, planned_cycles, backup,
-                bench, user, version, asset FROM event WHERE uid = ?1",
+                bench, user, version, asset, undoes FROM event WHERE uid = ?1",
     )?;
     let mut result =
         database.prepare_cached("SELECT event, at, outcome, failure, cycles_spent FROM result WHERE event = ?1")?;
@@ -165,9 +166,9 @@ fn is_valid(row: &EventRow) -> bool {
 fn add_event(database: &Connection, row: &EventRow) -> rusqlite::Result<usize> {
     let mut statement = database.prepare_cached(
         "INSERT OR IGNORE INTO event (uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
-                                      planned_cycles, backup, bench, user, version, asset)
+                                      planned_cycles, backup, bench, user, version, asset, undoes)
          VALUES (:uid, :at, :what, :kind, :device_type, :serial_number, :is_virtual, :description, :items,
-                 :planned_cycles, :backup, :bench, :user, :version, :asset)",
+                 :planned_cycles, :backup, :bench, :user, :version, :asset, :undoes)",
     )?;
     statement.execute(named_params! {
         ":uid": row.uid,
@@ -185,6 +186,7 @@ fn add_event(database: &Connection, row: &EventRow) -> rusqlite::Result<usize> {
         ":user": row.user,
         ":version": row.version,
         ":asset": row.asset,
+        ":undoes": row.undoes,
     })
 }
 
@@ -214,6 +216,7 @@ fn read_event(row: &rusqlite::Row<'_>) -> rusqlite::Result<EventRow> {
         user: row.get(12)?,
         version: row.get(13)?,
         asset: row.get(14)?,
+        undoes: row.get(15)?,
     })
 }
 

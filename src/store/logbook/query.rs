@@ -5,11 +5,14 @@ use std::path::PathBuf;
 use rusqlite::types::Type;
 use rusqlite::{Connection, OptionalExtension, Params, Row, named_params};
 
-use super::entry::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Origin, Outcome, WriteResult};
+use super::entry::{
+    DeviceKey, Entry, EntryFilter, EntryId, EntryKind, EntryUid, LinkedEntry, Origin, Outcome, WriteResult,
+};
 use super::schema;
 use crate::profile::ChangedItem;
 
-const COLUMNS: &str = "id, event.at AS at, what, kind, device_type, serial_number, is_virtual, description, items,
+const COLUMNS: &str =
+    "id, uid, undoes, event.at AS at, what, kind, device_type, serial_number, is_virtual, description, items,
     planned_cycles, backup, bench, user, version, result.at AS concluded_at, outcome, failure, cycles_spent";
 const TABLES: &str = "event LEFT JOIN result ON result.event = event.uid";
 
@@ -115,7 +118,39 @@ fn select(
         "SELECT {COLUMNS}, {ASSET} AS asset_then FROM {TABLES} WHERE {condition}
          ORDER BY {NEWEST_FIRST} LIMIT {limit}"
     );
-    database.prepare(&sql)?.query_map(parameters, read_entry)?.collect()
+    database.prepare(&sql)?.query_map(parameters, |row| read_entry(database, row))?.collect()
+}
+
+/// Maximum number of undos of undos that are looked at.
+const LONGEST_CHAIN: usize = 100;
+
+/// Returns the last complete undo of an entry, unless it was undone itself.
+fn effective_undo(database: &Connection, undone: &EntryUid) -> rusqlite::Result<Option<LinkedEntry>> {
+    let sql = format!(
+        "SELECT event.uid, event.id, event.at FROM event JOIN result ON result.event = event.uid
+         WHERE undoes = ?1 AND outcome = 'done' ORDER BY {NEWEST_FIRST} LIMIT 1"
+    );
+    let mut statement = database.prepare_cached(&sql)?;
+    let mut last_undo = |of: &EntryUid| {
+        let read = |row: &Row<'_>| Ok((EntryUid(row.get("uid")?), read_link(row)?));
+        statement.query_row([&of.0], read).optional()
+    };
+    let Some((mut uid, undo)) = last_undo(undone)? else { return Ok(None) };
+    let mut is_effective = true;
+    for _ in 0..LONGEST_CHAIN {
+        let Some((next, _)) = last_undo(&uid)? else { break };
+        (uid, is_effective) = (next, !is_effective);
+    }
+    Ok(is_effective.then_some(undo))
+}
+
+fn linked_entry(database: &Connection, uid: &str) -> rusqlite::Result<Option<LinkedEntry>> {
+    database.prepare_cached("SELECT id, at FROM event WHERE uid = ?1")?.query_row([uid], read_link).optional()
+}
+
+fn read_link(row: &Row<'_>) -> rusqlite::Result<LinkedEntry> {
+    let at = row.get("at").and_then(|text: String| schema::parse_time(&text))?;
+    Ok(LinkedEntry { id: EntryId(row.get("id")?), at })
 }
 
 pub(super) fn items_json(items: &[ChangedItem]) -> String {
@@ -123,12 +158,17 @@ pub(super) fn items_json(items: &[ChangedItem]) -> String {
     serde_json::to_string(items).unwrap_or_else(|_| "[]".to_owned())
 }
 
-fn read_entry(row: &Row<'_>) -> rusqlite::Result<Entry> {
+fn read_entry(database: &Connection, row: &Row<'_>) -> rusqlite::Result<Entry> {
+    let kind = row.get("what").and_then(|word: String| {
+        EntryKind::parse(&word).ok_or_else(|| invalid_column(format!("{word:?} is not a kind of entry").into()))
+    })?;
+    let (uid, undoes) = (EntryUid(row.get("uid")?), row.get::<_, Option<String>>("undoes")?);
     Ok(Entry {
         id: EntryId(row.get("id")?),
-        kind: row.get("what").and_then(|word: String| {
-            EntryKind::parse(&word).ok_or_else(|| invalid_column(format!("{word:?} is not a kind of entry").into()))
-        })?,
+        undoes: undoes.map(|uid| linked_entry(database, &uid)).transpose()?.flatten(),
+        undone_by: if kind.has_result() { effective_undo(database, &uid)? } else { None },
+        uid,
+        kind,
         at: row.get("at").and_then(|text: String| schema::parse_time(&text))?,
         device: read_device(row)?,
         asset: row.get("asset_then")?,

@@ -13,7 +13,7 @@ use crate::store::files::create_folder;
 
 /// Migrations from each schema to the next. Existing migrations must never change, because logbooks created by them
 /// exist.
-pub(super) const STEPS: [&str; 5] = [
+pub(super) const STEPS: [&str; 6] = [
     "
     CREATE TABLE entry (
         id             INTEGER PRIMARY KEY,
@@ -132,6 +132,11 @@ pub(super) const STEPS: [&str; 5] = [
     CREATE TRIGGER result_waits AFTER INSERT ON result WHEN EXISTS (SELECT 1 FROM server) BEGIN
         INSERT INTO outbox (uid, is_result) VALUES (new.event, 1);
     END;
+",
+    // The undone event may be missing: another bench may have it, and this file may lack it.
+    "
+    ALTER TABLE event ADD COLUMN undoes TEXT; -- uid of the event that this one undoes
+    CREATE INDEX event_undoes ON event (undoes) WHERE undoes IS NOT NULL;
 ",
 ];
 

@@ -1,5 +1,7 @@
 //! Tests of the logbook on a disk: counts, two windows, and every way in which its file can be unusable.
 
+mod undo;
+
 use std::{fmt, fs};
 
 use super::*;
@@ -28,7 +30,7 @@ fn place() -> (tempfile::TempDir, PathBuf) {
 
 fn intent(item: &str, planned_cycles: u64, backup: Option<&Path>) -> Intent {
     let items = vec![ChangedItem::new(item, None, None)];
-    Intent { kind: EntryKind::Write, items, planned_cycles, backup: backup.map(Path::to_owned) }
+    Intent { kind: EntryKind::Write, items, planned_cycles, backup: backup.map(Path::to_owned), undoes: None }
 }
 
 fn problem<T: fmt::Debug>(result: Result<T, LogbookError>) -> LogbookErrorKind {
@@ -86,6 +88,7 @@ fn history_is_newest_first_and_complete() {
     let conclusion = WriteResult { at: at(1), outcome: Outcome::Failed(String::new()), cycles_spent: 1 };
     let entry = |id, second, item: &str, planned_cycles| Entry {
         id,
+        uid: logbook.entry(id).unwrap().unwrap().uid,
         kind: EntryKind::Write,
         at: at(second),
         device: own.clone(),
@@ -95,6 +98,8 @@ fn history_is_newest_first_and_complete() {
         planned_cycles,
         backup: None,
         origin: Origin::of_this_process(),
+        undoes: None,
+        undone_by: None,
         conclusion: None,
     };
     let first = Entry { backup: Some(backup), conclusion: Some(conclusion), ..entry(first, 0, "first", 1) };

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use egui::{Label, RichText, ScrollArea, Ui};
 
-use super::{description, device_name, old_and_new, result, time};
+use super::{LogbookView, description, device_name, moment, old_and_new, result, time, undone_by};
 use crate::app::{Action, AnyDevice, DeviceCommand, MAX_NOTE, Studio, Text, entry_kind_text};
-use crate::store::{DeviceKey, Entry, EntryKind, Origin};
+use crate::store::{DeviceKey, Entry, EntryFilter, EntryKind, LinkedEntry, Origin};
 use crate::ui::controls::{card, card_with_trailing, enabled_button, fill_width, paragraph, row, text_entry};
 use crate::ui::{Theme, icons};
 
@@ -16,7 +16,7 @@ pub(super) fn entry_ui(
     ui: &mut Ui,
     theme: &Theme,
     studio: &Studio,
-    note: &mut Option<(DeviceKey, String)>,
+    view: &mut LogbookView,
     entry: &Entry,
     actions: &mut Vec<Action>,
 ) {
@@ -30,6 +30,7 @@ pub(super) fn entry_ui(
             |ui| drop(ui.label(at)),
             |ui| {
                 facts_ui(ui, theme, studio, entry);
+                links_ui(ui, theme, studio, view, entry, actions);
                 if !entry.items.is_empty() {
                     ui.add_space(theme.space.between);
                     items_ui(ui, theme, entry);
@@ -53,7 +54,9 @@ pub(super) fn entry_ui(
             },
         );
         theme.add_gap(ui);
-        card(ui, theme, "logbook.note", |ui| note_ui(ui, theme, studio, note, &entry.device, actions));
+        card(ui, theme, "logbook.note", |ui| {
+            note_ui(ui, theme, studio, &mut view.note, &entry.device, actions);
+        });
     });
 }
 
@@ -70,6 +73,32 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry) {
         let (_, colour, words) = result(theme, entry);
         row(ui, theme, &theme.translate("logbook.result"), RichText::new(words).color(colour));
         row(ui, theme, &theme.translate("logbook.cycles"), entry.write_cycles().to_string());
+    }
+}
+
+/// Draws the entry that this one undoes, and the one that undid it. A click selects that entry.
+fn links_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    studio: &Studio,
+    view: &mut LogbookView,
+    entry: &Entry,
+    actions: &mut Vec<Action>,
+) {
+    let undoes = |link: LinkedEntry| theme.format_text(&Text::new("undo.undoes").with("time", moment(link.at)));
+    let links =
+        [entry.undoes.map(|link| (link, undoes(link))), entry.undone_by.map(|link| (link, undone_by(theme, link)))];
+    for (link, words) in links.into_iter().flatten() {
+        if !ui.link(words).on_hover_text(theme.translate("undo.show_entry")).clicked() {
+            continue;
+        }
+        (view.selected, view.scrolls_to_selected) = (Some(link.id), true);
+        let matches = studio.logbook().matches().and_then(|matches| matches.as_ref().ok());
+        if !matches.is_some_and(|matches| matches.entries.iter().any(|own| own.id == link.id)) {
+            view.search.clear();
+            let filter = EntryFilter { device: Some(entry.device.clone()), ..EntryFilter::default() };
+            actions.push(Action::SearchLogbook(filter));
+        }
     }
 }
 

@@ -6,6 +6,7 @@ mod sharing;
 
 use egui::{Align, Id, Label, Layout, Rect, RichText, Sense, Ui, UiBuilder};
 use egui_extras::{Column, TableBuilder, TableRow};
+use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
 use super::backups::time;
@@ -17,7 +18,7 @@ use super::row_selection::selection_step;
 use super::{Theme, icons};
 use crate::app::{Action, LogbookMatches, Rgb, Studio, Text, entry_kind_text, outcome_text};
 use crate::profile::ChangedItem;
-use crate::store::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Outcome};
+use crate::store::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, LinkedEntry, Outcome};
 
 /// The logbook page, as listed in the help.
 pub(super) const PAGE: PageInfo = PageInfo::new(icons::BOOK_OPEN_TEXT, "logbook.title", "logbook.help");
@@ -40,6 +41,8 @@ const WIDE: f32 = 960.0;
 pub(super) struct LogbookView {
     search: String,
     selected: Option<EntryId>,
+    /// Whether to scroll the list to the selected entry.
+    scrolls_to_selected: bool,
     /// Note being written, with the device to which it belongs.
     note: Option<(DeviceKey, String)>,
 }
@@ -107,7 +110,7 @@ fn matches_ui(
     ui.scope_builder(UiBuilder::new().max_rect(list), |ui| rows_ui(ui, theme, studio, view, &matches.entries));
     let selected = view.selected.and_then(|id| matches.entries.iter().find(|entry| entry.id == id));
     ui.scope_builder(UiBuilder::new().max_rect(detail), |ui| match selected {
-        Some(entry) => detail::entry_ui(ui, theme, studio, &mut view.note, entry, actions),
+        Some(entry) => detail::entry_ui(ui, theme, studio, view, entry, actions),
         None => {
             empty_placeholder(ui, theme, &theme.translate("logbook.select"), None);
         }
@@ -183,8 +186,10 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, view: &mut LogbookView, 
         .sense(Sense::click())
         .cell_layout(Layout::left_to_right(Align::Center))
         .min_scrolled_height(0.0);
-    if let Some(row) = moved {
+    let jump = selected.filter(|_| view.scrolls_to_selected);
+    if let Some(row) = moved.or(jump) {
         table = table.scroll_to_row(row, None).animate_scrolling(false);
+        view.scrolls_to_selected = false;
     }
     let mut clicked = None;
     table
@@ -216,7 +221,10 @@ fn row_ui(row: &mut TableRow<'_, '_>, theme: &Theme, studio: &Studio, entry: &En
         ui.label(theme.monospace(minutes).color(theme.palette.muted)).on_hover_text(time(entry.at));
     });
     row.col(|ui| {
-        let (icon, colour, words) = result(theme, entry);
+        let (icon, colour, words) = match entry.undone_by {
+            Some(undo) => (icons::ARROW_COUNTER_CLOCKWISE, theme.palette.muted, undone_by(theme, undo)),
+            None => result(theme, entry),
+        };
         ui.label(RichText::new(icon).color(colour)).on_hover_text(words);
     });
     row.col(|ui| {
@@ -230,6 +238,16 @@ fn row_ui(row: &mut TableRow<'_, '_>, theme: &Theme, studio: &Studio, entry: &En
             format!("{}  {}", theme.translate(entry_kind_text(entry.kind)), description(entry).replace('\n', " "));
         ui.add(Label::new(text).truncate());
     });
+}
+
+/// Formats a time within a sentence.
+fn moment(at: Timestamp) -> String {
+    at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S").to_string()
+}
+
+/// Returns the text that a write was undone.
+fn undone_by(theme: &Theme, undo: LinkedEntry) -> String {
+    theme.format_text(&Text::new("undo.undone_by").with("time", moment(undo.at)))
 }
 
 /// Returns the icon, colour and text for the result of an entry.

@@ -146,7 +146,7 @@ fn device() -> DeviceKey {
 fn confirm_plan(seen: Option<CycleCount>, ops: &[u64], force_wear: bool) -> ApprovedPlan<Prepared> {
     let plan = Plan { base: (), ops: ops.iter().copied().map(Op).collect() };
     let consent = Consent::to(plan.id());
-    ApprovedPlan { prepared: Prepared { seen, plan }, consent, force_wear }
+    ApprovedPlan { prepared: Prepared { seen, plan }, consent, force_wear, undoes: None }
 }
 
 fn write(

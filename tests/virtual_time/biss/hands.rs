@@ -58,7 +58,7 @@ impl TestOperator {
         let attendance = OperatorPresence::Attended(self.seat.clone());
         let consent = Consent::to(prepared.plan.id());
         BissJob::Commit(Box::new(Commit {
-            agreed: ApprovedPlan { prepared: prepared.clone(), consent, force_wear: false },
+            agreed: ApprovedPlan { prepared: prepared.clone(), consent, force_wear: false, undoes: None },
             attendance,
         }))
     }
@@ -135,8 +135,10 @@ impl Bench {
     pub(crate) fn commit_alone(&mut self, prepared: &Prepared, patience: Duration) -> Result<Committed, JobError> {
         let attendance = OperatorPresence::Unattended(UnattendedOperator { patience });
         let consent = Consent::to(prepared.plan.id());
-        let commit =
-            Commit { agreed: ApprovedPlan { prepared: prepared.clone(), consent, force_wear: false }, attendance };
+        let commit = Commit {
+            agreed: ApprovedPlan { prepared: prepared.clone(), consent, force_wear: false, undoes: None },
+            attendance,
+        };
         match self.run(BissJob::Commit(Box::new(commit)))? {
             BissOutput::Committed(committed) => Ok(*committed),
             other => panic!("{other:?}"),

@@ -169,7 +169,7 @@ fn a_consent_covers_only_its_plan() {
     let prepared = bench.prepare(data()).unwrap();
     let consent = Consent::to(shown.plan.id());
     let attendance = OperatorPresence::Attended(Default::default());
-    let commit = Commit { agreed: ApprovedPlan { prepared, consent, force_wear: false }, attendance };
+    let commit = Commit { agreed: ApprovedPlan { prepared, consent, force_wear: false, undoes: None }, attendance };
     let error = bench.run(BissJob::Commit(Box::new(commit))).unwrap_err();
     assert_eq!(error.to_string(), "the consent is for another plan");
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
@@ -194,7 +194,7 @@ fn an_encoder_with_unknown_wear_is_written_only_by_force() {
         });
     bench
         .run(BissJob::Commit(Box::new(Commit {
-            agreed: ApprovedPlan { prepared, consent, force_wear: true },
+            agreed: ApprovedPlan { prepared, consent, force_wear: true, undoes: None },
             attendance,
         })))
         .unwrap();
@@ -213,7 +213,7 @@ fn a_worn_encoder_is_written_only_by_force() {
     );
     let mut logbook = Logbook::open(&bench.store().logbook_path()).unwrap();
     let items = vec![ChangedItem::new("long ago", None, None)];
-    let intent = Intent { kind: EntryKind::Write, items, planned_cycles: 999, backup: None };
+    let intent = Intent { kind: EntryKind::Write, items, planned_cycles: 999, backup: None, undoes: None };
     let id = logbook.record_intent(Timestamp::now(), &device_key(&prepared.identity, true), &intent).unwrap();
     logbook.record_outcome(id, Timestamp::now(), CountedFinding::Done, 999).unwrap();
     let prepared = bench.prepare(preset(1, 1)).unwrap();
@@ -233,7 +233,7 @@ fn a_worn_encoder_is_written_only_by_force() {
         });
     bench
         .run(BissJob::Commit(Box::new(Commit {
-            agreed: ApprovedPlan { prepared, consent, force_wear: true },
+            agreed: ApprovedPlan { prepared, consent, force_wear: true, undoes: None },
             attendance,
         })))
         .unwrap();

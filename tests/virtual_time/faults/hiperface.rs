@@ -128,7 +128,7 @@ impl Rig {
 
     fn commit(&mut self, prepared: Prepared) -> Result<(), JobError> {
         let consent = Consent::to(prepared.plan.id());
-        let commit = Commit { prepared, consent, force_wear: false };
+        let commit = Commit { prepared, consent, force_wear: false, undoes: None };
         self.session.run_inline(HiperfaceJob::Commit(Box::new(commit))).map(|_| ())
     }
 }

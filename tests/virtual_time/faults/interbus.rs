@@ -59,7 +59,7 @@ impl Rig {
         match self.session.run_inline(InterbusJob::Prepare(change))? {
             InterbusOutput::Prepared(prepared) => {
                 let consent = Consent::to(prepared.plan.id());
-                let commit = Commit { prepared: *prepared, consent, force_wear: true };
+                let commit = Commit { prepared: *prepared, consent, force_wear: true, undoes: None };
                 Ok(InterbusJob::Commit(Box::new(commit)))
             }
             other => panic!("{other:?}"),

@@ -105,7 +105,7 @@ impl Stand {
 
     pub(crate) fn commit_with(&mut self, prepared: Prepared, force_wear: bool) -> Result<Committed, JobError> {
         let consent = Consent::to(prepared.plan.id());
-        match self.run(HiperdriveJob::Commit(Box::new(Commit { prepared, consent, force_wear })))? {
+        match self.run(HiperdriveJob::Commit(Box::new(Commit { prepared, consent, force_wear, undoes: None })))? {
             HiperdriveOutput::Committed(committed) => Ok(*committed),
             other => panic!("{other:?}"),
         }

@@ -49,7 +49,7 @@ fn write(stand: &mut Stand) -> InterbusJob {
     assert!(wanted.set_value(Item::CamMask(program(6)), ItemValue::Mask(!own.mask)));
     let prepared = stand.prepare(Change::Write(Box::new(wanted)));
     let consent = Consent::to(prepared.plan.id());
-    InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false }))
+    InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false, undoes: None }))
 }
 
 #[test]

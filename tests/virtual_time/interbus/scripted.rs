@@ -173,7 +173,7 @@ pub(crate) fn carry_out(
         other_type: None,
         mounting_written: Vec::new(),
     };
-    let commit = Commit { prepared, consent, force_wear: false };
+    let commit = Commit { prepared, consent, force_wear: false, undoes: None };
     let (mut station, sent) = (station(""), script.sent.clone());
     let mut steps = Vec::new();
     let ended: Result<Committed, JobError> = {

@@ -110,7 +110,7 @@ impl Stand {
 
     pub(crate) fn commit(&mut self, prepared: Prepared) -> Result<Committed, JobError> {
         let consent = Consent::to(prepared.plan.id());
-        let commit = Commit { prepared, consent, force_wear: false };
+        let commit = Commit { prepared, consent, force_wear: false, undoes: None };
         match self.run(InterbusJob::Commit(Box::new(commit)))? {
             InterbusOutput::Committed(committed) => Ok(*committed),
             other => panic!("{other:?}"),

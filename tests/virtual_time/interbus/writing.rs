@@ -223,7 +223,7 @@ fn a_consent_covers_only_its_plan() {
     let mut stand = Stand::new(SCALED);
     let prepared = stand.prepare(Change::Preset { value: 1 });
     let consent = Consent::to(stand.prepare(Change::Preset { value: 2 }).plan.id());
-    let commit = Commit { prepared, consent, force_wear: false };
+    let commit = Commit { prepared, consent, force_wear: false, undoes: None };
     let error = stand.run(InterbusJob::Commit(Box::new(commit))).unwrap_err();
     assert!(matches!(error, JobError::NotStarted(NotStarted::OtherPlan)), "{error}");
 }
@@ -239,8 +239,9 @@ fn a_worn_eeprom_is_written_only_by_force() {
         let prepared = stand.prepare(Change::Default);
         let prepared = encoder_studio::devices::interbus::jobs::Prepared { cycles_seen: seen, ..prepared };
         let consent = Consent::to(prepared.plan.id());
-        let job =
-            |force_wear| InterbusJob::Commit(Box::new(Commit { prepared: prepared.clone(), consent, force_wear }));
+        let job = |force_wear| {
+            InterbusJob::Commit(Box::new(Commit { prepared: prepared.clone(), consent, force_wear, undoes: None }))
+        };
         let ended = stand.run(job(false));
         let is_refused = match seen {
             Some(_) => matches!(ended, Err(JobError::NotStarted(NotStarted::Worn { .. }))),
@@ -343,7 +344,8 @@ fn cancelling_leaves_a_running_encoder() {
         let consent = Consent::to(prepared.plan.id());
         let stores = stand.stores();
         stand.session.set_cancel(CancelToken::after_transactions(after));
-        let ended = stand.run(InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false })));
+        let ended =
+            stand.run(InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false, undoes: None })));
         let spent = stand.stores() - stores;
         assert_eq!(stand.left(), (0, StartupMode::Cams(program(4))), "after {after}");
         match ended {
@@ -373,7 +375,7 @@ fn an_operation_reports_its_changes() {
     let prepared = stand.prepare(Change::Preset { value: 7 });
     assert!(matches!(prepared.plan.ops.as_slice(), [Op::Parameterise(_), Op::FirePreset { value: 7 }]));
     let (mut told, consent) = (Vec::new(), Consent::to(prepared.plan.id()));
-    let commit = InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false }));
+    let commit = InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false, undoes: None }));
     let ended = stand.session.run(JobId::default(), commit, &mut |event| {
         if let Event::Progress(_, Progress { done, total, step: JobStep::Operation(item) }) = event {
             told.push((done, total, item));

@@ -47,7 +47,7 @@ impl WriteJournal {
         self.log.record_identity(&self.store, &self.device_key(serial_number));
         let mut logbook = Logbook::open(&self.store.logbook_path())?;
         let items = vec![ChangedItem::new(PROGRAM_READ_NOTE, None, None)];
-        let intent = Intent { kind: EntryKind::Procedure, items, planned_cycles: stores, backup: None };
+        let intent = Intent { kind: EntryKind::Procedure, items, planned_cycles: stores, backup: None, undoes: None };
         let entry = logbook.record_intent(Timestamp::now(), &self.device_key(serial_number), &intent)?;
         Ok((logbook, entry))
     }

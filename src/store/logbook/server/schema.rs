@@ -10,7 +10,7 @@ use super::error::ServerErrorKind;
 ///
 /// The numbers of events and results rise in the order in which they became visible, because all benches add rows under
 /// a lock. A bench can therefore continue after the last number that it knows.
-pub(super) const STEPS: [&str; 2] = [
+pub(super) const STEPS: [&str; 3] = [
     r#"
     CREATE TABLE logbook (
         identity TEXT    NOT NULL, -- a bench that meets another identity sends all of its entries
@@ -60,6 +60,8 @@ pub(super) const STEPS: [&str; 2] = [
     );
     CREATE INDEX hold_of_device ON hold (kind, serial_number, device_type);
 "#,
+    // uid of the event that this one undoes.
+    "ALTER TABLE event ADD COLUMN undoes TEXT",
 ];
 
 const SCHEMA_VERSION: i64 = STEPS.len() as i64;

@@ -78,7 +78,8 @@ async fn receive(postgres: &mut Postgres, after: Marks) -> Result<(Rows, Marks),
 async fn rows_after(client: &impl GenericClient, after: Marks) -> Result<(Rows, Marks), ServerErrorKind> {
     let limit = RECEIVED as i64;
     let sql = r#"SELECT id, uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
-                        planned_cycles, backup, bench, "user", version, asset
+                        planned_cycles, backup, bench, "user", version, asset,
+                        undoes
                  FROM event WHERE id > $1 ORDER BY id LIMIT $2"#;
     let (mut rows, mut marks) = (Rows::default(), after);
     for row in client.query(sql, &[&after.event, &limit]).await? {
@@ -119,13 +120,14 @@ async fn add_events(client: &impl GenericClient, events: &[EventRow]) -> Result<
         events.iter().map(|row| of(row).as_deref().map(storable)).collect::<Vec<_>>()
     };
     let sql = r#"INSERT INTO event (uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
-                                    planned_cycles, backup, bench, "user", version, asset)
+                                    planned_cycles, backup, bench, "user", version, asset, undoes)
         SELECT uid, at, what, kind, device_type, serial_number, is_virtual, description, items, planned_cycles, backup,
-               bench, "user", version, asset
+               bench, "user", version, asset, undoes
         FROM unnest($1::text[], $2::text[], $3::text[], $4::text[], $5::text[], $6::text[], $7::int[], $8::text[],
-                    $9::text[], $10::bigint[], $11::text[], $12::text[], $13::text[], $14::text[], $15::text[])
+                    $9::text[], $10::bigint[], $11::text[], $12::text[], $13::text[], $14::text[], $15::text[],
+                    $16::text[])
             WITH ORDINALITY AS own (uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
-                                    planned_cycles, backup, bench, "user", version, asset, place)
+                                    planned_cycles, backup, bench, "user", version, asset, undoes, place)
         ORDER BY place
         ON CONFLICT (uid) DO NOTHING"#;
     let virtuals: Vec<i32> = events.iter().map(|row| row.is_virtual).collect();
@@ -149,6 +151,7 @@ async fn add_events(client: &impl GenericClient, events: &[EventRow]) -> Result<
                 &options(|row| &row.user),
                 &texts(|row| &row.version),
                 &options(|row| &row.asset),
+                &options(|row| &row.undoes),
             ],
         )
         .await?;
@@ -195,6 +198,7 @@ fn read_event(row: &Row) -> Result<EventRow, tokio_postgres::Error> {
         user: row.try_get(13)?,
         version: row.try_get(14)?,
         asset: row.try_get(15)?,
+        undoes: row.try_get(16)?,
     })
 }
 
