@@ -1,10 +1,13 @@
 //! The review of a write, for every kind of device: its effect, the approval of the user, the progress and the result.
 
+mod notices;
 mod permit;
 mod undone;
 
 use std::path::PathBuf;
 
+pub(crate) use notices::{skipped_texts, undo_texts};
+pub use notices::redo;
 pub use permit::{Permit, PermitToggle};
 pub use undone::UndoneEntry;
 
@@ -239,6 +242,8 @@ pub struct ReviewSheet {
     pub redo: Option<Text>,
     /// Wear in addition to the write cycles counted by this computer.
     pub cost: Option<Text>,
+    /// How the write can be undone later.
+    pub undo: Vec<Text>,
     pub execution_mode: ExecutionMode,
     pub toggles: Vec<PermitToggle>,
     /// Questions that the user must answer before the plan is executed.
@@ -340,24 +345,6 @@ pub fn written_texts<K: Reviewable>(committed: &CommitResult<K::Written>) -> (Se
     }
 }
 
-/// Describes the values that a restore does not change: values that are missing on one side, and values that depend on
-/// another mounting.
-pub(crate) fn skipped_texts(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
-    let mut texts = Vec::new();
-    if !missing.is_empty() {
-        texts.push(words.into().with_list("items", missing));
-    }
-    if !mounting.is_empty() {
-        texts.push(Text::new("review.mounting_left").with_list("items", mounting));
-    }
-    texts
-}
-
-/// Describes the values that must be set up again.
-pub fn redo(items: Vec<Text>) -> Option<Text> {
-    (!items.is_empty()).then(|| Text::new("review.redo").with_list("items", items))
-}
-
 impl<K: Reviewable> Review<K> {
     /// Returns the review as it is displayed after `done` completed operations.
     pub fn to_sheet(&self, done: usize) -> ReviewSheet {
@@ -398,14 +385,18 @@ impl<K: Reviewable> Review<K> {
             |own: &K::Prepared| is_incomplete(own.cycles_seen(), own.plan().write_cycles(), own.wear_limit());
         let needs_permit = |own: &&K::Prepared| uncounted(own) || incomplete(own) || K::reaches_wear_limit(own);
         let lines = |own: &K::Prepared| own.plan().ops.iter().map(|own_op| op(own, own_op)).collect();
+        let lines: Vec<OperationTexts> = carried.map(lines).unwrap_or_default();
+        let items = || lines.iter().map(|line| line.item.clone());
+        let undo = costs.map(|own| undo_texts(items().zip(own.undos()))).unwrap_or_default();
         ReviewSheet {
             title: self.title.clone(),
             stage,
-            lines: carried.map(lines).unwrap_or_default(),
+            lines,
             warnings: shown.map(|own| self.warnings(own)).unwrap_or_default(),
             needs: shown.map(|own| K::requirements(&self.change, own)).unwrap_or_default(),
             redo: carried.and_then(|own| redo(K::redo(own))),
             cost: costs.map(K::cost_text),
+            undo,
             execution_mode: prepared.map_or(ExecutionMode::Writes, K::execution_mode),
             toggles: self.permit_toggles(),
             questions: shown.map(K::questions).unwrap_or_default(),

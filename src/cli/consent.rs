@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::args::ConsentArgs;
 use super::output::{Output, write_stderr};
+use super::plan::print_undo;
 use super::runner::{CliDevice, JobFailure};
 use super::{Failure, Result};
 use crate::profile::Consent;
@@ -33,8 +34,11 @@ pub fn confirm_plan<P: PlannedWrite>(
     prepared: P,
     shown: &[&str],
 ) -> Result<ApprovedPlan<P>> {
-    for text in shown.iter().filter(|_| !consent.yes) {
+    for (at, text) in shown.iter().enumerate().filter(|_| !consent.yes) {
         output.print_message(text.trim_end());
+        if at == 0 {
+            print_undo(output, &prepared);
+        }
         if !ask_yes_no("Write? [y/N] ") {
             return Err(Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()]));
         }

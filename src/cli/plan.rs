@@ -6,10 +6,11 @@ use serde_json::{Value as Json, json};
 
 use super::output::{Lines, Output};
 use crate::app::explain;
+use crate::app::review::undo_texts;
 use crate::profile::{Operation, Plan, WrittenChanges};
 use crate::store::LogbookError;
 use crate::worker::CommitResult;
-use crate::worker::commit::CycleCount;
+use crate::worker::commit::{CycleCount, PlannedWrite, Undo};
 
 pub struct PlanReport {
     pub operations: Vec<Json>,
@@ -32,6 +33,33 @@ impl PlanReport {
             write_cycles: plan.write_cycles(),
         }
     }
+}
+
+/// Prints how the operations of a plan can be undone after they were written.
+pub(super) fn print_undo<P: PlannedWrite>(output: &Output, prepared: &P) {
+    let texts = undo_texts(undos(prepared).map(|(item, undo)| (explain::literal_text(item), undo)));
+    for text in texts {
+        output.print_message(&text.terminal_text());
+    }
+}
+
+/// Returns as JSON how each operation of a plan can be undone after it was written.
+pub(super) fn undo_json<P: PlannedWrite>(prepared: &P) -> Json {
+    let one = |(item, undo): (String, Option<Undo>)| {
+        let how = match undo? {
+            Undo::Exactly => "exactly",
+            Undo::AnotherWrite { .. } => "another write",
+            Undo::RestoreBackup => "restore backup",
+            Undo::Never(_) => "never",
+        };
+        Some(json!({"item": item, "how": how}))
+    };
+    undos(prepared).filter_map(one).collect()
+}
+
+fn undos<P: PlannedWrite>(prepared: &P) -> impl Iterator<Item = (String, Option<Undo>)> {
+    let items = |op: &P::Op| prepared.changed_items(op).into_iter().map(|item| item.item).collect::<Vec<_>>().join(", ");
+    prepared.plan().ops.iter().map(items).zip(prepared.undos())
 }
 
 pub struct PlanStep {

@@ -11,7 +11,7 @@ use super::args::{CommonArgs, DiffArgs, Restore};
 use super::consent::require_consent;
 use super::log::profile_path;
 use super::output::{Lines, Output, write_stderr};
-use super::plan::{NOTHING_TO_WRITE, PlanReport, WriteSummary};
+use super::plan::{NOTHING_TO_WRITE, PlanReport, WriteSummary, print_undo, undo_json};
 use super::runner::to_failure;
 use super::user_store::user_store;
 use super::{Failure, Result, Success};
@@ -144,7 +144,8 @@ pub fn write_restore<P: PlannedWrite>(
     restore.check_undo(common, &prepared)?;
     left.print_warning(output);
     if restore.dry_run {
-        show_dry_run(output, restore, plan, left)
+        print_undo(output, &prepared);
+        show_dry_run(output, restore, plan, (left, undo_json(&prepared)))
     } else {
         show_restored(output, restore, plan, &write(prepared)?, left)
     }
@@ -213,7 +214,12 @@ impl UnrestoredItems {
     }
 }
 
-fn show_dry_run(output: &Output, restore: &Restore, plan: &PlanReport, left: &UnrestoredItems) -> Result {
+fn show_dry_run(
+    output: &Output,
+    restore: &Restore,
+    plan: &PlanReport,
+    (left, undo): (&UnrestoredItems, Json),
+) -> Result {
     let mut json = json!({
         "dry_run": true,
         "operations": plan.operations,
@@ -224,6 +230,7 @@ fn show_dry_run(output: &Output, restore: &Restore, plan: &PlanReport, left: &Un
         "backup": null,
         "missing": left.missing,
         "redo": left.redo,
+        "undo": undo,
     });
     if let Some(undone) = &restore.undone {
         undone.add_keys(&mut json, &plan.operations);

@@ -173,7 +173,8 @@ impl Body {
         self.0.keep_items(items);
     }
 
-    pub(super) fn redo(&self, item: &ChangedItem) -> Option<Redo> {
+    /// Returns what to do about a written item that a restore of this backup cannot write back.
+    pub fn redo(&self, item: &ChangedItem) -> Option<Redo> {
         self.0.redo(item)
     }
 

@@ -239,7 +239,7 @@ fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeTexts, heads: [&'static 
 /// Minimum and maximum height of the operation list, and the height of everything else in and around the dialog.
 const MIN_LIST_HEIGHT: f32 = 200.0;
 const MAX_LIST_HEIGHT: f32 = 440.0;
-const OTHER_HEIGHT: f32 = 400.0;
+const OTHER_HEIGHT: f32 = 424.0;
 /// Width of the icon before an item, including the gap after the icon.
 const ICON_WIDTH: f32 = 24.0;
 /// Width of the column for the "old" and "new" labels.
@@ -256,6 +256,9 @@ fn remarks_ui(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     }
     if let Some(cost) = &sheet.cost {
         remark_ui(ui, icons::MEMORY, palette.muted, &theme.format_text(cost));
+    }
+    for text in &sheet.undo {
+        remark_ui(ui, icons::ARROW_COUNTER_CLOCKWISE, palette.muted, &theme.format_text(text));
     }
 }
 

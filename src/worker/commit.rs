@@ -5,12 +5,15 @@
 
 #[cfg(test)]
 mod tests;
+mod undo;
 
 use std::hash::Hash;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use jiff::Timestamp;
+
+pub use undo::Undo;
 
 use super::{JobError, Progress};
 pub use crate::analysis::check::CycleCount;
@@ -115,8 +118,13 @@ pub trait PlannedWrite {
     /// Returns the kind of the logbook entry.
     fn entry_kind(&self) -> EntryKind;
 
-    /// Returns the values before the change, as a text from which they can be restored.
-    fn before_image(&self) -> String;
+    /// Returns the profile to be saved before the write. It contains the values from which the write can be undone.
+    fn backup(&self) -> ProfileDocument;
+
+    /// Returns how each operation can be undone. `None` means that the operation changes nothing.
+    fn undos(&self) -> Vec<Option<Undo>> {
+        Undo::of_plan(self)
+    }
 
     /// Returns the plan to write.
     fn plan(&self) -> &Plan<Self::Base, Self::Op> {
@@ -180,7 +188,7 @@ pub fn write_plan<P: PlannedWrite, W: Write<Base = P::Base, Op = P::Op>, E>(
     let items = plan.ops.iter().flat_map(|op| prepared.changed_items(op)).collect();
     let intent =
         Intent { kind: prepared.entry_kind(), items, planned_cycles: cost, backup: None, undoes: undoes.clone() };
-    let intended = WriteIntent::record(store, &prepared.device(is_virtual), intent, &prepared.before_image());
+    let intended = WriteIntent::record(store, &prepared.device(is_virtual), intent, &prepared.backup().emit());
     let intended = intended.map_err(NotStarted::NotKept)?;
     if let (Err(why), false) = (&intended.entry, *force_wear || cost == 0) {
         tracing::warn!("{why}");

@@ -25,7 +25,7 @@ use crate::wire::Wire;
 
 /// A kind of device at a cable.
 pub(crate) struct Case {
-    tab: Tab,
+    pub(crate) tab: Tab,
     scheme: &'static str,
     port: &'static str,
     /// The command that stores the edits.
@@ -36,7 +36,7 @@ pub(crate) struct Case {
     other: &'static str,
 }
 
-const CASES: [Case; 5] = [
+pub(crate) const CASES: [Case; 5] = [
     Case {
         tab: crate::tabs::HIPERFACE,
         scheme: "serial",
@@ -59,7 +59,7 @@ pub(crate) const NOVO: Case =
 
 impl Case {
     /// Returns a studio in which its encoder is connected and read.
-    fn desk(&self) -> Desk {
+    pub(crate) fn desk(&self) -> Desk {
         let mut desk = Desk::with_novo();
         self.connect(&mut desk);
         desk
@@ -207,7 +207,7 @@ pub(crate) fn command(desk: &mut Desk, command: DeviceCommand) {
     desk.act(action);
 }
 
-fn review(desk: &mut Desk, action: ReviewAction) {
+pub(crate) fn review(desk: &mut Desk, action: ReviewAction) {
     let id = shown(&desk.studio).unwrap().id();
     desk.act(Action::Review(id, action));
 }
@@ -235,7 +235,7 @@ fn until_lost(desk: &mut Desk) {
 }
 
 #[track_caller]
-fn until_stage(desk: &mut Desk, wanted: impl Fn(&Stage) -> bool) {
+pub(crate) fn until_stage(desk: &mut Desk, wanted: impl Fn(&Stage) -> bool) {
     desk.until("the review is there", |studio| {
         let device = shown(studio).unwrap();
         device.review_sheet().is_some_and(|sheet| wanted(&sheet.stage)) && !device.is_writing()

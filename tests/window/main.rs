@@ -62,6 +62,7 @@ mod support;
 mod tabs;
 mod texts;
 mod two_windows;
+mod undoing;
 mod unhurried;
 mod widgets_commutation;
 mod widgets_hiperdrive_setup;

@@ -123,6 +123,21 @@ impl EntryKind {
         }
     }
 
+    /// Returns the reason why entries of this kind cannot be undone, if they cannot.
+    pub const fn undo_obstacle(self) -> Option<UndoObstacle> {
+        match self {
+            EntryKind::Write | EntryKind::Restore => None,
+            EntryKind::Preset => Some(UndoObstacle::Preset),
+            EntryKind::Procedure => Some(UndoObstacle::Procedure),
+            EntryKind::Connected
+            | EntryKind::Assigned
+            | EntryKind::Status
+            | EntryKind::Backup
+            | EntryKind::Check
+            | EntryKind::Note => Some(UndoObstacle::NothingWritten),
+        }
+    }
+
     pub(super) fn parse(word: &str) -> Option<Self> {
         EntryKind::ALL.into_iter().find(|kind| kind.keyword() == word)
     }
@@ -254,17 +269,10 @@ impl Entry {
     /// # Errors
     /// Returns the reason why the entry cannot be undone.
     pub fn undo_backup(&self) -> Result<&Path, UndoObstacle> {
-        match self.kind {
-            EntryKind::Write | EntryKind::Restore if self.items.is_empty() => Err(UndoObstacle::NoItems),
-            EntryKind::Write | EntryKind::Restore => self.backup.as_deref().ok_or(UndoObstacle::NoBackup),
-            EntryKind::Preset => Err(UndoObstacle::Preset),
-            EntryKind::Procedure => Err(UndoObstacle::Procedure),
-            EntryKind::Connected
-            | EntryKind::Assigned
-            | EntryKind::Status
-            | EntryKind::Backup
-            | EntryKind::Check
-            | EntryKind::Note => Err(UndoObstacle::NothingWritten),
+        match self.kind.undo_obstacle() {
+            Some(why) => Err(why),
+            None if self.items.is_empty() => Err(UndoObstacle::NoItems),
+            None => self.backup.as_deref().ok_or(UndoObstacle::NoBackup),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Tests of the steps of a write, and of the errors that prevent its first byte.
 
 use super::*;
-use crate::profile::WrittenChanges;
+use crate::profile::{Comparison, Entries, Profile, ProfileError, Redo, Writer, WrittenChanges};
 
 /// A device that records its calls, and checks the files that exist at that moment.
 struct Spy {
@@ -106,7 +106,35 @@ impl Write for Spy {
     }
 }
 
+/// The profile of a device whose operation of 3 cycles must be written again, and whose operation of 4 cycles cannot be
+/// undone.
+#[derive(Clone, Debug, PartialEq)]
+struct SpyProfile;
+
+impl Profile for SpyProfile {
+    const KIND: &'static str = "spy";
+
+    fn read(_: &mut Entries) -> Result<Self, ProfileError> {
+        Ok(SpyProfile)
+    }
+
+    fn write(&self, _: &mut Writer) {}
+
+    fn compare(&self, _: &Self) -> Comparison {
+        Comparison::default()
+    }
+
+    fn redo(&self, item: &ChangedItem) -> Option<Redo> {
+        match item.item.as_str() {
+            "3" => Some(Redo::Write("40".to_owned())),
+            "4" => Some(Redo::ChangeCode),
+            _ => None,
+        }
+    }
+}
+
 struct Prepared {
+    kind: EntryKind,
     seen: Option<CycleCount>,
     plan: Plan<(), Op>,
 }
@@ -130,11 +158,11 @@ impl PlannedWrite for Prepared {
     }
 
     fn entry_kind(&self) -> EntryKind {
-        EntryKind::Write
+        self.kind
     }
 
-    fn before_image(&self) -> String {
-        "before".to_owned()
+    fn backup(&self) -> ProfileDocument {
+        backup_document(Body::new(SpyProfile))
     }
 }
 
@@ -146,7 +174,7 @@ fn device() -> DeviceKey {
 fn confirm_plan(seen: Option<CycleCount>, ops: &[u64], force_wear: bool) -> ApprovedPlan<Prepared> {
     let plan = Plan { base: (), ops: ops.iter().copied().map(Op).collect() };
     let consent = Consent::to(plan.id());
-    ApprovedPlan { prepared: Prepared { seen, plan }, consent, force_wear, undoes: None }
+    ApprovedPlan { prepared: Prepared { kind: EntryKind::Write, seen, plan }, consent, force_wear, undoes: None }
 }
 
 fn write(
@@ -255,4 +283,20 @@ fn an_incomplete_count_needs_a_permit_if_the_memory_wears_out_quickly() {
         );
     }
     assert!(matches!(check_wear(seen, 443, 449, false), Err(NotStarted::Worn { seen: 7, .. })), "worn in any case");
+}
+
+#[test]
+fn each_operation_tells_beforehand_how_it_can_be_undone() {
+    let undos = |kind: EntryKind| {
+        let agreed = confirm_plan(None, &[0, 1, 3, 4], false);
+        let prepared = Prepared { kind, ..agreed.prepared };
+        prepared.undos()
+    };
+    let again = Some(Undo::AnotherWrite { value: "40".to_owned(), cycles: 3 });
+    let code = Some(Undo::Never(Redo::ChangeCode));
+    // Without a value and without a cost, nothing is changed.
+    assert_eq!(undos(EntryKind::Write), [None, Some(Undo::Exactly), again.clone(), code.clone()]);
+    assert_eq!(undos(EntryKind::Procedure), [None, Some(Undo::RestoreBackup), again, code]);
+    let position = Some(Undo::Never(Redo::SetPosition));
+    assert_eq!(undos(EntryKind::Preset), [None, position.clone(), position.clone(), position]);
 }

@@ -1,6 +1,6 @@
 //! Writing a plan into a Novo encoder.
 
-use encoder_studio::profile::{Body, ChangedItem, ConfirmedPlan, DeviceError, Write, WrittenChanges};
+use encoder_studio::profile::{Body, ChangedItem, ConfirmedPlan, DeviceError, ProfileDocument, Write, WrittenChanges};
 use encoder_studio::store::{DeviceKey, EntryKind};
 use encoder_studio::worker::SessionContext;
 use encoder_studio::worker::commit::{PlanHeader, PlannedWrite, backup_document};
@@ -68,8 +68,8 @@ impl PlannedWrite for Prepared {
     fn entry_kind(&self) -> EntryKind {
         EntryKind::Write
     }
-    fn before_image(&self) -> String {
+    fn backup(&self) -> ProfileDocument {
         let (serial, values) = self.plan.base;
-        backup_document(Body::new(NovoProfile { serial, values })).emit()
+        backup_document(Body::new(NovoProfile { serial, values }))
     }
 }

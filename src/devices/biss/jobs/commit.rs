@@ -4,7 +4,7 @@ use super::{Biss, ChangeKind, Commit, Committed, JobError, JobStep, Prepared, WE
 use crate::devices::biss::procedures::procedure::ProcedureProgress;
 use crate::devices::biss::procedures::write::EncoderWriter;
 use crate::devices::biss::profile::{Base, BissProfile, DataImage, Op, PresetSetting, RecordedValues};
-use crate::profile::{Body, ChangedItem, UnknownValues};
+use crate::profile::{Body, ChangedItem, ProfileDocument, UnknownValues};
 use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{Progress, SessionContext};
@@ -59,7 +59,7 @@ impl PlannedWrite for Prepared {
         self.kind.entry_kind()
     }
 
-    fn before_image(&self) -> String {
+    fn backup(&self) -> ProfileDocument {
         let base = &self.plan.base;
         let description = &self.identity.description;
         let touched = description.areas().iter().map(|area| {
@@ -81,6 +81,6 @@ impl PlannedWrite for Prepared {
             // A profile cannot contain these registers.
             note.push_str(&format!("; {address} was 0x{value:02X}"));
         }
-        document.emit()
+        document
     }
 }

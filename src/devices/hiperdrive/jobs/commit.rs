@@ -3,7 +3,7 @@
 use super::{ChangeKind, Commit, Committed, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::hiperdrive::procedures::write::DeviceWriter;
 use crate::devices::hiperdrive::profile::{Base, HiperdriveProfile, Op};
-use crate::profile::{Body, ChangedItem};
+use crate::profile::{Body, ChangedItem, ProfileDocument};
 use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{JobReport, SessionContext};
@@ -43,7 +43,7 @@ impl PlannedWrite for Prepared {
         self.kind.entry_kind()
     }
 
-    fn before_image(&self) -> String {
-        backup_document(Body::new(HiperdriveProfile::from_image(self.identity.profile(), self.image.clone()))).emit()
+    fn backup(&self) -> ProfileDocument {
+        backup_document(Body::new(HiperdriveProfile::from_image(self.identity.profile(), self.image.clone())))
     }
 }

@@ -5,7 +5,7 @@ use crate::devices::hiperface::procedures::write::EncoderWriter;
 use crate::devices::hiperface::procedures::{Identity, create_profile};
 use crate::devices::hiperface::profile::{Base, Op, RecordedValues, SingleValue, created_fields};
 use crate::devices::hiperface::protocol::KIND;
-use crate::profile::{Body, ChangedItem};
+use crate::profile::{Body, ChangedItem, ProfileDocument};
 use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{Progress, SessionContext};
@@ -53,7 +53,7 @@ impl PlannedWrite for Prepared {
         }
     }
 
-    fn before_image(&self) -> String {
+    fn backup(&self) -> ProfileDocument {
         let base = &self.plan.base;
         let mut recorded = RecordedValues::default();
         for scalar in &base.scalars {
@@ -65,6 +65,6 @@ impl PlannedWrite for Prepared {
         }
         let mut profile = create_profile(&self.identity, base.fields.clone(), recorded);
         profile.created = created_fields(&self.plan);
-        backup_document(Body::new(profile)).emit()
+        backup_document(Body::new(profile))
     }
 }

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::devices::interbus::procedures::write::EncoderWriter;
 use crate::devices::interbus::profile::{Base, Image, InterbusProfile, Op, RecordedValues};
-use crate::profile::{Body, ChangedItem};
+use crate::profile::{Body, ChangedItem, ProfileDocument};
 use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{JobReport, SessionContext};
@@ -49,7 +49,7 @@ impl PlannedWrite for Prepared {
         self.kind.entry_kind()
     }
 
-    fn before_image(&self) -> String {
+    fn backup(&self) -> ProfileDocument {
         let (base, identity) = (&self.plan.base, &self.identity);
         let mut image = Image::from_parameters(self.parameters);
         image.shift = base.shift;
@@ -59,6 +59,6 @@ impl PlannedWrite for Prepared {
             }
         }
         let profile = InterbusProfile::new(identity.profile(), image, RecordedValues::default());
-        backup_document(Body::new(profile)).emit()
+        backup_document(Body::new(profile))
     }
 }
