@@ -6,8 +6,8 @@ mod undone;
 
 use std::path::PathBuf;
 
-pub(crate) use notices::{skipped_texts, undo_texts};
 pub use notices::redo;
+pub(crate) use notices::{skipped_texts, undo_texts};
 pub use permit::{Permit, PermitToggle};
 pub use undone::UndoneEntry;
 

@@ -37,7 +37,20 @@ pub(super) fn entry_with_number(common: &CommonArgs, id: EntryId) -> Result<Entr
 
 /// Returns the path of the profile with the values before a write, or of the profile that was saved.
 pub(super) fn profile_of(entry: &Entry) -> Result<PathBuf> {
-    entry.backup.clone().ok_or_else(|| no_backup(entry))
+    let path = entry.backup.as_deref().ok_or_else(|| no_backup(entry))?;
+    check_bench(entry, path)?;
+    Ok(path.to_owned())
+}
+
+/// Returns an error if the backup of an entry is on another computer.
+pub(super) fn check_bench(entry: &Entry, backup: &Path) -> Result<()> {
+    match entry.origin.other_bench() {
+        Some(bench) if matches!(backup.try_exists(), Ok(false)) => Err(Failure::Failed(vec![
+            format!("The backup of entry {} is on {bench}, where it was written: {}", entry.id, backup.display()),
+            "Run the command there, or copy the file to this computer and use restore.".to_owned(),
+        ])),
+        _ => Ok(()),
+    }
 }
 
 pub(super) fn no_backup(entry: &Entry) -> Failure {

@@ -58,7 +58,8 @@ pub(super) fn undo_json<P: PlannedWrite>(prepared: &P) -> Json {
 }
 
 fn undos<P: PlannedWrite>(prepared: &P) -> impl Iterator<Item = (String, Option<Undo>)> {
-    let items = |op: &P::Op| prepared.changed_items(op).into_iter().map(|item| item.item).collect::<Vec<_>>().join(", ");
+    let items =
+        |op: &P::Op| prepared.changed_items(op).into_iter().map(|item| item.item).collect::<Vec<_>>().join(", ");
     prepared.plan().ops.iter().map(items).zip(prepared.undos())
 }
 

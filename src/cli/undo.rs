@@ -5,7 +5,7 @@ use serde_json::{Value as Json, json};
 
 use super::args::{CommonArgs, Restore, UndoArgs};
 use super::commands::DeviceCommands;
-use super::log::{entry_with_number, local_time, no_backup};
+use super::log::{check_bench, entry_with_number, local_time, no_backup};
 use super::output::Output;
 use super::profiles::load_profile_to_write;
 use super::{Failure, Result};
@@ -30,6 +30,7 @@ pub(crate) struct UndoneEntry {
 pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Result {
     let entry = entry_with_number(common, undo.entry)?;
     let file = entry.undo_backup().map_err(|why| obstacle(&entry, why))?.to_owned();
+    check_bench(&entry, &file)?;
     let kind = output.commands().device(&entry.device.kind)?;
     let mut profile = load_profile_to_write(output, &file)?;
     if profile.kind() != kind.name() {

@@ -188,6 +188,20 @@ fn another_device_is_refused() {
     device.bench.run(&["undo", &entry, "--link", &device.link]).fails(2, &["--yes"]);
 }
 
+/// The backup of a write at another bench is not on this computer.
+#[test]
+fn the_bench_of_a_missing_backup_is_named() {
+    let device = Device::start("hiperface");
+    let entry = device.write("field:0@3+2", "C0FF");
+    let logbook = device.bench.store().logbook_path();
+    let moved = "UPDATE event SET bench = 'bench 7', backup = '/data/of bench 7/backup.ron' WHERE what = 'write'";
+    rusqlite::Connection::open(logbook).unwrap().execute(moved, []).unwrap();
+    let parts = ["entry", "on bench 7", "/data/of bench 7/backup.ron", "Run the command there", "copy the file"];
+    device.undo(&entry).fails(1, &parts);
+    device.run(&["diff", &format!("log:{entry}")]).fails(1, &parts);
+    assert_eq!(device.read("field:0@3+2"), "C0FF");
+}
+
 #[test]
 fn a_moment_of_the_logbook_is_compared() {
     let device = Device::start("hiperface");

@@ -177,6 +177,28 @@ fn an_undo_requires_the_device_and_a_write() {
     assert!(!screen.is_enabled("undo.button"));
 }
 
+/// Issue 30: the backup of a write at another bench is not on this computer.
+#[test]
+fn the_bench_of_a_missing_backup_is_named() {
+    let mut screen = after_a_write();
+    let path = screen.outside.store().logbook_path();
+    let moved = "UPDATE event SET bench = 'bench 7', backup = '/data/of bench 7/backup.ron' WHERE what = 'write'";
+    rusqlite::Connection::open(path).unwrap().execute(moved, []).unwrap();
+    screen.act(Action::SearchLogbook(EntryFilter::default()));
+    screen.until("it is read again", |studio| entry_count(studio) == Some(2));
+    select_first_entry(&mut screen);
+    assert!(screen.shows("On bench 7: /data/of bench 7/backup.ron"));
+    screen.click("undo.button");
+    let text = Text::new("undo.other_bench").with("bench", "bench 7").with("path", "/data/of bench 7/backup.ron");
+    for language in [Language::German, Language::English] {
+        screen.act(Action::SetLanguage(language));
+        let words = text.to_string_in(language);
+        screen.until("it is refused", |studio| crate::support::log(studio).contains("bench 7"));
+        assert!(screen.shows(&words), "{}", crate::support::log(screen.studio()));
+        screen.check_language();
+    }
+}
+
 fn recorded_entries(screen: &Screen) -> Vec<Entry> {
     Logbook::open(&screen.outside.store().logbook_path()).unwrap().entries(&EntryFilter::default(), 10).unwrap()
 }

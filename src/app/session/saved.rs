@@ -1,6 +1,6 @@
 //! The content of a memory as a profile: saving, restoring and backing up.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{HasMemory, HasSession, Phase, Source};
 use crate::app::action::{ReadBackup, ReadError};
@@ -9,7 +9,7 @@ use crate::app::review::{Reviewable, UndoneEntry};
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::profile::{Body, ProfileError};
-use crate::store::Entry;
+use crate::store::{Entry, FileError, FileErrorKind};
 use crate::worker::Device;
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
@@ -122,7 +122,9 @@ pub trait HasProfile: HasMemory {
             planned.map_err(ReadError::Profile)
         });
         if let Err(error) = restored {
-            self.session().report_rejection(read_error(&path, &error, services.world.kinds), services);
+            let elsewhere = undone.as_ref().and_then(|entry| backup_elsewhere(entry, &path, &error));
+            let text = elsewhere.unwrap_or_else(|| read_error(&path, &error, services.world.kinds));
+            self.session().report_rejection(text, services);
         }
     }
 
@@ -132,4 +134,12 @@ pub trait HasProfile: HasMemory {
             self.session().list_backups(key, services);
         }
     }
+}
+
+/// Returns the message that the backup of an entry is on another computer, if this is why it cannot be read.
+fn backup_elsewhere(entry: &Entry, path: &Path, error: &ReadError) -> Option<Text> {
+    let bench = entry.origin.other_bench()?;
+    let is_missing = |error: &FileError| matches!(error.problem, FileErrorKind::NotFound | FileErrorKind::NoFolder);
+    let missing = matches!(error, ReadError::File(error) if is_missing(error));
+    missing.then(|| Text::new("undo.other_bench").with("bench", bench).with("path", path.display()))
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use jiff::Timestamp;
 
@@ -176,11 +177,22 @@ impl Origin {
     /// Returns the origin of the entries that this process makes.
     pub fn of_this_process() -> Self {
         Origin {
-            bench: whoami::hostname().unwrap_or_default(),
+            bench: this_bench().to_owned(),
             user: user_name::of_this_process(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
         }
     }
+
+    /// Returns the computer on which the entry was made, unless it is this one or unknown.
+    pub fn other_bench(&self) -> Option<&str> {
+        Some(self.bench.as_str()).filter(|bench| !bench.is_empty() && *bench != this_bench())
+    }
+}
+
+/// Returns the name of this computer.
+fn this_bench() -> &'static str {
+    static NAME: OnceLock<String> = OnceLock::new();
+    NAME.get_or_init(|| whoami::hostname().unwrap_or_default())
 }
 
 /// A write that is about to begin.

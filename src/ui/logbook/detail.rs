@@ -42,6 +42,11 @@ pub(super) fn entry_ui(
                         let hint = theme.translate("logbook.backup_hint");
                         ui.label(theme.label(theme.translate("logbook.backup"))).on_hover_text(hint);
                     }
+                    if let Some(bench) = entry.origin.other_bench() {
+                        let words =
+                            Text::new("logbook.backup_elsewhere").with("bench", bench).with("path", path.display());
+                        paragraph(ui, theme.caption(theme.format_text(&words)));
+                    }
                     ui.horizontal_wrapped(|ui| {
                         if entry.kind.has_result() {
                             undo_ui(ui, theme, studio, entry, actions);
