@@ -34,7 +34,7 @@ pub use logbook::{
     AssetName, AssetNameError, Contact, DeviceHold, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, EntryUid, Event,
     Intent, KeyringError, LinkedEntry, Logbook, LogbookError, LogbookErrorKind, LogbookServer, Origin, OtherHolder,
     Outcome, Password, ServerAddress, ServerAddressError, ServerError, ServerErrorKind, Transferred, UndoObstacle,
-    UserName, WriteResult,
+    UnreachableCause, UserName, WriteResult,
 };
 
 use crate::profile::Cause;

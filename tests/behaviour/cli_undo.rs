@@ -193,7 +193,7 @@ fn another_device_is_refused() {
 fn the_bench_of_a_missing_backup_is_named() {
     let device = Device::start("hiperface");
     let entry = device.write("field:0@3+2", "C0FF");
-    let logbook = device.bench.store().logbook_path();
+    let logbook = device.bench.path("data/encoder-studio/logbook.sqlite");
     let moved = "UPDATE event SET bench = 'bench 7', backup = '/data/of bench 7/backup.ron' WHERE what = 'write'";
     rusqlite::Connection::open(logbook).unwrap().execute(moved, []).unwrap();
     let parts = ["entry", "on bench 7", "/data/of bench 7/backup.ron", "Run the command there", "copy the file"];

@@ -2,14 +2,14 @@
 
 use super::{literal_text, logbook_problem};
 use crate::app::Text;
-use crate::store::{OtherHolder, ServerAddressError, ServerError, ServerErrorKind};
+use crate::store::{OtherHolder, ServerAddressError, ServerError, ServerErrorKind, UnreachableCause};
 
 pub fn server_error_text(error: &ServerError) -> Text {
     let of_server = |id| Text::new(id).with("server", &error.server);
     match &error.problem {
         ServerErrorKind::Address(problem) => server_address_error_text(problem),
         ServerErrorKind::UnknownHost => of_server("server.unknown_host"),
-        ServerErrorKind::Unreachable { why } => of_server("server.unreachable").with("why", why),
+        ServerErrorKind::Unreachable { why } => of_server("server.unreachable").with_text("why", unreachable_text(why)),
         ServerErrorKind::NoReply => of_server("server.no_reply"),
         ServerErrorKind::PasswordMissing => of_server("server.password_missing"),
         ServerErrorKind::WrongPassword => of_server("server.wrong_password"),
@@ -25,6 +25,15 @@ pub fn server_error_text(error: &ServerError) -> Text {
         ServerErrorKind::Older { found, known } => of_server("server.older").with("found", found).with("known", known),
         ServerErrorKind::Local(error) => of_server("server.local").with_text("why", logbook_problem(error)),
         ServerErrorKind::Database { what, .. } => of_server("server.other").with_text("why", literal_text(what)),
+    }
+}
+
+fn unreachable_text(cause: &UnreachableCause) -> Text {
+    match cause {
+        UnreachableCause::Refused => Text::new("server.refused"),
+        UnreachableCause::NoRoute => Text::new("server.no_route"),
+        UnreachableCause::Lost => Text::new("server.lost"),
+        UnreachableCause::Other(why) => literal_text(why),
     }
 }
 

@@ -33,7 +33,7 @@ pub use entry::{
 pub use error::{LogbookError, LogbookErrorKind};
 pub use server::{
     Contact, DeviceHold, KeyringError, LogbookServer, OtherHolder, Password, ServerAddress, ServerAddressError,
-    ServerError, ServerErrorKind, Transferred,
+    ServerError, ServerErrorKind, Transferred, UnreachableCause,
 };
 pub use user_name::UserName;
 

@@ -13,7 +13,7 @@ use tokio_postgres::{Config, NoTls};
 use tokio_postgres_rustls::MakeRustlsConnect;
 
 use super::address::{Encryption, Password, ServerAddress};
-use super::error::ServerErrorKind;
+use super::error::{ServerErrorKind, UnreachableCause};
 
 const DEFAULT_PORT: u16 = 5432;
 
@@ -83,7 +83,7 @@ impl OwnRuntime {
         let runtime = Builder::new_current_thread().enable_all().build();
         runtime
             .map(|runtime| OwnRuntime(Some(runtime)))
-            .map_err(|error| ServerErrorKind::Unreachable { why: error.to_string() })
+            .map_err(|error| ServerErrorKind::Unreachable { why: UnreachableCause::from_io(&error) })
     }
 
     fn run<T>(

@@ -28,7 +28,7 @@ pub enum ServerErrorKind {
     UnknownHost,
     /// Nothing accepts connections, or the connection was lost.
     #[error("the server cannot be reached: {why}")]
-    Unreachable { why: String },
+    Unreachable { why: UnreachableCause },
     #[error("the server did not reply in time")]
     NoReply,
     /// The server asks for a password, and none is known.
@@ -73,6 +73,46 @@ pub enum ServerErrorKind {
     },
 }
 
+/// The reason why a server cannot be reached.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum UnreachableCause {
+    /// Nothing listens at the address.
+    #[error("connection refused")]
+    Refused,
+    /// The network has no path to the address.
+    #[error("no route to the server")]
+    NoRoute,
+    /// The server or the network closed the connection.
+    #[error("connection lost")]
+    Lost,
+    /// The message of the server or of the system.
+    #[error("{0}")]
+    Other(String),
+}
+
+impl UnreachableCause {
+    pub(super) fn from_io(error: &io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::ConnectionRefused => UnreachableCause::Refused,
+            io::ErrorKind::HostUnreachable
+            | io::ErrorKind::NetworkUnreachable
+            | io::ErrorKind::NetworkDown
+            | io::ErrorKind::AddrNotAvailable => UnreachableCause::NoRoute,
+            io::ErrorKind::ConnectionReset
+            | io::ErrorKind::ConnectionAborted
+            | io::ErrorKind::NotConnected
+            | io::ErrorKind::BrokenPipe
+            | io::ErrorKind::UnexpectedEof => UnreachableCause::Lost,
+            _ => {
+                // The number of the error tells the user nothing.
+                let message = error.to_string();
+                let words = message.rsplit_once(" (os error ").map_or(message.as_str(), |(words, _)| words);
+                UnreachableCause::Other(words.to_owned())
+            }
+        }
+    }
+}
+
 impl ServerErrorKind {
     pub(super) fn into_error(self, server: &str) -> ServerError {
         ServerError { server: server.to_owned(), problem: self }
@@ -91,7 +131,9 @@ impl From<tokio_postgres::Error> for ServerErrorKind {
                 code if *code == SqlState::INVALID_CATALOG_NAME => ServerErrorKind::NoDatabase,
                 code if *code == SqlState::INSUFFICIENT_PRIVILEGE => ServerErrorKind::NoRights { what },
                 code if *code == SqlState::DISK_FULL => ServerErrorKind::DiskFull,
-                code if NOT_RUNNING.contains(&code.code()) => ServerErrorKind::Unreachable { why: what },
+                code if NOT_RUNNING.contains(&code.code()) => {
+                    ServerErrorKind::Unreachable { why: UnreachableCause::Other(what) }
+                }
                 code => ServerErrorKind::Database { code: Some(code.code().to_owned()), what },
             };
         }
@@ -100,7 +142,7 @@ impl From<tokio_postgres::Error> for ServerErrorKind {
             return from_io(source);
         }
         if error.is_closed() {
-            return ServerErrorKind::Unreachable { why: error.to_string() };
+            return ServerErrorKind::Unreachable { why: UnreachableCause::Lost };
         }
         ServerErrorKind::Database { code: None, what: cause.map_or_else(|| error.to_string(), ToString::to_string) }
     }
@@ -110,10 +152,32 @@ impl From<tokio_postgres::Error> for ServerErrorKind {
 const NOT_RUNNING: [&str; 5] = ["57P01", "57P02", "57P03", "53300", "08006"];
 
 fn from_io(error: &io::Error) -> ServerErrorKind {
-    let why = error.to_string();
     match error.kind() {
-        _ if error.get_ref().is_some_and(|inner| inner.is::<rustls::Error>()) => ServerErrorKind::Encryption { why },
+        _ if error.get_ref().is_some_and(|inner| inner.is::<rustls::Error>()) => {
+            ServerErrorKind::Encryption { why: error.to_string() }
+        }
         io::ErrorKind::TimedOut => ServerErrorKind::NoReply,
-        _ => ServerErrorKind::Unreachable { why },
+        _ => ServerErrorKind::Unreachable { why: UnreachableCause::from_io(error) },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reason_contains_no_number_of_the_system() {
+        let cause = |error: io::Error| match from_io(&error) {
+            ServerErrorKind::Unreachable { why } => why,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(cause(io::ErrorKind::ConnectionRefused.into()), UnreachableCause::Refused);
+        assert_eq!(cause(io::ErrorKind::ConnectionReset.into()), UnreachableCause::Lost);
+        assert_eq!(cause(io::ErrorKind::HostUnreachable.into()), UnreachableCause::NoRoute);
+        let message = io::Error::from_raw_os_error(1).to_string();
+        assert!(message.contains("os error 1"), "{message}");
+        let UnreachableCause::Other(words) = cause(io::Error::from_raw_os_error(1)) else { panic!("no message") };
+        assert_eq!(format!("{words} (os error 1)"), message);
+        assert_eq!(cause(io::Error::other("no entropy")), UnreachableCause::Other("no entropy".to_owned()));
     }
 }

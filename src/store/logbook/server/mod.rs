@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use jiff::Timestamp;
 
 pub use address::{Password, ServerAddress, ServerAddressError};
-pub use error::{ServerError, ServerErrorKind};
+pub use error::{ServerError, ServerErrorKind, UnreachableCause};
 pub use hold::{DeviceHold, OtherHolder};
 pub use keyring::KeyringError;
 pub use transfer::Transferred;
