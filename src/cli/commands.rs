@@ -40,6 +40,8 @@ pub enum CommandId {
     Write,
     /// Perform another action of the device.
     Do,
+    /// Make a report of a profile or a device.
+    Report,
     /// Explain captured bytes.
     Decode,
     /// Serve a virtual device.
@@ -47,7 +49,7 @@ pub enum CommandId {
 }
 
 impl CommandId {
-    pub(super) const ALL: [CommandId; 13] = [
+    pub(super) const ALL: [CommandId; 14] = [
         CommandId::Find,
         CommandId::Identify,
         CommandId::Status,
@@ -59,6 +61,7 @@ impl CommandId {
         CommandId::Restore,
         CommandId::Write,
         CommandId::Do,
+        CommandId::Report,
         CommandId::Decode,
         CommandId::Simulate,
     ];
@@ -76,6 +79,7 @@ impl CommandId {
             CommandId::Restore => "restore",
             CommandId::Write => "write",
             CommandId::Do => "do",
+            CommandId::Report => "report",
             CommandId::Decode => "decode",
             CommandId::Simulate => "simulate",
         }

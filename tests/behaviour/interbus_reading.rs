@@ -199,6 +199,18 @@ fn the_virtual_encoder_is_read_directly_and_over_modbus() {
     port.end("INT");
 }
 
+#[track_caller]
+fn assert_help_warns(bench: &Bench, command: &str) {
+    let help = bench.run(&[command, "--help"]).out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(help.contains("live outputs") && help.contains("may cost one EEPROM write cycle"), "{command}: {help}");
+}
+
+/// A report of a device reads the cam programs as `save` does.
+#[test]
+fn the_help_of_a_report_warns_of_reading_cam_programs() {
+    assert_help_warns(&Bench::new(), "report");
+}
+
 /// Issue 22.31: reading cam programs switches live outputs. On a terminal the program asks first; without one it
 /// continues for the commands that name it in their help.
 #[test]
@@ -224,7 +236,7 @@ fn reading_cam_programs_needs_confirmation() {
         // Other programs are only in the encoder: `diff` reports them.
         assert!(matches!(ran.status, Some(0 | 3)) && ran.err.contains("The outputs switch to each program"), "{ran:?}");
         assert!(selects(), "{command:?}");
-        assert!(bench.run(&[command[0], "--help"]).out.contains("live outputs"), "{command:?}");
+        assert_help_warns(&bench, command[0]);
         let ran = run_on_terminal(&bench, command, "n\n");
         assert!(ran.status == Some(1) && ran.out.contains("Does the machine stand still?"), "{ran:?}");
         assert!(!selects(), "{command:?}");

@@ -30,10 +30,12 @@ use crate::link::LinkScheme;
 
 pub(crate) struct InterbusCommands;
 
-/// Warning in the help of commands that read cam programs.
+/// Warning in the help of commands that read cam programs. The encoder stores the cams of a program when it leaves the
+/// program (manual 5.4.4).
 const CAM_READING_WARNING: &str = "reading cam programs selects them one after the other, which switches the live outputs of \
                         the encoder. On a terminal the command first asks whether the machine stands still; without \
-                        a terminal it prints a note to stderr and continues.";
+                        a terminal it prints a note to stderr and continues. Each program that is read may cost one \
+                        EEPROM write cycle, which is counted in the logbook.";
 
 impl DeviceCommands for InterbusCommands {
     fn name(&self) -> &'static str {
@@ -55,7 +57,7 @@ impl DeviceCommands for InterbusCommands {
                              cam-mask:P, temperature, operating-time";
                 return Some(format!("{items}; {CAM_READING_WARNING}"));
             }
-            CommandId::Save | CommandId::Diff | CommandId::Verify => CAM_READING_WARNING,
+            CommandId::Save | CommandId::Diff | CommandId::Verify | CommandId::Report => CAM_READING_WARNING,
             CommandId::Write => {
                 "items: as for read, except measured values; the direction is cw or ccw, and a cam is START..STOP. A preset is \
                  stored but not activated."
