@@ -204,6 +204,7 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
 }
 
 fn report_unrecorded_asset(common: &CommonArgs, output: &Output, command: &Command) {
+    common.log.complete();
     if command.asset().is_some() && !common.log.is_assigned() {
         output
             .print_message("The asset was not recorded: the device was not identified, or the logbook cannot be used.");

@@ -31,6 +31,7 @@ pub(super) fn exchange_entries(store: &Store) {
 
 /// Sends the entries that the command has recorded, and reports a server that is away. The command does not fail.
 pub(super) fn finish_entries(common: &CommonArgs, output: &Output) {
+    common.log.complete();
     if !common.server.is_set() {
         return;
     }

@@ -92,6 +92,7 @@ impl<D: Device> Session<D> {
 
     /// Maintains the session between jobs and returns a device message, if any.
     pub fn maintain(&mut self) -> Option<D::DeviceMessage> {
+        self.context.log.try_to_complete();
         self.device.maintain(&mut self.context)
     }
 

@@ -1,12 +1,20 @@
 //! Entries that a session adds to the logbook without writing to the device. A logbook that cannot be used is reported
 //! in the log, and the job continues.
 
+use std::collections::VecDeque;
+use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use jiff::Timestamp;
 
 use crate::analysis::check::Verdict;
-use crate::store::{AssetName, DeviceHold, DeviceKey, EntryKind, Event, Logbook, LogbookError, Store};
+use crate::store::{
+    AssetName, DeviceHold, DeviceKey, EntryKind, Event, Logbook, LogbookError, LogbookErrorKind, Store,
+};
+
+/// Maximum time that a job waits for a logbook in use before its connection is recorded later.
+const BRIEFLY: Duration = Duration::from_millis(50);
 
 /// The part of the logbook that belongs to one session. Copies refer to the same session.
 #[derive(Clone, Debug, Default)]
@@ -22,6 +30,17 @@ struct State {
     is_assigned: bool,
     /// Announcement of the last device to other benches.
     hold: Option<DeviceHold>,
+    /// Connections to be recorded as soon as the logbook is no longer in use, oldest first.
+    pending: VecDeque<Connection>,
+}
+
+/// A device that was identified.
+#[derive(Debug)]
+struct Connection {
+    store: Store,
+    at: Timestamp,
+    device: DeviceKey,
+    asset: Option<AssetName>,
 }
 
 impl SessionLog {
@@ -45,7 +64,18 @@ impl SessionLog {
         self.state().is_assigned
     }
 
-    /// Records that a device was identified, once until another one is identified.
+    /// Records the connections for which the logbook was in use. Waits for the logbook as long as for a write.
+    pub fn complete(&self) {
+        self.state().record_pending(Logbook::open);
+    }
+
+    /// Records the connections for which the logbook was in use, unless it still is.
+    pub(super) fn try_to_complete(&self) {
+        self.state().record_pending(|path| Logbook::open_with_timeout(path, Duration::ZERO));
+    }
+
+    /// Records that a device was identified, once until another one is identified. If the logbook is in use, this is
+    /// done later, because the first reading must not wait for it.
     pub fn record_identity(&self, store: &Store, device: &DeviceKey) {
         let mut state = self.state();
         if state.device.as_ref() == Some(device) {
@@ -55,19 +85,15 @@ impl SessionLog {
         state.hold = store.logbook_server().hold(device);
         // Devices without a serial number cannot be told apart.
         let asset = state.asset.clone().filter(|_| !device.serial_number.is_empty());
-        state.is_assigned = write(store, |logbook| {
-            let now = Timestamp::now();
-            if let Some(asset) = &asset {
-                logbook.assign(now, device, asset)?;
-            }
-            logbook.record(now, device, &Event::new(EntryKind::Connected, "identified"))?;
-            Ok(asset.is_some())
-        })
-        .unwrap_or(false);
+        state.is_assigned = false;
+        let connection = Connection { store: store.clone(), at: Timestamp::now(), device: device.clone(), asset };
+        state.pending.push_back(connection);
+        state.record_pending(|path| Logbook::open_with_timeout(path, BRIEFLY));
     }
 
     /// Records an event of the device that was identified last. Without such a device, nothing is recorded.
     pub fn record(&self, store: &Store, event: &Event) {
+        self.complete();
         if let Some(device) = self.device() {
             record_event(store, &device, event);
         }
@@ -95,6 +121,41 @@ impl SessionLog {
     }
 }
 
+impl State {
+    fn record_pending(&mut self, open: impl Fn(&Path) -> Result<Logbook, LogbookError>) {
+        while let Some(connection) = self.pending.front() {
+            let path = connection.store.logbook_path();
+            match open(&path).and_then(|mut logbook| connection.record(&mut logbook)) {
+                Err(LogbookError { problem: LogbookErrorKind::Locked, .. }) => return,
+                Err(error) => tracing::warn!("{error}"),
+                Ok(()) => {
+                    let is_last = self.device.as_ref() == Some(&connection.device);
+                    self.is_assigned |= is_last && connection.asset.is_some();
+                }
+            }
+            self.pending.pop_front();
+        }
+    }
+}
+
+impl Drop for State {
+    fn drop(&mut self) {
+        self.record_pending(|path| Logbook::open_with_timeout(path, BRIEFLY));
+        for Connection { device, .. } in &self.pending {
+            tracing::warn!("the connection of {device:?} was not recorded, because the logbook is in use");
+        }
+    }
+}
+
+impl Connection {
+    fn record(&self, logbook: &mut Logbook) -> Result<(), LogbookError> {
+        if let Some(asset) = &self.asset {
+            logbook.assign(self.at, &self.device, asset)?;
+        }
+        logbook.record(self.at, &self.device, &Event::new(EntryKind::Connected, "identified")).map(drop)
+    }
+}
+
 /// Records an event of a device.
 pub fn record_event(store: &Store, device: &DeviceKey, event: &Event) {
     write(store, |logbook| logbook.record(Timestamp::now(), device, event).map(drop));
@@ -103,4 +164,37 @@ pub fn record_event(store: &Store, device: &DeviceKey, event: &Event) {
 fn write<T>(store: &Store, record: impl FnOnce(&mut Logbook) -> Result<T, LogbookError>) -> Option<T> {
     let written = Logbook::open(&store.logbook_path()).and_then(|mut logbook| record(&mut logbook));
     written.inspect_err(|error| tracing::warn!("{error}")).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+    use crate::store::EntryFilter;
+
+    #[test]
+    fn a_connection_is_recorded_after_the_logbook_was_in_use() {
+        let root = tempfile::tempdir().unwrap();
+        let store = Store::at_root(root.path());
+        let path = store.logbook_path();
+        let kinds = || {
+            let entries = Logbook::open(&path).unwrap().entries(&EntryFilter::default(), 10).unwrap();
+            entries.into_iter().map(|entry| entry.kind).collect::<Vec<_>>()
+        };
+        assert_eq!(kinds(), []);
+        let other = rusqlite::Connection::open(&path).unwrap();
+        other.execute_batch("BEGIN IMMEDIATE").unwrap();
+        let log = SessionLog::default();
+        log.assign("motor 17".parse().unwrap());
+        let began = Instant::now();
+        log.record_identity(&store, &DeviceKey::new("hiperface", "37h", "1", false));
+        assert!(began.elapsed() < Duration::from_secs(1), "{:?}", began.elapsed());
+        log.try_to_complete();
+        assert_eq!((kinds(), log.is_assigned()), (vec![], false));
+        other.execute_batch("ROLLBACK").unwrap();
+        log.try_to_complete();
+        log.complete();
+        assert_eq!((kinds(), log.is_assigned()), (vec![EntryKind::Connected, EntryKind::Assigned], true));
+    }
 }

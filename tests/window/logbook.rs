@@ -199,6 +199,26 @@ fn the_bench_of_a_missing_backup_is_named() {
     }
 }
 
+/// Issue 30: another program that writes a logbook for a long time does not delay the first reading.
+#[test]
+fn a_logbook_in_use_does_not_delay_the_first_reading() {
+    let outside = crate::support::Outside::new("");
+    let path = outside.store().logbook_path();
+    drop(Logbook::open(&path).unwrap());
+    let other = rusqlite::Connection::open(&path).unwrap();
+    other.execute_batch("BEGIN IMMEDIATE").unwrap();
+    let mut screen = Screen::opened(outside, None, SIZE);
+    screen.until("the encoder is read", |studio| {
+        studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
+    });
+    assert!(recorded_entries(&screen).is_empty(), "the logbook is still in use");
+    other.execute_batch("ROLLBACK").unwrap();
+    screen.until("the connection is recorded", |_| {
+        let logbook = Logbook::open(&path).unwrap();
+        logbook.entries(&EntryFilter::default(), 10).unwrap().iter().any(|entry| entry.kind == EntryKind::Connected)
+    });
+}
+
 fn recorded_entries(screen: &Screen) -> Vec<Entry> {
     Logbook::open(&screen.outside.store().logbook_path()).unwrap().entries(&EntryFilter::default(), 10).unwrap()
 }

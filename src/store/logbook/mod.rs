@@ -61,7 +61,11 @@ impl Logbook {
         Self::open_with_timeout(path, LOCK_TIMEOUT)
     }
 
-    fn open_with_timeout(path: &Path, patience: Duration) -> Result<Self, LogbookError> {
+    /// Opens the logbook as [`open`](Self::open) does, but waits at most this long for another window.
+    ///
+    /// # Errors
+    /// Returns the errors of [`open`](Self::open).
+    pub(crate) fn open_with_timeout(path: &Path, patience: Duration) -> Result<Self, LogbookError> {
         let opened = match schema::open(path, patience) {
             Err(LogbookErrorKind::Damaged { what }) => {
                 if let Some(kept) = aside::set_aside(path, patience).map_err(|problem| problem.into_error(path))? {
