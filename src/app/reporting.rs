@@ -56,7 +56,8 @@ impl Studio {
                 };
                 let Source::Link(url) = device.source() else { return Err(Text::new("report.unsaved")) };
                 let reading = DeviceReading { body, status: device.reported_status() };
-                Ok(ReportRequest::for_device(url, self.services.world.kinds, reading, language))
+                let request = ReportRequest::for_device(url, self.services.world.kinds, reading, language);
+                Ok(ReportRequest { results: device.session_results(), ..request })
             }
         }
     }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::app::action::{OpenedConnection, ReadBackup, ReviewAction};
 use crate::app::documents::read_only_reason;
 use crate::app::recorder::Recorder;
-use crate::app::report::StatusLine;
+use crate::app::report::{SessionResult, StatusLine};
 use crate::app::review::ReviewSheet;
 use crate::app::services::{Services, StudioEnvironment};
 use crate::app::session::{DeviceHistory, HasDraft, HasMemory, HasProfile, HasSession, Kind, SessionEvents};
@@ -185,6 +185,11 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// Returns the errors and warnings that were read last, for a report. Returns `None` if they have not been read.
     fn reported_status(&self) -> Option<Vec<StatusLine>> {
         None
+    }
+
+    /// Returns the results of the session that a profile does not contain, for a report.
+    fn session_results(&self) -> Vec<SessionResult> {
+        Vec::new()
     }
 
     /// Adopts a profile. Depending on the kind of device, this opens the review of a write or edits the layout.

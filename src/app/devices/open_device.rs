@@ -13,7 +13,7 @@ use super::model::{ActionContext, DeviceMemory, DeviceModel, MotionControl};
 use crate::app::action::{ConnectAttempt, OpenFailure, OpenedSession, TaskResult};
 use crate::app::live_session::JobProgress;
 use crate::app::recorder::Recorder;
-use crate::app::report::StatusLine;
+use crate::app::report::{SessionResult, StatusLine};
 use crate::app::services::{JobState, Services};
 use crate::app::session::{
     DraftOutcome, HasDraft, Kind, ProfileFile, SaveRequest, SessionEvents, SessionState, Source,
@@ -111,6 +111,8 @@ pub trait OpenDevice: Any {
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>>;
     #[doc(hidden)]
     fn reported_status(&self) -> Option<Vec<StatusLine>>;
+    #[doc(hidden)]
+    fn session_results(&self) -> Vec<SessionResult>;
     #[doc(hidden)]
     fn apply_profile(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
     #[doc(hidden)]
@@ -319,6 +321,10 @@ impl<M: DeviceModel> OpenDevice for M {
 
     fn reported_status(&self) -> Option<Vec<StatusLine>> {
         DeviceModel::reported_status(self)
+    }
+
+    fn session_results(&self) -> Vec<SessionResult> {
+        DeviceModel::session_results(self)
     }
 
     fn apply_profile(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

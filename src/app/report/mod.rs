@@ -6,6 +6,7 @@ mod company;
 mod content;
 mod format;
 mod history;
+mod results;
 mod sections;
 mod status;
 
@@ -16,8 +17,10 @@ pub use company::company;
 pub use content::{ReportContent, ReportContext};
 pub use format::{ReportFormat, current_time_text};
 
+pub use results::SessionResult;
 pub use status::{DeviceReading, StatusLine};
 
+use self::results::result_section;
 use self::sections::{comparison_section, time};
 use self::status::status_section;
 use super::documents::new_document;
@@ -39,6 +42,8 @@ pub struct ReportRequest {
     pub asset: Option<AssetName>,
     /// What the device reported when it was read, or `None` if it is not known.
     pub status: Option<Vec<StatusLine>>,
+    /// Results of the present session, for a device that is open in the window.
+    pub results: Vec<SessionResult>,
     pub language: Language,
 }
 
@@ -55,14 +60,14 @@ impl ReportRequest {
     /// Creates a request for a profile without a comparison.
     pub fn for_profile(path: &Path, document: ProfileDocument, language: Language) -> Self {
         let source = ReportSource::Profile(file_name(path));
-        ReportRequest { document, source, compared: None, asset: None, status: None, language }
+        ReportRequest { document, source, compared: None, asset: None, status: None, results: Vec::new(), language }
     }
 
     /// Creates a request for a device that was read just now.
     pub fn for_device(url: &LinkUrl, kinds: KindRegistry, reading: DeviceReading, language: Language) -> Self {
         let source = ReportSource::Device { link: kinds.display_link(url), is_virtual: url.scheme == LinkScheme::Sim };
-        let document = new_document(reading.body);
-        ReportRequest { document, source, compared: None, asset: None, status: reading.status, language }
+        let (document, status) = (new_document(reading.body), reading.status);
+        ReportRequest { document, source, compared: None, asset: None, status, results: Vec::new(), language }
     }
 
     /// Creates the report.
@@ -83,6 +88,7 @@ impl ReportRequest {
         let asset = self.asset.as_ref().map(ToString::to_string).or_else(|| history.asset().map(str::to_owned));
         let mut sections = content.sections;
         sections.extend(self.status.as_ref().map(|status| status_section(&context, status)));
+        sections.extend(self.results.iter().map(|result| result_section(&context, result)));
         if let Some((name, body)) = compared {
             let comparison = document.body.compare(body).map_err(|error| explain::profile_error_text(&error, kinds))?;
             sections.push(comparison_section(&context, name, &comparison));

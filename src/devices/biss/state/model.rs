@@ -2,9 +2,10 @@
 
 use std::convert::Infallible;
 
-use super::{BissAction, Encoder, status_lines};
+use super::explain::outcome_texts;
+use super::{BissAction, Encoder, ProcedureEnd, status_lines};
 use crate::app::action::OpenedConnection;
-use crate::app::report::StatusLine;
+use crate::app::report::{SessionResult, StatusLine};
 use crate::app::services::{JobState, Services};
 use crate::app::session::SessionEvents;
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, Recording, Tab, Text};
@@ -34,6 +35,18 @@ impl DeviceModel for Encoder {
 
     fn reported_status(&self) -> Option<Vec<StatusLine>> {
         self.status.as_ref().map(status_lines)
+    }
+
+    fn session_results(&self) -> Vec<SessionResult> {
+        let outcomes = match self.guide.as_ref().and_then(|guide| guide.end.as_ref()) {
+            Some(ProcedureEnd::Done(outcomes) | ProcedureEnd::Failed { before: outcomes, .. }) => outcomes.as_slice(),
+            None => &[],
+        };
+        let lines: Vec<Text> = outcomes.iter().flat_map(outcome_texts).collect();
+        let procedure = SessionResult::Procedure { title: Text::new("logbook.kind_procedure"), lines };
+        let has_ended = !outcomes.is_empty();
+        let check = self.check.iter().cloned().map(SessionResult::Check);
+        check.chain(has_ended.then_some(procedure)).collect()
     }
 
     fn position_job(&self) -> BissJob {

@@ -28,7 +28,7 @@ mod tests;
 pub use act::{AxisAction, AxisButton, DriveRequest};
 pub use drive_facts::DriveFacts;
 pub use entries::{LengthEntries, LimitsPreview, ReferencePosition};
-pub use report::{Device, write_outcome_lines, write_report};
+pub use report::{AxisReport, Device, write_outcome_lines};
 pub use supply::{Power, RestartEvidence};
 pub use test_targets::{JogTravel, Outcome, TestTarget};
 

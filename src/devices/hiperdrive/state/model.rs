@@ -6,7 +6,7 @@ use super::{HiperdriveAction, HiperdriveDevice, status_lines};
 use crate::app::action::OpenedConnection;
 use crate::app::live_session::LiveSession;
 use crate::app::recorder::Recorder;
-use crate::app::report::StatusLine;
+use crate::app::report::{SessionResult, StatusLine};
 use crate::app::services::{JobState, Services};
 use crate::app::session::{Phase, SessionEvents};
 use crate::app::{
@@ -49,6 +49,11 @@ impl DeviceModel for HiperdriveDevice {
 
     fn reported_status(&self) -> Option<Vec<StatusLine>> {
         Some(self.status.as_ref()?.drives.iter().flat_map(status_lines).collect())
+    }
+
+    fn session_results(&self) -> Vec<SessionResult> {
+        let check = self.check.iter().cloned().map(SessionResult::Check);
+        check.chain(self.axes.values().filter_map(|axis| self.axis_result(axis))).collect()
     }
 
     fn position_job(&self) -> HiperdriveJob {

@@ -3,10 +3,11 @@
 use core::net::Ipv4Addr;
 use std::path::PathBuf;
 
-use super::axis::{Axis, AxisAction, AxisButton, AxisStep, Device, DriveFacts, DriveRequest, write_report};
+use super::axis::{Axis, AxisAction, AxisButton, AxisReport, AxisStep, Device, DriveFacts, DriveRequest};
 use super::review::ReviewState;
 use super::unit::HiperdriveDevice;
 use crate::app::action::{Action as StudioAction, TaskResult};
+use crate::app::report::SessionResult;
 use crate::app::services::Services;
 use crate::app::session::{HasMemory, Phase, Source};
 use crate::app::{DeviceFile, FileQuestion, Language, Severity, Text};
@@ -162,14 +163,22 @@ impl HiperdriveDevice {
     }
 
     pub fn axis_report(&self, language: Language) -> Option<String> {
-        let axis = self.axis()?;
+        self.report_of(self.axis()?).map(|report| report.page(language))
+    }
+
+    /// Returns the completed set-up of an axis for a report of the device.
+    pub(super) fn axis_result(&self, axis: &Axis) -> Option<SessionResult> {
+        self.report_of(axis).map(AxisReport::into_session_result)
+    }
+
+    fn report_of(&self, axis: &Axis) -> Option<AxisReport> {
         let own = self.drive_identity(axis.drive());
         let device = Device {
             name: self.session.name(),
             variant: own.map(|own| explain::variant_text(own.variant)),
             serial_number: own.map_or_else(String::new, |own| own.serial_number.clone()),
         };
-        write_report(axis, &self.drive_facts(axis.drive()), &device, language)
+        AxisReport::new(axis, &self.drive_facts(axis.drive()), &device)
     }
 
     /// Executes the request of a button. Every persistent change is planned and then reviewed by the user.

@@ -2,9 +2,10 @@
 
 use std::convert::Infallible;
 
+use super::explain::check_lines;
 use super::{Encoder, HiperfaceAction, status_lines};
 use crate::app::action::OpenedConnection;
-use crate::app::report::StatusLine;
+use crate::app::report::{SessionResult, StatusLine};
 use crate::app::services::{JobState, Services, StudioEnvironment};
 use crate::app::session::SessionEvents;
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, PrepareFn, Recording, SineCosineSource, Tab, Text};
@@ -41,6 +42,12 @@ impl DeviceModel for Encoder {
 
     fn reported_status(&self) -> Option<Vec<StatusLine>> {
         self.codes.as_deref().map(status_lines)
+    }
+
+    fn session_results(&self) -> Vec<SessionResult> {
+        let check = self.check.as_deref().map(|lines| SessionResult::Check(check_lines(lines)));
+        let commutation = self.commutation.session_result(&self.session.name(), self.geometry());
+        check.into_iter().chain(commutation).collect()
     }
 
     fn position_job(&self) -> HiperfaceJob {

@@ -6,7 +6,7 @@ use super::DisturbanceLevel;
 use super::InterbusCommands;
 use super::plan::{commit_plan, plan_report, prepare_plan};
 use super::run::{Runner, programs, read_survey};
-use crate::app::report::{DeviceReading, StatusLine};
+use crate::app::report::DeviceReading;
 use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
@@ -18,8 +18,8 @@ use crate::cli::{Result, Success};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, RecordedValues, programs_to_read};
 use crate::devices::interbus::state::explain;
+use crate::devices::interbus::state::status_lines;
 use crate::profile::Body;
-use crate::report::Mark;
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -68,14 +68,7 @@ impl ProfileCommands for InterbusCommands {
         DisturbanceLevel::Programs.confirm_start(common, output, None)?;
         let status = result_of!(runner.run(InterbusJob::Status)?, InterbusOutput::Status(status) => *status);
         let profile = saved_profile(&mut runner)?;
-        let line = status.error.map(|error| StatusLine {
-            mark: Mark::Bad,
-            code: error.code.get().to_string(),
-            text: explain::error_word_text(error),
-            advice: Vec::new(),
-        });
-        let status = Some(line.into_iter().collect());
-        Ok(DeviceReading { body: Body::new(profile), status })
+        Ok(DeviceReading { body: Body::new(profile), status: Some(status_lines(status.error)) })
     }
 
     /// Returns a message if two profiles belong to different encoders. A profile without a serial number does not

@@ -34,6 +34,7 @@ pub use connect_form::{InterbusForm, InterbusLinkKind};
 pub use encoder::Encoder;
 pub use preview::{OutputMismatch, Preview};
 pub use record::Record;
+pub use report::status_lines;
 pub use review::{Review, ReviewState};
 use std::path::PathBuf;
 

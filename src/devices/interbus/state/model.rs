@@ -1,12 +1,14 @@
 //! Implementation of the studio's device traits for INTERBUS encoders.
 
 use super::trace::FrameDecoder;
-use super::{Encoder, InterbusAction, TEXTS, TaskResult};
+use super::{Encoder, InterbusAction, TEXTS, TaskResult, status_lines};
 use crate::app::action::OpenedConnection;
+use crate::app::report::{SessionResult, StatusLine};
 use crate::app::services::{JobState, Services};
 use crate::app::session::{HasProfile, SessionEvents};
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, EditStep, Recording, Severity, Tab, Text, explain};
 use crate::devices::interbus::jobs::{Interbus, InterbusJob};
+use crate::devices::interbus::protocol::Reply;
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Interbus");
@@ -41,6 +43,19 @@ impl DeviceModel for Encoder {
                 self.session.report_rejection(explain::file_error_text(&error), services)
             }
         }
+    }
+
+    fn reported_status(&self) -> Option<Vec<StatusLine>> {
+        match self.record.last()?.reply() {
+            Reply::Run { .. } => Some(status_lines(None)),
+            Reply::Error(error) => Some(status_lines(Some(error))),
+            // While values are transferred, the word says nothing about errors.
+            _ => None,
+        }
+    }
+
+    fn session_results(&self) -> Vec<SessionResult> {
+        self.check.iter().cloned().map(SessionResult::Check).collect()
     }
 
     fn position_job(&self) -> InterbusJob {

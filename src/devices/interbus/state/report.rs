@@ -1,18 +1,18 @@
 //! Values of an encoder in a report: identity, parameters, and the cam programs as charts and tables.
 
 use super::cams::{Chart, Lane, VisibleRange, grid_ticks, labels as cam_labels};
-use super::explain::{direction_text, startup_mode_text};
+use super::explain::{direction_text, error_word_text, startup_mode_text};
 use super::staged::StagedEdits;
 use super::{TEXTS, format};
 use crate::app::Text;
 use crate::app::explain::literal_text;
-use crate::app::report::{ReportContent, ReportContext};
+use crate::app::report::{ReportContent, ReportContext, StatusLine};
 use crate::devices::interbus::jobs::logbook_key;
 use crate::devices::interbus::profile::{InterbusProfile, Item, ItemValue, Scale};
-use crate::devices::interbus::protocol::{Program, ProgramNumber, ReadOutValue};
+use crate::devices::interbus::protocol::{ErrorWord, Program, ProgramNumber, ReadOutValue};
 use crate::drawing::{Drawing, DrawingLabel, DrawingShape, FAINT_COLOUR, LabelAlign, PathSegment};
 use crate::profile::ProfileDocument;
-use crate::report::{Block, CellStyle, Fact, Section};
+use crate::report::{Block, CellStyle, Fact, Mark, Section};
 
 /// Width of the names beside a chart, in drawing units.
 const HEAD: u32 = 130;
@@ -45,6 +45,17 @@ pub(super) fn content(
     sections.extend(unused_section(context, unused.iter().map(|(number, _)| number.get())));
     let key = (!serial.is_empty()).then(|| logbook_key(serial, false));
     Ok(ReportContent { title, key, sections })
+}
+
+/// Returns the error that an encoder sends instead of its position, if any, for a report.
+pub fn status_lines(error: Option<ErrorWord>) -> Vec<StatusLine> {
+    let line = |error: ErrorWord| StatusLine {
+        mark: Mark::Bad,
+        code: error.code.get().to_string(),
+        text: error_word_text(error),
+        advice: Vec::new(),
+    };
+    error.map(line).into_iter().collect()
 }
 
 fn identity_section(context: &ReportContext<'_>, profile: &InterbusProfile) -> Section {

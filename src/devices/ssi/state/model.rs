@@ -6,6 +6,7 @@ use super::design::Edit;
 use super::{Encoder, SearchState, SsiAction, TEXTS, TaskResult};
 use crate::app::action::OpenedConnection;
 use crate::app::documents::{new_document, read_only_reason};
+use crate::app::report::SessionResult;
 use crate::app::services::{JobState, Services, StudioEnvironment};
 use crate::app::session::{HasDraft, SessionEvents, Source};
 use crate::app::{
@@ -84,6 +85,10 @@ impl DeviceModel for Encoder {
     fn is_savable(&self) -> bool {
         // A layout can be saved at any time.
         true
+    }
+
+    fn session_results(&self) -> Vec<SessionResult> {
+        self.check.iter().cloned().map(SessionResult::Check).collect()
     }
 
     fn position_job(&self) -> SsiJob {

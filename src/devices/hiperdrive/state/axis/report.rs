@@ -1,6 +1,7 @@
 //! Report of a finished run for saving and printing: plain text that fits a page, lengths in millimetres.
 
 use super::{Axis, AxisStep, DriveFacts, SetupEnd, StepStatus, TestTarget, labels};
+use crate::app::report::SessionResult;
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -15,48 +16,84 @@ pub struct Device {
 const COLUMNS: usize = 78;
 const INDENT: &str = "   ";
 
-/// Returns the report of a completed set-up, or `None` while it is running. Values that were written back after the
-/// set-up are reported as in `now`.
-pub fn write_report(axis: &Axis, now: &DriveFacts, device: &Device, language: Language) -> Option<String> {
-    let over = axis.run_summary()?;
-    let seen = &over.seen;
-    let mut page = Page { text: String::new(), language };
-    page.write_text("", &TEXTS.text("hd_axis.report_title").with("when", &over.when));
-    let drive = TEXTS.text("hd_axis.report_drive").with("device", &device.name).with("drive", axis.drive().get());
-    let variant = device.variant.clone().unwrap_or_else(|| TEXTS.text("hd_op.unknown"));
-    page.write_text("", &drive.with_text("variant", variant).with("serial", &device.serial_number));
-    page.write_text("", &TEXTS.text(if over.end == SetupEnd::Done { "hd_axis.ended" } else { "hd_axis.cancelled" }));
-    if let Some(pitch) = seen.pitch {
-        let pitch = TEXTS.text("hd_axis.report_pitch").with_number("pitch", pitch.nanometres as f64 / 1e6, 3);
-        page.write_text("", &pitch);
-    }
-    page.push_blank_line();
-    AxisStep::ALL.into_iter().for_each(|step| report_step(&mut page, axis, step, seen));
-    page.push_blank_line();
-    write_outcome_lines(axis, now).iter().for_each(|line| page.write_text("", line));
-    Some(page.text)
+/// A report of a completed set-up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisReport {
+    pub title: Text,
+    /// The drive, how the set-up ended, and the pitch of the spindle.
+    pub summary: Vec<Text>,
+    /// The steps and, below each of them, its findings.
+    pub steps: Vec<(Text, Vec<Text>)>,
+    /// What was written.
+    pub outcome: Vec<Text>,
 }
 
-fn report_step(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) {
+impl AxisReport {
+    /// Returns the report of a completed set-up, or `None` while it is running. Values that were written back after the
+    /// set-up are reported as in `now`.
+    pub fn new(axis: &Axis, now: &DriveFacts, device: &Device) -> Option<Self> {
+        let over = axis.run_summary()?;
+        let seen = &over.seen;
+        let drive = TEXTS.text("hd_axis.report_drive").with("device", &device.name).with("drive", axis.drive().get());
+        let variant = device.variant.clone().unwrap_or_else(|| TEXTS.text("hd_op.unknown"));
+        let drive = drive.with_text("variant", variant).with("serial", &device.serial_number);
+        let end = TEXTS.text(if over.end == SetupEnd::Done { "hd_axis.ended" } else { "hd_axis.cancelled" });
+        let pitch = seen
+            .pitch
+            .map(|pitch| TEXTS.text("hd_axis.report_pitch").with_number("pitch", pitch.nanometres as f64 / 1e6, 3));
+        Some(AxisReport {
+            title: TEXTS.text("hd_axis.report_title").with("when", &over.when),
+            summary: [drive, end].into_iter().chain(pitch).collect(),
+            steps: AxisStep::ALL.into_iter().map(|step| step_texts(axis, step, seen)).collect(),
+            outcome: write_outcome_lines(axis, now),
+        })
+    }
+
+    /// Returns the report as plain text.
+    pub fn page(&self, language: Language) -> String {
+        let mut page = Page { text: String::new(), language };
+        page.write_text("", &self.title);
+        self.summary.iter().for_each(|line| page.write_text("", line));
+        page.push_blank_line();
+        for (step, findings) in &self.steps {
+            page.write_text("", step);
+            findings.iter().for_each(|line| page.write_text(INDENT, line));
+        }
+        page.push_blank_line();
+        self.outcome.iter().for_each(|line| page.write_text("", line));
+        page.text
+    }
+
+    /// Returns the report for a report of the device.
+    pub fn into_session_result(self) -> SessionResult {
+        let AxisReport { title, summary, steps, outcome } = self;
+        let steps = steps.into_iter().flat_map(|(step, findings)| std::iter::once(step).chain(findings));
+        SessionResult::Procedure { title, lines: summary.into_iter().chain(steps).chain(outcome).collect() }
+    }
+}
+
+/// Returns the result of a step, and its findings.
+fn step_texts(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> (Text, Vec<Text>) {
     let reached = axis.step_status(step);
     let line = TEXTS.text("hd_axis.report_step").with("number", step.index() + 1);
-    page.write_text(
-        "",
-        &line.with_text("step", labels::title(step)).with_text("reached", labels::step_status(reached)),
-    );
-    if matches!(reached, StepStatus::Done | StepStatus::Failed)
-        && let Some(found) = labels::finding_text(axis, step, seen)
-    {
-        page.write_text(INDENT, &found);
+    let line = line.with_text("step", labels::title(step)).with_text("reached", labels::step_status(reached));
+    let mut findings = Vec::new();
+    if matches!(reached, StepStatus::Done | StepStatus::Failed) {
+        findings.extend(labels::finding_text(axis, step, seen));
     }
-    if step == AxisStep::Test && TestTarget::ALL.into_iter().any(|place| axis.outcome_of(place).is_some()) {
-        page.write_text(INDENT, &labels::speed_torque_text("hd_axis.report_effort"));
-        for place in TestTarget::ALL {
-            let Some(outcome) = axis.outcome_of(place) else { continue };
+    let outcomes: Vec<Text> = TestTarget::ALL
+        .into_iter()
+        .filter_map(|place| {
+            let outcome = axis.outcome_of(place)?;
             let line = TEXTS.text("hd_axis.report_place").with_text("place", labels::target_text(place));
-            page.write_text(INDENT, &line.with_text("outcome", labels::outcome_text(&outcome, seen)));
-        }
+            Some(line.with_text("outcome", labels::outcome_text(&outcome, seen)))
+        })
+        .collect();
+    if step == AxisStep::Test && !outcomes.is_empty() {
+        findings.push(labels::speed_torque_text("hd_axis.report_effort"));
+        findings.extend(outcomes);
     }
+    (line, findings)
 }
 
 /// Returns what was written, whether it is saved, and which values now differ from the saved ones.

@@ -3,10 +3,18 @@
 use super::{Commutation, EnergisedVector, PositionKind, RestReading, VectorSlot};
 use crate::analysis::synchronise::Synchroniser;
 use crate::app::Text;
+use crate::app::report::SessionResult;
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
 impl Commutation {
+    /// Returns the run for a report of the encoder, or `None` before the first reading.
+    pub fn session_result(&self, name: &str, geometry: Option<Geometry>) -> Option<SessionResult> {
+        VectorSlot::ALL.into_iter().find_map(|slot| self.reading_of(slot))?;
+        let mut texts = self.report_texts(name, geometry).into_iter();
+        Some(SessionResult::Procedure { title: texts.next()?, lines: texts.collect() })
+    }
+
     pub fn report_texts(&self, name: &str, geometry: Option<Geometry>) -> Vec<Text> {
         let form = &self.form;
         let mut lines = vec![TEXTS.text("commutation.report_title").with("name", name)];

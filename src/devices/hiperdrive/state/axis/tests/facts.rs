@@ -245,7 +245,7 @@ fn differences_from_saved_values_are_shown_and_restored() {
     );
     axis.cancel(&seen, "");
     let device = Device { name: String::new(), variant: None, serial_number: String::new() };
-    let text = write_report(&axis, &seen, &device, Language::German).unwrap();
+    let text = AxisReport::new(&axis, &seen, &device).unwrap().page(Language::German);
     assert!(text.contains("Die vorherige Position (Parameter 198) wird nicht wiederhergestellt"), "{text}");
     seen.values.insert(198, 0);
     assert_eq!(labels::unrestored_position_text(&axis, &seen), None);
@@ -277,7 +277,7 @@ fn millimetres_need_a_confirmed_pitch() {
 fn a_run_ends_with_a_report() {
     let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };
     let (mut axis, mut seen) = at_power_cycle_step();
-    assert_eq!(write_report(&axis, &seen, &device, Language::English), None, "it goes on");
+    assert_eq!(AxisReport::new(&axis, &seen, &device), None, "it goes on");
     axis.handle_connection_loss();
     axis.on_survey(&seen, true);
     go_on(&mut axis, &seen);
@@ -285,10 +285,10 @@ fn a_run_ends_with_a_report() {
     at(&mut seen, 0);
     seen.limits = Some((-5, 5));
     for language in [Language::English, Language::German] {
-        let text = write_report(&axis, &seen, &device, language).unwrap();
+        let text = AxisReport::new(&axis, &seen, &device).unwrap().page(language);
         assert!(text.lines().all(|line| line.chars().count() < 80) && !text.contains('{'), "{text}");
     }
-    let text = write_report(&axis, &seen, &device, Language::English).unwrap();
+    let text = AxisReport::new(&axis, &seen, &device).unwrap().page(Language::English);
     for part in [
         "Axis set-up, 2026-11-23 06:00",
         "HIPERDRIVE HUB-4 · 16, drive 1",

@@ -130,6 +130,6 @@ fn an_unobserved_position_change_is_reported_as_unexplained() {
     axis.update(&seen);
     axis.cancel(&seen, "2026-11-23 06:00");
     let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };
-    let text = write_report(&axis, &seen, &device, Language::English).unwrap();
+    let text = AxisReport::new(&axis, &seen, &device).unwrap().page(Language::English);
     assert!(text.contains("The position changed by 3.48 mm while"), "{text}");
 }

@@ -1,0 +1,46 @@
+//! Results of the present session in a report: those of a check and of procedures. No profile contains them.
+
+use super::ReportContext;
+use crate::analysis::check::Verdict;
+use crate::app::Text;
+use crate::app::check::{CheckLine, verdict_text};
+use crate::report::{Block, CellStyle, Mark, Section};
+
+/// A result of the present session.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SessionResult {
+    /// A check of the device.
+    Check(Vec<CheckLine>),
+    /// A procedure, with its results one after the other.
+    Procedure { title: Text, lines: Vec<Text> },
+}
+
+pub(super) fn result_section(context: &ReportContext<'_>, result: &SessionResult) -> Section {
+    match result {
+        SessionResult::Check(lines) => check_section(context, lines),
+        SessionResult::Procedure { title, lines } => {
+            let paragraphs = lines.iter().map(|line| Block::Paragraph(context.say(line.clone())));
+            paragraphs.fold(Section::new(context.say(title.clone())), Section::with)
+        }
+    }
+}
+
+fn check_section(context: &ReportContext<'_>, lines: &[CheckLine]) -> Section {
+    let mut table = context.table([
+        ("report.name".into(), CellStyle::Text),
+        ("logbook.result".into(), CellStyle::Text),
+        ("report.verdict".into(), CellStyle::Short),
+    ]);
+    for line in lines {
+        let mark = match line.verdict {
+            Verdict::Skipped => Mark::None,
+            Verdict::Good => Mark::Good,
+            Verdict::Attention => Mark::Warning,
+            Verdict::Bad => Mark::Bad,
+        };
+        let findings: Vec<String> = line.findings.iter().map(|text| context.say(text.clone())).collect();
+        let cells = [context.say(line.step.clone()), findings.join("; "), context.say(verdict_text(line.verdict))];
+        table.add_marked_row(mark, cells);
+    }
+    Section::new(context.say("check_card.title")).with(Block::Table(table))
+}
