@@ -85,6 +85,8 @@ pub enum Action {
         /// Whether the table contains only the visible part of the recording.
         visible: bool,
     },
+    /// Ask for the name of the file to which a report is written.
+    AskReport(RecorderOwner),
     AskPicture(Picture),
     /// Ask for the file name of the trace of a session.
     AskTrace(SessionId),

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::action::ReadError;
+use super::action::{ReadError, RecorderOwner};
 use super::devices::{ActionContext, DeviceCommand};
 use super::documents::read_error;
 use super::file_question::FileQuestion;
@@ -21,7 +21,7 @@ impl Studio {
             DeviceCommand::WriteInto(target) => self.write_profile_to(id, target),
             DeviceCommand::AskRestore => self.services.file_question = Some(FileQuestion::Restore(id)),
             DeviceCommand::AskCompare => self.services.file_question = Some(FileQuestion::Compare(id)),
-            DeviceCommand::AskReport => self.ask_report_path(id),
+            DeviceCommand::AskReport => self.ask_report_path(RecorderOwner::Device(id)),
             DeviceCommand::Compare(path) => self.compare_with(id, path),
             DeviceCommand::Poll(interval) => {
                 self.settings.live_stopped = interval.is_none();

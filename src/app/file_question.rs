@@ -23,7 +23,7 @@ pub enum FileQuestion {
     Table { owner: RecorderOwner, visible: bool, suggested: PathBuf },
     Picture { picture: Picture, suggested: PathBuf },
     Trace { session: SessionId, suggested: PathBuf },
-    Report { session: SessionId, suggested: PathBuf },
+    Report { owner: RecorderOwner, suggested: PathBuf },
 }
 
 /// A file that a kind of device reads or writes, with the action that follows when it has been chosen.

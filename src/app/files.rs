@@ -69,7 +69,7 @@ impl Studio {
                 Action::Done(TaskResult::FileSaved { message: Text::new("picture.saved"), path, result })
             }),
             FileQuestion::Trace { session, .. } => self.save_trace(session, path),
-            FileQuestion::Report { session, .. } => self.write_report(session, path),
+            FileQuestion::Report { owner, .. } => self.write_report(owner, path),
         }
     }
 
@@ -80,7 +80,7 @@ impl Studio {
     pub fn recorder_of(&self, owner: RecorderOwner) -> Option<&Recorder> {
         match owner {
             RecorderOwner::Device(id) => self.device(id).map(|device| device.recorder()),
-            RecorderOwner::Tool(tab) => self.tools.iter().find(|(own, _)| *own == tab).map(|(_, tool)| tool.recorder()),
+            RecorderOwner::Tool(tab) => self.tool(tab).map(|tool| tool.recorder()),
         }
     }
 

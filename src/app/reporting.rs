@@ -1,46 +1,59 @@
-//! Reports from the window: of a profile as saved, or of the values read last from a device. They are the same as those
-//! of the command line. The device is not accessed.
+//! Reports from the window: of a profile as saved, of the values read last from a device with the results of the session,
+//! or of a capture. The device is not accessed.
 
 use std::path::{Path, PathBuf};
 
 use super::action::{Action, RecorderOwner, TaskResult};
 use super::file_question::FileQuestion;
-use super::report::{DeviceReading, ReportFormat, ReportRequest, company, current_time_text};
+use super::report::{CreateReport, DeviceReading, ReportContext, ReportFormat, ReportRequest, company, current_time_text};
 use super::session::Source;
-use super::studio::{SessionId, Studio};
+use super::studio::Studio;
 use super::{AnyDevice, Severity, Text, explain};
 use crate::report::Report;
 use crate::store::{FileError, write_atomically};
 
 impl Studio {
-    pub(super) fn ask_report_path(&mut self, session: SessionId) {
-        let suggested = self.suggested_path(Some(RecorderOwner::Device(session)), "html");
-        self.services.file_question = Some(FileQuestion::Report { session, suggested });
+    pub(super) fn ask_report_path(&mut self, owner: RecorderOwner) {
+        let suggested = self.suggested_path(Some(owner), "html");
+        self.services.file_question = Some(FileQuestion::Report { owner, suggested });
     }
 
     /// Starts a task that writes a report. The extension of the file determines its format.
-    pub(super) fn write_report(&mut self, session: SessionId, path: PathBuf) {
-        let Some(device) = self.device(session) else { return };
-        let name = device.name();
-        let prepared = self.report_request(device).and_then(|request| {
-            let format = ReportFormat::of_file(&path).ok_or_else(|| Text::new("report.extension"))?;
-            Ok((request, format))
-        });
-        let (request, format) = match prepared {
-            Ok(prepared) => prepared,
-            Err(why) => return self.services.notify(Severity::Error, vec![why], Some(&name)),
+    pub(super) fn write_report(&mut self, owner: RecorderOwner, path: PathBuf) {
+        let (name, prepared) = match owner {
+            RecorderOwner::Device(session) => {
+                let Some(device) = self.device(session) else { return };
+                (Some(device.name()), self.device_report(device))
+            }
+            RecorderOwner::Tool(tab) => {
+                let report = self.tool(tab).and_then(|tool| tool.report());
+                (None, report.ok_or_else(|| Text::new("report.nothing_shown")))
+            }
         };
-        let printed = current_time_text(&self.services.current_time(), request.language);
-        let (kinds, store) = (self.services.world.kinds, self.services.world.store.clone());
-        let settings = self.settings.clone();
+        let prepared = prepared.and_then(|create| {
+            let format = ReportFormat::of_file(&path).ok_or_else(|| Text::new("report.extension"))?;
+            Ok((create, format))
+        });
+        let (create, format) = match prepared {
+            Ok(prepared) => prepared,
+            Err(why) => return self.services.notify(Severity::Error, vec![why], name.as_deref()),
+        };
+        let language = self.settings.language;
+        let printed = current_time_text(&self.services.current_time(), language);
+        let (store, settings) = (self.services.world.store.clone(), self.settings.clone());
         self.services.tasks.run("report", move || {
             let content = company(&settings).and_then(|company| {
-                let report = Report { company, ..request.create(kinds, &store)? };
+                let report = Report { company, ..create(&ReportContext::new(&store, language))? };
                 format.render(&report, &printed)
             });
             let result = content.map(|bytes| write_atomically(&path, &bytes));
             Action::Done(TaskResult::ReportWritten { path, result })
         });
+    }
+
+    fn device_report(&self, device: &AnyDevice) -> Result<CreateReport, Text> {
+        let (request, kinds) = (self.report_request(device)?, self.services.world.kinds);
+        Ok(Box::new(move |context| request.create(kinds, context.store)))
     }
 
     fn report_request(&self, device: &AnyDevice) -> Result<ReportRequest, Text> {

@@ -149,6 +149,7 @@ impl Studio {
             Action::Recorder(owner, action) => self.apply_recorder_action(owner, action),
             Action::AskForget(owner) => self.confirm_discard_recording(owner),
             Action::AskTable { owner, visible } => self.ask_table_path(owner, visible),
+            Action::AskReport(owner) => self.ask_report_path(owner),
             Action::AskPicture(picture) => self.ask_picture_path(picture),
             Action::AskTrace(session) => self.ask_trace_path(session),
             Action::PictureCut => self.notify_picture_truncated(),

@@ -9,6 +9,7 @@ use crossbeam_channel::Receiver;
 
 use super::payload::{Payload, PayloadKindError};
 use super::recorder::Recorder;
+use super::report::CreateReport;
 use super::services::Services;
 use super::sine_cosine::SineCosineSource;
 use super::studio::Studio;
@@ -59,6 +60,9 @@ pub trait Tool: Any {
 
     /// Releases a connection, because it is needed elsewhere.
     fn release_connection(&mut self, url: &LinkUrl, services: &mut Services);
+
+    /// Returns the function that creates a report of the displayed data, or `None` if there are none.
+    fn report(&self) -> Option<CreateReport>;
 
     /// Returns whether the tool can open the given file.
     fn can_open(&self, path: &Path) -> bool;
@@ -118,6 +122,15 @@ impl Studio {
     /// Returns the tool of the given type.
     pub fn tool_as<T: Any>(&self) -> Option<&T> {
         self.tools.iter().find_map(|(_, tool)| tool.get())
+    }
+
+    pub(super) fn tool(&self, tab: Tab) -> Option<&dyn Tool> {
+        self.tools.iter().find(|(own, _)| *own == tab).map(|(_, tool)| tool.as_ref())
+    }
+
+    /// Returns whether the tool in a tab displays data that can be reported.
+    pub fn can_report(&self, tab: Tab) -> bool {
+        self.tool(tab).is_some_and(|tool| tool.report().is_some())
     }
 
     pub(super) fn apply_tool_action(&mut self, tab: Tab, action: Payload) {

@@ -10,7 +10,8 @@ use super::device_view::DeviceView;
 use super::{Theme, Views};
 use crate::app::session::Phase;
 use crate::app::{
-    Action, AnyDevice, ColorScheme, DeviceCommand, Language, ServerAction, SessionId, Studio, Tab, Text, connect,
+    Action, AnyDevice, ColorScheme, DeviceCommand, Language, RecorderOwner, ServerAction, SessionId, Studio, Tab, Text,
+    connect,
 };
 use crate::store::{Backup, UserName};
 
@@ -103,6 +104,8 @@ fn in_language(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
         commands.extend(
             pages.map(|(at, page)| Command::new(&title, theme.translate(page.word), CommandEffect::ToolPage(tab, at))),
         );
+        let report = CommandEffect::Act(Action::AskReport(RecorderOwner::Tool(tab)));
+        commands.push(Command::new(&title, theme.translate("shell.report"), report).enabled_if(studio.can_report(tab)));
     }
     commands.extend(program_commands(theme, studio, views));
     commands

@@ -4,10 +4,14 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Language, Severity, Studio};
+use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Language, RecorderOwner, Severity, Studio};
 use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
+use encoder_studio::devices::interbus::protocol::ProgramNumber;
+use encoder_studio::devices::interbus::state::InterbusAction as Interbus;
 
+use crate::each_kind::CASES;
 use crate::support::Desk;
+use crate::tabs::{self, Tabs as _};
 
 fn is_told(studio: &Studio, id: &str) -> bool {
     studio.services.log.notices().any(|own| own.texts.iter().any(|text| text.id() == id))
@@ -56,18 +60,8 @@ fn the_window_and_the_command_line_make_the_same_report() {
             });
             let own = desk.outside.path(&format!("{word}-{file}.html"));
             report(&mut desk, &own);
-            let other = desk.outside.path("other.html");
-            let home = desk.outside.path("home");
-            let ran = Command::new(env!("CARGO_BIN_EXE_encoder-studio"))
-                .args(["report", "--language", word, "--force", "-o"])
-                .args([&other, &profile])
-                .env("HOME", &home)
-                .env("XDG_DATA_HOME", &home)
-                .env("XDG_CONFIG_HOME", &home)
-                .output()
-                .unwrap();
-            assert!(ran.status.success(), "{ran:?}");
-            let [own, other] = [own, other].map(|path| fs::read_to_string(path).unwrap());
+            let own = fs::read_to_string(own).unwrap();
+            let other = report_of_command(&desk, word, &profile);
             assert_eq!(without_time(&own), without_time(&other), "{name} {word}");
         }
     }
@@ -86,6 +80,77 @@ fn a_report_of_a_device_shows_what_was_read() {
     let path = desk.outside.path("device.pdf");
     report(&mut desk, &path);
     assert!(fs::read(path).unwrap().starts_with(b"%PDF"));
+}
+
+/// Returns the report that the command line makes.
+fn report_of_command(desk: &Desk, language: &str, subject: &Path) -> String {
+    let (other, home) = (desk.outside.path("other.html"), desk.outside.path("home"));
+    let ran = Command::new(env!("CARGO_BIN_EXE_encoder-studio"))
+        .args(["report", "--language", language, "--force", "-o"])
+        .args([other.as_path(), subject])
+        .env("HOME", &home)
+        .env("XDG_DATA_HOME", &home)
+        .env("XDG_CONFIG_HOME", &home)
+        .output()
+        .unwrap();
+    assert!(ran.status.success(), "{ran:?}");
+    fs::read_to_string(other).unwrap()
+}
+
+#[test]
+fn a_capture_has_the_same_report_in_the_window_and_on_the_command_line() {
+    let mut desk = Desk::fresh("");
+    let owner = RecorderOwner::Tool(tabs::SIGNALS);
+    let own = desk.outside.path("capture.html");
+    let choose = |desk: &mut Desk| {
+        desk.act(Action::AskReport(owner));
+        let question = desk.studio.take_file_question().unwrap();
+        desk.act(Action::Chosen(question, own.clone()));
+    };
+    assert!(!desk.studio.can_report(tabs::SIGNALS));
+    choose(&mut desk);
+    assert!(is_told(&desk.studio, "report.nothing_shown"));
+    let capture = desk.outside.path("motor.csv");
+    fs::write(&capture, crate::signals::circle(3)).unwrap();
+    desk.act(Action::Open(capture.clone()));
+    desk.until_measured();
+    assert!(desk.studio.can_report(tabs::SIGNALS));
+    for (language, word) in [(Language::English, "en"), (Language::German, "de")] {
+        desk.act(Action::SetLanguage(language));
+        choose(&mut desk);
+        let path = own.clone();
+        desk.until("the report is written", move |_| path.exists());
+        let page = fs::read_to_string(&own).unwrap();
+        assert!(page.contains("motor.csv"));
+        assert_eq!(without_time(&page), without_time(&report_of_command(&desk, word, &capture)), "{word}");
+        fs::remove_file(&own).unwrap();
+    }
+}
+
+/// Issue 30: what the session has found out is in its report; no profile contains it.
+#[test]
+fn a_report_of_a_device_contains_the_results_of_the_session() {
+    let mut desk = Desk::new_form("");
+    desk.ask(Hiperface::Check { restart: false });
+    desk.until("it is checked", |studio| studio.hiperface().unwrap().check.is_some());
+    desk.until_ready();
+    let path = desk.outside.path("checked.html");
+    report(&mut desk, &path);
+    let page = fs::read_to_string(path).unwrap();
+    let checked = desk.encoder().check.clone().unwrap();
+    assert!(page.contains(">Device check<"));
+    assert_eq!(page.matches(">Good<").count() + page.matches(">Skipped<").count(), checked.len(), "{checked:?}");
+
+    let case = CASES.into_iter().find(|case| case.tab == tabs::INTERBUS).unwrap();
+    let mut desk = case.desk();
+    let id = desk.studio.selected_device().unwrap().id();
+    desk.act(Action::device(id, Interbus::ReadPrograms(ProgramNumber::all().collect())));
+    crate::each_kind::until_ready(&mut desk);
+    let path = desk.outside.path("interbus.html");
+    report(&mut desk, &path);
+    let page = fs::read_to_string(path).unwrap();
+    assert!(page.contains("Status when read") && page.contains("No errors or warnings."));
+    assert!(!page.contains(">Device check<"), "it was not checked");
 }
 
 #[test]

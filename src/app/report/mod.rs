@@ -30,6 +30,9 @@ use crate::profile::{Body, ProfileDocument, ProfileError};
 use crate::report::{Fact, Labels, Report, Section};
 use crate::store::{AssetName, Store};
 
+/// Function that creates a report in a task.
+pub type CreateReport = Box<dyn FnOnce(&ReportContext<'_>) -> Result<Report, Text> + Send>;
+
 /// The subject of a report and what it contains in addition to the values.
 #[derive(Clone, Debug)]
 pub struct ReportRequest {
@@ -99,15 +102,15 @@ impl ReportRequest {
     }
 }
 
-/// Creates the report of a file that is not a profile, such as a capture. `source` is the label of the file.
-pub fn file_report(
+/// Creates the report of data that are not a profile, such as a capture. `source` is the label of their name.
+pub fn data_report(
     context: &ReportContext<'_>,
     (subject, source): (Text, Text),
-    path: &Path,
+    name: String,
     asset: Option<&AssetName>,
     content: ReportContent,
 ) -> Report {
-    let mut origin = vec![Fact::new(context.say(source), file_name(path))];
+    let mut origin = vec![Fact::new(context.say(source), name)];
     origin.extend(asset.map(|asset| Fact::new(context.say("logbook.kind_assigned"), asset.to_string())));
     origin.push(program_fact(context));
     report(context, context.say(subject), content.title, origin, content.sections)

@@ -20,7 +20,7 @@ use crate::analysis::quality::Family;
 use crate::analysis::revolution::Revolution;
 use crate::analysis::signal_analysis::Analysis;
 use crate::app::explain;
-use crate::app::report::{ReportContext, file_report};
+use crate::app::report::{ReportContext, file_name};
 use crate::cli::args::{CommonArgs, ReportArgs};
 use crate::cli::commands::{CliCommand, arg_list, parse};
 use crate::cli::output::{Lines, Output};
@@ -78,9 +78,7 @@ fn capture_report(output: &Output, arguments: &ReportArgs, context: &ReportConte
     let settings = DiagnosisSettings { family: options.limits.family(), periods: options.periods };
     let origin = Origin::Table(TableSource::File(path.clone()));
     let measurement = Measurement::from_capture(origin, Arc::new(capture), settings);
-    let content = report::content(&measurement, context).map_err(|why| to_failure(&why))?;
-    let labels = (TEXTS.text("report.sig_subject"), TEXTS.text("report.sig_capture"));
-    Ok(file_report(context, labels, path, arguments.asset.as_ref(), content))
+    report::report(&measurement, file_name(path), arguments.asset.as_ref(), context).map_err(|why| to_failure(&why))
 }
 
 fn read(output: &Output, path: &Path, hints: &TableHints) -> std::result::Result<Capture, Failure> {

@@ -7,13 +7,14 @@ use super::reading::{self, CaptureReading};
 use super::synchronise::SynchroniseState;
 use super::{
     DiagnosisSettings, FailedTask, Measurement, MeasurementResult, ReadCapture, Scope, SignalsAction, Source,
-    SourceAction, Table, TableSource, TaskResult, task_guard,
+    SourceAction, Table, TableSource, TaskResult, report, task_guard,
 };
 use crate::analysis::capture::TableHints;
 use crate::analysis::diagnosis::{DiagnosisChanges, DiagnosisFinding, compare};
 use crate::analysis::quality::Family;
 use crate::app::number::MAX_PERIODS;
 use crate::app::recorder::Recorder;
+use crate::app::report::CreateReport;
 use crate::app::services::Services;
 use crate::app::{Payload, PayloadKindError, Severity, SineCosineSource, Text, Tool, ToolContext, explain, recorder};
 use crate::link::LinkUrl;
@@ -99,6 +100,14 @@ impl Tool for Signals {
 
     fn release_connection(&mut self, url: &LinkUrl, services: &mut Services) {
         self.source.release_connection(url, services);
+    }
+
+    fn report(&self) -> Option<CreateReport> {
+        let measurement = self.measurement.clone()?;
+        Some(Box::new(move |context| {
+            let name = context.say(measurement.origin.name());
+            report::report(&measurement, name, None, context)
+        }))
     }
 
     fn can_open(&self, path: &Path) -> bool {

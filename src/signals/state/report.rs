@@ -6,9 +6,10 @@ use crate::analysis::quality::{Family, Verdict};
 use crate::analysis::signal_analysis::Analysis;
 use crate::app::Text;
 use crate::app::explain::signal::diagnosis_text;
-use crate::app::report::{ReportContent, ReportContext};
+use crate::app::report::{ReportContent, ReportContext, data_report};
 use crate::drawing::plot::{Curve, Plot};
-use crate::report::{Block, CellStyle, Fact, Mark, Section, Table};
+use crate::report::{Block, CellStyle, Fact, Mark, Report, Section, Table};
+use crate::store::AssetName;
 
 const SINE: &str = "#1a6fa3";
 const COSINE: &str = "#b34d00";
@@ -24,11 +25,21 @@ const PERIODS: f64 = 4.0;
 /// Multiple of the signal frequency up to which the spectrum is shown.
 const ORDERS: f64 = 12.0;
 
-/// Returns the content of a report of a capture.
+/// Creates the report of a capture with this name.
 ///
 /// # Errors
 /// Returns the reason why the capture cannot be analysed.
-pub(crate) fn content(measurement: &Measurement, context: &ReportContext<'_>) -> Result<ReportContent, Text> {
+pub(crate) fn report(
+    measurement: &Measurement,
+    name: String,
+    asset: Option<&AssetName>,
+    context: &ReportContext<'_>,
+) -> Result<Report, Text> {
+    let labels = (TEXTS.text("report.sig_subject"), TEXTS.text("report.sig_capture"));
+    Ok(data_report(context, labels, name, asset, content(measurement, context)?))
+}
+
+fn content(measurement: &Measurement, context: &ReportContext<'_>) -> Result<ReportContent, Text> {
     let settings = measurement.judge;
     let analysis = match (&measurement.analysis, measurement.failure_text(context.language)) {
         (Ok(analysis), _) => analysis,

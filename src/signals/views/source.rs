@@ -3,10 +3,10 @@
 use egui::{Align, Layout, RichText, Ui, vec2};
 
 use super::{adapter, table, virtual_encoder};
-use crate::app::Action;
+use crate::app::{Action, RecorderOwner};
 use crate::buses::bridge::protocol::Capabilities;
 use crate::signals::state::{
-    ExampleCapture, Origin, Signals, SignalsAction as Signals_, SourceAction, SourceKind, TEXTS, TableSource,
+    ExampleCapture, Origin, Signals, SignalsAction as Signals_, SourceAction, SourceKind, TAB, TEXTS, TableSource,
 };
 use crate::signals::views::translate;
 use crate::ui::controls::{badge, enabled_button, fill_width, icon_button, labelled_button, name, paragraph, spinner};
@@ -131,6 +131,7 @@ fn displayed_capture_ui(
             source_menu_ui(ui, theme, view, actions);
             source_buttons_ui(ui, theme, signals, view, actions);
             save_capture_ui(ui, theme, signals, actions);
+            report_ui(ui, theme, signals, actions);
             if signals.table().is_some() {
                 toggle_ui(ui, icons::TABLE, &translate(theme, "signals.table"), &mut view.table.is_open);
             }
@@ -252,6 +253,13 @@ fn save_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut 
     if enabled_button(ui, !same, icons::PUSH_PIN, &word).on_hover_text(translate(theme, "compare.keep_hint")).clicked()
     {
         actions.push(Action::tool(Signals_::Keep));
+    }
+}
+
+fn report_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
+    let word = theme.translate("shell.report");
+    if enabled_button(ui, signals.measurement().is_some(), icons::FILE_TEXT, &word).clicked() {
+        actions.push(Action::AskReport(RecorderOwner::Tool(TAB)));
     }
 }
 
