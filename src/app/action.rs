@@ -3,6 +3,7 @@
 use std::any::Any;
 use std::path::PathBuf;
 
+use super::company_form::CompanyAction;
 use super::devices::{AnyDevice, DeviceCommand, OpenProfile};
 use super::diverged::{ConflictResolution, ProfileConflict};
 use super::file_question::FileQuestion;
@@ -55,6 +56,7 @@ pub enum Action {
     Connect(connect::ConnectAction),
     /// Act on the form for the server of the logbook.
     Server(ServerAction),
+    Company(CompanyAction),
     OpenVirtual,
     Save(SessionId),
     /// Resolve the conflict of a profile that another program has changed.
@@ -160,6 +162,8 @@ pub enum TaskResult {
         path: PathBuf,
         result: Result<Result<(), FileError>, Text>,
     },
+    /// The company of a form can be used in reports, or the reason why not.
+    CompanyChecked(Box<Settings>, Result<(), Text>),
     FileSaved {
         message: Text,
         path: PathBuf,

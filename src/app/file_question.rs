@@ -17,13 +17,31 @@ pub enum FileQuestion {
     Restore(SessionId),
     Compare(SessionId),
     OpenCapture,
+    /// The company's logo in reports.
+    Logo,
     Recording,
-    Save { session: SessionId, suggested: PathBuf },
+    Save {
+        session: SessionId,
+        suggested: PathBuf,
+    },
     OfDevice(DeviceFile),
-    Table { owner: RecorderOwner, visible: bool, suggested: PathBuf },
-    Picture { picture: Picture, suggested: PathBuf },
-    Trace { session: SessionId, suggested: PathBuf },
-    Report { owner: RecorderOwner, suggested: PathBuf },
+    Table {
+        owner: RecorderOwner,
+        visible: bool,
+        suggested: PathBuf,
+    },
+    Picture {
+        picture: Picture,
+        suggested: PathBuf,
+    },
+    Trace {
+        session: SessionId,
+        suggested: PathBuf,
+    },
+    Report {
+        owner: RecorderOwner,
+        suggested: PathBuf,
+    },
 }
 
 /// A file that a kind of device reads or writes, with the action that follows when it has been chosen.
@@ -105,7 +123,7 @@ impl FileQuestion {
             FileQuestion::OpenCapture => &["csv", "txt", "tsv", "dat"],
             FileQuestion::Recording | FileQuestion::Trace { .. } => &["trace", "txt"],
             FileQuestion::Table { .. } => &["csv"],
-            FileQuestion::Picture { .. } => &["png"],
+            FileQuestion::Picture { .. } | FileQuestion::Logo => &["png"],
             FileQuestion::Report { .. } => ReportFormat::EXTENSIONS,
             FileQuestion::OfDevice(file) => file.endings,
         }
@@ -117,6 +135,7 @@ impl FileQuestion {
             | FileQuestion::Restore(_)
             | FileQuestion::Compare(_)
             | FileQuestion::OpenCapture
+            | FileQuestion::Logo
             | FileQuestion::Recording => None,
             FileQuestion::Save { suggested, .. }
             | FileQuestion::Table { suggested, .. }

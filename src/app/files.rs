@@ -57,6 +57,7 @@ impl Studio {
                 self.handle_action(Action::Command(session, DeviceCommand::Compare(path)))
             }
             FileQuestion::OpenCapture => self.open_capture(path),
+            FileQuestion::Logo => self.choose_logo(path),
             FileQuestion::Recording => self.handle_action(Action::Connect(connect::ConnectAction::Recording(path))),
             FileQuestion::Save { session, .. } => self.save(session, path),
             FileQuestion::OfDevice(file) => {

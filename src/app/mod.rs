@@ -5,6 +5,7 @@ mod brakes;
 pub mod check;
 mod closing;
 mod commanding;
+mod company_form;
 mod comparison;
 pub mod connect;
 mod devices;
@@ -67,6 +68,7 @@ pub use devices::{AnyDevice, DeviceCommand, DeviceKind, DeviceType, OpenDevice};
 pub use kinds::KindRegistry;
 pub use tool::{Tool, ToolAction, ToolContext, ToolKind};
 
+pub use company_form::{CompanyAction, CompanyForm};
 pub use drives::{PositionUnit, RememberedDrives, SettingsReadState, StoredDriveData};
 pub use edits::{EditBase, Edits};
 pub use file_question::{DeviceFile, FileQuestion};

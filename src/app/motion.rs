@@ -57,7 +57,7 @@ impl Studio {
     /// it.
     pub(super) fn stop_hidden_motion(&mut self) {
         let asks = self.question.is_some() || self.services.file_question.is_some();
-        let is_covered = self.connect.is_some() || self.server_form.is_some() || asks;
+        let is_covered = self.connect.is_some() || self.has_form() || asks;
         let tab = self.settings.tab;
         let seen = self.shown.session_of(tab).filter(|_| !is_covered);
         for device in &mut self.devices {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::action::{Action, ShutdownWait, TaskResult};
+use super::company_form::CompanyForm;
 use super::comparison::ProfileComparison;
 use super::connect::ConnectDialog;
 use super::devices::{AnyDevice, DeviceType, Selection};
@@ -45,6 +46,7 @@ pub struct Studio {
     pub(super) logbook: LogbookPage,
     pub(super) server_thread: Option<ServerThread>,
     pub(super) server_form: Option<ServerForm>,
+    pub(super) company_form: Option<CompanyForm>,
 }
 
 impl Studio {
@@ -72,6 +74,7 @@ impl Studio {
             logbook: LogbookPage::default(),
             server_thread: None,
             server_form: None,
+            company_form: None,
         }
     }
 
@@ -121,6 +124,7 @@ impl Studio {
             Action::Dismiss => self.services.log.dismiss(),
             Action::Connect(action) => self.apply_connect_action(action),
             Action::Server(action) => self.apply_server_action(action),
+            Action::Company(action) => self.apply_company_action(action),
             Action::OpenVirtual => {
                 let tab = self.settings.tab;
                 if let Some(link) = self.virtual_link(tab) {
@@ -349,6 +353,7 @@ impl Studio {
             }
             TaskResult::Looked { question, path, exists: false } => self.handle_chosen_path(question, path),
             TaskResult::TableWritten(owner, exported) => self.finish_table_export(owner, exported),
+            TaskResult::CompanyChecked(wanted, checked) => self.save_company(*wanted, checked),
             TaskResult::ReportWritten { path, result } => self.finish_report(&path, result),
             TaskResult::FileSaved { message, path, result } => self.finish_file_save(message, &path, result),
             // It has been handled by polling.
@@ -413,7 +418,7 @@ impl Studio {
             self.close_dialog();
             return;
         }
-        if self.server_form.take().is_some() {
+        if self.server_form.take().is_some() || self.company_form.take().is_some() {
             return;
         }
         if let Some(id) = self.selected_device().filter(|device| device.is_reviewing()).map(|device| device.id()) {

@@ -10,8 +10,8 @@ use super::device_view::DeviceView;
 use super::{Theme, Views};
 use crate::app::session::Phase;
 use crate::app::{
-    Action, AnyDevice, ColorScheme, DeviceCommand, Language, RecorderOwner, ServerAction, SessionId, Studio, Tab, Text,
-    connect,
+    Action, AnyDevice, ColorScheme, CompanyAction, DeviceCommand, Language, RecorderOwner, ServerAction, SessionId,
+    Studio, Tab, Text, connect,
 };
 use crate::store::{Backup, UserName};
 
@@ -143,6 +143,7 @@ fn program_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Comman
         commands.push(act(word, Action::SetUserName(name)).enabled_if(name != settings.user_name));
     }
     commands.push(act("shell.logbook_server", Action::Server(ServerAction::Open)));
+    commands.push(act("shell.company", Action::Company(CompanyAction::Open)));
     let (word, opens) = if settings.lower_open { ("status_line.close", false) } else { ("status_line.open", true) };
     commands.push(act(word, Action::OpenLowerPanel(opens)).with_shortcut(COMMAND, Key::T));
     commands.push(command("shell.help", CommandEffect::ToggleHelp).with_shortcut(Modifiers::NONE, HELP_KEY));

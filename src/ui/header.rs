@@ -7,7 +7,7 @@ use super::page::with_stable_ids;
 use super::stop_debounce::{press_began, press_time, register_stop_press};
 use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
-use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Studio, Text, connect};
+use crate::app::{Action, AnyDevice, ColorScheme, CompanyAction, DeviceCommand, Language, Studio, Text, connect};
 
 /// Width of the STOP button in points while no motion is in progress.
 const STOP_BUTTON_WIDTH: f32 = 72.0;
@@ -146,6 +146,10 @@ fn sessions_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Ac
                 }
             }
             ui.separator();
+        }
+        if labelled_button(ui, icons::PENCIL_SIMPLE, &theme.translate("shell.company")).clicked() {
+            actions.push(Action::Company(CompanyAction::Open));
+            ui.close();
         }
         if labelled_button(ui, icons::PLUGS_CONNECTED, &theme.translate("shell.connect")).clicked() {
             actions.push(Action::Connect(connect::ConnectAction::Open));

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::device_view::{PageInfo, SessionView, TabViews, ToolPages};
-use super::dialogs::{ConnectView, FileView, PaletteUiState, ServerView};
+use super::dialogs::{CompanyView, ConnectView, FileView, PaletteUiState, ServerView};
 use super::logbook::{self, LogbookView};
 use super::panels::TraceView;
 use super::plot;
@@ -15,6 +15,7 @@ pub struct Views {
     tools: Vec<(Tab, Box<dyn ToolPages>)>,
     pub(super) connect: ConnectView,
     pub(super) server: ServerView,
+    pub(super) company: CompanyView,
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
     pub(super) help: bool,
@@ -34,6 +35,7 @@ impl Views {
             tools: tabs.tool_views().iter().map(|view| (view.kind().tab(), view.create_pages())).collect(),
             connect: ConnectView::default(),
             server: ServerView::default(),
+            company: CompanyView::default(),
             file: None,
             about: false,
             help: false,

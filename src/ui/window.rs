@@ -138,6 +138,7 @@ impl Window {
         let forms = (self.views.tabs, &mut self.views.connect);
         dialogs::connect_ui(ctx, theme, &self.studio, forms, actions);
         dialogs::server_ui(ctx, theme, &self.studio, &mut self.views.server, actions);
+        dialogs::company_ui(ctx, theme, &self.studio, &mut self.views.company, actions);
         if let Some(file) = &mut self.views.file
             && dialogs::file_ui(ctx, theme, file, actions)
         {
@@ -303,7 +304,7 @@ impl Window {
             || self.views.about
             || self.views.palette.is_some()
             || self.studio.comparison().is_some();
-        self.studio.connect.is_some() || self.studio.server_form().is_some() || self.is_asking() || dialog
+        self.studio.connect.is_some() || self.studio.has_form() || self.is_asking() || dialog
     }
 
     fn is_asking(&self) -> bool {

@@ -4,12 +4,17 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Language, RecorderOwner, Severity, Studio};
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable;
+use encoder_studio::app::{
+    Action, CompanyAction, DeviceCommand, FileQuestion, Language, RecorderOwner, Severity, Studio,
+};
 use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use encoder_studio::devices::interbus::protocol::ProgramNumber;
 use encoder_studio::devices::interbus::state::InterbusAction as Interbus;
 
 use crate::each_kind::CASES;
+use crate::screen::Screen;
 use crate::support::Desk;
 use crate::tabs::{self, Tabs as _};
 
@@ -151,6 +156,48 @@ fn a_report_of_a_device_contains_the_results_of_the_session() {
     let page = fs::read_to_string(path).unwrap();
     assert!(page.contains("Status when read") && page.contains("No errors or warnings."));
     assert!(!page.contains(">Device check<"), "it was not checked");
+}
+
+/// Issue 30: the company of reports is set in the window as well.
+#[test]
+fn the_company_is_set_in_a_form() {
+    let mut screen = Screen::new_form([1024.0, 640.0]);
+    screen.act(Action::Company(CompanyAction::Open));
+    for language in [Language::German, Language::English] {
+        screen.act(Action::SetLanguage(language));
+        screen.check_language();
+    }
+    screen.key(egui::Key::Escape);
+    assert!(screen.studio().company_form().is_none());
+    screen.act(Action::Company(CompanyAction::Open));
+    let word = screen.say("company_form.name");
+    screen.harness.get_by_role_and_label(Role::TextInput, &word).focus();
+    screen.steps();
+    screen.harness.get_by_role_and_label(Role::TextInput, &word).type_text("Miller GmbH");
+    screen.steps();
+    // Not a picture: nothing is saved.
+    let broken = screen.outside.path("logo.png");
+    fs::write(&broken, "no picture").unwrap();
+    screen.act(Action::Chosen(FileQuestion::Logo, broken));
+    screen.click("server_form.save");
+    let logo_text = screen.say("report.logo");
+    screen.until("the logo is refused", |studio| studio.company_form().is_some_and(|form| form.problem().is_some()));
+    assert!(screen.shows(&logo_text));
+    assert_eq!(screen.studio().settings.company, None);
+    let logo = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/icon/64.png");
+    screen.act(Action::Chosen(FileQuestion::Logo, logo.clone()));
+    screen.click("server_form.save");
+    screen.until("it is saved", |studio| studio.company_form().is_none());
+    let settings = screen.outside.store().settings_path();
+    let has_both = |text: &str| text.contains("Miller GmbH") && text.contains("64.png");
+    screen.until("the settings are on disk", |_| fs::read_to_string(&settings).is_ok_and(|text| has_both(&text)));
+    let path = screen.outside.path("own.html");
+    let owner = RecorderOwner::Device(screen.encoder().session.id);
+    screen.act(Action::Chosen(FileQuestion::Report { owner, suggested: "own.html".into() }, path.clone()));
+    let written = path.clone();
+    screen.until("the report is written", move |_| written.exists());
+    let page = fs::read_to_string(path).unwrap();
+    assert!(page.contains("Miller GmbH") && page.contains("data:image/png;base64,iVBOR"));
 }
 
 #[test]

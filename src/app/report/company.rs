@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use super::format::pdf_error_text;
 use crate::app::{Settings, Text, explain};
-use crate::report::Company;
+use crate::report::{Company, pdf};
 use crate::store::read_bytes;
 
 /// Returns the company with its logo. Returns `None` if the settings name neither.
@@ -16,4 +17,15 @@ pub fn company(settings: &Settings) -> Result<Option<Company>, Text> {
     let logo = logo.map_err(|error| explain::file_error_text(&error))?;
     let is_known = name.is_some() || logo.is_some();
     Ok(is_known.then(|| Company { name: name.unwrap_or_default(), logo }))
+}
+
+/// Checks that reports can contain the company of the settings. Runs in a task.
+///
+/// # Errors
+/// Returns a message if the logo cannot be read or is not a PNG file.
+pub fn check_company(settings: &Settings) -> Result<(), Text> {
+    match company(settings)?.and_then(|company| company.logo) {
+        Some(logo) => pdf::check_logo(logo).map_err(|error| pdf_error_text(&error)),
+        None => Ok(()),
+    }
 }

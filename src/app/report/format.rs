@@ -50,7 +50,7 @@ pub fn current_time_text(now: &Zoned, language: Language) -> String {
     now.strftime(form).to_string()
 }
 
-fn pdf_error_text(error: &PdfError) -> Text {
+pub(super) fn pdf_error_text(error: &PdfError) -> Text {
     match error {
         PdfError::Logo => Text::new("report.logo"),
         PdfError::Font => Text::new("report.font"),

@@ -13,7 +13,7 @@ mod status;
 use std::path::Path;
 
 pub use bytes::byte_table;
-pub use company::company;
+pub use company::{check_company, company};
 pub use content::{ReportContent, ReportContext};
 pub use format::{ReportFormat, current_time_text};
 

@@ -30,6 +30,18 @@ pub enum PdfError {
     Document(String),
 }
 
+/// Checks that a logo can be printed.
+///
+/// # Errors
+/// Returns [`PdfError::Logo`] if it is not a PNG file.
+pub fn check_logo(bytes: Vec<u8>) -> Result<(), PdfError> {
+    decode_logo(bytes).map(drop)
+}
+
+fn decode_logo(bytes: Vec<u8>) -> Result<Image, PdfError> {
+    Image::from_png(bytes.into(), true).map_err(|_| PdfError::Logo)
+}
+
 /// Returns the report as a PDF document. `printed` is the time of printing; everything else depends on the content
 /// alone.
 ///
@@ -38,7 +50,7 @@ pub enum PdfError {
 pub fn render(report: &Report, printed: &str) -> Result<Vec<u8>, PdfError> {
     let faces = Typefaces::load()?;
     let logo = report.company.as_ref().and_then(|company| company.logo.clone());
-    let logo = logo.map(|bytes| Image::from_png(bytes.into(), true).map_err(|_| PdfError::Logo)).transpose()?;
+    let logo = logo.map(decode_logo).transpose()?;
     let mut flow = Flow::new(&faces);
     flow.place_report(report, logo, printed);
     flow.place_page_numbers(report);

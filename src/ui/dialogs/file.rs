@@ -77,7 +77,7 @@ fn kind(question: &FileQuestion) -> Text {
         FileQuestion::Recording | FileQuestion::Trace { .. } => Text::new("file.recordings"),
         FileQuestion::OfDevice(file) => file.kind().clone(),
         FileQuestion::Table { .. } => Text::new("file.tables"),
-        FileQuestion::Picture { .. } => Text::new("file.pictures"),
+        FileQuestion::Picture { .. } | FileQuestion::Logo => Text::new("file.pictures"),
         FileQuestion::Report { .. } => Text::new("file.page_reports"),
     }
 }
@@ -95,6 +95,7 @@ fn title(question: &FileQuestion) -> Text {
         FileQuestion::Picture { .. } => Text::new("file.picture_title"),
         FileQuestion::Trace { .. } => Text::new("file.trace_title"),
         FileQuestion::Report { .. } => Text::new("file.page_report_title"),
+        FileQuestion::Logo => Text::new("file.logo_title"),
     }
 }
 

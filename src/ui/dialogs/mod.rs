@@ -1,6 +1,7 @@
 //! Dialogs over the window: connecting, a question, typing a path, the about dialog, help, and the command palette.
 
 mod about;
+mod company;
 mod comparison;
 pub(crate) mod connect;
 mod diverged;
@@ -10,6 +11,7 @@ mod question;
 mod server;
 
 pub(super) use about::{about_ui, help_ui};
+pub(super) use company::{CompanyView, company_ui};
 pub(super) use comparison::comparison_ui;
 pub(super) use connect::{ConnectView, connect_ui};
 pub(super) use diverged::diverged_ui;

@@ -1,0 +1,101 @@
+//! The form for the company in reports: its name and its logo.
+
+use std::path::{Path, PathBuf};
+
+use super::action::{Action, TaskResult};
+use super::file_question::FileQuestion;
+use super::report::check_company;
+use super::studio::Studio;
+use super::{Settings, Text};
+
+/// The open form.
+#[derive(Debug, Default)]
+pub struct CompanyForm {
+    /// Logo that was chosen in the dialog for files, until the form shows it.
+    chosen: Option<PathBuf>,
+    is_checking: bool,
+    problem: Option<Text>,
+}
+
+/// An action of the form.
+#[derive(Debug)]
+pub enum CompanyAction {
+    Open,
+    Close,
+    /// Ask for the file of the logo.
+    AskLogo,
+    /// Use the name and the logo in reports. An empty text means none.
+    Save {
+        name: String,
+        logo: String,
+    },
+}
+
+impl CompanyForm {
+    /// Returns the logo that was chosen in the dialog for files.
+    pub fn chosen_logo(&self) -> Option<&Path> {
+        self.chosen.as_deref()
+    }
+
+    pub fn is_checking(&self) -> bool {
+        self.is_checking
+    }
+
+    /// Returns the reason why the logo cannot be used.
+    pub fn problem(&self) -> Option<&Text> {
+        self.problem.as_ref()
+    }
+}
+
+impl Studio {
+    /// Returns the form, or `None` if it is closed.
+    pub fn company_form(&self) -> Option<&CompanyForm> {
+        self.company_form.as_ref()
+    }
+
+    /// Returns whether a form of the settings is open.
+    pub fn has_form(&self) -> bool {
+        self.server_form.is_some() || self.company_form.is_some()
+    }
+
+    pub(super) fn apply_company_action(&mut self, action: CompanyAction) {
+        match action {
+            CompanyAction::Open => self.company_form = Some(CompanyForm::default()),
+            CompanyAction::Close => self.company_form = None,
+            CompanyAction::AskLogo => self.services.file_question = Some(FileQuestion::Logo),
+            CompanyAction::Save { name, logo } => self.check_company(&name, &logo),
+        }
+    }
+
+    pub(super) fn choose_logo(&mut self, path: PathBuf) {
+        if let Some(form) = &mut self.company_form {
+            (form.chosen, form.problem) = (Some(path), None);
+        }
+    }
+
+    /// Starts a task that checks the logo before the company is saved.
+    fn check_company(&mut self, name: &str, logo: &str) {
+        let Some(form) = &mut self.company_form else { return };
+        form.is_checking = true;
+        let text = |text: &str| Some(text.trim().to_owned()).filter(|text| !text.is_empty());
+        let mut wanted = Settings::default();
+        (wanted.company, wanted.company_logo) = (text(name), text(logo));
+        self.services.tasks.run("company", move || {
+            let result = check_company(&wanted);
+            Action::Done(TaskResult::CompanyChecked(Box::new(wanted), result))
+        });
+    }
+
+    pub(super) fn save_company(&mut self, wanted: Settings, checked: Result<(), Text>) {
+        match (checked, &mut self.company_form) {
+            (Ok(()), Some(_)) => {
+                let Settings { company, company_logo, .. } = wanted;
+                (self.settings.company, self.settings.company_logo) = (company, company_logo);
+                self.company_form = None;
+            }
+            (Err(why), Some(form)) => (form.is_checking, form.problem) = (false, Some(why)),
+            // The form was closed meanwhile.
+            (_, None) => {}
+        }
+    }
+}
