@@ -48,8 +48,8 @@ type AttemptResult<T> = Result<Result<T, ExchangeError>, Error>;
 
 enum WriteReaction {
     Yes,
-    /// The encoder rejected the value. Contains the value read back from the register, or `None` if the connection
-    /// cannot provide it.
+    /// The encoder rejected the value. The register then contains the given value, or `None` if it cannot be read back
+    /// over this connection.
     No(Option<u8>),
 }
 

@@ -1,5 +1,5 @@
-//! The control frame: register access with one bit per cycle in each direction (manual 3.1.2, figures 3 and 4; details
-//! missing in the manual are taken from iC-Haus, *BiSS protocol description (C-mode)*).
+//! The control frame, which accesses registers with one bit per cycle in each direction. See manual 3.1.2, figures 3
+//! and 4. Details that are missing in the manual are taken from iC-Haus, *BiSS protocol description (C-mode)*.
 //!
 //! ```text
 //! cycle  0  1    2..4  5..11  12..15  16  17  18  19..26  27..30  31

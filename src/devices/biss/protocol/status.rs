@@ -1,5 +1,5 @@
-//! Individual registers of the kit encoder: errors, warnings, temperature, device mode, filter and firmware (manual
-//! 6.1, 6.2, 6.6, 6.8 and appendix).
+//! Individual registers of the kit encoder: errors, warnings, temperature, device mode, filter and firmware. See manual
+//! 6.1, 6.2, 6.6, 6.8 and the appendix.
 
 use std::fmt;
 

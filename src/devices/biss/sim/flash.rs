@@ -17,7 +17,7 @@ pub struct Flash {
 }
 
 impl Flash {
-    /// Size of a data area in bytes, which is that of 32 banks.
+    /// Size of a data area of 32 banks in bytes.
     pub(super) const AREA: usize = 32 * 64;
 
     /// Creates a flash with factory content and the given number of write cycles.

@@ -83,7 +83,7 @@ pub enum ReplyError {
         /// Number of data bytes received.
         got: usize,
     },
-    /// The repeated arguments differ from those of the request.
+    /// The repeated arguments differ from the arguments of the request.
     #[error("the arguments in the reply differ from those sent")]
     Argument,
 }

@@ -22,7 +22,7 @@ pub enum Failure {
     /// The active filter is not the balanced one.
     #[error("the calibration requires the balanced filter, but the filter is 0x{code:02X}")]
     NotBalanced { code: u8 },
-    /// The device mode read back differs from the one written.
+    /// The device mode that was read back differs from the mode that was written.
     #[error("device mode {wanted} was written, but {found} was read back")]
     Mode { wanted: DeviceMode, found: DeviceMode },
     /// A status register never reached the required value.
@@ -37,7 +37,7 @@ pub enum Failure {
     /// The operator did not complete the task in time.
     #[error("the conditions are not met: {blockers:?}")]
     NotReady { task: OperatorTask, blockers: Vec<StartBlocker> },
-    /// A value read back differs from the one written.
+    /// A value that was read back differs from the value that was written.
     #[error("{item}: {expected} was written, but {got} was read back")]
     NotVerified { item: String, expected: String, got: String },
     /// The description of the encoder does not contain the procedure.

@@ -48,7 +48,7 @@ enum State {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Access {
-    /// Read access. Contains DATA and CRC4 once the value is known.
+    /// Read access, with DATA and CRC4 as soon as the value is known.
     Read(Option<u16>),
     Write,
 }

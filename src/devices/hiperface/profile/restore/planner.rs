@@ -136,7 +136,7 @@ impl Planner<'_> {
             let own = self.device.fields.iter().filter(|f| f.number >= first && self.target_field(f.number).is_none());
             targets.extend(own.cloned());
             targets.sort_by_key(|field| field.number);
-            // Fields without bytes in the profile keep those of the encoder.
+            // Fields without bytes in the profile keep the bytes of the encoder.
             for target in targets.iter_mut().filter(|target| target.bytes.is_none() && target.number >= first) {
                 let own = self.device.fields.iter().find(|field| field.number == target.number);
                 target.bytes =

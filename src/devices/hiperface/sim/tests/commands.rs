@@ -38,7 +38,7 @@ fn the_default_encoder_can_be_read() {
     host.expect("40 52 12", "40 52 E4 37 80 01 40");
     host.expect("40 56 16", "40 56 47 42 30 34 35 30 31 37 39 56 31 2E 32 33 30 31 2E 30 32 2E 31 36 61");
     host.expect("40 4C 00 0C", "40 4C 00 C9 C5");
-    host.expect("40 4E 0E", "40 4E 6E 01 61"); // 112 − 2 blocks
+    host.expect("40 4E 0E", "40 4E 6E 01 61"); // 112 blocks minus 2
     host.expect("40 4A 00 00 04 55 5B", "40 4A 00 00 04 45 4D 44 37 75"); // "EMD7"
     assert_eq!(host.encoder().wear().total(), 0, "reading wears nothing");
     assert_eq!(host.encoder().memory().field_bytes(0).unwrap().len(), 32);
@@ -62,7 +62,7 @@ fn the_other_vectors_of_the_reference_match() {
     host.expect("40 46 06", "40 46 01 23 45 61");
     let mut host = Host::new(&Config { position: Some(0), ..Config::default() });
     host.expect("40 44 00 04", "40 44 00 01 FF FA");
-    host.expect("40 44 01 05", "40 44 01 02 65 62"); // 3 V: count 613
+    host.expect("40 44 01 05", "40 44 01 02 65 62"); // 613 counts for 3 V
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn model_and_type_can_be_chosen() {
     host.expect("40 52 12", "40 52 E4 32 80 01 45");
     let mut host = Host::with("type=0x22&position=0x5A5&settings=0xE4");
     host.expect("40 52 12", "40 52 E4 22 80 01 55");
-    host.expect("40 43 00 00 80 00 55 D6", "40 50 0D 1D"); // 15 bits
+    host.expect("40 43 00 00 80 00 55 D6", "40 50 0D 1D"); // the range is 15 bits
     let mut host = Host::with("type=0x47");
     host.expect("40 63 00 00 00 00 55 76", "40 63 23");
 }

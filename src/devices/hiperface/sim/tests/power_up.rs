@@ -83,7 +83,7 @@ fn settings_57_apply_after_the_reset() {
 #[test]
 fn settings_67_apply_immediately_and_until_the_reset() {
     let mut host = Host::with("");
-    host.expect("40 67 E6 C1", "40 67 E6 C1"); // still at 9600
+    host.expect("40 67 E6 C1", "40 67 E6 C1"); // reply still at 9600 baud
     host.set_format(0xE6);
     host.expect("40 42 02", POSITION);
     host.expect("40 52 12", "40 52 E4 37 80 01 40");

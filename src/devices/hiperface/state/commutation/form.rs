@@ -219,7 +219,8 @@ impl Form {
         parse_in_range(TEXTS.text("commutation.fine"), text, 0.0, f64::from(1_u32 << 27))
     }
 
-    /// Returns the entered number of signal periods per revolution, or that of the encoder type if the entry is empty.
+    /// Returns the entered number of signal periods per revolution. If the entry is empty, the number for the encoder
+    /// type is returned.
     ///
     /// # Errors
     /// Returns an error if the entry is invalid.
