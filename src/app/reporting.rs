@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::action::{Action, RecorderOwner, TaskResult};
 use super::file_question::FileQuestion;
-use super::report::{CreateReport, DeviceReading, ReportContext, ReportFormat, ReportRequest, company, current_time_text};
+use super::report::{
+    CreateReport, DeviceReading, ReportContext, ReportFormat, ReportRequest, company, current_time_text,
+};
 use super::session::Source;
 use super::studio::Studio;
 use super::{AnyDevice, Severity, Text, explain};
