@@ -16,11 +16,12 @@ pub trait DriveStopHandle: Send {
     /// function does not block, and it may be called repeatedly.
     fn release_drives(&self);
 
-    /// Returns whether the device has a connection over which drives can move. After [`release_drives`](Self::release_drives), this is
-    /// `false` as soon as the drives have stopped and the connection is closed.
+    /// Returns whether the device has a connection over which drives can move. After
+    /// [`release_drives`](Self::release_drives), this becomes `false` once the drives have stopped and the connection
+    /// is closed.
     fn is_connected(&self) -> bool;
 
-    /// Returns whether the session has ended, after which this program can no longer move its drives.
+    /// Returns whether the session has ended. After that, this program can no longer move its drives.
     fn is_orphaned(&self) -> bool;
 }
 
@@ -28,13 +29,13 @@ pub trait DriveStopHandle: Send {
 #[derive(Clone, Default)]
 pub struct DriveStopHandles(Arc<Shared>);
 
-/// The stop handles of a session with drives: for the drives, and for the jobs.
+/// The stop handles of one session: one for its drives and one for its jobs.
 type SessionStopHandles = (Box<dyn DriveStopHandle>, WorkerStopHandle);
 
 #[derive(Default)]
 struct Shared {
     sessions: Mutex<Vec<SessionStopHandles>>,
-    /// Whether the drives have been released. From then on, no motion can be started.
+    /// Whether the drives have been released. Afterwards, no motion can be started.
     released: AtomicBool,
     closing: AtomicBool,
 }
@@ -69,12 +70,12 @@ impl DriveStopHandles {
         self.0.released.load(Ordering::SeqCst)
     }
 
-    /// Returns whether no drive is connected.
+    /// Returns whether all drives are disconnected.
     pub fn is_done(&self) -> bool {
         !self.lock_sessions().iter().any(|(brake, _)| brake.is_connected())
     }
 
-    /// Waits until no drive is connected, for at most `patience`. Returns whether no drive is connected.
+    /// Waits for at most `patience` until all drives are disconnected. Returns whether they are.
     pub fn wait_for_disconnect(&self, patience: Duration) -> bool {
         wait_for(patience, || self.is_done())
     }
@@ -83,8 +84,7 @@ impl DriveStopHandles {
         self.0.closing.store(true, Ordering::SeqCst);
     }
 
-    /// Waits until the window has begun to close, for at most `patience`. Returns whether the window has begun to
-    /// close.
+    /// Waits for at most `patience` until the window has begun to close. Returns whether it has.
     pub fn wait_for_window(&self, patience: Duration) -> bool {
         wait_for(patience, || self.0.closing.load(Ordering::SeqCst))
     }

@@ -1,4 +1,4 @@
-//! Results of a device check as texts, for every kind of device.
+//! Formats the results of a device check as texts, for every kind of device.
 
 use super::Text;
 use crate::analysis::check::{StepResult, Verdict};

@@ -9,7 +9,7 @@ use super::session::Source;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Text, recorder};
 
-/// Minimum duration in nanoseconds of a recording for which the user is asked before it is discarded.
+/// Minimum duration of a recording, in nanoseconds, for which the user is asked before it is discarded.
 pub(super) const LONG_RECORDING_NS: i64 = 120_000_000_000;
 
 impl Studio {
@@ -23,8 +23,8 @@ impl Studio {
         self.closing
     }
 
-    /// Returns whether the window may close now. Either no drive is under control, nothing is running, and all data are
-    /// on disk, or the grace period has expired. This includes sessions that have been released.
+    /// Returns whether the window may close now: either no drive is under control, nothing is running and all data are
+    /// on disk, or the grace period has expired. Released sessions that are still ending count as running.
     pub fn can_close(&self) -> bool {
         let services = &self.services;
         let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(|device| device.is_draft_kept());
@@ -88,7 +88,7 @@ impl Studio {
         }
     }
 
-    /// Handles a request from the system to end the program. Edits are kept as drafts, and no questions are asked.
+    /// Handles a request from the system to end the program. Edits are kept as drafts without asking the user.
     pub(super) fn force_quit(&mut self) {
         self.question = None;
         self.stop();

@@ -1,5 +1,5 @@
-//! Resolution of the conflict between an edited profile and a file that has changed on disk. The versions are compared
-//! entry by entry.
+//! Resolution of the conflict between an edited profile and its file, which another program has changed on disk. The
+//! two versions are compared entry by entry.
 
 use super::KindRegistry;
 use super::action::ReadError;
@@ -10,7 +10,7 @@ use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Text};
 use crate::profile::{Change, ChangedSide, ProfileDocument, ProfileError, diverging_changes};
 
-/// A profile of which the window and the file contain different versions.
+/// A profile whose versions in the window and in the file differ.
 #[derive(Debug)]
 pub struct ProfileConflict {
     saving: SaveRequest,
@@ -40,9 +40,9 @@ pub enum ConflictResolution {
     Reload,
     KeepMine,
     Take(usize, Side),
-    /// Write each entry as in its chosen version.
+    /// Writes the chosen version of each entry.
     Merge,
-    /// Close the dialog without writing anything. The edits are kept.
+    /// Closes the dialog without writing anything. The edits are kept.
     Close,
 }
 
@@ -52,7 +52,7 @@ impl Row {
         self.change.location()
     }
 
-    /// Returns the value in a version, or `None` if the version does not contain it.
+    /// Returns the value in one of the versions, or `None` if that version does not contain the entry.
     pub fn value(&self, side: Side) -> Option<&str> {
         match side {
             Side::Theirs => self.change.from.as_deref(),
@@ -108,7 +108,7 @@ impl ProfileConflict {
         self.theirs.is_ok()
     }
 
-    /// Returns whether the file can be overwritten. This is not possible for a file of a newer program version, because
+    /// Returns whether the file can be overwritten. A file written by a newer version of the program cannot, because
     /// its unknown content would be lost.
     pub fn can_overwrite_file(&self) -> bool {
         !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
@@ -129,7 +129,7 @@ impl ProfileConflict {
         })
     }
 
-    /// Returns a save operation that overwrites the file, provided that its content does not change again.
+    /// Returns a save operation that overwrites the file, unless the content of the file changes again.
     fn overwrite_file(self, document: Option<ProfileDocument>) -> SaveRequest {
         let ProfileConflict { mut saving, theirs, text, .. } = self;
         // A file that is no longer a profile has no content to preserve, and the user knows this.

@@ -1,8 +1,8 @@
-//! Data about drives that the program stores on their behalf: spindle pitch, position unit, limits that have not been
-//! confirmed since the scaling changed, and values that are not saved.
+//! Data about drives that the program stores for them: spindle pitch, position unit, limits that have not been
+//! confirmed since the scaling changed, and values that the drives have not saved.
 //!
-//! A drive may also be open in another session or window. Entries in one of them do not change the others. However,
-//! limits marked as unconfirmed in one of them lock all of them, and must be confirmed in each.
+//! A drive may also be open in another session or window. Changes made in one of them do not affect the others.
+//! However, limits marked as unconfirmed in one of them lock all of them, and must be confirmed in each.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,7 +17,7 @@ pub enum PositionUnit {
     Turns,
     /// Angle in degrees. It may exceed one turn.
     Degrees,
-    /// Millimetres travelled on a spindle whose pitch has been entered.
+    /// Millimetres of travel on a spindle whose pitch has been entered.
     Millimetres,
 }
 
@@ -42,14 +42,14 @@ pub struct RememberedDrives {
     pub pitches: BTreeMap<u8, u64>,
     pub measure: PositionUnit,
     unconfirmed: Vec<u8>,
-    /// Number of times that the limits of each drive were marked, by drive number. It distinguishes a new mark from an
-    /// earlier one.
+    /// Number of times that the limits of each drive have been marked, by drive number. It distinguishes a new mark
+    /// from an earlier one.
     marks: BTreeMap<u8, u64>,
     /// Written values that the drive has not saved, by parameter number.
     pub unsaved: BTreeMap<u16, i64>,
 }
 
-/// The readable part of an entry about a drive that is partly invalid.
+/// The readable part of a stored entry about a drive whose other parts are invalid.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct PartialDriveEntry {
@@ -65,18 +65,18 @@ pub enum SettingsReadState {
     Read,
 }
 
-/// A device with drives for which the settings contain data.
+/// A device with drives about which the settings contain data.
 pub trait StoredDriveData {
-    /// Returns the name of the entry in the settings, or `None` before the device has been read.
+    /// Returns the name of the device's entry in the settings, or `None` if the device has not been read.
     fn storage_name(&self) -> Option<String>;
 
-    /// Adopts the stored data about the drives. Returns the data to store next, if they differ from the stored data.
+    /// Adopts the stored data about the drives. Returns the data to store next if they differ from the stored ones.
     ///
-    /// All data are adopted once per device. After that, only limits marked elsewhere are adopted.
+    /// All data are adopted once per device. Afterwards, only limits that were marked elsewhere are adopted.
     fn sync_remembered_drives(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
 
-    /// Locks the drives whose limits another session or window has marked as unconfirmed. The settings need not contain
-    /// the mark yet.
+    /// Locks the drives whose limits another session or window has marked as unconfirmed. This works even before the
+    /// mark is in the settings.
     fn lock_marked_drives(&mut self, found: &RememberedDrives);
 
     /// Returns whether the settings have been read since control was taken.
@@ -121,8 +121,8 @@ impl RememberedDrives {
 
     /// Returns the drives whose limits were marked since `before`.
     ///
-    /// A mark with the same number may already be confirmed here, but not yet on disk. Settings from programs that do
-    /// not count marks contain no numbers.
+    /// A mark with the same number may already be confirmed here but not yet on disk. Settings written by a program
+    /// version that does not count marks contain no numbers.
     pub(crate) fn newly_marked_drives(&self, before: &RememberedDrives) -> Vec<u8> {
         let is_new = |drive: &u8| {
             let number = self.control_count(*drive);
@@ -131,8 +131,8 @@ impl RememberedDrives {
         self.unconfirmed.iter().copied().filter(is_new).collect()
     }
 
-    /// Returns the data with the changes from `known` to `ours`. Limits marked in the meantime stay unconfirmed, even
-    /// if `ours` has confirmed them.
+    /// Returns the data with the changes between `known` and `ours` applied. Limits marked in the meantime stay
+    /// unconfirmed, even if `ours` has confirmed them.
     #[must_use]
     pub(crate) fn with_changes(mut self, known: &RememberedDrives, ours: &RememberedDrives) -> Self {
         let drives = |maps: [&BTreeMap<u8, u64>; 2]| -> BTreeSet<u8> {
@@ -159,7 +159,7 @@ impl RememberedDrives {
     }
 }
 
-/// Applies the changes from `known` to `ours`, key by key.
+/// Applies the changes between `known` and `ours`, key by key.
 fn apply_changes<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &BTreeMap<K, V>, ours: &BTreeMap<K, V>) {
     for key in known.keys().chain(ours.keys()) {
         match (known.get(key), ours.get(key)) {
@@ -174,7 +174,7 @@ fn apply_changes<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &
 mod tests {
     use super::*;
 
-    /// Limits confirmed here are locked again by a new mark, but not by the confirmed mark.
+    /// Limits confirmed here are locked again by a new mark, but not by the mark that was confirmed.
     #[test]
     fn marks_are_compared_by_number() {
         let of = |text: &str| ron::from_str::<RememberedDrives>(&format!("({text})")).unwrap();
@@ -183,7 +183,7 @@ mod tests {
             ("unconfirmed: [1], marks: {1: 1}", "unconfirmed: [1], marks: {1: 1}", &[]),
             ("unconfirmed: [1], marks: {1: 1}", "marks: {1: 1}", &[]),
             ("unconfirmed: [1], marks: {1: 2}", "marks: {1: 1}", &[1]),
-            // By a program that does not count.
+            // Written by a program version that does not count marks.
             ("unconfirmed: [1]", "", &[1]),
             ("unconfirmed: [1]", "marks: {1: 1}", &[1]),
             ("marks: {1: 2}", "marks: {1: 1}", &[]),

@@ -1,4 +1,4 @@
-//! Edited values of a device by location, with undo. The memory supplies the values of the device, and defines which of
+//! Edited values of a device by location, with undo. The base supplies the values of the device and defines which of
 //! them can be edited.
 
 use std::collections::BTreeMap;
@@ -6,16 +6,16 @@ use std::collections::BTreeMap;
 use super::PendingEdits;
 use super::history::History;
 
-/// The content of a memory as last read.
+/// The values of a device as last read.
 pub trait EditBase: Default {
     type Location: Ord + Copy;
     type Value: Copy + PartialEq;
 
-    /// Returns whether a value differs from the value that was read, and is therefore an edit.
+    /// Returns whether a value differs from the one that was read, and is therefore an edit.
     fn is_edit(&self, at: Self::Location, value: Self::Value) -> bool;
 }
 
-/// The content of a memory as last read, with the edited values.
+/// The values of a device as last read, together with the edited values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edits<B: EditBase> {
     base: B,
@@ -44,7 +44,7 @@ impl<B: EditBase> Edits<B> {
         self.edits.iter().map(|(at, value)| (*at, *value))
     }
 
-    /// Edits values as one undo step. A value that equals the value of the device is not an edit.
+    /// Edits values as one undo step. A value that equals the one on the device is not an edit.
     pub fn edit_values(&mut self, values: impl IntoIterator<Item = (B::Location, B::Value)>) {
         let mut after = self.edits.clone();
         for (at, value) in values {
@@ -76,7 +76,7 @@ impl<B: EditBase> Edits<B> {
         *self = Edits::default();
     }
 
-    /// Removes edits that equal the value of the device. An undo step can bring such edits back.
+    /// Removes edits that equal the value of the device. An undo step can restore such edits.
     fn remove_redundant(&mut self) {
         let base = &self.base;
         self.edits.retain(|at, value| base.is_edit(*at, *value));

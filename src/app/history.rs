@@ -1,4 +1,4 @@
-//! Undo and redo for any state. The present state is stored by the owner.
+//! Undo and redo for any type of state. The current state is stored by the owner.
 
 /// The states before the last steps, and the undone states.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,8 +66,8 @@ impl<T: PartialEq> History<T> {
         true
     }
 
-    /// Applies `follow` to the present state and all earlier ones, because their base data have changed. Steps that no
-    /// longer change anything are removed.
+    /// Applies `follow` to the current state and all earlier ones, because the data on which they are based have
+    /// changed. Steps that no longer change anything are removed.
     pub(crate) fn update_all_states(&mut self, now: &mut T, follow: impl Fn(&mut T)) {
         self.undo.iter_mut().for_each(&follow);
         follow(now);
@@ -108,7 +108,7 @@ mod tests {
             history.apply_step(&mut now, after);
         }
         history.undo(&mut now);
-        // Of 1, 2 and 3, three times 0 remains.
+        // 1, 2 and 3 all become 0.
         history.update_all_states(&mut now, |own| *own /= 10);
         assert!(now == 0 && !history.can_undo() && !history.can_redo());
     }

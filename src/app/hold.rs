@@ -13,19 +13,19 @@
 //! | the keyboard goes to another widget | keys are forgotten | keys are forgotten | ends |
 //! | the window loses or gets the keyboard; it is disabled, enabled, or was not in the last picture | keys are forgotten | ends | ends |
 //!
-//! After its end, a hold starts again only with another press. The press of a key must be [fresh](KeyStates). A press
-//! immediately after another key is never fresh.
+//! After a hold has ended, only another press starts a new one. The press of a key must be [fresh](KeyStates), which a
+//! press immediately after another key never is.
 
 use super::press::{KeyStates, PressKey};
 
-/// State of a hold button and the window at the start of a frame.
+/// The state of a hold button and of the window at the start of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HoldContext {
     pub enabled: bool,
     pub window: bool,
     pub keyboard: bool,
-    /// Whether a motion that this button does not hold is in progress or has just been stopped. If so, a key press is a
-    /// request to stop.
+    /// Whether a motion that this button does not control is in progress or has just been stopped. If so, a key press
+    /// is a request to stop.
     pub moving: bool,
 }
 
@@ -36,14 +36,14 @@ pub enum HoldInput {
     WindowFocus(bool),
     Down {
         key: PressKey,
-        /// Whether no modifier key is down.
+        /// Whether no modifier key is held down.
         plain: bool,
     },
     Up(PressKey),
     OtherKey,
     Modifiers,
     PointerDown {
-        /// Whether the press of the first pointer button began on this button.
+        /// Whether the press of the primary pointer button began on this button.
         on: bool,
     },
     PointerMoved {
@@ -51,17 +51,17 @@ pub enum HoldInput {
     },
     PointerUp,
     PointerGone,
-    /// A finger touched the screen. If it acts as the pointer, a pointer press follows.
+    /// A finger has touched the screen. If the touch acts as the pointer, a pointer press follows.
     Finger,
 }
 
-/// Effect of the input of a frame on a held button.
+/// The effect of one frame's input on a hold button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldEvent {
     Press,
     Hold,
     Release,
-    /// A key was pressed during a motion that this button does not hold. All motion must stop.
+    /// A key was pressed during a motion that this button does not control. All motion must stop.
     Stop,
 }
 
@@ -104,7 +104,7 @@ impl HoldState {
         }
     }
 
-    /// Handles an input of the frame. `now` is the time on the clock of the window.
+    /// Handles one input event of the frame. `now` is the time on the window's clock.
     pub fn handle_input(&mut self, now: f64, input: HoldInput) {
         let Some(scene) = self.scene else { return };
         match input {
@@ -143,7 +143,7 @@ impl HoldState {
         }
     }
 
-    /// Ends the frame and returns the effect on the hold. `pointer_down` states whether the pointer is pressed, and
+    /// Ends the frame and returns its effect on the hold. `pointer_down` states whether the pointer is pressed, and
     /// `inside` whether it is on the button.
     pub fn end_frame(&mut self, now: f64, pointer_down: bool, inside: bool) -> Option<HoldEvent> {
         self.next_picture = self.keys.finish_ui_frame(now);

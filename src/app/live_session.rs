@@ -1,5 +1,5 @@
-//! A session on its thread, as seen from the window: the running job, the trace and the samples. It is the same for all
-//! kinds of devices.
+//! A session that runs on its own thread, from the perspective of the window: the running job, the trace and the
+//! samples. It is the same for all kinds of devices.
 
 use std::time::Duration;
 
@@ -71,7 +71,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.poll(interval);
     }
 
-    /// Starts to read the given values in addition to the samples.
+    /// Starts reading the given values in addition to the samples.
     pub(crate) fn watch_values(&self, watched: Vec<(D::Watch, Duration)>) {
         self.worker.watch_values(watched);
     }
@@ -89,7 +89,7 @@ impl<D: Kind> LiveSession<D> {
         self.poll(pace);
     }
 
-    /// Returns the next event, and updates the running job accordingly.
+    /// Returns the next event and updates the state of the running job.
     pub(crate) fn next(&mut self) -> Option<Event<D>> {
         let event = self.worker.events().try_recv().ok()?;
         match &event {
@@ -104,7 +104,8 @@ impl<D: Kind> LiveSession<D> {
         Some(event)
     }
 
-    /// Returns whether the thread has ended without a release of the session, and all of its events have been received.
+    /// Returns whether the thread has ended although the session was not released, and all of its events have been
+    /// received.
     pub(crate) fn is_dead(&self) -> bool {
         self.worker.is_finished() && self.worker.events().is_empty()
     }
@@ -124,7 +125,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.stop_handle()
     }
 
-    /// Returns the worker. Closing the worker can take time, so it must be done where waiting blocks nothing else.
+    /// Returns the worker. Closing a worker can take time, so do it where blocking is harmless.
     pub(crate) fn into_worker(self) -> Worker<D> {
         self.worker
     }

@@ -47,7 +47,7 @@ impl Notice {
     }
 }
 
-/// The log of notices, newest last. The oldest ones are removed.
+/// The log of notices, newest last. When it is full, the oldest ones are removed.
 #[derive(Debug, Default)]
 pub struct NoticeLog {
     notices: VecDeque<Notice>,
@@ -98,8 +98,8 @@ impl NoticeLog {
         }
     }
 
-    /// Removes a notice about a session from the window, unless it is an error, because a more important message about
-    /// the session is displayed there.
+    /// Removes a notice about a session from the window unless it is an error, because a more important message about
+    /// the session is displayed elsewhere.
     pub(crate) fn remove_minor(&mut self, about: &str) {
         let is_it = |notice: &Notice| notice.severity < Severity::Error && notice.about.as_deref() == Some(about);
         self.standing.take_if(|notice| is_it(notice));
@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(Severity::Warning.display_time(Duration::from_secs(21)), Some(Duration::ZERO));
     }
 
-    /// Saving a file removes the errors about that file and no others.
+    /// Saving a file removes only the errors about that file.
     #[test]
     fn saving_a_file_dismisses_its_errors() {
         let mut log = NoticeLog::default();

@@ -1,9 +1,9 @@
-//! Parsing numbers that the user types. Decimal point and comma are accepted. Numbers are finite, and an error names
-//! the allowed range.
+//! Parsing of numbers entered by the user. Both decimal point and comma are accepted. Numbers are always finite, and
+//! errors name the allowed range.
 
 use super::Text;
 
-/// Maximum number of signal periods per revolution that can be entered. No encoder has more.
+/// Maximum number of signal periods per revolution that can be entered. No known encoder has more.
 pub(crate) const MAX_PERIODS: u32 = 65_536;
 
 /// Parses a decimal number with an optional exponent. Returns `None` if the text is invalid.
@@ -14,7 +14,7 @@ pub fn parse_decimal(text: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| plain && value.is_finite())
 }
 
-/// Parses a number from `least` to `most`. Errors name the entry as `what`.
+/// Parses a number from `least` to `most`. Errors refer to the entry as `what`.
 ///
 /// # Errors
 /// Returns the reason why the entry is invalid.
@@ -69,10 +69,10 @@ pub(crate) fn parse_number_or_hex(what: impl Into<Text>, text: &str, last: u64) 
     value.filter(|value| *value <= last).ok_or_else(refused)
 }
 
-/// Parses a quantity as printed on a component, or returns `None` if the text is invalid.
+/// Parses a quantity in the notation printed on components, or returns `None` if the text is invalid.
 ///
-/// A prefix from f to G may follow the number or replace its decimal point, and the unit may be left out: `10k`, `10
-/// kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`. An exponent is possible as well: `22e-12`.
+/// An SI prefix from f to G may follow the number or replace its decimal point, and the unit may be omitted: `10k`, `10
+/// kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`. An exponent is also accepted: `22e-12`.
 fn parse_component_value(text: &str) -> Option<f64> {
     const UNITS: [&str; 6] = ["Ohm", "ohm", "Ω", "\u{2126}", "F", "R"];
     const PREFIXES: [(char, f64); 10] = [
@@ -102,7 +102,7 @@ fn parse_component_value(text: &str) -> Option<f64> {
     }
 }
 
-/// Parses a quantity from `least` to `most`. Errors name these limits as `range`.
+/// Parses a quantity from `least` to `most`. Errors state the allowed range as `range`.
 ///
 /// # Errors
 /// Returns the reason why the entry is invalid.
@@ -125,12 +125,12 @@ fn check_not_empty(what: &Text, text: &str) -> Result<(), Text> {
     if text.trim().is_empty() { Err(Text::new("entry.missing").with_text("what", what.clone())) } else { Ok(()) }
 }
 
-/// Returns the number of decimals needed to show a limit, at most three.
+/// Returns the number of decimals needed to display a limit, at most three.
 pub(crate) fn decimal_places(value: f64) -> usize {
     decimals_of(value, 3)
 }
 
-/// Returns the number of decimals of a number with at most twelve digits.
+/// Returns the number of decimals needed to display a number with at most twelve significant digits.
 pub fn plain_decimals(value: f64) -> usize {
     const DIGITS: i32 = 12;
     let before = if value == 0.0 { 1 } else { (value.abs().log10().floor() as i32).saturating_add(1) };
@@ -138,7 +138,7 @@ pub fn plain_decimals(value: f64) -> usize {
     rounded.split_once('.').map_or(0, |(_, behind)| behind.trim_end_matches('0').len())
 }
 
-/// Returns the number of decimals needed to show a number, at most `most`.
+/// Returns the number of decimals needed to display a number, at most `most`.
 pub(crate) fn decimals_of(value: f64, most: usize) -> usize {
     (0..most).find(|count| (value * 10_f64.powi(*count as i32)).fract() == 0.0).unwrap_or(most)
 }

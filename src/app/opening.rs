@@ -1,4 +1,4 @@
-//! Opening links. A link is opened on a thread as soon as the previous user of the connection has released it. If a
+//! Opening of links. A link is opened on a thread as soon as the previous user of the connection has released it. If a
 //! session already uses the connection, the link is opened in that session.
 
 use crossbeam_channel::{Receiver, Sender, bounded};
@@ -16,16 +16,17 @@ use super::{AnyDevice, Severity, Text};
 use crate::link::{LinkScheme, LinkUrl, TraceEntry, UrlError};
 use crate::worker::{OpenError, Ring, Session, Worker};
 
-/// Maximum number of frames that wait for the window. This is enough for ten seconds at 2,000 frames per second.
+/// Maximum number of frames that can wait for the window. This is enough for ten seconds at 2,000 frames per second.
 const FRAMES: usize = 20_000;
-/// Maximum memory used by waiting frames in bytes.
+/// Maximum memory used by waiting frames, in bytes.
 const FRAME_BYTES: usize = 8 << 20;
 
 impl Studio {
     /// Returns the tab of the device to which a link refers.
     ///
-    /// If several kinds of devices are possible, a tab in which the link has been used takes precedence, then the open
-    /// tab. Kinds for which such links are usual come first. Without a link, the open tab is returned.
+    /// If several kinds of devices are possible, a tab in which the link has been used takes precedence, followed by
+    /// kinds of devices for which such links are usual. Among equal candidates, the open tab comes first. Without a
+    /// link, the open tab is returned.
     pub(super) fn tab_for_link(&self, link: Option<&LinkUrl>) -> Tab {
         let kinds = self.services.world.kinds;
         let tab = self.settings.tab;
@@ -44,7 +45,7 @@ impl Studio {
         let find = |fits: &dyn Fn(&Tab) -> bool| {
             tabs().find(|tab| is_usual(tab) && fits(tab)).or_else(|| tabs().find(|tab| fits(tab)))
         };
-        // An invalid link is reported by a kind of device to which such links can lead.
+        // An invalid link is reported by a kind of device that uses links with this scheme.
         tabs().find(used).or_else(|| find(&fits)).or_else(|| find(&leads_there)).unwrap_or(shown)
     }
 
@@ -57,7 +58,7 @@ impl Studio {
         }
     }
 
-    /// Opens a link to a device found by a search. The search has already asked about other masters.
+    /// Opens a link to a device found by a search. The search has already asked the user about other masters.
     pub(super) fn open_discovered(&mut self, tab: Tab, url: LinkUrl) {
         let was_asked =
             self.services.world.kinds.kind_for_tab(tab).is_some_and(|kind| kind.may_have_other_master(&url));
@@ -108,7 +109,7 @@ impl Studio {
     /// If the link of the session is still being opened, the returned channel closes when the attempt has ended.
     ///
     /// # Errors
-    /// Returns the session that is writing.
+    /// Returns an error that names the session if it is writing.
     pub(super) fn release_connection(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         let holds = |device: &&mut Box<AnyDevice>| {
             let held = device.is_connected() || device.is_opening();
@@ -135,8 +136,8 @@ impl Studio {
         self.open_session_link(id, url);
     }
 
-    /// Opens a link for a session. If a drive may be on the line, the user is asked first. Listening on the line is not
-    /// sufficient, because a drive may read the encoder at power-up only and then be silent.
+    /// Opens a link for a session. If a drive may be on the line, the user is asked first. It is not enough to listen
+    /// on the line, because a drive may read the encoder only at power-up and then be silent.
     fn open_session_link(&mut self, id: SessionId, url: LinkUrl) {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
@@ -191,7 +192,7 @@ impl Studio {
 }
 
 impl Services {
-    /// Opens a link on a thread, after an earlier attempt and other users of the connection have ended. The returned
+    /// Opens a link on a thread after earlier attempts and other users of the connection have ended. The returned
     /// channel closes when the connection is free again.
     pub(crate) fn open_task<D: Kind>(
         &mut self,
@@ -246,7 +247,7 @@ fn open<D: Kind>(
     }
 }
 
-/// Guard that wakes the window when the thread of a session ends, for any reason.
+/// A guard that wakes the window when the thread of a session ends for any reason.
 struct WakeOnDrop(Wake);
 
 impl Drop for WakeOnDrop {

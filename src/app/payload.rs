@@ -1,5 +1,5 @@
-//! Actions of a kind of device, passed through code that does not know their type. Only [`Payload::open`] can detect an
-//! action of another kind.
+//! Actions that pass through code that does not know the type of the device. [`Payload::open`] is the only place that
+//! detects an action for another kind of device.
 
 use std::any::Any;
 use std::fmt;
@@ -14,7 +14,7 @@ pub trait DeviceAction: Any + Send {}
 /// An action or the result of a task, for any kind of device.
 pub struct Payload(Box<dyn Any + Send>);
 
-/// Error if a payload has reached a device of another kind.
+/// The error for a payload that has reached a device of another kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the action is for another kind of device")]
 pub struct PayloadKindError;

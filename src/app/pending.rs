@@ -1,4 +1,4 @@
-//! Edits that have not been written. This part is the same for every kind of device.
+//! Edits that have not been written, in a form common to all kinds of devices.
 
 use super::history::History;
 
@@ -25,7 +25,7 @@ pub trait PendingEdits {
     fn clear_undo_steps(&mut self);
 }
 
-/// Edits stored as a complete copy of the values, with their undo steps.
+/// Edits that are stored as a complete copy of the values, with their undo steps.
 pub(crate) trait SnapshotEdits {
     type Values: Clone + PartialEq;
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::store::{FileError, FileErrorKind, FileOperation, write_atomically};
 
-/// A picture in RGB pixels, row by row from the top.
+/// An RGB image, row by row from the top.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
     width: u32,
@@ -22,7 +22,7 @@ impl fmt::Debug for Picture {
 }
 
 impl Picture {
-    /// Creates a picture from RGB pixels. Returns `None` if the number of bytes does not match the size, or if the size
+    /// Creates an image from RGB pixels. Returns `None` if the number of bytes does not match the size, or if the size
     /// is zero.
     pub fn new(width: u32, height: u32, bytes: Vec<u8>) -> Option<Self> {
         let wanted = u64::from(width) * u64::from(height) * 3;
@@ -30,10 +30,10 @@ impl Picture {
         fits.then(|| Picture { width, height, bytes: bytes.into() })
     }
 
-    /// Saves the picture as PNG.
+    /// Saves the image as a PNG file.
     ///
     /// # Errors
-    /// Returns the error if the file cannot be written. In this case, an existing file stays unchanged.
+    /// Returns an error if the file cannot be written. In this case, an existing file stays unchanged.
     pub(super) fn save(&self, path: &Path) -> Result<(), FileError> {
         let refused = |error: std::io::Error| FileError {
             path: path.to_owned(),

@@ -1,14 +1,15 @@
 //! Detection of fresh key presses. A press is fresh if the user has just made it. Repetitions of a held key are not
 //! fresh.
 //!
-//! A press alone does not prove that it is fresh. Toolkits forget which keys are down when the window loses the
-//! keyboard focus. The next repetition of a held key then looks like a first press, and the release reported at that
-//! moment is artificial.
+//! A press event alone does not prove that the press is fresh. Toolkits forget which keys are down when the window
+//! loses the keyboard focus. The next repetition of a held key then looks like a first press, and the release reported
+//! at that moment is artificial.
 //!
-//! A release proves that the next press is fresh if the window has the focus when it arrives, and a later frame still
-//! sees the key up. A release and a press made at the same time may arrive in two frames, however far apart.
+//! A release proves that the next press is fresh if the window has the focus when the release arrives, and the key is
+//! still up in a later frame. The release and the press of a repetition, which occur at the same time, may arrive in
+//! two frames, however far apart.
 //!
-//! This module has no access to the system: inputs are arguments in order, with the time of their frame in seconds.
+//! This module does not access the system. Inputs are passed in order, with the time of their frame in seconds.
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PressKey {
@@ -17,18 +18,18 @@ pub enum PressKey {
     Enter,
 }
 
-/// Minimum time in seconds between the release of a key and a fresh press. Some remote desktops and displays repeat a
-/// key as a release and an immediate press.
+/// Minimum time in seconds between the release of a key and a fresh press. Some remote desktops and display servers
+/// report the repetition of a key as a release followed immediately by a press.
 const MIN_RELEASE_S: f64 = 0.05;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum KeyState {
-    /// The state of the key is unknown. The key may be held down.
+    /// The state of the key is unknown. It may be held down.
     #[default]
     Nothing,
     Down,
-    /// Time at which the key was released or another key was pressed. Since then, the key has not been up for long
-    /// enough.
+    /// Time at which the key was released or another key was pressed. The key has not been up for long enough since
+    /// then.
     Released(f64),
     Up,
 }
@@ -40,15 +41,16 @@ pub struct KeyStates {
 }
 
 impl KeyStates {
-    /// State in which both keys are up, and the keyboard focus has not been lost.
+    /// The state in which both keys are up and the keyboard focus has not been lost.
     pub const ALL_UP: KeyStates = KeyStates { space: KeyState::Up, enter: KeyState::Up };
 
-    /// Discards the states of the keys, because the keyboard focus has changed or has another purpose.
+    /// Discards the states of the keys, because the keyboard focus has moved or now serves another purpose.
     pub fn reset_keys(&mut self) {
         *self = KeyStates::default();
     }
 
-    /// Handles a key press and returns whether it is fresh. An earlier frame must have seen the key up for long enough.
+    /// Handles a key press and returns whether it is fresh. A press is fresh if the key had been up for long enough in
+    /// an earlier frame.
     pub fn is_fresh_press(&mut self, key: PressKey) -> bool {
         std::mem::replace(self.state_mut(key), KeyState::Down) == KeyState::Up
     }
@@ -58,8 +60,8 @@ impl KeyStates {
         *self.state_mut(key) = KeyState::Released(now);
     }
 
-    /// Records that another key was pressed. The system repeats only the key pressed last, so a later press of a key in
-    /// an unknown state is not a repetition.
+    /// Records that another key was pressed. The system repeats only the most recently pressed key, so a later press of
+    /// a key in an unknown state is not a repetition.
     pub fn record_other_key_press(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.state_mut(key);
@@ -80,8 +82,8 @@ impl KeyStates {
         }
     }
 
-    /// Ends a frame. Returns the time in seconds after which another frame is needed to determine the state of a key. A
-    /// release alone causes no further frame.
+    /// Ends a frame. Returns the time in seconds after which another frame is needed to determine the state of a key.
+    /// The toolkit does not draw another frame after a release unless one is requested.
     #[must_use]
     pub fn finish_ui_frame(&mut self, now: f64) -> Option<f64> {
         let mut next: Option<f64> = None;
@@ -98,12 +100,13 @@ impl KeyStates {
         next
     }
 
-    /// Returns whether the key was seen up. If so, the next press is fresh, unless it follows immediately.
+    /// Returns whether the key is known to be up. If so, the next press is fresh, unless it follows a release or
+    /// another key immediately.
     pub fn is_armed(&self, key: PressKey) -> bool {
         matches!(self.get(key), KeyState::Released(_) | KeyState::Up)
     }
 
-    /// Returns whether the key was seen down and has not been seen up since.
+    /// Returns whether the key is known to be down.
     pub fn is_down(&self, key: PressKey) -> bool {
         self.get(key) == KeyState::Down
     }
@@ -128,14 +131,14 @@ mod tests {
     use super::PressKey::{Enter, Space};
     use super::*;
 
-    /// Runs `count` frames without input.
+    /// Draws `count` frames without input, `apart` seconds apart.
     fn pictures(keys: &mut KeyStates, from: f64, apart: f64, count: u32) {
         for number in 0..count {
             let _ = keys.finish_ui_frame(from + apart * f64::from(number));
         }
     }
 
-    /// A press that the toolkit reports as new is not fresh if the key was not seen up before.
+    /// A press that the toolkit reports as new is not fresh unless the key was known to be up.
     #[test]
     fn a_press_is_fresh_only_after_a_release() {
         let mut keys = KeyStates::default();
@@ -158,8 +161,8 @@ mod tests {
         assert!(!keys.is_fresh_press(Space), "the keyboard was elsewhere meanwhile");
     }
 
-    /// A release followed immediately by a press is a repetition, in one frame or in two, regardless of the time
-    /// between the frames.
+    /// A release followed immediately by a press is a repetition, whether both arrive in one frame or in two, and
+    /// however far apart the frames are.
     #[test]
     fn a_release_and_an_immediate_press_are_a_repeat() {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
@@ -179,7 +182,7 @@ mod tests {
         }
     }
 
-    /// A user's press is fresh even if nothing else happened after the release, because a frame was requested.
+    /// A user's press is fresh even if nothing else happens after the release, because the release requests a frame.
     #[test]
     fn a_press_by_the_user_is_fresh_after_the_requested_frame() {
         for apart in [0.001, 0.016, 0.05, 1.0] {
@@ -190,7 +193,7 @@ mod tests {
             let (mut now, mut pictures) = (1.0, 0);
             while let Some(next) = keys.finish_ui_frame(now) {
                 assert!(next > 0.0 && next < 0.0501, "{next}");
-                // By the requested frame, or by an earlier one.
+                // The requested frame, or an earlier one.
                 now += next.min(apart);
                 pictures += 1;
             }

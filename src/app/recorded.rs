@@ -1,12 +1,12 @@
-//! Tests of the names in users' files: recorded settings and edits are read and written unchanged. Tests of drafts are
-//! in the folders of their devices.
+//! Tests of the names stored in users' files: recorded settings and edits must be read and written unchanged. Tests of
+//! drafts are in the folders of their devices.
 
 use std::fmt::Debug;
 
 use super::session::Kind;
 use super::{Settings, Tab};
 
-/// A settings file with every entry, tab, measure and mark.
+/// A settings file that contains every entry, tab, unit and mark.
 pub(crate) const SETTINGS: &str = include_str!("../../tests/fixtures/settings/settings.ron");
 
 #[test]
@@ -25,7 +25,7 @@ fn settings_match_the_recorded_file() {
     assert_eq!(Settings::parse_partial(SETTINGS), settings);
 }
 
-/// Checks that a draft of a kind is read and written back unchanged under the name of the kind.
+/// Checks that a device's draft is read and written back unchanged under the name of its kind.
 pub(crate) fn assert_recorded<D: Kind>(kind: &str, draft: &str)
 where
     D::Edits: Debug,

@@ -1,4 +1,4 @@
-//! The recording of a device. This part is the same for all kinds of devices.
+//! The recording of a device, in a form common to all kinds of devices.
 
 use std::time::Duration;
 

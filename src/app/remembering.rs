@@ -10,7 +10,7 @@ use crate::store::FileError;
 
 /// Interval at which the settings are read again while drives are under control.
 const REFRESH_INTERVAL: Duration = Duration::from_secs(1);
-/// Time for which settings remain valid after they were read. It equals that of values read from the drives.
+/// Time for which settings remain valid after they were read. It equals the validity of values read from the drives.
 const VALIDITY: Duration = Duration::from_secs(4);
 
 impl Studio {

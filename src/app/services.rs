@@ -20,7 +20,7 @@ use crate::link::{LinkError, PortInfo};
 use crate::store::{BaseFolders, Store};
 use crate::worker::JobId;
 
-/// Access to everything outside the application state, such as files, serial ports and the time. Tests replace it.
+/// Access to everything outside the application state, such as files, serial ports and the clock. Tests replace it.
 #[derive(Clone)]
 pub struct StudioEnvironment {
     pub store: Store,
@@ -28,7 +28,7 @@ pub struct StudioEnvironment {
     pub given: TypeMap,
     pub kinds: KindRegistry,
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
-    /// Folders that relative paths refer to.
+    /// Folders to which relative paths refer.
     pub folders: BaseFolders,
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
     /// Whether the window is operated over a remote desktop.
@@ -129,7 +129,7 @@ impl Services {
         self.log.add(self.create_notice(severity, texts, about));
     }
 
-    /// Adds a notice about a part of a device to the log, and displays it in the window.
+    /// Adds a notice about a part of a device to the log and displays it in the window.
     pub(crate) fn notify_part(
         &mut self,
         severity: Severity,

@@ -1,5 +1,5 @@
-//! Sessions that have been released and are still ending. The window cannot close and their connections are not free
-//! until they have ended.
+//! Sessions that have been released and are still ending. Until they have ended, the window cannot close, and their
+//! connections are not free.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -23,8 +23,8 @@ pub struct GracePeriods {
     pub disk: Duration,
     /// Maximum waiting time for a job that does not write anything.
     pub job: Duration,
-    /// Maximum waiting time for a write. Within this time, the write must reach a point at which it can end, and lock
-    /// the memory again.
+    /// Maximum waiting time for a write. Within this time, the write must reach a point at which it can stop, and must
+    /// lock the memory again.
     pub write: Duration,
 }
 
@@ -55,7 +55,7 @@ pub(crate) trait ClosingWorker: Send + Sync {
     /// Returns whether the thread has ended and the connection is free.
     fn is_finished(&self) -> bool;
 
-    /// Waits for the end, for at most `patience`. Returns whether the session has ended.
+    /// Waits for at most `patience` until the session has ended. Returns whether it has ended.
     fn wait_for_end(&self, patience: Duration) -> bool;
 
     fn job_completions(&self) -> Vec<JobCompletion>;
@@ -151,7 +151,7 @@ impl Services {
         }
     }
 
-    /// Returns whether a session is ending and still writes.
+    /// Returns whether a session that is ending is still writing.
     pub(super) fn has_closing_write(&self) -> bool {
         self.closing_sessions.iter().any(|closing| closing.info.write.is_some())
     }

@@ -1,5 +1,5 @@
-//! Interface of a device that provides sine and cosine signals in addition to its absolute position. The tool Signals
-//! uses it.
+//! Interface of a device that provides sine and cosine signals in addition to its absolute position. It is used by the
+//! Signals tool.
 
 use super::action::Action;
 use super::studio::SessionId;
@@ -10,11 +10,11 @@ pub struct SineCosineReading {
     /// Absolute position in steps of 1/32 period.
     pub position: u32,
     pub valid: bool,
-    /// Sine and cosine signals in volts, if the device provides them.
+    /// Sine and cosine voltages, if the device provides them.
     pub signals: Option<SineCosineVolts>,
 }
 
-/// Voltages of sine and cosine, each relative to its reference wire.
+/// Voltages of the sine and cosine signals, each relative to its reference wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SineCosineVolts {
     pub sine_v: f64,
@@ -43,7 +43,6 @@ pub trait SineCosineSource {
 
     fn origin(&self) -> SineCosineOrigin;
 
-    /// Removes and returns the requested reading, or the reason why it failed. Returns `None` if there is no new
-    /// result.
+    /// Takes the requested reading, or the reason why it failed. Returns `None` if there is no new result.
     fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>>;
 }

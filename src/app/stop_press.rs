@@ -1,6 +1,6 @@
-//! Repeated presses of a stop button. A user who stops a machine may press twice, hold the key, or release the button
-//! after the machine has stopped. Such presses must have no other effect. They still stop a motion that has started in
-//! the meantime. Times are those of the frames, in seconds.
+//! Detection of repeated presses of a stop button. A user who stops a machine may press twice, hold the key, or release
+//! the button after the machine has stopped. Such presses must have no other effect. They still stop a motion that has
+//! started in the meantime. Times are frame times in seconds.
 
 /// Time in seconds after a stop during which another press is also a stop.
 const REPEAT_WINDOW_S: f64 = 0.5;
@@ -13,8 +13,7 @@ pub struct StopPressTracker {
 }
 
 impl StopPressTracker {
-    /// Returns whether a press at the given time counts as a stop, because a motion is running or has just been
-    /// stopped.
+    /// Returns whether a press at the given time counts as a stop because a motion is running or has just been stopped.
     pub fn register_stop_press(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
         let means = moves || self.has_recently_stopped(pressed);
         if means {
@@ -23,7 +22,7 @@ impl StopPressTracker {
         means
     }
 
-    /// Returns whether the last stop was so recent that a press must belong to it.
+    /// Returns whether the last stop was so recent that a press must be a repetition of it.
     pub fn has_recently_stopped(&self, pressed: f64) -> bool {
         self.stopped.is_some_and(|stopped| pressed - stopped <= REPEAT_WINDOW_S)
     }
@@ -48,7 +47,7 @@ mod tests {
         assert!(!presses.register_stop_press(false, 9.0, 9.0), "nothing moves, and nothing has");
         assert!(presses.register_stop_press(true, 10.0, 10.0));
         assert!(presses.register_stop_press(false, 10.5, 10.5), "half a second later");
-        // The time counts from the last of them.
+        // The time counts from the last press.
         assert!(presses.register_stop_press(false, 11.0, 11.0));
         assert!(!presses.register_stop_press(false, 11.75, 11.75));
     }
@@ -58,7 +57,7 @@ mod tests {
         let mut presses = StopPressTracker::default();
         presses.register_stop_press(true, 10.0, 10.0);
         presses.press_began(10.25);
-        // Released long after.
+        // Released long after the press.
         let pressed = presses.press_time(true, 12.0);
         assert_eq!(pressed, 10.25);
         assert!(presses.register_stop_press(false, pressed, 12.0));

@@ -7,12 +7,12 @@ use std::sync::{Mutex, PoisonError};
 use serde::de::{EnumAccess, Error, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A tab of the window for a kind of device or a tool. Settings identify it by its name.
+/// A tab of the window for a kind of device or a tool. It is stored in the settings under its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Tab(&'static str);
 
 impl Tab {
-    /// Creates the tab with a name. The name is written to the settings of users and must never change.
+    /// Creates a tab with a name. The name is written to users' settings and must never change.
     pub const fn named(name: &'static str) -> Self {
         Tab(name)
     }
@@ -22,7 +22,7 @@ impl Tab {
     }
 }
 
-/// The default is the first tab, which is used if the settings do not name a tab.
+/// The default is the first tab. It is used if the settings do not name a tab.
 impl Default for Tab {
     fn default() -> Self {
         Tab("First")
@@ -78,10 +78,10 @@ impl<'de> Deserialize<'de> for TabName {
     }
 }
 
-/// Returns a static string with the name of a tab.
+/// Returns a static string with the given name of a tab.
 ///
-/// Names of unknown tabs are included, because another version of the program still uses their links. Each name is
-/// stored once until the process ends.
+/// Unknown names are included, because another version of the program may still use the links of such a tab. Each name
+/// is stored once and kept until the process ends.
 fn intern_name(name: String) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);

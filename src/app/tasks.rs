@@ -1,5 +1,5 @@
-//! Blocking tasks, such as file access, the opening of links, and system dialogs. Each one runs on a thread and returns
-//! its result as an action.
+//! Blocking tasks, such as file access, opening links, and system dialogs. Each task runs on a thread and returns its
+//! result as an action.
 
 use std::sync::Arc;
 use std::thread;
@@ -11,7 +11,7 @@ use super::Action;
 /// A callback that wakes the window when there are new events.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// Runs tasks on threads. The result of each task is an action.
+/// A runner that executes tasks on threads and delivers the result of each one as an action.
 pub struct TaskRunner {
     sender: Sender<Action>,
     receiver: Receiver<Action>,
@@ -45,7 +45,7 @@ impl TaskRunner {
         ActionMailbox { sender: self.sender.clone(), wake: self.wake.clone() }
     }
 
-    /// Returns the callback with which sessions wake the window.
+    /// Returns the callback that sessions use to wake the window.
     pub(crate) fn wake_callback(&self) -> Wake {
         self.wake.clone()
     }

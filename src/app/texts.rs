@@ -1,5 +1,5 @@
-//! Texts in English and German from the catalogues in `assets/texts`. There is a common catalogue, and one for each
-//! device, the adapter and Signals. A text refers to its catalogue.
+//! Texts in English and German, taken from the catalogues in `assets/texts`. There is a common catalogue, and one for
+//! each device, the adapter and the Signals tool. Each text refers to its catalogue.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -33,7 +33,7 @@ enum TextArgument {
 }
 
 impl TextArgument {
-    /// Returns the memory of the argument on the heap in bytes.
+    /// Returns the heap memory of the argument in bytes.
     fn size(&self) -> usize {
         match self {
             TextArgument::Words(words) | TextArgument::Number(words) => words.len(),
@@ -61,7 +61,7 @@ pub struct Catalogue {
     rows: OnceLock<BTreeMap<String, Row>>,
 }
 
-/// Catalogue of texts that do not belong to a single device.
+/// The catalogue of texts that do not belong to a single device.
 pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/common.ron"));
 
 #[derive(Debug, Deserialize)]
@@ -69,7 +69,7 @@ pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/c
 struct Row {
     en: String,
     de: String,
-    /// English text for the command line, or an empty string if the text is the same as in the window.
+    /// The English text for the command line, or an empty string if it is the same as in the window.
     #[serde(default)]
     terminal: String,
 }
@@ -149,7 +149,7 @@ impl Text {
         self.text_for(Output::Window(language))
     }
 
-    /// Returns the text for the command line, which is in English and contains hints for the command line.
+    /// Returns the text for the command line. It is in English and contains hints for the command line.
     pub fn terminal_text(&self) -> String {
         self.text_for(Output::Terminal)
     }
@@ -161,7 +161,7 @@ impl Text {
             Output::Terminal if !row.terminal.is_empty() => &row.terminal,
             Output::Window(Language::English) | Output::Terminal => &row.en,
         };
-        // The template is read once, because an argument may itself contain braces.
+        // The template is scanned only once, because an argument may itself contain braces.
         let mut words = String::new();
         let mut rest = template.as_str();
         while let Some((before, after)) = rest.split_once('{') {
@@ -178,12 +178,12 @@ impl Text {
     }
 }
 
-/// Formats a number, given with a decimal point, with the decimal sign of a language.
+/// Formats a number that is given with a decimal point, using the decimal sign of a language.
 pub(crate) fn localize_number(number: &str, language: Language) -> String {
     TextArgument::Number(number.to_owned()).text_for(Output::Window(language))
 }
 
-/// Formats a number with the given decimals and the decimal sign of a language.
+/// Formats a number with the given number of decimals, using the decimal sign of a language.
 pub fn format_decimal(value: f64, decimals: usize, language: Language) -> String {
     TextArgument::Number(format!("{value:.decimals$}")).text_for(Output::Window(language))
 }
@@ -199,7 +199,7 @@ impl Catalogue {
         Catalogue { source, rows: OnceLock::new() }
     }
 
-    /// Returns the text with the given id from this catalogue, or else from the common one.
+    /// Returns the text with the given id from this catalogue, or from the common catalogue if it is not in this one.
     pub fn text(&'static self, id: &'static str) -> Text {
         let is_own = *self != COMMON && self.rows().contains_key(id);
         let catalogue = if is_own { self } else { &COMMON };
@@ -208,7 +208,7 @@ impl Catalogue {
         Text { catalogue, id, arguments: Vec::new() }
     }
 
-    /// Returns the text for a numbered entry of a table, such as `hd_parameter.158`.
+    /// Returns the text for a numbered table entry, such as `hd_parameter.158`.
     pub(crate) fn numbered_text(&'static self, area: &str, number: u16) -> Option<Text> {
         let (id, _) = self.rows().get_key_value(&format!("{area}.{number}"))?;
         Some(Text { catalogue: self, id, arguments: Vec::new() })

@@ -1,5 +1,5 @@
-//! Theme data from `assets/theme.ron`: colours by meaning, sizes and spacing. Drawing code reads them; this module
-//! does not draw anything.
+//! Theme data from `assets/theme.ron`: colours by meaning, sizes and spacing. Drawing code reads these data; this
+//! module does not draw anything.
 
 use std::sync::LazyLock;
 
@@ -37,18 +37,18 @@ pub struct Palette {
     pub surface: Rgb,
     pub raised: Rgb,
     pub sunken: Rgb,
-    /// Background of an entry. In the light theme, a grey one would look disabled.
+    /// Background of a text entry. In the light theme, a grey background would look disabled.
     pub entry: Rgb,
     pub line: Rgb,
     pub text: Rgb,
     pub muted: Rgb,
     pub accent: Rgb,
     pub on_accent: Rgb,
-    /// Colour of values that are edited and not yet written.
+    /// Colour of values that have been edited but not written.
     pub staged: Rgb,
     pub good: Rgb,
     pub warn: Rgb,
-    /// Colour of errors and of STOP.
+    /// Colour of errors and of the STOP button.
     pub bad: Rgb,
     pub on_bad: Rgb,
     pub series: [Rgb; 8],
@@ -73,7 +73,7 @@ impl ThemeData {
     /// Returns the built-in theme.
     ///
     /// # Errors
-    /// Returns a description of the error in the theme file. A test checks that there is none.
+    /// Returns a description of the error in the theme file. A test ensures that there is none.
     pub fn built_in() -> Result<&'static ThemeData, &'static str> {
         BUILT_IN.as_ref().map_err(String::as_str)
     }

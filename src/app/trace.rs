@@ -1,4 +1,4 @@
-//! Traffic on a line, decoded for the trace panel. A frame is decoded when it arrives, not when it is drawn.
+//! Traffic on a line, decoded for the trace panel. Each frame is decoded when it arrives, not when it is drawn.
 
 use std::collections::VecDeque;
 
@@ -10,7 +10,7 @@ use crate::units::Moment;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceLine {
-    /// Time of the first byte on the clock of the session.
+    /// Time of the first byte on the session's clock.
     pub at: Moment,
     pub direction: Direction,
     /// Bytes of the frame. A masked byte is `**`.
@@ -24,9 +24,9 @@ pub struct TraceLine {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceFault {
-    /// The frame reports an error or a warning of the device.
+    /// The frame reports an error or a warning from the device.
     Reported,
-    /// The bytes are not a valid frame, or are not a reply to the request before them.
+    /// The bytes are not a valid frame or not a reply to the preceding request.
     Broken,
 }
 
@@ -56,7 +56,7 @@ impl TraceLine {
         size_of::<Self>() + self.bytes.len() + self.meaning.iter().map(Text::size).sum::<usize>()
     }
 
-    /// Returns the bytes of the message, without the header of the transport.
+    /// Returns the bytes of the message without the transport header.
     pub fn message(&self) -> &str {
         // Each byte takes two digits and a space.
         self.bytes.get(3 * self.header..).unwrap_or(&self.bytes)
@@ -67,17 +67,17 @@ impl TraceLine {
     }
 }
 
-/// Selection of the frames to show.
+/// Criteria that select the frames to show.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TraceFilter {
-    /// Text contained in the bytes or in the meaning of a frame, ignoring case.
+    /// Text to search for in the bytes or in the meaning of a frame, ignoring case.
     pub search: String,
-    /// Only frames that are broken or report an error or a warning.
+    /// Whether to show only frames that are broken or report an error or a warning.
     pub faults_only: bool,
 }
 
 impl TraceFilter {
-    /// Returns whether the filter shows all frames.
+    /// Returns whether the filter selects all frames.
     pub fn is_empty(&self) -> bool {
         self.search.trim().is_empty() && !self.faults_only
     }
@@ -91,7 +91,7 @@ impl TraceFilter {
     }
 }
 
-/// The frames of a log that match a filter. Each frame is compared only once, not each time it is drawn.
+/// The frames of a log that match a filter. Each frame is compared once, not each time it is drawn.
 #[derive(Debug, Default)]
 pub struct TraceMatches {
     filter: TraceFilter,
@@ -100,12 +100,13 @@ pub struct TraceMatches {
     numbers: VecDeque<u64>,
     /// Number of matching frames that the log has removed since the filter was set.
     removed: u64,
-    /// Number of the first frame that has not been compared.
+    /// Number of the first frame that has not been compared yet.
     next: u64,
 }
 
 impl TraceMatches {
-    /// Updates the matches for the frames numbered below `end`. A new filter or language discards the previous matches.
+    /// Compares the frames numbered below `end` with the filter. A new filter or language discards the previous
+    /// matches.
     pub fn update_matches(&mut self, log: &TraceLog, filter: &TraceFilter, language: Language, end: u64) {
         if self.filter != *filter || self.language != Some(language) || self.next > end {
             *self = TraceMatches { filter: filter.clone(), language: Some(language), ..TraceMatches::default() };
@@ -144,10 +145,10 @@ pub struct TraceLog {
 }
 
 impl TraceLog {
-    /// Maximum memory of the log in bytes, enough for about 40,000 readings of a position.
+    /// Maximum memory of the log in bytes, enough for about 40,000 position readings.
     const MAX_BYTES: usize = 16 << 20;
 
-    /// Adds frames with their explanations. `dropped` frames arrived too fast to be included.
+    /// Adds frames with their explanations. `dropped` is the number of frames that arrived too fast to be included.
     pub fn add_frames(&mut self, entries: impl IntoIterator<Item = (TraceEntry, FrameExplanation)>, dropped: u64) {
         self.dropped += dropped;
         for (entry, FrameExplanation { header, meaning, fault }) in entries {
@@ -184,7 +185,7 @@ impl TraceLog {
         self.gone + self.lines.len() as u64
     }
 
-    /// Returns the frame with this number, or `None` if it was removed or has not arrived.
+    /// Returns the frame with this number, or `None` if it has been removed or has not arrived yet.
     pub fn line_by_number(&self, number: u64) -> Option<&TraceLine> {
         self.lines.get(usize::try_from(number.checked_sub(self.gone)?).ok()?)
     }
@@ -296,7 +297,7 @@ mod tests {
         assert!(log.line_by_number(0).is_none() && log.line_by_number(2).is_some() && log.line_by_number(3).is_none());
     }
 
-    /// The file of the window is the same as one written by the command line, and `replay:` reads it.
+    /// A file saved in the window equals one written on the command line, and can be opened with `replay:`.
     #[test]
     fn a_saved_log_is_a_trace_file() {
         let text = three_frame_log().file_content();

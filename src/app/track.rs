@@ -1,5 +1,5 @@
-//! Recording a device that is being read: position without wrap-around, speed, acceleration and watched values. The
-//! kind of device supplies the meaning of positions and values.
+//! The recording of a device that is being read: position without wrap-around, speed, acceleration and watched values.
+//! The kind of device supplies the meaning of positions and values.
 
 use std::time::Duration;
 
@@ -25,21 +25,21 @@ const CAPACITY: usize = 4_000_000;
 /// Maximum time in nanoseconds between two positions that are joined by a line. A longer line would suggest a motion
 /// that was not observed.
 const MAX_JOINED_GAP_NS: i64 = 5_000_000_000;
-/// Delay of a position in nanoseconds that is tolerated in addition to four intervals. A lost reply that is requested
-/// again causes such a delay.
+/// Delay of a position, in nanoseconds, that is tolerated in addition to four intervals. This is the delay caused by a
+/// lost reply that is requested again.
 const TOLERATED_DELAY_NS: i64 = 400_000_000;
 /// Maximum time in nanoseconds between two watched values that are joined by a line. Watched values arrive less often
 /// than positions.
 const MAX_WATCHED_GAP_NS: i64 = MAX_JOINED_GAP_NS;
 /// Maximum number of samples of a watched value.
 const MAX_WATCHED_SAMPLES: usize = 500_000;
-/// Initially displayed duration in nanoseconds.
+/// Initially displayed time span in nanoseconds.
 const SPAN: i64 = 30_000_000_000;
 
-/// Kinds of the columns for position, speed and acceleration.
+/// Types of the columns for position, speed and acceleration.
 const COLUMNS: [Kind; 3] = [Kind::Whole, Kind::Real, Kind::Real];
 
-/// A sample with or without a position.
+/// A sample that may contain a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionSample {
     pub at: Moment,
@@ -50,21 +50,21 @@ pub struct PositionSample {
     pub is_warned: bool,
 }
 
-/// The recorder of a device with the state needed to fill it. `W` is the type of the values that can be watched.
+/// The recorder of a device, with the state needed to fill it. `W` is the type of the values that can be watched.
 #[derive(Debug)]
 pub struct DeviceRecorder<W> {
     pub(crate) recorder: Recorder,
     positions: GroupId,
     lines: [SeriesId; 3],
     watched: Vec<WatchedSeries<W>>,
-    /// Tracking of positions, or `None` before the first position.
+    /// Tracking of positions, or `None` if no position has been received.
     follower: Option<PositionTracker>,
     dropped: u64,
-    /// Start of the first session, and offset of the present session's clock from that start.
+    /// Start of the first session, and offset of the current session's clock from it.
     began: Option<Zoned>,
     shift: i64,
     newest: Option<SampleTime>,
-    /// Last position as received.
+    /// Last received position.
     last: i64,
     /// Maximum time in nanoseconds between two positions that are joined by a line.
     apart: i64,
@@ -75,7 +75,7 @@ struct WatchedSeries<W> {
     value: W,
     group: GroupId,
     line: SeriesId,
-    /// Whether the value is being recorded. Otherwise only its earlier samples are kept.
+    /// Whether the value is being recorded. If not, only its earlier samples are kept.
     active: bool,
 }
 
@@ -110,7 +110,7 @@ impl Columns {
     fn push(&mut self, time: SampleTime, steps: i64, rates: MotionRates, flags: Flags) {
         self.times.push(time);
         self.steps.push(steps);
-        // An unknown value is NaN. It interrupts the line and is left out of statistics.
+        // An unknown speed is NaN. It interrupts the line and is excluded from statistics.
         self.speed.push(rates.speed.unwrap_or(f64::NAN));
         self.acceleration.push(rates.acceleration.unwrap_or(f64::NAN));
         self.flags.push(flags);
@@ -143,11 +143,11 @@ impl<W: Watchable> DeviceRecorder<W> {
         }
     }
 
-    /// Begins a session. Earlier recordings are kept. The new ones are shifted by the difference between the clocks.
+    /// Begins a session. Earlier recordings are kept. New samples are shifted by the difference between the clocks.
     pub fn begin_session(&mut self, began: &Zoned) {
         let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
         let later = i64::try_from(since.as_nanos()).unwrap_or(0);
-        // The clock of the system may be set back.
+        // The system clock may have been set back.
         let behind = self.newest.map_or(0, |newest| newest.as_nanoseconds().saturating_add(1));
         self.shift = later.max(behind);
         self.mark_gap();
@@ -157,7 +157,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.follower.as_ref().map(|own| &own.meaning)
     }
 
-    /// Sets the polling interval. If polling begins, positions before and after are not joined.
+    /// Sets the polling interval. When polling begins, the positions before and after are not joined.
     pub fn poll(&mut self, interval: Option<Duration>, begins: bool) {
         let interval = interval.and_then(|interval| i64::try_from(interval.as_nanos()).ok());
         self.apart = interval.map_or(MAX_JOINED_GAP_NS, |interval| {
@@ -168,7 +168,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         }
     }
 
-    /// Counts samples that were dropped, and marks a gap.
+    /// Counts dropped samples and marks a gap.
     pub fn record_dropped(&mut self, dropped: u64) {
         self.dropped += dropped;
         if dropped > 0 {
@@ -200,7 +200,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         }
         self.newest = Some(time);
         let Some(word) = sighting.position else {
-            // The frame is damaged. The positions on both sides of it may still be joined.
+            // The frame is damaged. The positions before and after it may still be joined.
             if let Some(follower) = &mut self.follower {
                 follower.record_missing_sample();
             }
@@ -236,7 +236,7 @@ impl<W: Watchable> DeviceRecorder<W> {
                 self.recorder.remove_line(own.line);
             }
         }
-        // The lines of ended values no longer exist if the recording was cleared.
+        // The lines of values that are no longer recorded are gone if the recording was cleared.
         kept.retain(|own| self.recorder.series_by_id(own.line).is_some());
         self.watched = kept;
         watched.iter().for_each(|what| self.begin_watching(what));
@@ -280,8 +280,8 @@ impl<W: Watchable> DeviceRecorder<W> {
             None => ([0], [f64::NAN]),
         };
         let part = if what.is_whole() { ColumnPart::from_integers(&whole) } else { ColumnPart::from_reals(&real) };
-        // This cannot fail. The samples of a value arrive in the order of time, and the clock of a later session starts
-        // after the last position.
+        // This cannot fail. The samples of a value arrive in chronological order, and the clock of a later session
+        // starts after the last position.
         let _ = self.recorder.append(group, &[time], &[part.with_flags(&flags)]);
     }
 
@@ -300,8 +300,8 @@ impl<W: Watchable> DeviceRecorder<W> {
         all.map_or(0, |all| all.end - all.start)
     }
 
-    /// Discards the recording of the previous device, unless it contains minutes of data that have not been exported.
-    /// The selection of values is kept.
+    /// Discards the recording of the previous device unless it contains minutes of unexported data. The selection of
+    /// values is kept.
     pub fn clear_unless_long(&mut self) {
         let watched = self.watched_values();
         if self.recorder.unexported_duration() >= LONG_RECORDING_NS {
@@ -316,8 +316,8 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.set_watched(&watched);
     }
 
-    /// Prepares to decode the recording again from the `kept` stored words. The times do not change. If some words are
-    /// missing, the old recording is kept as well.
+    /// Prepares for decoding the last `kept` stored words again. The times do not change. If words are missing, the old
+    /// recording is kept as well.
     pub fn prepare_redecoding(&mut self, kept: usize) {
         if usize::try_from(self.position_count()).is_ok_and(|own| own > kept) {
             self.replace_series(&PositionScales::for_steps(None));
@@ -329,7 +329,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.recorder.handle_action(recorder::RecorderAction::SetSpan(span));
     }
 
-    /// Sets the meaning of the subsequent positions. Lines of positions with another meaning end here.
+    /// Sets the scales of subsequent positions. Lines of positions on other scales end here.
     fn set_scales(&mut self, meaning: &PositionScales) {
         if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_location(meaning)) {
             if own.meaning != *meaning {
@@ -366,7 +366,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.recorder.end_line(line, name, heading);
     }
 
-    /// Returns the name and the heading for a line that ends now.
+    /// Returns the name and heading for a line that ends now.
     fn ended_line_name(&self, line: SeriesId) -> (Text, String) {
         let newest = self.newest.map_or(0, SampleTime::as_nanoseconds);
         let until = self.began.as_ref().and_then(|own| own.checked_add(SignedDuration::from_nanos(newest)).ok());

@@ -1,5 +1,5 @@
-//! Values supplied from outside to a kind of device: start options, or substitutes in a test. Their types are not
-//! visible to the studio.
+//! Values supplied to a kind of device from outside: start options, or substitutes in a test. The studio does not know
+//! their types.
 
 use std::any::{Any, TypeId};
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ use crate::link::LinkUrl;
 use crate::store::Store;
 use crate::worker::{Device, OpenError, Session};
 
-/// Values for kinds of devices, at most one of each type.
+/// A map of values for kinds of devices, at most one of each type.
 #[derive(Clone, Default)]
 pub struct TypeMap(HashMap<TypeId, Arc<dyn Any + Send + Sync>>);
 
@@ -27,7 +27,7 @@ impl TypeMap {
     }
 }
 
-/// Prints only the number of values, because a value can be secret.
+/// Prints only the number of values, because values can be secret.
 impl fmt::Debug for TypeMap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Given({})", self.0.len())
@@ -36,7 +36,7 @@ impl fmt::Debug for TypeMap {
 
 type OpenFn<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync;
 
-/// A function that replaces the one with which a kind of device opens links, for tests.
+/// A function that replaces the usual way in which a kind of device opens links, for tests.
 pub struct LinkOpener<D: Device>(Box<OpenFn<D>>);
 
 impl<D: Device> LinkOpener<D> {

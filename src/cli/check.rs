@@ -1,4 +1,4 @@
-//! Output of `do DEVICE check`, with one line per item.
+//! Output of `do DEVICE check`, one line per item.
 
 use serde_json::{Value as Json, json};
 
@@ -9,13 +9,12 @@ use crate::app::Text;
 use crate::app::check::{CheckLine, verdict_text};
 use crate::link::LineQuality;
 
-/// Prints the results of the check. Returns an error if any result is a fault.
+/// Prints the results of the check. Returns an error if a result is a fault.
 pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {
     show_check(output, lines, None)
 }
 
-/// Prints the results of the check, with the line quality if it was measured. Returns an error if any result is a
-/// fault.
+/// Prints the results of the check, and the line quality if it was measured. Returns an error if a result is a fault.
 pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal_text).collect::<Vec<_>>();
@@ -25,7 +24,7 @@ pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&
         let (step, word) = (line.step.terminal_text(), verdict_keyword(line.verdict));
         let verdict = verdict_text(line.verdict).terminal_text();
         let found = findings(line);
-        // A full stop is only at the end of the line, not between two findings.
+        // Only the end of the line has a full stop, not each finding.
         let found: Vec<&str> = found.iter().map(|words| words.trim_end_matches('.')).collect();
         let found = found.join("; ");
         text.add_line(&step, format!("{verdict:9}  {found}").trim_end());

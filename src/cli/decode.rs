@@ -1,4 +1,5 @@
-//! Parts of `decode` shared by all kinds of device: parsing captured bytes and printing their meaning.
+//! The part of the `decode` command shared by all kinds of devices: parsing of captured bytes, and printing of their
+//! meaning.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -10,12 +11,12 @@ pub(crate) struct FrameExplanation {
     /// Captured frame in readable form.
     pub(crate) shown: String,
     pub(crate) compact: String,
-    /// Meaning of the frame, one string per line. The error is the reason why the bytes are not a frame.
+    /// Meaning of the frame, one string per line, or the reason why the bytes are not a frame.
     pub(crate) meaning: std::result::Result<Vec<String>, String>,
     pub(crate) more: Map<String, Json>,
 }
 
-/// Prints the meaning of frames. If a frame is invalid, the command still prints all frames before it fails.
+/// Prints the meaning of frames. If some frames are invalid, the valid ones are still printed before the command fails.
 pub(crate) fn show(output: &Output, frames: &[FrameExplanation]) -> Result {
     let mut list = Vec::new();
     let mut text = String::new();
@@ -52,7 +53,8 @@ pub(crate) fn show(output: &Output, frames: &[FrameExplanation]) -> Result {
     Err(Failure::Failed(broken))
 }
 
-/// Parses hex bytes. An argument of three bytes or more is a frame. Shorter arguments are combined into one frame.
+/// Parses hexadecimal bytes. An argument of three or more bytes is a frame of its own. Shorter arguments are joined
+/// into one frame.
 pub(crate) fn parse_frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     let parts: Vec<Vec<u8>> = words.iter().map(|word| bytes(word)).collect::<Result<_>>()?;
     if parts.iter().all(Vec::is_empty) {

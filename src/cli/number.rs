@@ -2,7 +2,7 @@
 
 use super::Failure;
 
-/// Parses a decimal number, or a hexadecimal number with `0x`. A sign may precede either.
+/// Parses a decimal number, or a hexadecimal number with the prefix `0x`. Either may have a sign.
 pub(crate) fn parse_number(text: &str) -> Option<i64> {
     let (sign, digits) = match text.strip_prefix('-') {
         Some(digits) => (-1, digits),
@@ -16,7 +16,7 @@ pub(crate) fn parse_number(text: &str) -> Option<i64> {
     number.ok().map(|number| sign * number)
 }
 
-/// Returns the error for a number outside its limits.
+/// Creates the error for a number outside its range.
 pub(crate) fn out_of_range(what: impl std::fmt::Display, value: &str, low: i64, high: i64) -> Failure {
     Failure::Failed(vec![format!("{what}: {value} is not within {low} to {high} ({low:#X} to {high:#X}).")])
 }

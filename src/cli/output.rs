@@ -1,4 +1,4 @@
-//! Output as text in columns, or as one JSON object.
+//! Output as text in columns or as a single JSON object.
 
 use std::io::{self, Write};
 
@@ -14,7 +14,7 @@ pub struct Output {
     commands: Commands,
 }
 
-/// Aligned lines, each with a label and a value.
+/// Aligned lines with a label and a value each.
 #[derive(Default)]
 pub struct Lines(Vec<(String, String)>);
 
@@ -72,8 +72,8 @@ impl Output {
         }
     }
 
-    /// Prints the result of a write like [`show`](Self::show). An error of the output is reported together with the
-    /// write, because the write has taken place.
+    /// Prints the result of a write like [`show`](Self::show). If printing fails, the error also reports the write,
+    /// because the write has already taken place.
     pub(super) fn show_write_result(&self, json: &Value, text: &str) -> Result<(), Failure> {
         self.show(json, text).map_err(|failure| match failure {
             Failure::Failed(lines) => {
@@ -91,7 +91,7 @@ impl Output {
 }
 
 /// Returns whether an error means that the reader of a pipe has closed it. Windows has several codes for this. The
-/// library recognises all except 233, "no process is on the other end of the pipe".
+/// standard library recognises all of them except 233, "no process is on the other end of the pipe".
 fn is_closed_pipe(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::BrokenPipe || cfg!(windows) && error.raw_os_error() == Some(233)
 }
@@ -102,12 +102,12 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{ending}")
 }
 
-/// Prints the help as it is. The message of an argument error is joined into one line, followed by a line with the
+/// Prints help text unchanged. The message of an argument error is joined into one line, followed by a line with the
 /// usage.
 pub(super) fn print_usage_error(error: &clap::Error) {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
     if matches!(error.kind(), DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion) {
-        // An error while printing the help cannot be reported either.
+        // An error that occurs while printing the help cannot be reported either.
         let _ = error.print();
         return;
     }
@@ -120,13 +120,13 @@ pub(super) fn print_usage_error(error: &clap::Error) {
     }
 }
 
-/// Writes to stderr. Errors are ignored, because they cannot be reported anywhere.
+/// Writes to stderr. Errors are ignored because there is nowhere to report them.
 pub(crate) fn write_stderr(text: &str) {
     let mut err = io::stderr().lock();
     let _ = err.write_all(show_control_characters(text).as_bytes()).and_then(|()| err.flush());
 }
 
-/// Replaces control characters with visible ones. Text from a file, a device or an argument must not control the
+/// Replaces control characters with visible ones, so text from a file, a device or an argument cannot control the
 /// terminal.
 fn show_control_characters(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
@@ -136,7 +136,7 @@ fn show_control_characters(text: &str) -> String {
     shown
 }
 
-/// Prints the program's own warnings to stderr. Details go to the log file of the window only.
+/// Prints the program's own warnings to stderr. Only the window writes details to a log file.
 pub(super) fn log_to_stderr() {
     let subscriber = tracing_subscriber::fmt()
         .with_writer(io::stderr)

@@ -1,4 +1,4 @@
-//! `ports`: the serial ports of this computer.
+//! The `ports` command, which lists the serial ports of this computer.
 
 use serde_json::{Value as Json, json};
 

@@ -1,4 +1,4 @@
-//! Repeated readings of `position`, for every kind of device, with count, interval and end.
+//! Repeated readings of the `position` command, for every kind of device, with a count, an interval and an end.
 
 use std::time::{Duration, Instant};
 
@@ -19,7 +19,7 @@ pub fn print_readings<D: CliDevice>(
     })
 }
 
-/// Runs `job` repeatedly and passes each result or error to `show`. `show` returns whether it printed a line.
+/// Runs `job` repeatedly and passes each result or error to `show`, which returns whether it has printed a line.
 pub fn try_readings<D: CliDevice>(
     runner: &mut Runner<D>,
     position: &Position,
@@ -28,7 +28,7 @@ pub fn try_readings<D: CliDevice>(
 ) -> Result {
     let interval = Duration::from_millis(position.interval);
     let mut next = Instant::now();
-    // Ctrl-C is the normal end of a table without a fixed length, and no failure.
+    // Ctrl-C is the normal end of a table without a fixed length, not a failure.
     let endless = position.csv && position.count.is_none();
     let count = position.count.unwrap_or(if endless { u64::MAX } else { 1 });
     let (mut lines, mut first) = (0, true);

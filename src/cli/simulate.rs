@@ -1,5 +1,5 @@
-//! Serves a virtual device to other programs, on a pseudo-terminal or a TCP port, with UDP for devices that require it.
-//! Only this module runs virtual devices in real time.
+//! Serves a virtual device to other programs on a pseudo-terminal or a TCP port, and over UDP for devices that require
+//! it. Only this module runs virtual devices in real time.
 
 mod datagrams;
 
@@ -16,25 +16,25 @@ use crate::link::{Clock, RealClock};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{Baud, CharacterFormat, Moment};
 
-/// Time to wait for bytes while the device is idle. An interrupt is delayed by at most this time.
+/// Time to wait for bytes while the device is idle. This is also the maximum delay of an interruption.
 const IDLE_WAIT: Duration = Duration::from_millis(20);
-/// Waiting time below which the thread sleeps. Socket time-outs only have the resolution of the system tick.
+/// Waiting time below which the thread sleeps, because socket time-outs only have the resolution of the system tick.
 const SLEEP_THRESHOLD: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
 pub trait ServableDevice: ByteDevice {
-    /// Returns the line format at `now`. Returns `None` without a serial line or while the device does not receive.
+    /// Returns the line format at `now`, or `None` if there is no serial line or the device is not receiving.
     fn line_format(&self, _now: Moment) -> Option<CharacterFormat> {
         None
     }
 
-    /// Returns a device for another simultaneous client at the given address. Returns `None` if the device has a single
-    /// line, for which clients are served one after another.
+    /// Returns a device for another simultaneous client at the given address, or `None` if the device has a single
+    /// line. In that case, clients are served one after another.
     fn clone_for_peer(&self, _peer: Ipv4Addr) -> Option<Box<dyn ServableDevice>> {
         None
     }
 
-    /// Returns the UDP side of the same device, which is served on the same port as TCP.
+    /// Returns the UDP side of the same device, which is served on the same port number as TCP.
     fn datagram_device(&self) -> Option<Box<dyn DatagramDevice>> {
         None
     }
@@ -100,8 +100,8 @@ impl Device {
         Some(Device { kind: self.kind, simulated, clock: self.clock.clone() })
     }
 
-    /// Serves a client until it disconnects or the program is interrupted. The device follows the baud rate of the
-    /// client if it can be read.
+    /// Serves a client until it disconnects or the program is interrupted. The device adopts the client's baud rate if
+    /// it can be read.
     fn serve_client(&mut self, client: &mut impl SimulatorClient, ended: &AtomicBool) -> std::io::Result<()> {
         self.simulated.connect(self.clock.now());
         let mut buffer = [0; 512];
@@ -127,8 +127,8 @@ impl Device {
         Ok(())
     }
 
-    /// Adopts the baud rate of the client. This end cannot read the parity, and over TCP not even the baud rate.
-    /// Properties that cannot be read are assumed to be correct.
+    /// Adopts the baud rate of the client. The parity cannot be read at this end, and over TCP not even the baud rate
+    /// can. Properties that cannot be read are assumed to be correct.
     fn apply_client_baud(&mut self, baud: Option<Baud>) {
         let now = self.clock.now();
         if let Some(own) = self.simulated.line_format(now) {
@@ -170,7 +170,7 @@ impl SimulatorClient for TcpStream {
 
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         match self.write_all(bytes) {
-            // A client that does not read streamed data loses it.
+            // A client that does not read streamed data in time loses them.
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => Ok(()),
             ended => ended,
         }
@@ -213,7 +213,7 @@ fn serve_tcp(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<(
         None => (TcpListener::bind(address).map_err(cannot)?, None),
     };
     listener.set_nonblocking(true).map_err(cannot)?;
-    // The scope ends after all clients have disconnected.
+    // The scope ends when all clients have disconnected.
     std::thread::scope(|scope| {
         let begun = packets
             .iter()
@@ -221,7 +221,7 @@ fn serve_tcp(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<(
             .and_then(|()| listener.local_addr())
             .map_err(cannot)
             .and_then(|at| device.print_ready(&at.to_string()));
-        // Without this, the thread of the packets would run forever, because the program has not started.
+        // Otherwise, the thread that sends the packets would run forever, because the program has not started.
         begun.inspect_err(|_| ended.store(true, Ordering::SeqCst))?;
         while !ended.load(Ordering::SeqCst) {
             let Ok((client, peer)) = listener.accept() else {
@@ -241,7 +241,7 @@ fn serve_tcp(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<(
     })
 }
 
-/// Serves a client over TCP. A client that cannot be served is disconnected, and the next one may connect.
+/// Serves a client over TCP. If a client cannot be served, it is disconnected, and the next one may connect.
 fn serve_tcp_client(device: &mut Device, mut client: TcpStream, ended: &AtomicBool) {
     let _ = client
         .set_nonblocking(false)
@@ -253,7 +253,7 @@ fn serve_tcp_client(device: &mut Device, mut client: TcpStream, ended: &AtomicBo
 #[cfg(unix)]
 mod terminal {
     //! Pseudo-terminals. Only the client opens the other end. When the client closes it, this end detects a hang-up,
-    //! and the virtual device is powered again for the next client.
+    //! and the virtual device is powered on again for the next client.
 
     use std::io::{ErrorKind, Read, Write};
     use std::os::unix::fs::symlink;
@@ -270,7 +270,7 @@ mod terminal {
         let cannot = |what: String| Failure::Failed(vec![format!("{}: {what}.", path.display())]);
         let (mut master, mut slave) = TTYPort::pair().map_err(|error| cannot(error.description))?;
         let name = slave.name().ok_or_else(|| cannot("the pseudo-terminal has no name".to_owned()))?;
-        // The terminal has the speed of the encoder until a client sets another.
+        // The terminal has the speed of the encoder until a client sets another one.
         if let Some(own) = device.simulated.line_format(device.clock.now()) {
             let _ = slave.set_baud_rate(own.baud.bits_per_second());
         }
@@ -295,8 +295,8 @@ mod terminal {
     }
 
     impl SymbolicLink {
-        /// Creates the link. A dangling link from an earlier run is replaced. Any other existing file belongs to
-        /// another program and is an error.
+        /// Creates the link. A dangling link left by an earlier run is replaced. Any other existing file belongs to
+        /// another program and causes an error.
         fn create(path: &Path, target: &Path) -> std::io::Result<Self> {
             if path.is_symlink() && !path.exists() {
                 std::fs::remove_file(path)?;
@@ -324,7 +324,7 @@ mod terminal {
         }
     }
 
-    /// Returns whether no client has opened the other end.
+    /// Returns whether no client has the other end open.
     fn has_hung_up(master: &mut TTYPort) -> bool {
         let _ = master.set_timeout(Duration::ZERO);
         matches!(Read::read(master, &mut []), Err(error) if error.kind() != ErrorKind::TimedOut)
@@ -344,7 +344,7 @@ mod terminal {
         }
 
         fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-            // A client that disconnects meanwhile does not receive the reply, as on a real line.
+            // A client that disconnects in the meantime does not receive the reply, as on a real line.
             let _ = self.write_all(bytes);
             Ok(())
         }

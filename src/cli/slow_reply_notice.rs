@@ -1,4 +1,4 @@
-//! Notice on a terminal while a device replies slowly. Without it, a slow network would look like a hang.
+//! A notice on the terminal while a device replies slowly. Without it, a slow network would look like a hang.
 
 use std::time::{Duration, Instant};
 
@@ -8,18 +8,18 @@ use crate::link::ReplyTimes;
 const FIRST_NOTICE_DELAY: Duration = Duration::from_secs(3);
 /// Interval between checks after the first notice.
 const CHECK_INTERVAL: Duration = Duration::from_millis(500);
-/// Minimum reply time of a slow device.
+/// Reply time from which a device counts as slow.
 const SLOW_REPLY_TIME: Duration = Duration::from_millis(100);
 
 pub struct ReplyTiming {
     pub(crate) replies: ReplyTimes,
     /// Time-out for a reply, as set by `timeout=` in the link.
     pub(crate) timeout: Duration,
-    /// Largest possible value of `timeout=`.
+    /// Maximum value of `timeout=`.
     pub(crate) longest: Duration,
 }
 
-/// Monitors a long command. It reports once if slow replies delay the command.
+/// A monitor for long commands, which reports once if slow replies delay the command.
 pub(super) struct SlowReplyNotice {
     pace: Option<ReplyTiming>,
     look: Instant,
@@ -31,7 +31,7 @@ impl SlowReplyNotice {
         SlowReplyNotice { pace, look: Instant::now() + FIRST_NOTICE_DELAY }
     }
 
-    /// Returns the time until the next check. Returns `None` without a limit.
+    /// Returns the time until the next check, or `None` if there is no limit.
     pub(super) fn time_until_check(&self) -> Option<Duration> {
         self.pace.as_ref().map(|_| self.look.saturating_duration_since(Instant::now()))
     }
@@ -51,7 +51,7 @@ impl SlowReplyNotice {
 
 impl ReplyTiming {
     /// Returns a message if the device has not replied yet or replies slowly. If replies may exceed the time limit, the
-    /// message suggests a longer time limit or a check of the network.
+    /// message recommends a longer time limit or a check of the network.
     fn message(&self) -> Option<String> {
         let (timeout, longest) = (self.timeout, self.replies.longest_reply_time());
         let more = if timeout < self.longest {
@@ -81,7 +81,7 @@ impl ReplyTiming {
 mod tests {
     use super::*;
 
-    /// Returns the message for a time-out and for reply times, all in milliseconds.
+    /// Returns the message for a time-out and a list of reply times, all in milliseconds.
     fn message(timeout: u64, took: &[u64]) -> Option<String> {
         let replies = ReplyTimes::default();
         took.iter().for_each(|ms| replies.record(Duration::from_millis(*ms)));

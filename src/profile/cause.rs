@@ -1,4 +1,4 @@
-//! Type-erased errors of devices in code that is common to all devices.
+//! Type-erased device errors for code that is common to all devices.
 
 use std::any::Any;
 use std::error::Error;

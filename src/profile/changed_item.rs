@@ -4,18 +4,18 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// A changed item with its old and new value. Item and values have the notation of the command line, independent of the
-/// language of the window. Access codes are never included.
+/// A changed item with its old and new value. The item and the values are in the notation of the command line,
+/// independent of the language of the window. Access codes are never included.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ChangedItem {
-    /// Name of the item. The command `read` accepts it if the item is readable.
+    /// Name of the item. The `read` command accepts it if the item is readable.
     pub item: String,
     /// Name of the register or area in the manual, if `item` is an address.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Value before the write. `None` if it is unknown, or the item did not exist.
+    /// Value before the write, or `None` if it is unknown or the item did not exist.
     pub old: Option<String>,
-    /// Value after the write. `None` if the write does not set a value that can be displayed.
+    /// Value after the write, or `None` if the write does not set a value that can be displayed.
     pub new: Option<String>,
 }
 
@@ -25,12 +25,12 @@ impl ChangedItem {
         ChangedItem { item: item.to_string(), name: None, old, new }
     }
 
-    /// Creates an item with a new value that does not replace a single old value.
+    /// Creates an item whose new value does not replace a single old value.
     pub fn new_value(item: impl ToString, new: impl ToString) -> Self {
         ChangedItem::new(item, None, Some(new.to_string()))
     }
 
-    /// Adds the name in the manual.
+    /// Adds the name that the manual uses.
     #[must_use]
     pub fn with_manual_name(self, name: impl ToString) -> Self {
         ChangedItem { name: Some(name.to_string()), ..self }

@@ -1,4 +1,4 @@
-//! Profile documents: schema version, kind of device, and saved content.
+//! Profile documents, which consist of the schema version, the kind of device, and the saved content.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -17,7 +17,7 @@ use crate::expected::AllowedValues;
 /// Version of the profile schema that this program writes.
 pub const SCHEMA: u32 = 1;
 
-/// A profile document, as stored in a file.
+/// A profile document as stored in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileDocument {
     /// Time at which the profile was read from a device, in the format of RFC 3339.
@@ -26,11 +26,12 @@ pub struct ProfileDocument {
     pub note: Option<String>,
     /// Saved content.
     pub body: Body,
-    /// Unknown entries, preserved when the profile is saved.
+    /// Unknown entries, which are preserved when the profile is saved.
     pub unknown: UnknownValues,
-    /// Schema version. A profile newer than [`SCHEMA`] can only be viewed, because saving would lose its unknown parts.
+    /// Schema version. A profile with a version above [`SCHEMA`] can only be viewed, because saving it would lose its
+    /// unknown parts.
     pub schema: u32,
-    /// Paths of entries that the schema does not define. In an older file, such entries are moved into `extra`.
+    /// Paths of entries that the schema does not define. In older files, such entries are moved to `extra`.
     pub beyond: Vec<String>,
 }
 
@@ -50,7 +51,7 @@ impl ProfileDocument {
     /// Parses a profile in one of the given formats.
     ///
     /// # Errors
-    /// Returns an error with line and column if the file is not valid RON, or an error that names the invalid entry.
+    /// Returns an error with line and column if the file is not valid RON, or an error that names an invalid entry.
     pub fn parse(text: &str, formats: ProfileFormats) -> Result<Self, ProfileError> {
         let twice = RefCell::default();
         let syntax = |error: SpannedError| ProfileError::Syntax {
@@ -58,7 +59,7 @@ impl ProfileDocument {
             column: error.span.start.col,
             what: match (error.code, twice.take()) {
                 (_, Some(name)) => SyntaxErrorKind::Twice(name),
-                // The crate's own message is written for programmers.
+                // The message of the crate is meant for programmers.
                 (ron::Error::ExceededRecursionLimit, None) => SyntaxErrorKind::TooDeep,
                 (code, None) => SyntaxErrorKind::Parser(code.to_string()),
             },
@@ -92,8 +93,8 @@ impl ProfileDocument {
         Ok(ProfileDocument { saved, note, body, unknown, schema, beyond: reading.undefined_entries() })
     }
 
-    /// Returns whether the schema is newer than supported. Such a profile can be viewed and compared. It cannot be
-    /// saved or written to a device.
+    /// Returns whether the schema is newer than supported. Such a profile can be viewed and compared, but not saved or
+    /// written to a device.
     pub fn is_newer(&self) -> bool {
         self.schema > SCHEMA
     }

@@ -17,7 +17,7 @@ pub enum ProfileError {
         /// Description of the problem.
         what: SyntaxErrorKind,
     },
-    /// The name of an entry is unknown and resembles the name of a missing entry.
+    /// The name of an entry is unknown and resembles that of a missing entry.
     #[error("line {line}, column {column}: {path} is unknown, and {intended} is missing")]
     Misspelt {
         /// Line number, starting at 1.
@@ -29,8 +29,8 @@ pub enum ProfileError {
         /// Name of the missing entry.
         intended: String,
     },
-    /// The schema version is missing or newer than supported. A newer version is an error only if the caller requires a
-    /// known schema.
+    /// The schema version is missing or newer than supported. A newer version is an error only where a supported
+    /// version is required.
     #[error("schema {found} is not supported (supported: 1 to {known})")]
     Schema {
         /// Version in the file.
@@ -76,7 +76,7 @@ pub enum ProfileError {
         /// Description of the problem.
         problem: HexError,
     },
-    /// A value, or a combination of values, is invalid for the kind of device.
+    /// A value or a combination of values is invalid for the kind of device.
     #[error("{path}: {cause}")]
     Refused {
         /// Path of the entry.

@@ -1,4 +1,4 @@
-//! Detection of misspelt and undefined entries while a profile is read.
+//! Detection of misspelt and undefined entries while a profile is being read.
 
 use std::cell::{Cell, RefCell};
 
@@ -7,14 +7,14 @@ use super::{ProfileError, SCHEMA};
 /// State shared by the structures of a file while it is being read.
 #[derive(Default)]
 pub(super) struct Reading {
-    /// Schema version of the file, if newer than supported. Unknown entries of such a file are kept.
+    /// Schema version of the file if it is newer than supported. Unknown entries of such a file are kept.
     newer: Cell<Option<u32>>,
     beyond: RefCell<Vec<String>>,
-    /// Misspelt name that may explain an error about a missing entry.
+    /// Misspelt name that may explain the error about a missing entry.
     slip: RefCell<Option<Misspelling>>,
 }
 
-/// A misspelt entry name. Misspellings are ordered by the number of wrong letters.
+/// A misspelt name of an entry. Misspellings are ordered by the number of wrong letters.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Misspelling {
     pub(super) letters: usize,
@@ -44,19 +44,19 @@ impl Reading {
         self.beyond.borrow_mut().push(path);
     }
 
-    /// Returns the paths of the entries that the schema does not define, in reading order.
+    /// Returns the paths of the entries that the schema does not define, in the order in which they were read.
     pub(super) fn undefined_entries(&self) -> Vec<String> {
         self.beyond.borrow().clone()
     }
 
-    /// Records a misspelt name, unless one has been recorded before. The innermost structure is the first to report.
+    /// Records a misspelt name unless one has already been recorded. The innermost structure reports first.
     pub(super) fn record_misspelling(&self, slip: Misspelling) {
         self.slip.borrow_mut().get_or_insert(slip);
     }
 
-    /// Returns the error to report. In a file with a newer schema, this is the schema error. An error caused by a
-    /// misspelt name is replaced by one about that name. An error about another entry is attributed to a misspelt name
-    /// only if at most one letter differs.
+    /// Returns the error to report. For a file with a newer schema, this is the schema error. An error caused by a
+    /// misspelt name is replaced with an error about that name. An error about another entry is attributed to a
+    /// misspelt name only if at most one letter differs.
     pub(super) fn reported_error(&self, error: ProfileError) -> ProfileError {
         if let Some(found) = self.newer.get() {
             return ProfileError::Schema { found, known: SCHEMA };
@@ -84,7 +84,7 @@ pub(super) fn edit_distance(name: &str, intended: &str) -> Option<usize> {
     (begins || letters <= (longer.len() / 2).clamp(1, 3)).then_some(letters)
 }
 
-/// Returns the edit distance between two names. A swap of two adjacent letters is one edit.
+/// Returns the edit distance between two names. Swapping two adjacent letters counts as one edit.
 fn char_distance(from: &[char], to: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=to.len()).collect();

@@ -1,4 +1,4 @@
-//! Marks in profiles for values that are valid only for one device on one machine.
+//! Marks in profiles for values that are valid only for one device on a particular machine.
 
 use std::error::Error;
 
@@ -6,22 +6,22 @@ use super::ProfileError;
 use super::ron_text::{Entries, UnknownValues, Writer, entries_text, quote};
 use crate::expected::AllowedValues;
 
-/// A mark on a value that is valid only for one device on one machine.
+/// A mark for a value that is valid only for one device on a particular machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MountingMark<Item> {
     /// Marked item, which is always writable.
     pub item: Item,
     /// Meaning of the item.
     pub meaning: String,
-    /// Unknown entries, preserved when the profile is saved.
+    /// Unknown entries, which are preserved when the profile is saved.
     pub unknown: UnknownValues,
 }
 
 const ENTRY: &str = "mounting";
 
 impl<Item> MountingMark<Item> {
-    /// Reads all marks of a profile. `item` parses a marked item, or returns the reason why it is invalid. `expected`
-    /// describes the form of an item.
+    /// Reads all marks of a profile. `item` parses a marked item or returns the reason why it is invalid. `expected`
+    /// describes the valid form of an item.
     pub(crate) fn read_all<E: Error + Clone + Eq + Send + Sync + 'static>(
         entries: &mut Entries,
         expected: AllowedValues,
@@ -48,7 +48,7 @@ impl<Item> MountingMark<Item> {
 }
 
 impl<Item: ToString> MountingMark<Item> {
-    /// Writes all marks of a profile with a comment. Does not write anything if the list is empty.
+    /// Writes all marks of a profile with a comment. If there are none, nothing is written.
     pub(crate) fn write_all(marks: &[Self], comment: &str, writer: &mut Writer) {
         if marks.is_empty() {
             return;

@@ -1,12 +1,12 @@
-//! Plans, the only way to write to a device: read → difference → plan → consent to this plan → write → read back.
+//! Plans, which are the only way to write to a device: read → difference → plan → consent to this plan → write → read
+//! back.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// A planned write for review by the user. Only the operations in the plan are executed.
+/// A planned write that the user reviews. Only the operations in the plan are executed.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Plan<Base, Op> {
-    /// The values on which the plan is based. Before the first operation, these values are read again and must be
-    /// unchanged.
+    /// The values on which the plan is based. They are read again before the first operation and must be unchanged.
     pub base: Base,
     /// Operations in order of execution.
     pub ops: Vec<Op>,
@@ -14,16 +14,16 @@ pub struct Plan<Base, Op> {
 
 /// An operation of a plan.
 pub trait Operation {
-    /// Returns the number of persistent writes of the operation, without repetitions.
+    /// Returns the number of persistent writes of the operation, not counting repetitions.
     fn write_cycles(&self) -> u64;
 }
 
-/// The identifier of a plan. A consent refers to it.
+/// The identifier of a plan, to which a consent refers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanId(u64);
 
 impl<Base: Hash, Op: Hash> Plan<Base, Op> {
-    /// Returns the identifier of the plan, which depends on its base and its operations.
+    /// Returns the identifier of the plan, which is derived from its base and its operations.
     pub fn id(&self) -> PlanId {
         let mut hasher = DefaultHasher::new();
         self.hash(&mut hasher);
@@ -39,7 +39,7 @@ impl<Base, Op> Plan<Base, Op> {
 }
 
 impl<Base, Op: Operation> Plan<Base, Op> {
-    /// Returns the number of persistent writes of the plan, without repetitions.
+    /// Returns the number of persistent writes of the plan, not counting repetitions.
     pub fn write_cycles(&self) -> u64 {
         self.ops.iter().map(Operation::write_cycles).sum()
     }

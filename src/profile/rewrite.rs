@@ -1,4 +1,4 @@
-//! Saving a profile over a file that a user has edited, and merging the profiles of two users.
+//! Saving of a profile over a file that a user has edited, and merging of profiles edited by two users.
 
 use super::source::{Change, UpdatedText, apply_all, carry_changes, find_changes, lost_comments};
 use super::{ProfileDocument, ProfileError, ProfileFormats};
@@ -29,7 +29,7 @@ impl ProfileDocument {
     /// Returns the document with the changes applied.
     ///
     /// # Errors
-    /// Returns the error if the result is not a valid profile, or `None` if a change cannot be applied.
+    /// Returns an error if the result is not a valid profile, or `Err(None)` if a change cannot be applied.
     pub fn with_changes(
         &self,
         changes: &[Change],
@@ -39,7 +39,7 @@ impl ProfileDocument {
     }
 }
 
-/// The side that has changed an entry of the common base profile.
+/// The side that changed an entry of the common base profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangedSide {
     /// Only the other side changed the entry.
@@ -50,7 +50,7 @@ pub enum ChangedSide {
     Both,
 }
 
-/// Returns the changes that turn `theirs` into `mine`, and the side that made each of them.
+/// Returns the changes that turn `theirs` into `mine`, each with the side that made it.
 pub fn diverging_changes(
     base: &ProfileDocument,
     theirs: &ProfileDocument,

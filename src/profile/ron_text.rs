@@ -1,5 +1,5 @@
-//! RON for profiles. The `ron` crate parses the text, and unknown entries are preserved. Writing is implemented here
-//! for readable files: hexadecimal numbers, sixteen bytes per line, and comments.
+//! RON for profiles. The `ron` crate parses the text, and unknown entries are preserved. The writer is implemented here
+//! to produce readable files with hexadecimal numbers, sixteen bytes per line, and comments.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -13,13 +13,13 @@ use super::misspelt::{Misspelling, Reading, edit_distance};
 use crate::bits::{HexError, parse_hex};
 use crate::expected::AllowedValues;
 
-/// Unknown entries by name, which were added by the user or belong to a newer schema.
+/// Unknown entries by name. They were added by the user or belong to a newer schema.
 pub type UnknownValues = BTreeMap<String, Value>;
 
-/// Name of the structure with entries added by the user.
+/// Name of the structure that contains entries added by the user.
 const EXTRA_ENTRY: &str = "extra";
 
-/// The entries of a structure. The parser removes them one by one. The remaining entries were added by the user or are
+/// The entries of a structure. The parser removes them one by one. The remaining ones were added by the user or are
 /// misspelt.
 pub struct Entries {
     path: String,
@@ -59,7 +59,7 @@ impl Entries {
         value
     }
 
-    /// Returns the remaining entry most similar to a missing name. At most `most` letters may differ.
+    /// Returns the remaining entry whose name is most similar to a missing one. At most `most` letters may differ.
     fn find_misspelling(&self, most: usize) -> Option<Misspelling> {
         if self.reading.is_newer() {
             return None;
@@ -124,7 +124,7 @@ impl Entries {
         }
     }
 
-    /// Parses bytes, written as one hex string or as a list of hex strings.
+    /// Parses bytes that are written as one hex string or as a list of hex strings.
     pub fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
         let path = self.entry_path(name);
         let Some(value) = self.take_optional::<Value>(name, AllowedValues::HexLines)? else { return Ok(None) };
@@ -170,8 +170,8 @@ impl Entries {
         }
     }
 
-    /// Returns the remaining entries, which were added by the user or belong to a newer schema. The user's entries
-    /// outside `extra`, as in older files, are moved into `extra`.
+    /// Returns the remaining entries, which were added by the user or belong to a newer schema. Entries added outside
+    /// `extra`, as in older files, are moved to `extra`.
     ///
     /// # Errors
     /// Returns [`ProfileError::Misspelt`] if a remaining entry is a misspelling of a missing one.
@@ -210,7 +210,7 @@ impl Entries {
 }
 
 impl Drop for Entries {
-    /// Records a misspelt name, because an error may have ended the parsing early.
+    /// Records a misspelt name if an error has ended the parsing early.
     fn drop(&mut self) {
         if let Some(slip) = self.find_misspelling(2) {
             self.reading.record_misspelling(slip);
@@ -218,7 +218,8 @@ impl Drop for Entries {
     }
 }
 
-/// Parses bytes of two hex digits each. A single digit is an error, because an editor may have removed the other one.
+/// Parses bytes of two hexadecimal digits each. A single digit is an error, because an editor may have removed the
+/// other one.
 fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     match line.split_whitespace().find(|group| group.len() == 1) {
         Some(digit) => Err(HexError::Odd(digit.to_owned())),
@@ -226,7 +227,7 @@ fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     }
 }
 
-/// Returns `x` for `Some(x)`, and any other value unchanged. Profiles may contain either form.
+/// Returns `x` for `Some(x)`, and any other value unchanged. Profiles may contain both forms.
 fn unwrap_value(value: Value) -> Value {
     match value {
         Value::Option(Some(inner)) => *inner,
@@ -247,7 +248,7 @@ impl Writer {
         self.write_line(&format!("// {text}"));
     }
 
-    /// Writes `name: value,` followed by a comment. The value is written as given.
+    /// Writes `name: value,` followed by a comment. The value is written verbatim.
     pub fn entry(&mut self, name: &str, value: &str, comment: &str) {
         let behind = if comment.is_empty() { String::new() } else { format!(" // {comment}") };
         self.write_line(&format!("{name}: {value},{behind}"));
@@ -263,7 +264,7 @@ impl Writer {
         self.entry(name, &quote(text), "");
     }
 
-    /// Writes bytes as a list of strings of sixteen bytes, each followed by its ASCII characters.
+    /// Writes bytes as a list of strings with sixteen bytes each. Each string is followed by its ASCII characters.
     pub fn bytes(&mut self, name: &str, bytes: &[u8]) {
         self.open(name, '[');
         for row in bytes.chunks(16) {
@@ -281,7 +282,7 @@ impl Writer {
         }
     }
 
-    /// Begins a structure or list. In a list and at the top level, the name is empty.
+    /// Begins a structure or list. The name is empty in a list and at the top level.
     pub fn open(&mut self, name: &str, bracket: char) {
         let head = if name.is_empty() { bracket.to_string() } else { format!("{name}: {bracket}") };
         self.write_line(&head);
@@ -309,7 +310,7 @@ pub(crate) fn quote(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
-/// Formats the entries added by the user for the end of a single-line structure, as in `, extra: {…}`.
+/// Formats the entries added by the user, for the end of a single-line structure, such as `, extra: {…}`.
 pub(crate) fn entries_text(unknown: &UnknownValues) -> String {
     if unknown.is_empty() { String::new() } else { format!(", {EXTRA_ENTRY}: {}", extra_text(unknown)) }
 }

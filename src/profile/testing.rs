@@ -2,7 +2,7 @@
 
 use super::{Profile, ProfileDocument, UpdatedText};
 
-/// Edits a profile and its note, and saves it over the text from which it was read.
+/// Edits a profile and its note and saves it over the text from which it was read.
 pub(crate) fn edit_profile<P: Profile>(
     text: &str,
     edit: impl FnOnce(&mut Option<String>, &mut P),
@@ -14,12 +14,13 @@ pub(crate) fn edit_profile<P: Profile>(
     (document, carried)
 }
 
-/// Checks that an edit replaces only `from` with `to` in the text. If both are empty, the text must not change.
+/// Checks that an edit of the profile only replaces `from` with `to` in the text. If both are empty, the text must not
+/// change.
 pub(crate) fn assert_edit_in_place<P: Profile>(text: &str, edit: impl FnOnce(&mut P), from: &str, to: &str) {
     let (_, same) = edit_profile(text, |_, _: &mut P| {});
     assert_eq!(same, UpdatedText { text: text.to_owned(), lost: Vec::new() });
     let (_, carried) = edit_profile(text, |_, own| edit(own));
-    // This program chooses the form and the place of a new entry.
+    // The program chooses the form and the position of a new entry.
     let squeezed = |text: &str| text.split_whitespace().collect::<String>().replace(",)", ")");
     assert_eq!(squeezed(&carried.text), squeezed(&text.replace(from, to)));
     assert_eq!(carried.lost, Vec::<String>::new());

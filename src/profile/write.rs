@@ -1,7 +1,7 @@
-//! Execution of a plan, the same for every kind of device. The base of the plan is read again, the operations are
-//! executed in order, and the mode of the device is restored. A kind of device implements [`Write`].
+//! Execution of a plan, common to all kinds of devices. The base of the plan is read again, the operations are executed
+//! in order, and the mode of the device is restored. Each kind of device implements [`Write`].
 //!
-//! Only `worker::commit` uses this module. It saves the backup before the first operation.
+//! This module is used only by `worker::commit`, which saves the backup before the first operation.
 
 use std::fmt;
 use std::hash::Hash;
@@ -10,18 +10,18 @@ use super::{Consent, Operation, Plan, WriteRecord};
 
 /// The device-specific part of writing a plan.
 pub trait Write {
-    /// Device values on which a plan is based.
+    /// The device values on which a plan is based.
     type Base: Hash;
     /// An operation of a plan.
     type Op: Operation + Clone + Hash;
-    /// Error of an operation.
+    /// The error of an operation.
     type Error: OperationError;
-    /// Record of what was written.
+    /// The record of what was written.
     type Written: WriteRecord;
-    /// State of the device after an interrupted write.
+    /// The state of the device after an interrupted write.
     type EndState;
 
-    /// Reads the base of the plan again, without writing. First, it checks that the device is the one for which the
+    /// Reads the base of the plan again without writing. Before that, checks that the device is the one for which the
     /// plan was made.
     ///
     /// # Errors
@@ -34,7 +34,7 @@ pub trait Write {
     /// Prepares the device for the first operation.
     ///
     /// # Errors
-    /// Returns an error if the preparation failed. No operation has begun in this case.
+    /// Returns an error if the preparation failed. In this case, no operation has begun.
     fn begin(&mut self) -> Result<(), Self::Error> {
         Ok(())
     }
@@ -42,7 +42,7 @@ pub trait Write {
     /// Executes an operation, counts it, and reads back the result if possible.
     ///
     /// # Errors
-    /// Returns an error if the operation failed. No further operation begins in this case.
+    /// Returns an error if the operation failed. In this case, no further operation begins.
     fn apply(
         &mut self,
         op: &Self::Op,
@@ -50,7 +50,7 @@ pub trait Write {
         done: &mut Self::Written,
     ) -> Result<(), Self::Error>;
 
-    /// Reads back the values that are readable only after all operations.
+    /// Reads back the values that can be read only after all operations.
     ///
     /// # Errors
     /// Returns an error if a value differs from the plan.
@@ -62,10 +62,10 @@ pub trait Write {
         Ok(())
     }
 
-    /// Returns the device to a safe state after the operations, whether they succeeded or failed.
+    /// Returns the device to a safe state after the operations, whether or not they succeeded.
     ///
     /// # Errors
-    /// Returns the reason why the operations were aborted, or why the mode of the device cannot be restored.
+    /// Returns the reason why the operations were aborted, or why the mode of the device could not be restored.
     fn return_to_safe_state(
         &mut self,
         _confirmed: &ConfirmedPlan<'_, Self::Base, Self::Op>,
@@ -81,10 +81,10 @@ pub trait Write {
 
 /// The error of an aborted operation.
 pub trait OperationError: fmt::Display {
-    /// Error type of the device and its connection.
+    /// The error type of the device and its connection.
     type Device;
 
-    /// Returns the error from the device or its connection, or `None` for other causes.
+    /// Returns the error from the device or its connection, or `None` for any other cause.
     fn device(&self) -> Option<&Self::Device>;
 
     /// Returns whether the user cancelled and no other error occurred.
@@ -114,7 +114,7 @@ impl<E: DeviceError> OperationError for E {
     }
 }
 
-/// A plan that the user approved and whose base is unchanged. Every operation requires one.
+/// A plan that the user has approved and whose base is unchanged. Every operation requires such a plan.
 pub struct ConfirmedPlan<'p, Base, Op> {
     plan: &'p Plan<Base, Op>,
 }
@@ -124,7 +124,7 @@ pub struct ConfirmedPlan<'p, Base, Op> {
 pub struct InterruptedWrite<Op, E, Done, Left> {
     /// Changes that were written before the interruption.
     pub done: Done,
-    /// Operation that was interrupted and may have begun. `None` if all operations were completed.
+    /// Operation that was interrupted and may have begun, or `None` if all operations were completed.
     pub unfinished: Option<Op>,
     /// Cause of the interruption.
     pub cause: E,
@@ -151,7 +151,7 @@ impl<'p, Base: Hash, Op: Clone + Hash> ConfirmedPlan<'p, Base, Op> {
         self.plan
     }
 
-    /// Executes the plan. Before each operation, `tell` is called with the operation and its index.
+    /// Executes the plan. `tell` is called before each operation with the operation and its index.
     ///
     /// # Errors
     /// Returns the progress and the cause if the write was interrupted.

@@ -1,4 +1,4 @@
-//! Result of a write. Each operation is either complete or not started.
+//! The result of a write. Each operation is either completed or not started.
 
 /// The changes that were written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -7,7 +7,7 @@ pub struct WrittenChanges {
     pub ops: usize,
     /// Number of changed values, counted as in a comparison. Some operations change only one value.
     pub written: u64,
-    /// Number of values that were read back and found correct.
+    /// Number of values that were read back and are correct.
     pub verified: u64,
     /// Number of persistent writes, including repetitions and writes that may not have taken place.
     pub write_cycles: u64,
@@ -32,7 +32,7 @@ impl WriteRecord for WrittenChanges {
 }
 
 impl WrittenChanges {
-    /// Counts a completed operation and the number of values that it changed.
+    /// Counts a completed operation and the values that it changed.
     pub fn count_operation(&mut self, changed: u64) {
         self.ops += 1;
         self.written += changed;

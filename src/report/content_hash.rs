@@ -1,4 +1,4 @@
-//! The hash of the content of a report, from which the report number is derived.
+//! The hash of a report's content, from which the report number is derived.
 
 use std::fmt;
 
@@ -6,23 +6,23 @@ use sha2::{Digest, Sha256};
 
 use super::Report;
 
-/// SHA-256 hash of the content of a report. The time of printing is not part of the content.
+/// The SHA-256 hash of a report's content. The time of printing is not part of the content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ContentHash(String);
 
-/// Number of digits of the hash in a report number.
+/// Number of digits of the hash that form a report number.
 const NUMBER_DIGITS: usize = 10;
 
 impl Report {
     /// Returns the hash of the content.
     pub fn content_hash(&self) -> ContentHash {
-        // Texts, numbers and lists always have a JSON form.
+        // Texts, numbers and lists can always be written as JSON.
         let content = serde_json::to_vec(self).unwrap_or_default();
         ContentHash(sha256_hex(&content))
     }
 }
 
-/// Returns the SHA-256 hash of bytes in lower-case hexadecimal digits, like `sha256sum`.
+/// Returns the SHA-256 hash of bytes as lower-case hexadecimal digits, like `sha256sum`.
 pub fn sha256_hex(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

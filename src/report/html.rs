@@ -1,5 +1,5 @@
-//! Rendering of a report as a self-contained HTML page for A4 paper. It has no script and no foreign resource, and the
-//! fonts are embedded.
+//! Rendering of a report as a self-contained HTML page for A4 paper. The page has no scripts and no external resources,
+//! and the fonts are embedded.
 
 use askama::Template;
 use base64::Engine as _;
@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use super::{Block, CellStyle, ContentHash, Mark, Report};
 use crate::fonts;
 
-/// Length in bytes above which a cell may be broken anywhere. Shorter ones are broken between words.
+/// Length in bytes above which a cell may be broken anywhere. Shorter cells are broken only between words.
 const LONG_CELL: usize = 24;
 
 #[derive(Template)]
@@ -16,13 +16,13 @@ const LONG_CELL: usize = 24;
 struct Page<'a> {
     report: &'a Report,
     hash: &'a ContentHash,
-    /// Time of printing. It appears in one element of the class `printed`.
+    /// Time of printing. It appears in the element with the class `printed`.
     printed: &'a str,
     fonts: [(&'static str, u16, &'static str, String); 3],
     logo: Option<String>,
 }
 
-/// Returns the report as an HTML page. `printed` is the time of printing; everything else depends on the content alone.
+/// Returns the report as an HTML page. `printed` is the time of printing. Everything else depends only on the content.
 pub fn render(report: &Report, printed: &str) -> String {
     let font = |name, weight, format, bytes| (name, weight, format, STANDARD.encode(bytes));
     let page = Page {
@@ -36,12 +36,12 @@ pub fn render(report: &Report, printed: &str) -> String {
         ],
         logo: report.company.as_ref().and_then(|company| company.logo.as_ref()).map(|logo| STANDARD.encode(logo)),
     };
-    // The template writes into a String, which does not fail.
+    // The template writes to a `String`, which cannot fail.
     page.render().unwrap_or_default()
 }
 
 impl CellStyle {
-    /// Returns the class of cells in this style.
+    /// Returns the CSS class of cells with this style.
     const fn class(self) -> &'static str {
         match self {
             CellStyle::Text => "text",
@@ -53,7 +53,7 @@ impl CellStyle {
 }
 
 impl Mark {
-    /// Returns the class of rows with this verdict.
+    /// Returns the CSS class of rows with this verdict.
     const fn class(self) -> &'static str {
         match self {
             Mark::None => "none",

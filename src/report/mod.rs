@@ -1,5 +1,5 @@
-//! The document model of reports: sections with facts, tables and drawings in one language. It knows no device and does
-//! no I/O. Two renderers make a page set of the same document, [`html`] and [`pdf`].
+//! The document model of reports: sections with facts, tables and drawings in one language. It does not depend on
+//! devices and does no I/O. Two renderers, [`html`] and [`pdf`], turn the same document into pages.
 
 mod content_hash;
 pub mod html;
@@ -14,23 +14,23 @@ use crate::drawing::Drawing;
 /// A report about a device, a profile or a capture. All texts are in the language of the report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// Language of the texts as in BCP 47, such as `en`.
+    /// Language of the texts as a BCP 47 tag such as `en`.
     pub language: &'static str,
     /// Type of report, such as "Device report".
     pub subject: String,
     /// Name of the device or the file.
     pub title: String,
-    /// Company that makes the report, if the settings name one.
+    /// Company that issues the report, if the settings name one.
     pub company: Option<Company>,
-    /// Origin of the values: source, time, program, asset.
+    /// Origin of the values: source, time, program and asset.
     pub origin: Vec<Fact>,
-    /// Content.
+    /// Sections of the report.
     pub sections: Vec<Section>,
-    /// Texts of the frame around the content.
+    /// Fixed texts around the content.
     pub labels: Labels,
 }
 
-/// A company with its logo.
+/// A company that issues reports.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Company {
     /// Name of the company.
@@ -54,11 +54,11 @@ pub struct Labels {
     pub of: String,
     /// Statement that the report is not a calibration certificate.
     pub no_certificate: String,
-    /// Labels of the lines for signatures.
+    /// Labels of the signature lines.
     pub signatures: Vec<String>,
 }
 
-/// A part of a report with a heading.
+/// A section of a report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Section {
     /// Heading.
@@ -74,7 +74,7 @@ pub enum Block {
     Paragraph(String),
     /// A heading within the section.
     Heading(String),
-    /// Labels with values.
+    /// A list of labels with their values.
     Facts(Vec<Fact>),
     /// A table.
     Table(Table),
@@ -96,9 +96,9 @@ pub struct Fact {
 /// A table. Each row has a cell for each column.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Table {
-    /// Columns from left to right.
+    /// Columns, from left to right.
     pub columns: Vec<Column>,
-    /// Rows from top to bottom.
+    /// Rows, from top to bottom.
     pub rows: Vec<Row>,
 }
 
@@ -107,33 +107,33 @@ pub struct Table {
 pub struct Column {
     /// Heading, which may be empty.
     pub heading: String,
-    /// Style of the cells.
+    /// Style of the cells in this column.
     pub style: CellStyle,
 }
 
-/// Style of a value or a column.
+/// The style of a value or a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum CellStyle {
-    /// Text, which may be broken into lines.
+    /// Text that may be broken into several lines.
     Text,
-    /// Text that is kept in one line, such as a unit or a time.
+    /// Text that stays on one line, such as a unit or a time.
     Short,
     /// Bytes or addresses in a monospaced font, which may be broken between bytes.
     Code,
-    /// A number in a monospaced font, aligned at its right end.
+    /// A number in a monospaced font, aligned to the right.
     Number,
 }
 
 /// A row of a table.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Row {
-    /// Cells from left to right.
+    /// Cells, from left to right.
     pub cells: Vec<String>,
     /// Verdict on the row.
     pub mark: Mark,
 }
 
-/// Verdict on a row.
+/// The verdict on a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum Mark {
     /// No verdict.
@@ -153,7 +153,7 @@ impl Section {
         Section { title: title.into(), blocks: Vec::new() }
     }
 
-    /// Adds a block. Columns of a table that have no entry are left out.
+    /// Adds a block. Table columns without entries are omitted.
     #[must_use]
     pub fn with(mut self, mut block: Block) -> Self {
         if let Block::Table(table) = &mut block {
@@ -193,7 +193,7 @@ impl Table {
         self.rows.push(Row { cells: cells.into_iter().collect(), mark });
     }
 
-    /// Removes columns without entries.
+    /// Removes columns that have no entries.
     fn remove_empty_columns(&mut self) {
         let is_used =
             |index: usize| self.rows.iter().any(|row| row.cells.get(index).is_some_and(|cell| !cell.is_empty()));

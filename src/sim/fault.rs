@@ -1,5 +1,5 @@
-//! Injected faults: noise on the line, slow and silent devices, and a power cut during a store. The options `--fault`
-//! and `sim:?fault=` set them. Each device defines the effect of a fault.
+//! Injected faults: noise on the line, slow and silent devices, and a power cut during a store. They are set by
+//! `--fault` and `sim:?fault=`. Each device defines the effects of a fault.
 
 use std::str::FromStr;
 use std::time::Duration;
@@ -17,7 +17,7 @@ pub struct SimulatedFaults {
     die_in_store: Option<u32>,
 }
 
-/// Parser for the value of a fault setting.
+/// The parser for the value of a `fault` setting.
 pub const FAULTS: FaultParser = FaultParser;
 
 /// The type of [`FAULTS`].
@@ -25,10 +25,10 @@ pub const FAULTS: FaultParser = FaultParser;
 pub struct FaultParser;
 
 impl FaultParser {
-    /// Parses the faults of a setting.
+    /// Parses the faults in a setting.
     ///
     /// # Errors
-    /// Returns the first invalid fault.
+    /// Returns an error about the first invalid fault.
     pub fn parse_value(&self, _key: &str, value: &str) -> Result<SimulatedFaults, FaultError> {
         value.parse()
     }
@@ -79,11 +79,11 @@ pub enum FaultError {
 pub struct ByteTransfer {
     /// Noise byte inserted before the byte, if any.
     pub inserted: Option<u8>,
-    /// The byte that arrived. `None` if it was lost.
+    /// Byte that arrived, or `None` if the byte was lost.
     pub carried: Option<ReceivedByte>,
 }
 
-/// A byte that arrived.
+/// A byte that has arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReceivedByte {
     /// Data bits.
@@ -100,7 +100,8 @@ impl SimulatedFaults {
         self.delay
     }
 
-    /// Returns the number of frames after which the device fails. A failed device neither replies nor acts.
+    /// Returns the number of frames after which the device fails. A failed device neither replies nor executes
+    /// anything.
     pub fn silent_after(&self) -> Option<u32> {
         self.silent_after
     }
@@ -122,15 +123,15 @@ impl SimulatedFaults {
 }
 
 fn is_hit(probability: f64, rng: &mut Rng) -> bool {
-    // f64() is below 1, so probability 1 always happens and 0 never does.
+    // f64() is below 1, so a probability of 1 always applies and 0 never does.
     rng.f64() < probability
 }
 
 impl FromStr for SimulatedFaults {
     type Err = FaultError;
 
-    /// Parses a list such as `drop:0.01,delay:5`. If an item occurs several times, the last one is used. An empty
-    /// string means no faults.
+    /// Parses a list such as `drop:0.01,delay:5`. If an item is repeated, the last one is used. An empty string means
+    /// no faults.
     fn from_str(text: &str) -> Result<Self, FaultError> {
         let mut faults = SimulatedFaults::default();
         for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {

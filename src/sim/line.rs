@@ -1,6 +1,6 @@
 //! A half-duplex line between the UART of the host and virtual devices. Characters are transmitted one after another
-//! and received in chronological order. Some of them are damaged. Each device defines which characters it receives and
-//! what they mean.
+//! and received in chronological order, and some of them are damaged. Each device defines which characters it receives
+//! and what they mean.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -48,7 +48,7 @@ impl<T> TransitQueue<T> {
     }
 }
 
-/// A character on the line. It lasts from its start bit to the end of its stop bit.
+/// A character on the line, which lasts from the start bit to the end of the stop bit.
 #[derive(Clone, Copy)]
 pub(crate) struct SerialCharacter {
     pub(crate) start: Moment,
@@ -60,12 +60,12 @@ pub(crate) struct SerialCharacter {
 
 pub(crate) struct SentCharacters {
     pub(crate) heard: Vec<SerialCharacter>,
-    /// Characters as sent, without line noise. An echoing converter returns them.
+    /// Characters as sent, without line noise. A converter with an echo returns them.
     pub(crate) own: Vec<SerialCharacter>,
     pub(crate) end: Moment,
 }
 
-/// State common to all virtual lines, created from the settings of a device.
+/// The state common to all virtual lines, created from the settings of a device.
 #[derive(Clone)]
 pub(crate) struct LineConditions {
     pub(crate) faults: SimulatedFaults,
@@ -73,7 +73,8 @@ pub(crate) struct LineConditions {
     pub(crate) host: CharacterFormat,
     pub(crate) now: Moment,
     host_done: Moment,
-    /// Numbers of bytes that the host's UART has yet to send, each with the time at which the last byte is sent.
+    /// Numbers of bytes that the host's UART has not sent yet, each with the time at which its last byte will have been
+    /// sent.
     sending: VecDeque<(Moment, usize)>,
     pub(crate) inbox: Vec<u8>,
 }
@@ -92,7 +93,7 @@ impl LineConditions {
     }
 
     /// Buffer size of a UART in bytes, as in a device server. Further bytes are lost. No request of the simulated
-    /// protocols is longer. 512 bytes take half a second at 9600 bit/s.
+    /// protocols is longer. Sending 512 bytes takes half a second at 9600 bit/s.
     const BUFFER: usize = 512;
 
     /// Returns the number of further bytes that the host's UART can accept.
@@ -102,7 +103,7 @@ impl LineConditions {
         Self::BUFFER.saturating_sub(self.sending.iter().map(|(_, count)| count).sum())
     }
 
-    /// Sends bytes over the noisy line, starting at `start`. Each byte takes one character time.
+    /// Sends bytes over the noisy line, starting at `start`. `character` is the duration of each byte.
     pub(crate) fn send(&mut self, start: Moment, character: Duration, bytes: &[u8]) -> SentCharacters {
         let mut sent = SentCharacters { heard: Vec::new(), own: Vec::new(), end: start };
         for byte in bytes {
@@ -122,9 +123,9 @@ impl LineConditions {
     }
 }
 
-/// A line with its devices. A line that implements this trait is a [`ByteDevice`].
+/// A line with its devices. Every type that implements this trait is also a [`ByteDevice`].
 pub(crate) trait VirtualLine: Send {
-    /// Event on the line. Simultaneous events are ordered from smallest to largest.
+    /// An event on the line. Simultaneous events are processed in ascending order.
     type Event;
 
     fn line_conditions(&self) -> &LineConditions;

@@ -1,8 +1,8 @@
-//! Virtual devices: the simulated side of a connection, byte by byte or as voltages, with injected faults. They are
-//! deterministic: the same seed and the same calls at the same moments yield the same bytes.
+//! Virtual devices, which are the simulated side of a connection, at the level of bytes or voltages and with injected
+//! faults. They are deterministic: the same seed and the same calls at the same times yield the same bytes.
 //!
-//! This module uses no clock, thread, socket or port. Time is an argument. It uses neither procedures nor `link/`, and
-//! shares only the tables of `protocol/` with the host side.
+//! This module does not use clocks, threads, sockets or ports. Time is passed as an argument. The module uses neither
+//! procedures nor `link/`, and shares only the tables of `protocol/` with the host side.
 
 #![warn(missing_docs)]
 
@@ -23,22 +23,22 @@ use crate::units::{CharacterFormat, Moment};
 /// A virtual device on a serial line. Its owner drives it, for example a link in this process, a pseudo-terminal or a
 /// TCP server. Time never runs backwards: a moment before the latest known one is replaced with the latest one.
 pub trait ByteDevice: Send {
-    /// Receives bytes that the host has passed to its UART at `now`. They follow any bytes still in transmission and
-    /// take one character time each.
+    /// Receives bytes that the host passed to its UART at `now`. They follow any bytes that are still being transmitted
+    /// and take one character time each.
     fn on_bytes(&mut self, now: Moment, bytes: &[u8]);
 
     /// Returns the bytes that have completely arrived at the host by `now`. Each byte is returned once.
     fn poll(&mut self, now: Moment) -> Vec<u8>;
 
-    /// Returns the time at which to call [`poll`](Self::poll) next. Returns `None` if nothing is scheduled.
+    /// Returns the time at which to call [`poll`](Self::poll) next, or `None` if nothing is scheduled.
     fn poll_at(&self) -> Option<Moment>;
 
-    /// Sets the character format of the host's UART. If it differs from the format of the device, bytes are garbled in
-    /// both directions, and no frame is valid. A device without a serial line ignores the format.
+    /// Sets the character format of the host's UART. If it differs from that of the device, bytes are garbled in both
+    /// directions, and no frame is valid. A device without a serial line ignores the format.
     fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
 
     /// Opens or reopens the connection of the host. Earlier bytes are discarded, and a device without power is powered
-    /// again.
+    /// on again.
     fn connect(&mut self, now: Moment);
 }
 
@@ -50,7 +50,7 @@ pub trait DatagramDevice: Send {
     /// Returns the packets sent by `now`, with their destinations. Each packet is returned once.
     fn poll_datagrams(&mut self, now: Moment) -> Vec<(SocketAddrV4, Vec<u8>)>;
 
-    /// Returns the time at which to call [`poll_datagrams`](Self::poll_datagrams) next. Returns `None` if nothing is
+    /// Returns the time at which to call [`poll_datagrams`](Self::poll_datagrams) next, or `None` if nothing is
     /// scheduled.
     fn poll_datagrams_at(&self) -> Option<Moment>;
 }

@@ -1,4 +1,4 @@
-//! The motor of a virtual shaft, as a shared handle. The motor has no clock, so a change takes effect at the next
+//! The motor of a virtual shaft, as a shared handle. The motor has no clock, so a change takes effect with the next
 //! request to the encoder.
 
 use std::sync::Arc;

@@ -33,7 +33,7 @@ pub enum ConfigError {
     Fault(#[from] FaultError),
 }
 
-/// A virtual device, as named in errors about settings.
+/// Name of the setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum VirtualDevice {
     /// An encoder.
@@ -51,7 +51,7 @@ pub enum VirtualDevice {
 }
 
 impl ConfigError {
-    /// Creates the error for an unknown setting of `device`. `known` are the existing keys.
+    /// Creates the error for an unknown setting of `device`. `known` lists the existing keys.
     pub fn unknown_setting(device: VirtualDevice, key: &str, known: &[&str]) -> Self {
         ConfigError::Key { device, key: key.to_owned(), known: known.join(", ") }
     }
@@ -80,10 +80,10 @@ pub fn read<P: ParameterGroup<Error = ConfigError>>(
     Ok(own)
 }
 
-/// Seed of the noise. Any number is valid.
+/// The notation of the noise seed. Any number is valid.
 pub const SEED: CustomNotation<u64> = CustomNotation(AllowedValues::Whole, parse_whole);
 
-/// Speed in revolutions per minute, in either direction.
+/// The notation of a speed in revolutions per minute, in either direction.
 pub const RPM: Rpm = Rpm;
 
 /// The type of [`RPM`].

@@ -1,5 +1,5 @@
-//! Backups of devices, taken before a write. Each backup is a file in the folder of its device and serial number, and
-//! is never overwritten or removed. The caller supplies the text, which must not contain access codes.
+//! Backups of devices, which are taken before a write. Each backup is a file in the folder of its device and serial
+//! number, and is never overwritten or removed. The caller supplies the text, which must not contain access codes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,11 +12,11 @@ use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::file_names::{LetterCase, safe_name};
 use super::files::{create_folder, write_new};
 
-/// Time format in file names: UTC without colons, which Windows forbids.
+/// Time format of file names: UTC without colons, which Windows does not allow.
 const TIME: &str = "%Y-%m-%dT%H-%M-%SZ";
 const EXTENSION: &str = "ron";
 
-/// Maximum number of backups of a device per second. More would indicate a runaway loop.
+/// Maximum number of backups of a device per second. A greater number indicates a runaway loop.
 const MAX_BACKUPS_PER_SECOND: u32 = 1000;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,11 +34,12 @@ impl Backups {
         Backups(folder)
     }
 
-    /// Writes a backup to `<device>/<serial number>/2026-11-21T12-14-47Z.ron` and returns its path. If a backup of the
-    /// same second exists, `-2`, `-3` and so on is appended to the time.
+    /// Writes a backup to `<device>/<serial number>/2026-11-21T12-14-47Z.ron` and returns its path. If a backup from
+    /// the same second exists, `-2`, `-3` and so on is appended to the time.
     ///
     /// # Errors
-    /// Returns an error if the folder cannot be created or the file cannot be written. No file is left behind.
+    /// Returns an error if the folder cannot be created or the file cannot be written. In this case, no file is left
+    /// behind.
     pub fn save(&self, device: &str, serial_number: &str, taken: Timestamp, text: &str) -> Result<PathBuf, FileError> {
         let folder = self.device_folder(device, serial_number);
         create_folder(&folder)?;
@@ -79,7 +80,7 @@ impl Backups {
     }
 
     fn device_folder(&self, device: &str, serial_number: &str) -> PathBuf {
-        // `device` is a keyword of this program. It is escaped as well, which prevents any path out of the folder.
+        // `device` is a keyword of this program. It is escaped nevertheless, so no path can lead out of the folder.
         self.0.join(safe_name(device, LetterCase::Kept)).join(safe_name(serial_number, LetterCase::Told))
     }
 }

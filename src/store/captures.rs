@@ -1,4 +1,4 @@
-//! Captures from files, read in chunks with progress and cancellation.
+//! Reading of captures from files in chunks, with progress and cancellation.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -25,7 +25,7 @@ pub type OnProgress<'a> = &'a mut dyn FnMut(u64, u64);
 /// Number of bytes read at a time. Progress is reported and cancellation is checked after each read.
 const CHUNK_BYTES: usize = 1 << 20;
 
-/// Reads a capture. Also returns the layout in which its table was read.
+/// Reads a capture. Also returns the layout of the table in the file.
 ///
 /// # Errors
 /// Returns a [`ReadCaptureError`] if the file is missing or is not a capture, or if `cancel` was set.
@@ -50,7 +50,7 @@ pub fn read_capture(
             return Err(ReadCaptureError::Cancelled);
         }
         piece.clear();
-        // A single read from a pipe may return few bytes, but the first piece has to contain the head.
+        // A single read from a pipe may return only a few bytes, but the first chunk must contain the whole head.
         let read = (&mut file).take(CHUNK_BYTES.max(HEAD_BYTES) as u64).read_to_end(&mut piece).map_err(failed)?;
         let importing = match &mut import {
             Some(importing) => importing,

@@ -1,5 +1,5 @@
-//! User-defined device descriptions. The files of a folder are read independently, so an unreadable file does not
-//! affect the others.
+//! User-defined device descriptions. Each file of a folder is read independently, so an unreadable file does not affect
+//! the others.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::files::read_file;
 
-/// Reads the files with the given extension in a folder. Returns their paths and contents, ordered by name, and the
-/// errors of unreadable files. A missing folder yields no files.
+/// Reads the files in a folder that have the given extension. Returns their paths and contents, ordered by name, and
+/// the errors of unreadable files. A missing folder yields no files.
 pub fn read_folder(folder: &Path, ending: &str) -> (Vec<(String, String)>, Vec<FileError>) {
     let (mut texts, mut errors) = (Vec::new(), Vec::new());
     match list_files(folder, ending) {

@@ -11,8 +11,8 @@ use super::files::{create_folder, read_text, write_atomically};
 
 const EXTENSION: &str = "ron";
 
-/// The exclusive right to save a draft, held until the value is dropped. The system also releases the claim when the
-/// program ends.
+/// The exclusive right to save a draft, held until the value is dropped. The system also releases it when the program
+/// ends.
 #[derive(Debug)]
 pub struct Claim {
     _lock: FileLock,
@@ -26,7 +26,7 @@ impl Drafts {
         Drafts(folder)
     }
 
-    /// Writes a draft to `<device>/<key>.ron`. An earlier draft is replaced.
+    /// Writes a draft to `<device>/<key>.ron`, replacing any earlier draft.
     ///
     /// # Errors
     /// Returns an error if the folder cannot be created or the file cannot be written. In this case, the earlier draft
@@ -57,14 +57,14 @@ impl Drafts {
     /// # Errors
     /// Returns an error if the lock file cannot be created.
     pub fn claim_draft(&self, device: &str, key: &str) -> Result<Option<Claim>, FileError> {
-        // The locks have a separate folder, because every file in the folder of drafts is taken for a draft.
+        // Locks have a separate folder, because every file in the drafts folder is considered a draft.
         let folder = self.0.with_file_name("locks").join(safe_name(device, LetterCase::Kept));
         create_folder(&folder)?;
         let path = folder.join(format!("{}.lock", safe_name(key, LetterCase::Told)));
         Ok(FileLock::try_lock_at(&path)?.map(|lock| Claim { _lock: lock }))
     }
 
-    /// Removes a draft, if it exists.
+    /// Removes a draft if it exists.
     ///
     /// # Errors
     /// Returns an error if the draft cannot be removed.

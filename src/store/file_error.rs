@@ -1,4 +1,4 @@
-//! Reasons why a file could not be read or written: system errors grouped by what the user can do about them.
+//! Reasons why a file could not be read or written. System errors are grouped by what the user can do about them.
 
 use std::fmt;
 use std::io;
@@ -99,8 +99,7 @@ impl FileErrorKind {
         FileError { path: path.to_owned(), task, problem: self }
     }
 
-    /// Converts an error that occurred while a file was created. Because the file is new, only its folder can be
-    /// missing.
+    /// Converts an error that occurred while creating a file. Because the file is new, only its folder can be missing.
     pub(super) fn from_create_error(error: io::Error) -> Self {
         match error.into() {
             FileErrorKind::NotFound => FileErrorKind::NoFolder,

@@ -1,5 +1,5 @@
-//! File locks between programs that use the same files. When a program ends for any reason, the system releases its
-//! locks.
+//! File locks between programs that use the same files. The system releases the locks of a program that ends for any
+//! reason.
 
 use std::fs::{File, TryLockError};
 use std::io;
@@ -14,14 +14,15 @@ use super::files::{create_folder, read_text, write_atomically};
 const LOCK_TIMEOUT: Duration = Duration::from_secs(2);
 const RETRY: Duration = Duration::from_millis(5);
 
-/// A lock that excludes all other programs until it is dropped.
+/// A lock that excludes all other programs while it exists.
 #[derive(Debug)]
 pub(super) struct FileLock {
     _locked: File,
 }
 
 impl FileLock {
-    /// Locks a lock file, which is created if missing. Returns `None` if this or another program holds the lock.
+    /// Locks a lock file and creates it if it is missing. Returns `None` if this or another program already holds the
+    /// lock.
     pub(super) fn try_lock_at(path: &Path) -> Result<Option<Self>, FileError> {
         let failed = |error: io::Error| FileErrorKind::from(error).into_error(FileOperation::Write, path);
         let file = open(path).map_err(failed)?;
@@ -39,19 +40,20 @@ impl FileLock {
 
 fn open(path: &Path) -> io::Result<File> {
     match File::options().create(true).truncate(false).write(true).open(path) {
-        // The file was created by another user. A lock does not require permission to write.
+        // The file was created by another user. Locking does not require write permission.
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied => File::open(path),
         result => result,
     }
 }
 
-/// Replaces the text of a file with the result of `make`. Other programs that use this function wait in the meantime.
-/// The folder is created if missing, and the text is written with [`write_atomically`].
+/// Replaces the text of a file with the result of `make`. Meanwhile, other programs that use this function wait. The
+/// folder is created if it is missing, and the text is written with [`write_atomically`].
 ///
 /// `make` receives the current text, or the error if it cannot be read. It returns `None` to leave the file unchanged.
 ///
 /// # Errors
-/// Returns [`FileErrorKind::InUse`] if another program keeps the lock, or an error from [`write_atomically`] or `make`.
+/// Returns [`FileErrorKind::InUse`] if another program holds the lock for too long, or an error from
+/// [`write_atomically`] or `make`.
 pub fn update_text<T>(
     path: &Path,
     make: impl FnOnce(Result<String, FileError>) -> Result<(Option<String>, T), FileError>,
@@ -72,7 +74,7 @@ pub(super) fn wait_for(path: &Path) -> Result<FileLock, FileError> {
     let beside = lock_path(path);
     let began = Instant::now();
     loop {
-        // The error names the user's file instead of the lock file.
+        // The error names the user's file rather than the lock file.
         let tried = FileLock::try_lock_at(&beside).map_err(|error| FileError { path: path.to_owned(), ..error })?;
         match tried {
             Some(lock) => return Ok(lock),

@@ -1,6 +1,6 @@
 //! Folder and file names derived from external strings such as serial numbers and item names.
 
-/// Encoding of letter case in file names. Windows and macOS ignore the case of file names.
+/// The treatment of letter case in file names. Windows and macOS ignore the case of file names.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum LetterCase {
     /// Case is not encoded, because no two names differ only in case.
@@ -9,8 +9,8 @@ pub(super) enum LetterCase {
     Told,
 }
 
-/// Returns a file or folder name without extension for any text. The name is valid on every system, and different texts
-/// have different names. Letters, digits, `.`, `_` and `-` are unchanged, and every other byte becomes `%XX`.
+/// Returns a file or folder name without an extension for any text. The name is valid on every system, and different
+/// texts yield different names. Letters, digits, `.`, `_` and `-` stay unchanged, and every other byte becomes `%XX`.
 ///
 /// With [`LetterCase::Told`], a name with lower-case letters ends with `%` and an `l` or a `u` for each letter.
 pub(super) fn safe_name(text: &str, case: LetterCase) -> String {
@@ -22,7 +22,7 @@ pub(super) fn safe_name(text: &str, case: LetterCase) -> String {
     let mut name = String::new();
     let mut cases = String::new();
     for (at, byte) in text.bytes().enumerate() {
-        // A leading dot hides the folder, and Windows drops a final one. `.` and `..` are not valid names.
+        // A leading dot hides the folder, and Windows removes a trailing one. `.` and `..` are not valid names.
         let plain = match byte {
             b'.' => at != 0 && at != last,
             b'_' | b'-' => true,
@@ -44,7 +44,7 @@ pub(super) fn safe_name(text: &str, case: LetterCase) -> String {
     name
 }
 
-/// Returns whether Windows reserves the name for a device, regardless of extension.
+/// Returns whether Windows reserves the name for a device, regardless of its extension.
 fn is_reserved(text: &str) -> bool {
     let stem = text.split('.').next().unwrap_or(text).to_ascii_uppercase();
     match stem.as_str() {
@@ -61,7 +61,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Decodes the original text of a file name, ignoring the name's case.
+    /// Decodes the original text from a file name, ignoring the case of the name.
     fn read_back(name: &str) -> Vec<u8> {
         let name = name.to_ascii_uppercase();
         if name == "%NONE" {

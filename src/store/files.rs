@@ -1,5 +1,5 @@
-//! Reading and writing of whole files. New content is written to a temporary file in the same folder, flushed and
-//! renamed. A file therefore contains either the old or the new content, never a part of it.
+//! Reading and writing of whole files. New content is written to a temporary file in the same folder, flushed, and
+//! renamed. A file therefore contains either all of the old content or all of the new content.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
@@ -13,7 +13,7 @@ use tempfile::NamedTempFile;
 use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::leftovers;
 
-/// Maximum number of bytes that [`read_text`] accepts, 16 MiB. The largest profile is a hundredth of that size.
+/// Maximum number of bytes that [`read_text`] accepts: 16 MiB. The largest profile is a hundred times smaller.
 pub const MAX_TEXT: u64 = 16 << 20;
 
 /// Byte order mark that some editors write at the beginning of a file.
@@ -21,12 +21,12 @@ const BYTE_ORDER_MARK: &str = "\u{FEFF}";
 
 /// Writes a file so that a crash or a full disk leaves either the old content or the new content.
 ///
-/// An existing file keeps its permissions. A link stays a link, and its target is replaced. A device or a pipe
-/// (`/dev/stdout`) has no content to protect and is written to directly.
+/// An existing file keeps its permissions. A symbolic link is preserved, and its target is replaced. A device or pipe
+/// such as `/dev/stdout` has no content to protect and is written to directly.
 ///
 /// # Errors
 /// Returns an error if the folder is missing, the target is a folder or write-protected, or the disk is full. In this
-/// case, the old content is unchanged.
+/// case, the old content stays unchanged.
 pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if fs::metadata(path).is_ok_and(|target| !target.is_dir() && !target.is_file()) {
         return write_directly(path, content)
@@ -35,10 +35,10 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_atomically_with(path, |file| file.write_all(content))
 }
 
-/// Writes a text like [`write_atomically`] and preserves an existing byte order mark.
+/// Writes a text like [`write_atomically`], preserving an existing byte order mark.
 ///
 /// # Errors
-/// Returns the same errors as [`write_atomically`].
+/// Returns an error from [`write_atomically`].
 pub fn overwrite_text(path: &Path, text: &str) -> Result<(), FileError> {
     let is_file = fs::metadata(path).is_ok_and(|target| target.is_file());
     let has_mark = is_file && read_at_most(path, 3).is_ok_and(|head| head == BYTE_ORDER_MARK.as_bytes());
@@ -46,8 +46,8 @@ pub fn overwrite_text(path: &Path, text: &str) -> Result<(), FileError> {
     write_atomically(path, [mark, text].concat().as_bytes())
 }
 
-/// Writes a file like [`write_atomically`], with content that `write` produces in parts. If `write` fails, the old file
-/// remains.
+/// Writes a file like [`write_atomically`], with content that `write` produces in portions. If `write` fails, the old
+/// file stays unchanged.
 ///
 /// # Errors
 /// Returns an error from [`write_atomically`] or `write`, or an error if the path refers to a device or a pipe.
@@ -59,7 +59,7 @@ pub fn write_atomically_with(
     let permissions = match fs::metadata(path) {
         Ok(target) if target.is_dir() => return Err(failed(FileErrorKind::IsFolder)),
         Ok(target) if !target.is_file() => return Err(failed(FileErrorKind::NotAFile)),
-        // Renaming would ignore the write protection of the file.
+        // Renaming would bypass the write protection of the file.
         Ok(target) if target.permissions().readonly() => return Err(failed(FileErrorKind::WriteProtected)),
         Ok(target) => Some(target.permissions()),
         Err(_) => None,
@@ -73,8 +73,8 @@ pub fn write_atomically_with(
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
 
-/// Writes a new file like [`write_atomically`], but never replaces an existing file. This also applies if another
-/// program writes the file at the same time.
+/// Writes a new file like [`write_atomically`], but never replaces an existing file, even if another program creates it
+/// at the same time.
 ///
 /// # Errors
 /// Returns [`FileErrorKind::Exists`] if the file exists.
@@ -89,13 +89,13 @@ pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
 
 pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|error| match error.into() {
-        // An existing folder is not an error, so this is a file or a broken link.
+        // An existing folder does not cause an error, so this is a file or a broken link.
         FileErrorKind::Exists => FileErrorKind::NotFolder.into_error(FileOperation::CreateFolder, path),
         problem => problem.into_error(FileOperation::CreateFolder, path),
     })
 }
 
-/// Writes a file of the program like [`write_atomically`]. The folder is created if missing.
+/// Writes a file of the program like [`write_atomically`]. The folder is created if it is missing.
 ///
 /// # Errors
 /// Returns an error if the folder cannot be created, or an error from [`write_atomically`].
@@ -119,7 +119,7 @@ pub fn read_file(path: &Path) -> Result<String, FileError> {
     }
 }
 
-/// Reads a text of at most [`MAX_TEXT`] bytes. A byte order mark, which some editors write, is removed.
+/// Reads a text of at most [`MAX_TEXT`] bytes. A leading byte order mark is removed.
 ///
 /// # Errors
 /// Returns an error if the file is missing, is a folder, is too large or is not UTF-8.
@@ -171,17 +171,17 @@ fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
         .unwrap_or_else(|_| Err(io::Error::new(io::ErrorKind::TimedOut, "no process reads the file")))
 }
 
-/// Follows a chain of links and returns the file at its end. The file need not exist.
+/// Follows a chain of symbolic links and returns the path at its end, which need not exist.
 fn resolve_links(path: &Path) -> io::Result<PathBuf> {
     /// Maximum number of links to follow, as in Linux.
     const MAX_LINKS: usize = 40;
     let mut target = path.to_owned();
     for _ in 0..MAX_LINKS {
-        // If the target cannot be read as a link, it is not a link. Any other error occurs again when it is written.
+        // If the target cannot be read as a link, it is not a link. Any other error occurs again during the write.
         let Ok(next) = fs::read_link(&target) else { return Ok(target) };
         target = target.parent().unwrap_or(Path::new("")).join(next);
     }
-    // The links form a ring, for which the system reports an error.
+    // The links form a cycle, for which the system reports an error.
     fs::metadata(path).map(|_| target)
 }
 
@@ -189,12 +189,12 @@ fn parent_folder(path: &Path) -> Result<&Path, FileErrorKind> {
     match (path.parent(), path.file_name()) {
         (Some(folder), Some(_)) if folder.as_os_str().is_empty() => Ok(Path::new(".")),
         (Some(folder), Some(_)) => Ok(folder),
-        // The path has no file name, as in "/" and "..".
+        // The path has no file name, as with "/" and "..".
         _ => Err(FileErrorKind::IsFolder),
     }
 }
 
-/// Writes a temporary file in the target's folder and flushes it. The file is removed when the value is dropped.
+/// Writes a temporary file to the folder of the target and flushes it. The file is removed when the value is dropped.
 fn write_temp_file(
     folder: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -222,8 +222,8 @@ mod platform {
     use std::os::unix::fs::PermissionsExt;
     use std::path::Path;
 
-    /// Sets the usual permissions of a new file, subject to the umask. Otherwise, a temporary file would be private to
-    /// its owner.
+    /// Sets the usual permissions of a new file, subject to the umask. By default, a temporary file is accessible only
+    /// to its owner.
     pub(super) fn set_default_permissions(builder: &mut tempfile::Builder<'_, '_>) {
         builder.permissions(Permissions::from_mode(0o666));
     }
@@ -231,7 +231,8 @@ mod platform {
     pub(super) fn flush_folder(folder: &Path) -> io::Result<()> {
         use io::ErrorKind as Kind;
         match File::open(folder).and_then(|folder| folder.sync_all()) {
-            // The file is already in place. Some network disks cannot flush folders, and some folders may not be read.
+            // The file is already in place. Some network drives cannot flush folders, and some folders are not
+            // readable.
             Err(error) if matches!(error.kind(), Kind::InvalidInput | Kind::Unsupported | Kind::PermissionDenied) => {
                 Ok(())
             }
@@ -367,7 +368,7 @@ mod tests {
             fs::create_dir(folder.path().join("sub")).unwrap();
             symlink("second", &link).unwrap();
             symlink(&target, &second).unwrap();
-            // The first time, the link leads to a file that does not exist yet.
+            // In the first round, the link leads to a file that does not exist yet.
             for content in ["made", "replaced"] {
                 write_atomically(&link, content.as_bytes()).unwrap();
                 assert_eq!(read_text(&target).unwrap(), content);

@@ -1,5 +1,4 @@
-//! The folders from which relative paths start. The same rule applies to the command line and to typed and dropped
-//! paths.
+//! The base folders of relative paths. The same rule applies to the command line and to typed and dropped paths.
 
 use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
@@ -13,7 +12,7 @@ pub struct BaseFolders {
 }
 
 impl BaseFolders {
-    /// Returns the working directory of the program and the user's home folder.
+    /// Returns the working folder of the program and the home folder of the user.
     pub fn for_current_user() -> Self {
         let home = UserDirs::new().map(|own| own.home_dir().to_owned());
         BaseFolders { working: std::env::current_dir().ok(), home }
@@ -23,7 +22,7 @@ impl BaseFolders {
         BaseFolders { working: Some(working.to_owned()), home: Some(home.to_owned()) }
     }
 
-    /// Returns the folder from which relative paths start, or `None` if the system does not report it.
+    /// Returns the base folder of relative paths, or `None` if the system does not report it.
     pub fn working_folder(&self) -> Option<&Path> {
         self.working.as_deref()
     }
@@ -33,8 +32,8 @@ impl BaseFolders {
         self.home.as_deref()
     }
 
-    /// Returns the absolute path of a file. A leading `~` stands for the user's home folder. Other relative paths start
-    /// from the working folder.
+    /// Returns the absolute path of a file. A leading `~` is replaced with the user's home folder. Other relative paths
+    /// are resolved against the working folder.
     pub fn absolute_path(&self, path: &Path) -> PathBuf {
         let mut parts = path.components();
         let from_home = parts.next() == Some(Component::Normal(OsStr::new("~")));
@@ -51,7 +50,7 @@ impl BaseFolders {
 mod tests {
     use super::*;
 
-    /// The same rule applies to every path from the user.
+    /// The same rule applies to every path entered by the user.
     #[test]
     fn paths_resolve_the_same_everywhere() {
         let root = std::env::temp_dir();
@@ -64,7 +63,7 @@ mod tests {
             ("sub/a.ron", working.join("sub").join("a.ron")),
             ("~/a.ron", home.join("a.ron")),
             ("~", home.clone()),
-            // A file name that begins with `~`, which is not the home.
+            // A file name that begins with `~` and does not refer to the home folder.
             ("~a.ron", working.join("~a.ron")),
             ("sub/~/a.ron", working.join("sub/~/a.ron")),
         ];

@@ -1,25 +1,26 @@
-//! Temporary files of a program that was killed during a write.
+//! Temporary files left by a program that was killed during a write.
 
 use std::fs::{self, DirEntry};
 use std::path::Path;
 use std::time::Duration;
 
-/// Beginning and end of the names of temporary files.
+/// Beginning of the names of temporary files.
 pub(super) const PREFIX: &str = ".encoder-studio-";
+/// End of the names of temporary files.
 pub(super) const SUFFIX: &str = ".tmp";
 
-/// Minimum age of a stale temporary file. A write takes only seconds.
+/// Minimum age of a leftover temporary file. A write takes only seconds.
 const STALE_AGE: Duration = Duration::from_secs(3600);
 
-/// Number of folder levels in the program's data, as in `backups/biss/77`.
+/// Number of nested folders in the data of the program, as in `backups/biss/77`.
 const DEPTH: usize = 3;
 
-/// Removes stale temporary files from one folder. Files that cannot be removed remain.
+/// Removes leftover temporary files from one folder. Files that cannot be removed are kept.
 pub(super) fn remove_in_folder(folder: &Path) {
     entries(folder).filter(is_stale_temporary).for_each(remove);
 }
 
-/// Removes stale temporary files from a folder of the program and its subfolders.
+/// Removes leftover temporary files from a folder of the program and its subfolders.
 pub(super) fn remove_recursively(folder: &Path) {
     remove_to_depth(folder, DEPTH);
 }

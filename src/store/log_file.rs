@@ -1,6 +1,7 @@
-//! The log file, which keeps the content of the log panel after the window closes. A separate thread writes the file,
-//! so a hanging disk does not block other threads. Lines that do not fit into the queue are dropped and counted, and
-//! the count is written when the disk responds again. A large file is renamed, and a new one is started.
+//! The log file, which preserves the content of the log panel after the window closes. A separate thread writes the
+//! file, so a disk that hangs does not block other threads. Lines that do not fit into the queue are dropped and
+//! counted, and the count is written when the disk responds again. A file that has grown large is renamed, and a new
+//! one is started.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -40,8 +41,9 @@ enum LogRequest {
 }
 
 impl LogFile {
-    /// Starts a log file with the program's messages from level "info" and the warnings of its libraries. The file and
-    /// its folder are created if missing. If the file cannot be opened, the program runs without a log file.
+    /// Starts a log file that records the program's messages from level "info" and the warnings of its libraries. The
+    /// file and its folder are created if they are missing. If the file cannot be opened, the program runs without a
+    /// log file.
     ///
     /// # Errors
     /// Returns an error if the thread cannot be started.
@@ -61,7 +63,7 @@ impl LogFile {
         let dropped = Arc::new(AtomicU64::new(0));
         let counted = dropped.clone();
         thread::Builder::new().name("log".to_owned()).spawn(move || {
-            // Opening may also wait for the disk.
+            // Opening the file may also have to wait for the disk.
             if let Ok(file) = open() {
                 write_all(file, &orders, &counted);
             }
@@ -75,7 +77,7 @@ impl LogFile {
         }
     }
 
-    /// Waits until everything has been written to the file, or until a time limit if the disk hangs.
+    /// Waits until everything has been written to the file, or until a time limit has passed if the disk hangs.
     pub fn wait_until_written(&self) {
         let (done, waited) = bounded(1);
         if self.queue.send_timeout(LogRequest::Flush(done), FLUSH_TIMEOUT).is_ok() {
@@ -88,7 +90,7 @@ fn write_all(mut file: impl Write, orders: &Receiver<LogRequest>, dropped: &Atom
     for order in orders {
         match order {
             LogRequest::Line(line) => {
-                // Lines that cannot be written are counted as missing.
+                // Lines that cannot be written count as missing.
                 if file.write_all(&line).is_err() {
                     dropped.fetch_add(1, Ordering::Relaxed);
                     continue;
@@ -106,7 +108,7 @@ fn write_all(mut file: impl Write, orders: &Receiver<LogRequest>, dropped: &Atom
     }
 }
 
-/// Each write queues one line.
+/// Queues each write as one line.
 impl Write for LogFile {
     fn write(&mut self, line: &[u8]) -> io::Result<usize> {
         self.write_line(line);
@@ -118,7 +120,7 @@ impl Write for LogFile {
     }
 }
 
-/// A log file that is renamed and replaced when it has grown large.
+/// A log file that is renamed and replaced once it has grown large.
 struct RotatingFile {
     path: PathBuf,
     large: u64,
@@ -148,7 +150,7 @@ impl Write for RotatingFile {
         let full = self.length > 0 && self.length.saturating_add(bytes.len() as u64) > self.large;
         if full && self.start_new_logbook().is_err() {
             // On some systems, renaming fails while another window has the file open. The file then grows until the
-            // next attempt.
+            // next attempt succeeds.
             self.length = 0;
         }
         let written = self.file.write(bytes)?;
@@ -232,7 +234,7 @@ mod tests {
         for number in 0..10 {
             log.write_line(format!("line {number}\n").as_bytes());
         }
-        // Dropped, the lock blocks no thread.
+        // A dropped lock does not block any thread.
         drop(release);
         log.wait_until_written();
         let text = String::from_utf8(written.lock().unwrap().clone()).unwrap();

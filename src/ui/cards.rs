@@ -1,4 +1,4 @@
-//! Cards: framed groups with a heading.
+//! Cards, which are framed groups with a heading.
 
 use egui::{Button, Id, RichText, Role, Ui, WidgetInfo};
 
@@ -7,7 +7,7 @@ use super::label_column::with_label_column;
 use super::{Theme, icons};
 use crate::app::Text;
 
-/// Window height in points below which folding cards are initially closed.
+/// Window height in points below which collapsible cards are initially closed.
 const LOW_WINDOW_HEIGHT: f32 = 720.0;
 
 pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
@@ -34,8 +34,8 @@ pub(crate) fn card_with_trailing<R>(
         .inner
 }
 
-/// Draws the heading of a card with `aside` to the right or below. The width that is too small for one row is known
-/// from an earlier frame.
+/// Draws the heading of a card with `aside` to the right of it or below. The width below which both do not fit in one
+/// row is known from an earlier frame.
 fn heading_ui(ui: &mut Ui, theme: &Theme, heading: &str, aside: impl FnOnce(&mut Ui)) {
     let id = ui.scope_id().with("aside_below").with(heading);
     let width = ui.available_width();
@@ -70,7 +70,7 @@ pub(crate) fn disclosure(ui: &mut Ui, heading: RichText, is_open: &mut bool) -> 
 }
 
 /// Draws a card with reference information. In a low window, the card initially shows only its heading. A click opens
-/// the card, which then stays open until the program ends.
+/// the card, which stays open until the program ends.
 pub(crate) fn folding_card(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui)) {
     folding_card_with_trailing(ui, theme, title, |_| {}, content);
 }

@@ -1,5 +1,5 @@
-//! Small widgets of every view: rows of label and value, buttons with icons, badges and empty states. A screen reader
-//! receives the same text as on the screen, without icons.
+//! Small widgets used by every view: rows of label and value, buttons with icons, badges and empty states. A screen
+//! reader receives the same text as on the screen, without icons.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
@@ -17,7 +17,7 @@ use crate::analysis::quality::Verdict;
 const MIN_LABEL_WIDTH: f32 = 64.0;
 /// Minimum width of a dialog in points.
 const MIN_MODAL_WIDTH: f32 = 240.0;
-/// Expands the UI to the whole available width. That width may be negative in a very small window.
+/// Expands the UI to the full available width. That width may be negative in a very small window.
 pub(crate) fn fill_width(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
 }
@@ -30,12 +30,13 @@ pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
 pub(crate) fn problem_ui(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     match problem {
         Some(problem) => paragraph(ui, RichText::new(theme.format_text(problem)).color(theme.palette.bad)),
-        // The ids of the entries below must not depend on the message. Otherwise, typing would be interrupted.
+        // The ids of the entries below must not depend on the message. Otherwise, a message that appears would
+        // interrupt typing.
         None => ui.skip_ahead_auto_ids(1),
     }
 }
 
-/// Draws the reason why entries are invalid, below them. The space is always reserved, so nothing below moves when a
+/// Draws the reason why entries are invalid below them. The space is always reserved, so nothing below moves when a
 /// message appears.
 pub(crate) fn show_error_below(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let size = vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
@@ -47,7 +48,7 @@ pub(crate) fn show_error_below(ui: &mut Ui, theme: &Theme, problem: Option<&crat
     });
 }
 
-/// Draws the reason why an entry is invalid to its right, where nothing moves when a message appears.
+/// Draws the reason why an entry is invalid to the right of it, where a message does not move anything when it appears.
 pub(crate) fn show_error_beside(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let Some(problem) = problem else { return };
     let (words, ink) = (theme.format_text(problem), theme.palette.bad);
@@ -59,7 +60,7 @@ pub(crate) fn show_error_beside(ui: &mut Ui, theme: &Theme, problem: Option<&cra
 }
 
 /// Draws a message on one line, or on two lines in a smaller font. The total height is that of a button, so nothing
-/// below moves. A tooltip shows the whole text of a longer message.
+/// below moves. A tooltip shows the full text of a longer message.
 pub(crate) fn message_label(ui: &mut Ui, theme: &Theme, words: String, ink: egui::Color32) -> Response {
     let width = ui.available_width();
     let font = |size: f32| egui::FontId::proportional(size);
@@ -89,7 +90,7 @@ pub(super) fn modal<R>(
         ui.set_width(width.max(MIN_MODAL_WIDTH));
         content(ui)
     });
-    // The dialog can be centred only after its size is known, which requires another frame.
+    // The dialog can be centred only once its size is known, which requires another frame.
     let place = shown.response.rect;
     if ctx.data(|data| data.get_temp(id)) != Some(place) {
         ctx.data_mut(|data| data.insert_temp(id, place));
@@ -98,7 +99,7 @@ pub(super) fn modal<R>(
     shown.inner
 }
 
-/// Draws the buttons at the end of a dialog, on a line as high as a button. The first button is at the far right.
+/// Draws the buttons at the end of a dialog, on a line as high as a button, with the first button at the far right.
 /// Centring the buttons in the remaining space would prevent the dialog from shrinking.
 pub(super) fn right_aligned(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
@@ -114,7 +115,8 @@ pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str)
     name(ui.add_enabled(enabled, Button::new(shown)), enabled, word)
 }
 
-/// Draws a STOP button, which acts on press instead of release. Its label stays readable while the button is disabled.
+/// Draws a STOP button, which acts when it is pressed rather than released. Its label stays readable while the button
+/// is disabled.
 pub(crate) fn stop_button(ui: &mut Ui, theme: &Theme, active: bool, button: Button<'_>, size: egui::Vec2) -> Response {
     let palette = theme.palette;
     let button = if active { button } else { button.fill(palette.surface).stroke(Stroke::new(1.0, palette.line)) };
@@ -145,7 +147,7 @@ pub(crate) fn primary_button(ui: &mut Ui, theme: &Theme, enabled: bool, icon: &s
     let ink = if enabled { theme.palette.on_accent } else { theme.palette.muted };
     let mut button = Button::new(RichText::new(shown).color(ink)).min_size(vec2(96.0, 0.0));
     if enabled {
-        // The border is as wide as that of a disabled button, and both have the same size.
+        // The border is as wide as that of a disabled button, so both buttons have the same size.
         button = button.fill(theme.palette.accent).stroke(Stroke::new(1.0, theme.palette.accent));
     }
     name(ui.add_enabled(enabled, button), enabled, word)
@@ -173,7 +175,7 @@ pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<eg
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, word));
 }
 
-/// Draws a placeholder for missing content, with an action that adds the content.
+/// Draws a placeholder for missing content, with an action that adds it.
 pub(crate) fn empty_placeholder(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&str, &str, bool)>) -> bool {
     let mut pressed = false;
     ui.vertical_centered(|ui| {
@@ -193,7 +195,7 @@ pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnc
     let config = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(icon).min_size(vec2(28.0, 28.0));
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
-        // In the style of a menu, which has no borders, an unchecked box would be invisible.
+        // In menu style, which has no borders, an unchecked box would be invisible.
         ui.set_style(ui.ctx().global_style());
         content(ui);
     });
@@ -210,7 +212,7 @@ pub(crate) fn dropdown<T: PartialEq + Copy>(
     let options: Vec<(T, String)> = options.into_iter().collect();
     let shown = options.iter().find(|(own, _)| own == value).map(|(_, word)| word.clone()).unwrap_or_default();
     let before = *value;
-    // A long list may use most of the window's height.
+    // A long list may use most of the height of the window.
     let height = ui.ctx().content_rect().height() * 0.6;
     let list = egui::ComboBox::from_id_salt(label).selected_text(shown.clone()).height(height);
     let list = if choice_width(ui, &shown) > ui.available_width() {
@@ -219,7 +221,7 @@ pub(crate) fn dropdown<T: PartialEq + Copy>(
         list
     };
     let response = list.show_ui(ui, |ui| {
-        // Twelve entries fit without scrolling. egui gives such an area 400 points at first.
+        // Twelve entries fit without scrolling. By default, egui gives such an area a height of 400 points.
         ui.spacing_mut().item_spacing.y = ui.spacing().button_padding.y;
         for (own, word) in options {
             ui.selectable_value(value, own, word);
@@ -233,7 +235,7 @@ pub(crate) fn dropdown<T: PartialEq + Copy>(
     *value != before
 }
 
-/// Returns the width of a drop-down list that shows a text in full.
+/// Returns the width of a drop-down list in which a text is fully visible.
 fn choice_width(ui: &Ui, shown: &str) -> f32 {
     let font = egui::TextStyle::Button.resolve(ui.style());
     let words = ui.painter().layout_no_wrap(shown.to_owned(), font, egui::Color32::PLACEHOLDER);
@@ -261,7 +263,7 @@ pub(crate) fn options<T: PartialEq + Copy>(
             response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, chosen, &name));
             if response.clicked() {
                 *value = own;
-                // Tab continues from here.
+                // The Tab key continues from here.
                 response.request_focus();
             }
         }
@@ -312,7 +314,7 @@ pub(crate) fn severity(theme: &Theme, severity: crate::app::Severity) -> (&'stat
     }
 }
 
-/// Draws two columns of cards if they fit. Otherwise, draws a single column.
+/// Draws two columns of cards if they fit, and a single column otherwise.
 pub(crate) fn two_columns<C>(
     ui: &mut Ui,
     theme: &Theme,
@@ -323,8 +325,8 @@ pub(crate) fn two_columns<C>(
     split(ui, theme, (0.5, 640.0), context, left, right);
 }
 
-/// Draws an encoder's page with its identity and check beside its readings. For a profile, the page has only the
-/// identity and the wiring.
+/// Draws the page of an encoder, with its identity and check beside its readings. For a profile, the page contains only
+/// the identity and the wiring.
 pub(crate) fn encoder_page<C>(
     ui: &mut Ui,
     theme: &Theme,
@@ -373,7 +375,7 @@ pub(crate) fn split<C>(
     });
 }
 
-/// Draws a dot for the connection, filled if connected and hollow otherwise.
+/// Draws the dot that indicates the connection: filled if connected, hollow otherwise.
 pub(crate) fn connection_dot(ui: &mut Ui, filled: bool, colour: impl Into<egui::Color32>) {
     let (rect, _) = ui.allocate_exact_size(vec2(12.0, 16.0), Sense::hover());
     let colour = colour.into();

@@ -1,4 +1,4 @@
-//! The panels around the workspace. They can be docked and resized, and the layout is restored at the next start. If
+//! The panels around the workspace. They can be docked and resized, and their layout is restored at the next start. If
 //! the stored layout cannot be loaded, the default layout is used.
 
 use egui_tiles::{Container, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
@@ -16,7 +16,7 @@ pub(super) enum Pane {
     Log,
 }
 
-/// Initial fraction of the row width taken by the Live panel.
+/// Initial width of the Live panel, as a fraction of the row.
 const LIVE_SHARE: f32 = 0.3;
 /// Width in points of the Live panel without its plot.
 const VALUES_WIDTH: f32 = 248.0;
@@ -29,14 +29,14 @@ impl Pane {
 pub(super) struct Docks {
     tree: Tree<Pane>,
     edited: bool,
-    /// Whether the Live panel was drawn without its plot in the last frame. `None` before the first frame.
+    /// Whether the Live panel was drawn without its plot in the last frame, or `None` before the first frame.
     alone: Option<bool>,
-    /// Fraction of the row width of the Live panel with its plot.
+    /// Width of the Live panel with its plot, as a fraction of the row.
     with_plot: f32,
 }
 
 impl Docks {
-    /// Loads the stored layout. Uses the default layout if none is stored.
+    /// Loads the stored layout, or creates the default layout if none is stored.
     pub(super) fn load(layout: Option<&str>) -> Self {
         let tree = layout.and_then(|text| ron::from_str::<Tree<Pane>>(text).ok()).filter(is_complete);
         Docks { tree: tree.unwrap_or_else(default_layout), edited: false, alone: None, with_plot: LIVE_SHARE }
@@ -70,7 +70,7 @@ impl Docks {
         let mut behaviour = DockBehaviour { theme, studio, views, actions, edited: false };
         self.tree.ui(&mut behaviour, ui);
         self.edited |= behaviour.edited;
-        // The stored layout has all panels in their places.
+        // The stored layout contains all panels in their places.
         hidden.iter().for_each(|tile| self.tree.set_visible(*tile, true));
     }
 

@@ -1,5 +1,5 @@
-//! The edit bar of a page that edits a memory, for any device. It shows the number of edits, and the buttons to discard
-//! and to write them.
+//! The edit bar of a page on which a memory is edited, for any device. It shows the number of edits and the buttons for
+//! discarding and writing them.
 
 use egui::{RichText, Ui, WidgetInfo};
 
@@ -8,7 +8,7 @@ use super::{Theme, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 
-/// Width in points below which some buttons have no labels, next to a profile or to the number of a device's edits.
+/// Width of the bar in points below which the button for discarding edits is drawn without its label.
 const NARROW_WIDTH: f32 = 660.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,7 +72,7 @@ pub fn edit_bar_ui(
     });
 }
 
-/// Draws the number of edits. A label that does not fit is left out.
+/// Draws the number of edits. A label that does not fit is omitted.
 fn edits_ui(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     let color = theme.palette.staged;
     let font = egui::TextStyle::Body.resolve(ui.style());

@@ -6,7 +6,7 @@ use super::Theme;
 use super::controls::entry;
 use crate::app::Text;
 
-/// Inner margin of a text entry, which makes the entry as high as a button.
+/// Inner margin of a text entry. It makes the entry as high as a button.
 const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
 pub fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
     sized_entry(ui, text, width, label, hint, egui::TextStyle::Body.into())
@@ -56,8 +56,8 @@ pub(crate) fn clear_secret(ui: &Ui, response: &Response, text: &mut String) {
     egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
 }
 
-/// Draws a one-line entry of a number to the right of its label, with the decimal sign of the current language. Screen
-/// readers name the entry by the label.
+/// Draws a one-line entry for a number to the right of its label, with the decimal sign of the current language. Screen
+/// readers refer to the entry by the label.
 pub(crate) fn labelled_number_entry(
     ui: &mut Ui,
     theme: &Theme,
@@ -76,8 +76,8 @@ pub(crate) fn labelled_number_entry(
     response
 }
 
-/// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. Until the text takes effect,
-/// `draft` holds it. If `take` rejects the text, the text stays in the entry, and the reason is drawn below it.
+/// Draws a one-line entry whose text takes effect when it loses focus or Enter is pressed. Until then, `draft` holds
+/// the text. If `take` rejects the text, it stays in the entry, and the reason is drawn below.
 pub fn committed_entry(
     ui: &mut Ui,
     draft: &mut Option<(String, Option<crate::app::Text>)>,
@@ -91,7 +91,7 @@ pub fn committed_entry(
     if response.has_focus() {
         *draft = Some((text, problem));
     } else if response.lost_focus() {
-        // The earlier text is valid, whatever was typed since.
+        // The earlier text is valid, whatever has been typed since.
         if text != shown
             && let Err(why) = take(&text)
         {

@@ -1,6 +1,6 @@
-//! Filtering key events before any widget receives them. A key that repeats, or follows immediately after another, does
-//! not press a button. Space stops a motion. While the pointer holds a button that moves a drive, every key stops the
-//! motion. [`HoldState`](crate::app::HoldState) handles a key that holds such a button.
+//! Filtering of key events before any widget receives them. A key that repeats, or that follows immediately after
+//! another key, does not press a button. Space stops a motion. While the pointer holds a button that moves a drive, any
+//! key stops the motion. Keys that hold such a button are handled by [`HoldState`](crate::app::HoldState).
 
 use egui::{Context, Event, Key};
 
@@ -21,7 +21,7 @@ impl KeyboardFilter {
 
     /// Removes the events that no widget may receive from the current frame. Returns whether all motion must stop.
     /// `moves` states whether this window is moving a drive. `asks` states whether consent is requested. Only a key
-    /// that was released since the request can give consent.
+    /// that has been released since the request can give consent.
     pub(super) fn filter_events(&mut self, ctx: &Context, moves: bool, asks: bool) -> bool {
         if asks && !std::mem::replace(&mut self.asked, asks) {
             self.fresh.reset_keys();
@@ -29,7 +29,7 @@ impl KeyboardFilter {
         self.asked = asks;
         let (held, for_hold_button) = (is_hold_button_held(ctx), has_hold_button_focus(ctx));
         let (now, has_keyboard) = ctx.input(|input| (input.time, input.focused));
-        // Enter completes a text entry and presses no button there.
+        // Enter completes a text entry and does not press a button there.
         let typing = ctx.text_edit_focused();
         let space_stops = !for_hold_button && (moves || stop_debounce::has_recently_stopped(ctx, now));
         let fresh = &mut self.fresh;
@@ -64,7 +64,7 @@ impl KeyboardFilter {
                 };
                 let stop = held || space_stops && own == Some(PressKey::Space) && !repeats;
                 stops |= stop;
-                // Escape has further effects. They are handled elsewhere.
+                // Escape has further effects, which are handled elsewhere.
                 counts && !stop || *key == Key::Escape
             }
             _ => true,
@@ -85,7 +85,7 @@ const fn is_modifier(key: Key) -> bool {
     matches!(key, ShiftLeft | ShiftRight | ControlLeft | ControlRight | AltLeft | AltRight | SuperLeft | SuperRight)
 }
 
-/// Returns the key as a press key. Returns `None` if it does not press buttons.
+/// Returns the corresponding press key, or `None` if the key does not press buttons.
 pub(super) const fn press_key(key: Key) -> Option<PressKey> {
     match key {
         Key::Space => Some(PressKey::Space),

@@ -1,4 +1,4 @@
-//! Rows of a label and a value or an entry. The label column of a card is as wide as its longest label.
+//! Rows that consist of a label and a value or an entry. The label column of a card is as wide as its longest label.
 
 use egui::{Id, RichText, Ui, vec2};
 
@@ -6,12 +6,12 @@ use super::Theme;
 
 /// Default width of the label column. A longer label widens it.
 const DEFAULT_LABEL_WIDTH: f32 = 132.0;
-/// Maximum fractions of the width for the label column, by default and for long labels.
+/// Maximum width of the label column as a fraction of the card, by default and for long labels.
 const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
 
 #[derive(Clone, Copy, Default)]
 struct LabelColumn {
-    /// Width of the longest label in previous frames.
+    /// Width of the longest label drawn in previous frames.
     longest: f32,
     /// Width of the longest label drawn so far in the current frame.
     drawn: f32,
@@ -31,15 +31,15 @@ impl LabelColumn {
     }
 }
 
-/// Draws the content of the card with the given heading. Its label column is wide enough for the longest label.
+/// Draws the content of the card with the given heading. The label column is wide enough for the longest label.
 pub(crate) fn with_label_column<R>(ui: &mut Ui, heading: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     let (outer, id) = (LabelColumn::load(ui), ui.scope_id().with((LabelColumn::id(), heading)));
     let longest = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     LabelColumn { longest, drawn: 0.0 }.store(ui);
     let result = content(ui);
     let LabelColumn { drawn, .. } = LabelColumn::load(ui);
-    // The column never becomes narrower. Cards with one heading may alternate, and a line that comes and goes must not
-    // move the others.
+    // The column never becomes narrower. Cards with the same heading may alternate, and a row that appears and
+    // disappears must not move the others.
     if drawn > longest {
         ui.data_mut(|data| data.insert_temp(id, drawn));
         // The content is drawn again in the next frame, because input would count twice in this one.
@@ -57,7 +57,7 @@ pub(crate) fn label_width(ui: &Ui) -> f32 {
 
 pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) {
     ui.scope(|ui| {
-        // Rows that are only read can be closer together than controls.
+        // Read-only rows can be closer together than controls.
         ui.spacing_mut().interact_size.y = 20.0;
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.horizontal_top(|ui| {

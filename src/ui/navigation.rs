@@ -1,4 +1,4 @@
-//! The navigation: the tabs, and the pages of the open tab.
+//! The navigation, which shows the tabs and the pages of the open tab.
 
 use egui::{Rect, Ui};
 
@@ -21,7 +21,7 @@ pub(super) fn navigation_ui(
     for tab in views.tabs.tabs() {
         let word = views.tabs.title(theme, tab);
         let text = egui::RichText::new(&word).font(theme.bold_font(theme.sizes.body));
-        // In every other tab, one of its pages is marked.
+        // In every other tab, the open page is marked instead.
         let is_shown = tab == LOGBOOK_TAB && tab == studio.settings.tab;
         let response = entry_ui(ui, is_shown, text, &word);
         if is_shown {
@@ -35,7 +35,7 @@ pub(super) fn navigation_ui(
             open_pages_ui(ui, theme, studio, views);
         }
     }
-    // The footer is at the bottom, wherever the pages end.
+    // The footer is at the bottom, wherever the list of pages ends.
     let footer = ui.max_rect().with_min_y(ui.max_rect().bottom() - 28.0);
     let mut footer = ui.new_child(egui::UiBuilder::new().max_rect(footer));
     if icon_button(&mut footer, true, icons::ARROWS_CLOCKWISE, &theme.translate("shell.reset_layout")).clicked() {

@@ -5,7 +5,7 @@ use egui::{AsIdSalt, Frame, Margin, ScrollArea, Ui, UiBuilder};
 use super::Theme;
 
 const NARROW_WIDTH: f32 = 720.0;
-/// Space above a page, and the maximum space below.
+/// Space above a page, and maximum space below it.
 const SPACE_ABOVE: i8 = 16;
 
 pub(crate) fn side_margin(ui: &Ui, theme: &Theme) -> i8 {
@@ -18,8 +18,8 @@ pub(crate) fn page_margin(ui: &Ui, theme: &Theme) -> Margin {
     Margin { left: sides, right: sides, top: SPACE_ABOVE, bottom: sides.min(SPACE_ABOVE) }
 }
 
-/// Draws a page that scrolls as a whole. `id` must differ from that of other pages. The scroll bar is in the margin, so
-/// nothing moves when it appears.
+/// Draws a page that scrolls as a whole. `id` must differ from the ids of other pages. The scroll bar is in the margin,
+/// so nothing moves when it appears.
 pub fn scrollable_page(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
     let frame = Frame::NONE.inner_margin(page_margin(ui, theme));
     ui.scope(|ui| {

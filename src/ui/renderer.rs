@@ -1,28 +1,28 @@
-//! The renderers of the window. They are tried in order until one of them opens the window.
+//! The renderers of the window, which are tried in order until one of them opens the window.
 //!
-//! OpenGL 2 is available on every computer with a driver for its graphics card, and on Linux also without a card.
-//! Windows without such a driver, as on remote desktops and in virtual machines, has only OpenGL 1.1. Direct3D 12 then
-//! draws in software.
+//! OpenGL 2 is available on every computer with a driver for its graphics card, and on Linux even without a card.
+//! Windows without such a driver, as on remote desktops and in virtual machines, provides only OpenGL 1.1. Direct3D 12
+//! then draws in software.
 
 use eframe::Renderer;
 
-/// Environment variable that selects a renderer, for computers on which a renderer opens the window but does not draw
-/// properly.
+/// Environment variable that selects a renderer. It is needed on computers where a renderer opens the window but does
+/// not draw correctly.
 const RENDERER_VARIABLE: &str = "ENCODER_STUDIO_RENDERER";
 
-/// Names of the renderers in [`RENDERER_VARIABLE`].
+/// Names of the renderers as used in [`RENDERER_VARIABLE`].
 const NAMES: &[(&str, Renderer)] = &[
     ("opengl", Renderer::Glow),
     #[cfg(windows)]
     ("direct3d", Renderer::Wgpu),
 ];
 
-/// Returns the renderers to try: the one selected by the user, or else all of them.
+/// Returns the renderers to try: the one selected by the user, or all of them if none is selected.
 pub(super) fn renderers_to_try() -> Vec<Renderer> {
     renderers_for(std::env::var(RENDERER_VARIABLE).ok().as_deref())
 }
 
-/// Returns the renderers for the value of the variable. The list is empty for an unknown name, such as `none`.
+/// Returns the renderers for the value of the variable. The list is empty for an unknown name such as `none`.
 fn renderers_for(selected: Option<&str>) -> Vec<Renderer> {
     let is_wanted = |name: &str| selected.is_none_or(|selected| selected.eq_ignore_ascii_case(name));
     NAMES.iter().filter(|(name, _)| is_wanted(name)).map(|(_, renderer)| *renderer).collect()

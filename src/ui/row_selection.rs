@@ -1,9 +1,9 @@
-//! Arrow keys in a list with one selected row.
+//! Handling of the arrow keys in a list with one selected row.
 
 use egui::{EventFilter, Id, Key, Modifiers, Rect, Sense, Ui};
 
-/// Returns the number of rows by which the arrow keys move the selection. They do so after a click on a row, while
-/// `keys` has the keyboard focus.
+/// Returns the number of rows by which the arrow keys move the selection. The keys are handled after a click on a row,
+/// while `keys` has the keyboard focus.
 pub(super) fn selection_step(ui: &Ui, keys: Id) -> Option<isize> {
     ui.interact(Rect::NOTHING, keys, Sense::focusable_noninteractive());
     if !ui.memory(|memory| memory.has_focus(keys)) {

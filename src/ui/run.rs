@@ -1,4 +1,4 @@
-//! Opening the window. Without a display, a one-line error is reported.
+//! Opening of the window. Without a display, a one-line error is reported.
 
 use std::sync::{Arc, OnceLock};
 use std::thread;
@@ -11,7 +11,7 @@ use crate::app::{KindRegistry, Studio, StudioEnvironment, ThemeData, Wake, expla
 use crate::cli::Window as Start;
 use crate::store::{LogFile, Store};
 
-/// Opens the window with the given device kinds and tabs. Returns when the window is closed.
+/// Opens the window with the given kinds of devices and tabs. Returns when the window is closed.
 ///
 /// # Errors
 /// Returns a one-line reason if the window could not be opened.
@@ -27,10 +27,10 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
     let store = Store::for_user().map_err(|error| explain::store_error_text(&error).terminal_text())?;
     let log = LogFile::start(&store.log_path());
     let cleaned = store.clone();
-    // This is not awaited, so a slow disk does not delay the window.
+    // The program does not wait for this, so a slow disk does not delay the window.
     thread::spawn(move || cleaned.remove_leftovers());
     let look = ThemeData::built_in().map_err(|why| format!("assets/theme.ron: {why}"))?;
-    // The window exists only after the studio. Until then, there is nothing to wake.
+    // The window is created after the studio. Until then, there is nothing to wake.
     let context: Arc<OnceLock<egui::Context>> = Arc::default();
     let waker = context.clone();
     let wake: Wake = Arc::new(move || {
@@ -54,7 +54,7 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
         renderer,
         ..eframe::NativeOptions::default()
     };
-    // A renderer that fails leaves them to the next one.
+    // If a renderer fails, the next one uses these parts.
     let mut parts = Some((studio, look, tabs));
     let mut result = Err(NOT_OPENED.to_owned());
     for renderer in renderers_to_try() {
@@ -67,7 +67,7 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
         });
         match eframe::run_native("encoder-studio", options(renderer), create) {
             Ok(()) => result = Ok(()),
-            // The library's messages are for programmers and contain paths of the build computer.
+            // The messages of the library are meant for programmers and contain paths of the build computer.
             Err(error) => tracing::error!("{renderer}: {error}"),
         }
         if parts.is_none() {
@@ -80,7 +80,8 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
     result
 }
 
-/// Returns the icon of the window. Wayland takes it from the desktop entry of the same name as the app id instead.
+/// Returns the icon of the window. Wayland uses the icon of the desktop entry that has the same name as the app id
+/// instead.
 fn icon() -> egui::IconData {
     eframe::icon_data::from_png_bytes(ICON).unwrap_or_default()
 }
@@ -88,7 +89,7 @@ fn icon() -> egui::IconData {
 /// The application window, run by eframe.
 pub(crate) struct StudioApp {
     window: Window,
-    /// Start time of the program. `None` after the first frame was shown.
+    /// Start time of the program, or `None` after the first frame has been shown.
     began: Option<Instant>,
 }
 
@@ -102,7 +103,7 @@ impl eframe::App for StudioApp {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        // When the second frame begins, the first is on the screen.
+        // When the second frame begins, the first one is on the screen.
         if ui.ctx().cumulative_frame_nr() > 0
             && let Some(began) = self.began.take()
         {
@@ -136,7 +137,7 @@ fn show_without_terminal(message: &str) {
     }
 }
 
-/// Does nothing. Other systems cannot show a dialog without a window, and their desktops log the message.
+/// Does nothing. Other systems cannot show a dialog without a window; their desktops log the message.
 #[cfg(not(windows))]
 const fn show_without_terminal(_message: &str) {}
 

@@ -1,5 +1,5 @@
 //! The line at the bottom of the window. Its space is reserved, so nothing moves when a message appears. It displays
-//! the notice, the reason for a missing connection, or the running job. Otherwise, it displays the last frame or
+//! the notice, the reason why there is no connection, or the running job. Otherwise, it displays the last frame or
 //! message. Its buttons open the lower panel.
 
 use egui::text::{LayoutJob, TextFormat};
@@ -15,7 +15,7 @@ use crate::link::Direction;
 
 /// Height of the status line, enough for two lines of small text.
 const BAR_HEIGHT: f32 = 36.0;
-/// Fraction of the width for the running job while a notice is displayed next to it.
+/// Fraction of the width used by the running job while a notice is displayed next to it.
 const JOB_WIDTH_SHARE: f32 = 0.45;
 const TIME: &str = "%H:%M:%S%.3f";
 
@@ -62,7 +62,7 @@ fn chevron_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Act
     }
 }
 
-/// Draws the status line from right to left. The buttons thus keep their position regardless of the length of the text.
+/// Draws the status line from right to left, so the buttons keep their position regardless of the length of the text.
 fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     let notice = studio.services.log.current();
     let device = device_in_tab(studio, studio.settings.tab);
@@ -106,13 +106,13 @@ fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actio
     });
 }
 
-/// Returns whether a job is running or a link is being opened. A job with an open review is excluded, because the
+/// Returns whether a job is running or a link is being opened. A job with an open review does not count, because the
 /// review shows its progress.
 fn has_running_job(device: &AnyDevice) -> bool {
     *device.phase() == Phase::Opening || device.running_job().is_some() && !device.is_reviewing()
 }
 
-/// Returns the device and the reason if the connection was lost or the device does not reply.
+/// Returns the device, and the reason why its connection was lost or why it does not reply.
 fn connection_problem(device: &AnyDevice) -> Option<(&AnyDevice, &crate::app::Text)> {
     match device.phase() {
         Phase::Lost(why) | Phase::Silent(why) => Some((device, why)),
@@ -161,7 +161,7 @@ fn message(ui: &mut Ui, theme: &Theme, words: String, colour: Color32) {
     ui.add(egui::Label::new(job).wrap().selectable(false));
 }
 
-/// Draws the last frame of the displayed device, or the last message if it is newer.
+/// Draws the last frame of the displayed device, or the last message if that is newer.
 fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let frame = studio.selected_device().and_then(|device| Some((device.trace(), last_frame_line(device.trace())?)));
     let frame = frame.and_then(|(trace, line)| Some((trace.line_time(line)?, line)));
@@ -185,7 +185,7 @@ fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 }
 
 /// Returns the last reply if it is one of the last two frames, and the last frame otherwise. The status line thus does
-/// not flicker between requests and replies.
+/// not alternate between requests and replies.
 fn last_frame_line(trace: &TraceLog) -> Option<&TraceLine> {
     let mut newest = trace.lines().iter().rev().take(2);
     let is_reply = |line: &&TraceLine| line.direction == Direction::Received;
@@ -210,7 +210,8 @@ fn frame_ui(ui: &mut Ui, theme: &Theme, time: &str, line: &TraceLine) {
     ui.add(egui::Label::new(RichText::new(line.to_string_in(theme.language)).color(colour)).truncate());
 }
 
-/// Draws the running job and the stop button, right-aligned. The job shows its progress, or the text `instead`.
+/// Draws the running job and the stop button, right-aligned. The job is shown with its progress, or with the text
+/// `instead`.
 pub(crate) fn running_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -1,4 +1,4 @@
-//! The end of the program by a signal or the loss of the display. Drives are stopped and released first, on any thread
+//! The end of the program by a signal or by loss of the display. Drives are stopped and released first, on any thread
 //! that can do so.
 
 use std::cell::OnceCell;
@@ -8,10 +8,10 @@ use std::time::Duration;
 use crate::app::{Action, ActionMailbox, DriveStopHandles, Studio};
 
 const REPLY_TIMEOUT: Duration = Duration::from_secs(2);
-/// Exit status after a termination signal: 128 plus 15, the number of SIGTERM.
+/// Exit status after a termination signal: 128 plus 15, which is the number of SIGTERM.
 const TERMINATED_STATUS: i32 = 143;
 
-/// Guard that releases the drives when its thread ends, or when that thread ends the program.
+/// A guard that releases the drives when its thread ends or ends the program.
 struct ReleaseOnDrop(DriveStopHandles);
 
 impl Drop for ReleaseOnDrop {
@@ -22,7 +22,7 @@ impl Drop for ReleaseOnDrop {
 }
 
 thread_local! {
-    /// Guard on the window's thread, which releases the drives when the display is lost. The display library then ends
+    /// A guard on the window's thread that releases the drives when the display is lost. The display library then ends
     /// the program, but thread-local values are still dropped.
     static RELEASE_GUARD: OnceCell<ReleaseOnDrop> = const { OnceCell::new() };
 }
@@ -38,12 +38,13 @@ pub(super) fn install_handlers(studio: &Studio) {
         }
     });
     if let Err(why) = heard {
-        // Without the handler, a signal ends the program immediately.
+        // Without this handler, a signal ends the program immediately.
         tracing::warn!("{why}");
     }
 }
 
-/// Stops and releases the drives, and then closes the window without any question. Returns whether the window closes.
+/// Stops and releases the drives and then closes the window without asking any question. Returns whether the window
+/// closes.
 fn stop_and_close(brakes: &DriveStopHandles, mailbox: &ActionMailbox) -> bool {
     brakes.begin_stop();
     mailbox.send(Action::Quit);

@@ -1,5 +1,5 @@
-//! The theme of the window applied to egui: fonts, colours, sizes and distances from `assets/theme.ron`, and the texts
-//! of one language. Every view receives a [`Theme`]. Views do not define colours, sizes or fonts.
+//! The theme of the window as applied to egui: fonts, colours, sizes and spacing from `assets/theme.ron`, and the texts
+//! of one language. Every view receives a [`Theme`]. Views do not define colours, sizes or fonts of their own.
 
 use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
 
@@ -57,18 +57,18 @@ impl Theme {
         crate::app::format_decimal(value, decimals, self.language)
     }
 
-    /// Formats a number, given with a decimal point, with the decimal sign of the current language.
+    /// Formats a number that is given with a decimal point, using the decimal sign of the current language.
     pub fn digits(&self, number: &str) -> String {
         crate::app::texts::localize_number(number, self.language)
     }
 
-    /// Formats a number with as many decimals as needed, up to twelve significant digits. Further digits would show
-    /// only rounding errors.
+    /// Formats a number with as many decimals as it needs, up to twelve significant digits. Further digits would only
+    /// show rounding errors.
     pub fn format_plain(&self, value: f64) -> String {
         self.format_number(value, plain_decimals(value))
     }
 
-    /// Formats a number in hexadecimal digits, padded to its width.
+    /// Formats a number as hexadecimal digits, padded to its width.
     pub fn format_word(&self, word: Word) -> String {
         self.format_text(&Text::new("live.word").with("hex", word).with("count", word.bits))
     }
@@ -77,7 +77,7 @@ impl Theme {
         RichText::new(words).color(self.palette.muted)
     }
 
-    /// Returns a caption: small text for use beside and below widgets.
+    /// Returns a caption, which is small text beside or below widgets.
     pub fn caption(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).size(self.sizes.caption).color(self.palette.muted)
     }
@@ -97,7 +97,7 @@ impl Theme {
         RichText::new(words).font(FontId::monospace(self.sizes.body))
     }
 
-    /// Returns text for a card's main value.
+    /// Returns the text of a card's main value.
     pub fn value(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).font(FontId::monospace(self.sizes.value))
     }
@@ -143,7 +143,7 @@ impl Theme {
             style.spacing.combo_width = 96.0;
             style.spacing.menu_margin = Margin::same(8);
             style.spacing.window_margin = Margin::same(16);
-            // The scroll bar is always visible, also on cards. It shows that the content scrolls.
+            // The scroll bar is always visible, even on cards, to show that the content scrolls.
             style.spacing.scroll = egui::style::ScrollStyle {
                 foreground_color: true,
                 dormant_background_opacity: 0.0,
@@ -218,7 +218,7 @@ const FONTS: [(&str, &[u8]); 4] = [
     ("icons", include_bytes!("../../assets/fonts/Icons.ttf")),
 ];
 
-/// Installs the built-in fonts: a text font in two weights, a font for bytes and numbers, and an icon font.
+/// Installs the built-in fonts: a text font in two weights, a monospaced font for bytes and numbers, and an icon font.
 pub fn install_fonts(ctx: &egui::Context) {
     let mut definitions = FontDefinitions::empty();
     for (name, bytes) in FONTS {
@@ -235,7 +235,7 @@ pub fn install_fonts(ctx: &egui::Context) {
 mod tests {
     use super::*;
 
-    /// No font may show 0x40 as 0×40, which contextual alternates do, because users type displayed addresses into
+    /// No font may display 0x40 as 0×40, as contextual alternates do, because users copy displayed addresses into
     /// scripts.
     #[test]
     fn no_font_substitutes_other_characters() {

@@ -1,4 +1,4 @@
-//! List of the wires or pins of an encoder, each with its signal.
+//! A list of the wires or pins of an encoder with their signals.
 
 use egui::Ui;
 
@@ -6,7 +6,7 @@ use super::Theme;
 use super::controls::paragraph;
 use crate::app::Catalogue;
 
-/// Draws a list of wires with texts from a catalogue. The column of wire names has the given width.
+/// Draws a list of wires with texts from a catalogue. `width` is the width of the column of wire names.
 pub(crate) fn wires_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -24,7 +24,7 @@ pub(crate) fn wires_ui(
     }
 }
 
-/// Checks that each wire has the given name and English text. Its German text must differ from the English.
+/// Checks that each wire has the given name and English text, and that its German text differs.
 #[cfg(test)]
 pub(crate) fn assert_wires(texts: &'static Catalogue, wires: &[(&str, &'static str)], expected: &[(&str, &[&str])]) {
     assert_eq!(wires.len(), expected.len());
@@ -34,7 +34,7 @@ pub(crate) fn assert_wires(texts: &'static Catalogue, wires: &[(&str, &'static s
     }
 }
 
-/// Checks that a card's notes have the given English texts. Their German texts must differ from these.
+/// Checks that the notes of a card have the given English texts, and that their German texts differ.
 #[cfg(test)]
 pub(crate) fn assert_notes(texts: &'static Catalogue, notes: &[&'static str], facts: &[&str]) {
     use crate::app::Language::{English, German};

@@ -1,4 +1,4 @@
-//! The workspace: the selected session in the open tab.
+//! The workspace, which shows the selected session of the open tab.
 
 use egui::{Align, Layout, Ui, vec2};
 
@@ -11,8 +11,9 @@ use super::views::device_in_tab;
 use super::{Theme, Views, icons};
 use crate::app::{Action, LOGBOOK_TAB, Studio, connect};
 
-/// Fraction of the height above the options of an empty tab, and the width of the options in points.
+/// Fraction of the height that is left empty above the options of an empty tab.
 const EMPTY_TAB_TOP_SHARE: f32 = 0.22;
+/// Width of an option in an empty tab, in points.
 const OPTION_WIDTH: f32 = 240.0;
 
 pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -38,7 +39,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
     with_stable_ids(ui, "page", |ui| session.page_ui(ui, theme, (studio, device), actions));
 }
 
-/// Draws the buttons for opening a device. They are shown while no device is open.
+/// Draws the buttons for opening a device, which are shown while no device is open.
 fn empty_page_ui(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
     ui.add_space((ui.available_height() * EMPTY_TAB_TOP_SHARE).round());
     ui.vertical_centered(|ui| {

@@ -1,5 +1,5 @@
-//! Events sent from the thread of a session. Events about jobs are never lost, and only the latest progress is kept.
-//! The thread never blocks.
+//! Sending of events from the thread of a session. Events about jobs are never lost, and only the latest progress is
+//! kept. The thread never blocks.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use crossbeam_channel::{Sender, TrySendError};
 
 use super::{Device, Event};
 
-/// Maximum number of unread events. Progress is counted once.
+/// Maximum number of unread events. Pending progress counts as one event.
 pub(super) const CAPACITY: usize = 64;
 
 /// A sender with a queue for events that do not fit into the channel. The queue never contains events of more than one
@@ -28,7 +28,7 @@ impl<D: Device> EventSender<D> {
         match event {
             Event::Progress(..) => self.progress = Some(event),
             other => {
-                // The event makes earlier progress outdated. Progress is therefore sent first or not at all.
+                // The event makes earlier progress obsolete. Progress is therefore sent first or not at all.
                 self.flush();
                 self.progress = None;
                 self.waiting.push(other);
@@ -55,8 +55,8 @@ impl<D: Device> EventSender<D> {
                 Err(TrySendError::Disconnected(_)) => return,
             }
         }
-        // Progress is sent after the start of its job, never before. It uses only half of the channel, so it never
-        // blocks the end of a job.
+        // Progress is never sent before the start of its job. It uses only half of the channel, so it never blocks the
+        // end of a job.
         if self.sender.len() < CAPACITY / 2
             && let Some(progress) = self.progress.take()
         {
@@ -64,7 +64,7 @@ impl<D: Device> EventSender<D> {
         }
     }
 
-    /// Sends the waiting events and wakes the reader.
+    /// Sends the queued events and wakes the reader.
     pub(super) fn flush_and_wake(&mut self) {
         if !self.is_empty() {
             self.flush();

@@ -21,17 +21,17 @@ pub trait JobInterruption {
     }
 }
 
-/// The reason why a job was aborted. `E` is the error of the device, `P` that of planning, `I` an [`InterruptedWrite`],
-/// and `K` the kind of change.
+/// The reason why a job was aborted. `E` is the error type of the device, `P` that of planning, `I` an
+/// [`InterruptedWrite`], and `K` the kind of change.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError<E, P, I, K> {
     /// The device or its connection failed.
     #[error(transparent)]
     Device(E),
-    /// The plan is impossible. Nothing was written.
+    /// The plan could not be made. Nothing was written.
     #[error(transparent)]
     Plan(P),
-    /// The write did not begin. The device has reached its limit of write cycles, or its backup cannot be saved.
+    /// The write did not begin, because the device has reached its limit of write cycles or its backup cannot be saved.
     #[error(transparent)]
     NotStarted(#[from] NotStarted),
     /// The write began but was not completed.
@@ -51,7 +51,7 @@ pub enum JobError<E, P, I, K> {
 impl<P, Op, E: OperationError, Done: WriteRecord, Left, K>
     JobError<E::Device, P, InterruptedWrite<Op, E, Done, Left>, K>
 {
-    /// Returns the error from the device or its connection, regardless of whether the device had been written to.
+    /// Returns the error from the device or its connection, whether or not the device had been written to.
     pub fn device(&self) -> Option<&E::Device> {
         match self {
             JobError::Device(error) => Some(error),

@@ -1,5 +1,5 @@
 //! Requests to a worker while its thread runs: cancellation, sampling interval and watched values. Requests are not
-//! queued. Only the latest one of each type is valid.
+//! queued, so only the latest one of each type is valid.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -8,7 +8,7 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use crate::link::CancelToken;
 
-/// Maximum interval of polling and of watched values. Longer intervals are reduced to this one.
+/// Maximum interval of polling and of watched values. Longer intervals are reduced to this value.
 const MAX_INTERVAL: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// The live requests of a session, shared by all clones.
@@ -16,20 +16,20 @@ const MAX_INTERVAL: Duration = Duration::from_secs(24 * 60 * 60);
 pub(super) struct LiveRequests {
     requests: Arc<Mutex<PollRequests>>,
     sampling: CancelToken,
-    /// Channel that wakes the thread. If it is full, the thread is already about to wake.
+    /// Channel that wakes the thread. If the channel is full, the thread is already about to wake.
     changed: Sender<()>,
 }
 
 struct PollRequests {
-    /// Cancellation token of the running job, or of the last one.
+    /// Cancellation token of the running job or, if none is running, of the last one.
     job: CancelToken,
     interval: Option<Duration>,
-    /// Number of the polling request. A failure ends only the request with its number.
+    /// Number of the polling request. A failure ends only the request with the same number.
     number: u64,
 }
 
 impl LiveRequests {
-    /// Creates an empty request list and the receiver that notifies the thread of changes.
+    /// Creates live requests with their initial values, and the receiver that notifies the thread of changes.
     pub(super) fn new() -> (Self, Receiver<()>) {
         let (changed, changes) = bounded(1);
         let requests = Arc::new(Mutex::new(PollRequests { job: CancelToken::default(), interval: None, number: 0 }));
@@ -69,7 +69,7 @@ impl LiveRequests {
         self.lock().number
     }
 
-    /// Ends polling after a sample of the given request has failed. Called by the thread.
+    /// Ends polling after a sample of the given request has failed. The thread calls this function.
     pub(super) fn poll_failed(&self, number: u64) {
         let mut requests = self.lock();
         if requests.number == number {
@@ -77,7 +77,7 @@ impl LiveRequests {
         }
     }
 
-    /// Interrupts a running sample. The caller must make its request first, because the thread resets the token before
+    /// Interrupts a running sample. The caller must first store its request, because the thread resets the token before
     /// it reads the requests.
     pub(super) fn interrupt_sample(&self) {
         self.sampling.request();
@@ -101,7 +101,7 @@ impl LiveRequests {
     }
 }
 
-/// Values watched between samples while polling, shared by all clones.
+/// The values to watch between samples while polling, shared by all clones.
 pub(super) struct WatchList<W> {
     list: Arc<Mutex<WatchEntries<W>>>,
     live: LiveRequests,
@@ -115,7 +115,7 @@ struct WatchEntries<W> {
 struct WatchEntry<W> {
     value: W,
     interval: Duration,
-    /// Whether the device lacks the value. A rejected value stays in the list but is not requested again.
+    /// Whether the device has rejected the value. A rejected value stays in the list but is not requested again.
     refused: bool,
 }
 
@@ -156,7 +156,7 @@ impl<W: Clone + PartialEq> WatchList<W> {
         self.lock().active_entries()
     }
 
-    /// Records that the device lacks the given value.
+    /// Records that the device does not have the given value.
     pub(super) fn mark_unsupported(&self, what: &W) {
         let mut list = self.lock();
         list.number += 1;
@@ -183,12 +183,12 @@ impl<W> Clone for WatchList<W> {
     }
 }
 
-/// A handle that stops a worker without owning it. Clones stop the same worker.
+/// A handle that stops a worker without owning it. All clones stop the same worker.
 #[derive(Clone)]
 pub struct WorkerStopHandle(LiveRequests);
 
 impl WorkerStopHandle {
-    /// Ends polling and stops the running job at the next possible point. Later jobs are not affected.
+    /// Ends polling and stops the running job at the next possible point. Jobs submitted later are not affected.
     pub fn stop(&self) {
         self.0.stop();
     }

@@ -1,11 +1,11 @@
-//! The background I/O worker. Each session has one thread, which runs one job at a time. Samples and watched values are
+//! The background I/O worker. Each session has a thread that runs one job at a time. Samples and watched values are
 //! read between jobs, and a stop takes precedence over everything else.
 //!
-//! This module is independent of any protocol. A [`Device`] has its own types of jobs, results and errors, so a session
-//! with one kind of device cannot receive the jobs of another.
+//! This module does not depend on a protocol. Each [`Device`] has its own types of jobs, results and errors, so a
+//! session with one kind of device cannot receive the jobs of another.
 //!
 //! Events about jobs are never lost. While events are not read, only the latest progress is kept. Neither side waits
-//! for the other: a full channel is a state of the worker and does not stop the communication.
+//! for the other: a full channel does not stop communication with the device.
 
 #![warn(missing_docs)]
 
@@ -48,25 +48,25 @@ use crate::store::DeviceKey;
 
 /// A kind of device in a session, with its connection, known data and jobs.
 pub trait Device: Send + 'static {
-    /// Request to the device.
+    /// A request to the device.
     type Job: Send + fmt::Debug;
-    /// Result of a job.
+    /// The result of a job.
     type Output: Send + fmt::Debug;
-    /// Reason why a job was aborted.
+    /// The reason why a job was aborted.
     type Error: JobInterruption + Send + fmt::Debug;
-    /// Message that the device sends outside its replies.
+    /// A message that the device sends in addition to its replies.
     type DeviceMessage: Send + fmt::Debug;
-    /// A polled sample. A sample with a watched value identifies that value.
+    /// A polled sample. If it contains a watched value, it identifies that value.
     type Sample: Send + fmt::Debug + 'static;
-    /// Value that can be watched. It is requested between two samples.
+    /// A value that can be watched. It is requested between two samples.
     type Watch: Clone + PartialEq + Send + fmt::Debug + 'static;
-    /// Steps reported by jobs.
+    /// A step reported by a job.
     type JobStep: Clone + Send + fmt::Debug;
 
     /// Executes a job.
     ///
     /// # Errors
-    /// Returns the reason why the job was aborted.
+    /// Returns the reason if the job was aborted.
     fn run(
         &mut self,
         context: &mut SessionContext,
@@ -74,45 +74,44 @@ pub trait Device: Send + 'static {
         tell: &mut dyn FnMut(JobReport<Self::DeviceMessage, Self::JobStep>),
     ) -> Result<Self::Output, Self::Error>;
 
-    /// Returns the key of the device that was identified last. The default is for devices without a serial number.
+    /// Returns the key of the most recently identified device. The default is for devices without a serial number.
     fn identified(&self, _is_virtual: bool) -> Option<DeviceKey> {
         None
     }
 
-    /// Returns the status codes in a result, for the logbook. The default is for devices that record them while they
-    /// are read, or have none.
+    /// Returns the status codes in a result, for the logbook. The default is for devices that have none or that record
+    /// them while they are read.
     fn status_codes(_output: &Self::Output) -> Option<String> {
         None
     }
 
-    /// Returns the verdicts of a device check. `None` if the result is not that of a check.
+    /// Returns the verdicts of a device check, or `None` if the result is not that of a check.
     fn check_verdicts(_output: &Self::Output) -> Option<Vec<Verdict>> {
         None
     }
 
-    /// Sets the interval of subsequent samples. `None` stops sampling. Data that the device sends without a request
-    /// begin with the next sample, and end when `None` is set.
+    /// Sets the interval of subsequent samples. `None` stops sampling. Data that the device sends without requests
+    /// start with the next sample and stop when `None` is set.
     fn set_sample_interval(&mut self, _desk: &mut SessionContext, _interval: Option<Duration>) {}
 
-    /// Takes one sample with as few exchanges as possible. Messages from the device during this time are part of the
-    /// sample.
+    /// Takes one sample with as few exchanges as possible. Messages from the device during this time are included in
+    /// the sample.
     ///
     /// # Errors
-    /// Returns an error if there is no sample, which ends polling.
+    /// Returns an error if there is no sample. This ends polling.
     fn take_sample(&mut self, context: &mut SessionContext) -> Result<Self::Sample, Self::Error>;
 
-    /// Requests a watched value. Messages from the device during this time are part of the sample.
+    /// Requests a watched value. Messages from the device during this time are included in the sample.
     ///
     /// # Errors
-    /// Returns an error if the device does not answer, which ends polling. A device that rejects the request has
-    /// answered.
+    /// Returns an error if the device does not answer. This ends polling. Rejecting the request counts as an answer.
     fn read_watched(
         &mut self,
         context: &mut SessionContext,
         what: &Self::Watch,
     ) -> Result<WatchReply<Self::Sample>, Self::Error>;
 
-    /// Takes the message that the device has sent since the last call.
+    /// Takes the message that the device has sent since the last call, if any.
     fn take_device_message(&mut self) -> Option<Self::DeviceMessage> {
         None
     }
@@ -148,13 +147,13 @@ pub(crate) const IDLE: Duration = Duration::from_millis(500);
 /// The reply to a request for a watched value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum WatchReply<S> {
-    /// The sample with the value, or with the reason why there is no value at present.
+    /// The sample contains the value, or the reason why it is currently not available.
     Sample(S),
-    /// The device does not have the value, and it is not requested again. The sample reports the rejection.
+    /// The device does not have the value, which is not requested again. The sample contains the rejection.
     Refused(S),
 }
 
-/// The number of a job within its session.
+/// The number of a job, unique within its session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct JobId(u64);
 
@@ -170,7 +169,7 @@ pub struct Progress<W> {
 }
 
 impl<W> Progress<W> {
-    /// Returns the progress with its step converted.
+    /// Returns the progress with its step converted by `terms`.
     pub fn map_step<T>(self, terms: impl FnOnce(W) -> T) -> Progress<T> {
         Progress { done: self.done, total: self.total, step: terms(self.step) }
     }
@@ -194,11 +193,11 @@ pub enum Event<D: Device> {
     Progress(JobId, Progress<D::JobStep>),
     /// A message from the device during a job or at its end.
     Remark(D::DeviceMessage),
-    /// The job has finished. Contains its result.
+    /// A job has been completed. Contains its result.
     Finished(JobId, Box<D::Output>),
     /// The job failed.
     Failed(JobId, Box<D::Error>),
-    /// The user cancelled the job. For a writing job, the error includes the changes written before.
+    /// The user cancelled the job. For a job that writes, the error includes the changes that were already written.
     Cancelled(JobId, Box<D::Error>),
     /// A sample failed, and polling has stopped.
     PollFailed(Box<D::Error>),
@@ -220,8 +219,8 @@ pub enum SubmitError {
     Ended,
 }
 
-/// A handle to the thread of a session. When it is dropped, the running work stops and the thread ends. Dropping does
-/// not wait.
+/// A handle to the thread of a session. Dropping it stops the running work and ends the thread, without waiting for
+/// either.
 pub struct Worker<D: Device> {
     orders: Sender<SubmittedJob<D>>,
     events: Receiver<Event<D>>,
@@ -263,7 +262,7 @@ impl<D: Device> Worker<D> {
         Ok(Worker { orders, events, samples, live, watches, busy, ended, next: 0 })
     }
 
-    /// Submits a job. It takes precedence over sampling and waits only for the current exchange.
+    /// Submits a job. It takes precedence over sampling and waits only for the exchange in progress.
     ///
     /// # Errors
     /// Returns a [`SubmitError`] if the job is not accepted.
@@ -276,7 +275,8 @@ impl<D: Device> Worker<D> {
         }
         let id = JobId(self.next);
         self.next += 1;
-        // Each job has its own cancellation flag. An earlier job does not affect it, and it is never reset.
+        // Each job has its own cancellation token, which is never reset, so the cancellation of an earlier job does not
+        // affect it.
         let cancel = CancelToken::default();
         self.live.set_job_cancel(cancel.clone());
         if self.orders.try_send(SubmittedJob { id, job, cancel }).is_err() {
@@ -298,19 +298,19 @@ impl<D: Device> Worker<D> {
     }
 
     /// Requests samples while no job is running. `interval` is the time between the starts of two samples. With an
-    /// interval of zero, each sample starts as soon as the previous one has ended. `None` stops sampling. The latest
-    /// request takes effect immediately.
+    /// interval of zero, each sample starts as soon as the previous one has ended. `None` stops sampling. A new request
+    /// takes effect immediately.
     pub fn poll(&self, interval: Option<Duration>) {
         self.live.poll(interval);
     }
 
-    /// Returns the current polling interval. Returns `None` while there is no polling, for example after a failed
-    /// sample or a stop.
+    /// Returns the current polling interval, or `None` while there is no polling, for example after a failed sample or
+    /// a stop.
     pub fn polling_interval(&self) -> Option<Duration> {
         self.live.polling_interval()
     }
 
-    /// Sets the values to watch, each with the interval between the starts of two requests. A duplicate is ignored, and
+    /// Sets the values to watch, each with the interval between the starts of two requests. Duplicates are ignored, and
     /// a new list replaces the previous one. While the device is polled, at most one value is requested between two
     /// samples. A value that the device does not have is requested only once. The list is kept when polling ends, and
     /// watching resumes with polling.
@@ -318,12 +318,13 @@ impl<D: Device> Worker<D> {
         self.watches.set_entries(watched);
     }
 
-    /// Returns the watched values in the requested order. Values that the device has rejected are left out.
+    /// Returns the watched values in the order in which they were listed. Values that the device has rejected are
+    /// omitted.
     pub fn watched_values(&self) -> Vec<(D::Watch, Duration)> {
         self.watches.active_entries()
     }
 
-    /// Returns the buffer of at most 4096 samples. A new sample does not call `wake`.
+    /// Returns the buffer of samples, which holds at most 4096. New samples do not call `wake`.
     pub fn samples(&self) -> &Ring<D::Sample> {
         &self.samples
     }
@@ -343,23 +344,23 @@ impl<D: Device> Worker<D> {
         has_ended(&self.ended)
     }
 
-    /// Cancels the running work and ends the thread. Does not wait for the thread.
+    /// Cancels the running work and ends the thread, without waiting for it.
     pub fn end(self) -> EndingWorker<D> {
         // Dropping the worker does both.
         EndingWorker { events: self.events.clone(), ended: self.ended.clone() }
     }
 
-    /// Ends the worker like [`end`](Self::end), but keeps it. No further jobs are accepted. Waits for at most
-    /// `patience` and returns whether the thread has ended and the connection is free.
+    /// Ends the thread like [`end`](Self::end) without consuming the worker. No further jobs are accepted. Waits for at
+    /// most `patience` and returns whether the thread has ended and the connection is free.
     pub fn finish(&mut self, patience: Duration) -> bool {
         self.live.stop();
-        // The thread ends as soon as no more orders can arrive.
+        // The thread ends as soon as no more jobs can arrive.
         self.orders = bounded(0).0;
         matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
 
-    /// Calls [`end`](Self::end) and waits for at most `patience`. Returns whether the thread has ended and the
-    /// connection is free.
+    /// Ends the thread like [`end`](Self::end), then waits for at most `patience`. Returns whether the thread has ended
+    /// and the connection is free.
     pub fn close(self, patience: Duration) -> bool {
         self.end().wait_for_end(patience)
     }
@@ -371,14 +372,14 @@ impl<D: Device> Drop for Worker<D> {
     }
 }
 
-/// A worker that is ending. Its thread ends as soon as the running work has ended.
+/// A worker that is ending. Its thread ends as soon as the running work does.
 pub struct EndingWorker<D: Device> {
     events: Receiver<Event<D>>,
     ended: Receiver<Never>,
 }
 
 impl<D: Device> EndingWorker<D> {
-    /// Returns the channel of the remaining events. They report how the last job ended.
+    /// Returns the channel of the remaining events, which report how the last job ended.
     pub fn events(&self) -> &Receiver<Event<D>> {
         &self.events
     }

@@ -1,4 +1,4 @@
-//! Opening a connection from a link. This is the part common to all devices on a byte stream.
+//! Opening of connections from links. This part is common to all devices that use a byte stream.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -40,8 +40,8 @@ pub enum OpenError {
     Store(#[from] StoreError),
 }
 
-/// Returns the reply delay that a kind of connection adds to the protocol's worst case. USB adapters deliver data in
-/// packets, and device servers reply over a network. A thread also needs time to wake up.
+/// Returns the delay of replies that a kind of connection adds to the worst case of the protocol. USB adapters deliver
+/// data in packets, and device servers reply over a network. A thread also needs time to wake up.
 pub(crate) const fn reply_margin(scheme: LinkScheme) -> Duration {
     match scheme {
         LinkScheme::Serial => Duration::from_millis(50),
@@ -76,7 +76,7 @@ pub fn connect_simulated(device: impl ByteDevice + 'static, clock: &Arc<dyn Cloc
     Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
 }
 
-/// Creates the error for a link whose scheme does not refer to a device. `known` lists the allowed schemes.
+/// Creates the error for a link whose scheme does not lead to a device of this kind. `known` lists the allowed schemes.
 pub fn wrong_target_error(scheme: LinkScheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.keyword(), known }.into()
 }
@@ -90,7 +90,7 @@ pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
     read_trace(&text).map_err(|cause| OpenError::Recording { path: path.to_owned(), cause })
 }
 
-/// Checks that `query` contains only parameters listed in `known`.
+/// Checks that `query` contains only the parameters listed in `known`.
 ///
 /// # Errors
 /// Returns [`UrlError::Unknown`] for any other parameter.
@@ -103,7 +103,7 @@ pub fn check_parameters(query: &UrlQuery, scheme: LinkScheme, known: &[&str]) ->
     }
 }
 
-/// Returns the settings of a link's virtual device, which are the parameters of the link except those of the `line`. A
+/// Returns the settings of a link's virtual device, which are the parameters of the link without those of the `line`. A
 /// real device has no settings.
 ///
 /// # Errors

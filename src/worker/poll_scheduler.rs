@@ -1,5 +1,5 @@
-//! Schedule of the requests to a polled device. At most one watched value is requested between two samples. The
-//! schedule is independent of any clock.
+//! The schedule of requests to a polled device. At most one watched value is requested between two samples. The
+//! schedule does not depend on a clock.
 
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,7 @@ pub(super) enum DueRequest<W> {
     Watch(W),
 }
 
-/// Schedule of requests, each with a separate interval.
+/// A schedule of requests, each with its own interval.
 pub(super) struct PollScheduler<W> {
     sample: PollTiming,
     watches: Vec<WatchSchedule<W>>,
@@ -39,8 +39,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         }
     }
 
-    /// Returns the next request and its time. This is the earliest request, or the sample if several requests are due.
-    /// Watching pauses while sampling is off. A new request is due at once.
+    /// Returns the next request and its time. If several requests are due, this is the sample, and otherwise the
+    /// earliest request. Watching pauses while sampling is off. A new request is due immediately.
     pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, DueRequest<W>)> {
         let sample = self.sample.next_due(polling, now);
         let mut next: Option<(Instant, DueRequest<W>)> = None;
@@ -71,8 +71,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
     }
 }
 
-/// Timing of a request, with equal intervals between starts. Requests that were missed because of a late one are
-/// skipped.
+/// The timing of a request with equal intervals between its starts. Starts that are missed because of a late request
+/// are skipped.
 #[derive(Default)]
 struct PollTiming {
     interval: Option<Duration>,
@@ -122,7 +122,7 @@ mod tests {
         assert_eq!(pace.next_due(None, start + ms(530)), None);
     }
 
-    /// Returns the requests up to `end` and their start times in milliseconds, if each takes 25 ms.
+    /// Returns the requests up to `end` with their start times in milliseconds, if each request takes 25 ms.
     fn course(polling: u64, watches: &[(char, u64)], end: u64) -> String {
         let start = Instant::now();
         let mut agenda = PollScheduler::default();
@@ -147,11 +147,11 @@ mod tests {
             (100, vec![], 250, ".0 .100 .200"),
             (100, vec![('a', 200)], 450, ".0 a25 .100 .200 a225 .300 .400 a425"),
             (100, vec![('a', 150)], 500, ".0 a25 .100 a150 .200 .300 a325 .400 a450 .500"),
-            // Back to back, and never two watched ones in a row.
+            // Back to back, but never two watched values in a row.
             (0, vec![('a', 0)], 125, ".0 a25 .50 a75 .100 a125"),
             (0, vec![('a', 0), ('b', 0)], 175, ".0 a25 .50 b75 .100 a125 .150 b175"),
             (0, vec![('a', 200)], 275, ".0 a25 .50 .75 .100 .125 .150 .175 .200 a225 .250 .275"),
-            // Rare samples: no more watched values than samples.
+            // With rare samples, there are no more watched values than samples.
             (1000, vec![('a', 10)], 2100, ".0 a25 .1000 a1025 .2000 a2025"),
         ] {
             assert_eq!(course(polling, &watches, end), expected, "{polling} {watches:?}");

@@ -1,5 +1,5 @@
 //! A bounded ring for data that may be dropped, such as samples and trace frames. The writer never waits for the
-//! reader. The oldest entries are dropped and counted.
+//! reader. If the ring is full, the oldest entries are dropped and counted.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -28,7 +28,7 @@ impl<T> State<T> {
 }
 
 impl<T> Ring<T> {
-    /// Creates an empty ring for at least one and at most `capacity` entries.
+    /// Creates an empty ring that holds at most `capacity` entries, but at least one.
     pub fn new(capacity: usize) -> Self {
         Ring::with_byte_limit(capacity, usize::MAX, |_| 0)
     }
@@ -50,7 +50,7 @@ impl<T> Ring<T> {
         }
         state.size += size;
         state.items.push_back(item);
-        // Dropping an entry may take time and needs no lock.
+        // Dropping an entry may take time and does not need the lock.
         drop(state);
         drop(oldest);
     }
@@ -66,7 +66,7 @@ impl<T> Ring<T> {
     }
 
     fn lock(&self) -> MutexGuard<'_, State<T>> {
-        // No code under this lock can panic half-way. A poisoned lock is therefore still valid.
+        // Code that holds this lock cannot panic half-way, so a poisoned lock is still valid.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

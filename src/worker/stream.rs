@@ -1,8 +1,8 @@
-//! Streams of unrequested data. A separate thread passes batches of samples through a bounded ring, which drops and
-//! counts the oldest samples. The thread never waits for the reader. It wakes the window at intervals instead of for
-//! each batch.
+//! Streams of samples that arrive without requests. A separate thread passes batches of samples through a bounded ring,
+//! which drops and counts the oldest ones. The thread never waits for the reader. It wakes the window at intervals
+//! rather than for each batch.
 //!
-//! This module is independent of the source of the samples. A [`Producer`] supplies them.
+//! This module does not depend on the source of the samples, which are supplied by a [`Producer`].
 
 mod analogue;
 #[cfg(test)]
@@ -23,22 +23,21 @@ use crate::analysis::SampleTime;
 use crate::analysis::wiring::Wires;
 use crate::link::Clock;
 
-/// Maximum duration of a single wait of a producer. A stop or a change takes effect within this time.
+/// Maximum duration of a single wait in a producer. A stop or a change takes effect within this time.
 pub(crate) const MAX_WAIT: Duration = Duration::from_millis(20);
 /// Minimum interval between two calls that wake the window.
 const WAKE: Duration = Duration::from_millis(50);
 
-/// A sequence of samples at equal intervals.
+/// A series of samples at equal intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch<S> {
-    /// Number of the first sample, counted by the source from 0.
+    /// Number of the first sample, as counted by the source from 0.
     pub first: u64,
     /// Time at which the first sample was taken.
     pub time: SampleTime,
     /// Interval between samples in nanoseconds.
     pub period_ns: i64,
-    /// Number of samples lost between the previous batch and this one, at the source or because they were not read in
-    /// time.
+    /// Number of samples lost before this batch, at the source or because they were not read in time.
     pub lost: u64,
     /// The samples.
     pub samples: S,
@@ -52,27 +51,27 @@ pub trait SampleCount: Send + 'static {
 
 /// A source of samples, either virtual or an adapter.
 pub trait Producer: Send + 'static {
-    /// Change of settings while the source is running.
+    /// A change of settings while the source is running.
     type Request: Send + 'static;
-    /// Samples in a batch.
+    /// The samples of a batch.
     type Samples: SampleCount;
-    /// Reason why the source ended without a request.
+    /// The reason why the source ended without a request to do so.
     type Error: Send + 'static;
 
-    /// Applies a change, starting with the next sample.
+    /// Applies a change, which takes effect with the next sample.
     fn apply_change(&mut self, request: Self::Request);
 
     /// Waits for samples for at most `patience`. Returns `None` if none have arrived.
     ///
     /// # Errors
-    /// Returns an error if there will be no more samples.
+    /// Returns an error if no more samples will arrive.
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Self::Samples>>, Self::Error>;
 
-    /// Ends the stream at the source, which would otherwise keep sending.
+    /// Ends the stream at the source, which would otherwise continue to send.
     fn end(&mut self, _clock: &dyn Clock) {}
 }
 
-/// A signal for the end of a stream. Code that needs the stream's resources waits for it.
+/// A signal for the end of a stream, for code that needs the resources of the stream.
 #[derive(Clone, Debug)]
 pub struct StreamEnd(Receiver<Never>);
 
@@ -111,8 +110,8 @@ struct Ring<S> {
 }
 
 impl<P: Producer> Stream<P> {
-    /// Starts a thread for a producer. The buffer holds at most `capacity` samples, or one larger batch. `wake` is
-    /// called at the end, and at most 20 times per second when there is data to read.
+    /// Starts a thread for a producer. The buffer holds at most `capacity` samples, or a single larger batch. `wake` is
+    /// called when the stream ends, and at most 20 times per second while there is data to read.
     ///
     /// # Errors
     /// Returns an error if the system cannot create a thread.
@@ -134,8 +133,8 @@ impl<P: Producer> Stream<P> {
         Ok(Stream { shared, ended })
     }
 
-    /// Requests a change of the producer's settings from its next sample on. A request replaces an earlier one that is
-    /// still pending.
+    /// Requests a change of the producer's settings, starting with its next sample. The request replaces an earlier one
+    /// that is still pending.
     pub fn request_change(&self, request: P::Request) {
         *lock(&self.shared.request) = Some(request);
     }
@@ -182,7 +181,7 @@ impl<P: Producer> Drop for Stream<P> {
 }
 
 impl<S: SampleCount> Ring<S> {
-    /// Adds a batch and returns the evicted batches. The caller drops them after releasing the lock.
+    /// Adds a batch and returns the batches that it displaces. The caller drops these after releasing the lock.
     fn push(&mut self, mut batch: Batch<S>) -> Vec<Batch<S>> {
         self.lost += batch.lost;
         self.held += batch.samples.count();
@@ -192,7 +191,7 @@ impl<S: SampleCount> Ring<S> {
             let count = oldest.samples.count();
             self.held -= count;
             self.lost += count as u64;
-            // The new oldest batch takes over the loss before it.
+            // The loss before the oldest batch is now the loss before its successor.
             self.batches.front_mut().unwrap_or(&mut batch).lost += oldest.lost + count as u64;
             dropped.push(oldest);
         }
@@ -255,6 +254,6 @@ fn run_loop<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    // No code under these locks can panic half-way. A poisoned lock is therefore still valid.
+    // Code that holds one of these locks cannot panic half-way, so a poisoned lock is still valid.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

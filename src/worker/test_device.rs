@@ -1,9 +1,9 @@
-//! A device for tests that never sends a message.
+//! A test device that never sends a message.
 
 use super::{Device, JobInterruption, JobReport, SessionContext, WatchReply};
 use crate::link::LinkError;
 
-/// Placeholder device that is never queried.
+/// A placeholder device that is never queried.
 #[derive(Debug)]
 pub(super) struct TestDevice;
 

@@ -1,4 +1,4 @@
-//! The thread of a session. It runs jobs as they arrive, takes samples and watched values in between, and regularly
+//! The thread of a session. It runs jobs as they arrive, takes samples and watched values between them, and regularly
 //! checks the connection.
 
 use std::sync::Arc;
@@ -16,17 +16,17 @@ use crate::link::CancelToken;
 /// Interval between attempts to send while the channel is full.
 const RETRY: Duration = Duration::from_millis(5);
 
-/// A job being passed to the thread.
+/// A job that is being passed to the thread.
 pub(super) struct SubmittedJob<D: Device> {
     pub(super) id: JobId,
     pub(super) job: D::Job,
     pub(super) cancel: CancelToken,
 }
 
-/// A type without values. Its channel only signals the end of the thread, by closing.
+/// A type without values. A channel of this type only signals the end of the thread, by closing.
 pub(super) enum Never {}
 
-/// State of the thread of a session.
+/// The state of a session's thread.
 pub(super) struct SessionThread<D: Device> {
     pub(super) session: Session<D>,
     pub(super) orders: Receiver<SubmittedJob<D>>,
@@ -38,7 +38,7 @@ pub(super) struct SessionThread<D: Device> {
     pub(super) busy: Arc<AtomicBool>,
 }
 
-/// Starts the thread. `alive` is dropped last, when the connection is free.
+/// Starts the thread. `alive` is dropped last, once the connection is free.
 ///
 /// # Errors
 /// Returns an error if the system cannot start another thread.
@@ -51,7 +51,7 @@ pub(super) fn start<D: Device>(bench: SessionThread<D>, alive: Sender<Never>) ->
     Ok(())
 }
 
-/// The job slot of a thread. It is freed when the thread ends for any reason.
+/// A guard that frees the job slot of a thread when the thread ends for any reason.
 struct Slot(Arc<AtomicBool>);
 
 impl Drop for Slot {
@@ -67,7 +67,7 @@ fn run_loop<D: Device>(mut bench: SessionThread<D>) {
     let mut lost = false;
     let mut next_check = Instant::now() + bench.session.idle_interval();
     loop {
-        // The token is reset first, and then the requests are read for which it was set. See `Live::interrupt_sample`.
+        // The token is reset before the requests for which it was set are read. See `Live::interrupt_sample`.
         bench.live.sampling_cancel_token().reset();
         match bench.orders.try_recv() {
             Ok(order) => {
@@ -123,13 +123,13 @@ impl<D: Device> SessionThread<D> {
         self.session.set_cancel(order.cancel);
         let outbox = &mut self.events;
         let end = self.session.run(order.id, order.job, &mut |event| outbox.send(event));
-        // The slot must be free before the last event reports it, because the reader may submit at once.
+        // The slot must be free before the last event reports it, because the reader may submit a job at once.
         self.busy.store(false, Ordering::SeqCst);
         self.events.send(end);
     }
 
-    /// Takes a sample or watched value that is due. Returns `false` if a job or another request interrupted the
-    /// operation, which then remains due.
+    /// Takes the sample or watched value that is due. Returns `false` if a job or another request has interrupted it,
+    /// in which case it is still due.
     fn serve_due(&mut self, due: &DueRequest<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling_cancel_token().clone());
         let request = self.live.request_number();
@@ -158,7 +158,7 @@ impl<D: Device> SessionThread<D> {
     }
 
     fn run_idle_work(&mut self) {
-        // A job interrupts this request, as it interrupts a sample.
+        // A job interrupts this request, just as it interrupts a sample.
         self.session.set_cancel(self.live.sampling_cancel_token().clone());
         if let Some(remark) = self.session.maintain() {
             self.events.send(Event::Remark(remark));
@@ -171,7 +171,7 @@ impl<D: Device> SessionThread<D> {
         let mut ready = Select::new();
         ready.recv(&self.orders);
         ready.recv(&self.changes);
-        // An error means only that the time is up and nothing is ready.
+        // An error only means that the time has passed and nothing is ready.
         let _ = ready.ready_timeout(patience);
         let _ = self.changes.try_recv();
     }

@@ -1,4 +1,4 @@
-//! Execution of the connection dialog's actions.
+//! Execution of the actions of the connection dialog.
 
 use super::context::{FinderContext, NextAction};
 use super::form::AnyForm;
@@ -16,7 +16,7 @@ impl Studio {
                 let tab = Some(self.settings.tab).filter(|tab| kinds.kind_for_tab(*tab).is_some());
                 let shown = || self.selected_device().map(|device| device.tab());
                 let device = tab.or_else(shown).unwrap_or_else(|| kinds.first_tab());
-                // The dialog begins with the link that was used last.
+                // The dialog initially shows the most recently used link.
                 let last = |tab| self.settings.links_of(tab).first().and_then(|link| link.parse().ok());
                 self.connect = Some(ConnectDialog::new(kinds, device, last));
                 self.list_ports();
@@ -46,7 +46,7 @@ impl Studio {
                 let device = connect.device;
                 match connect.url() {
                     Ok(url) => {
-                        // A search may still hold the connection.
+                        // A search may still occupy the connection.
                         self.close_dialog();
                         self.open_link(device, url);
                     }
@@ -80,7 +80,7 @@ impl Studio {
     fn find(&mut self, action: Payload) {
         let is_its = |form: &dyn AnyForm| form.is_finder_action(&action);
         let Some((tab, place)) = self.form_index(is_its) else {
-            // If the dialog is closed, the result comes too late and is ignored.
+            // If the dialog has been closed, the result is ignored.
             if self.connect.is_some() {
                 self.notify_wrong_kind(None);
             }
@@ -95,7 +95,7 @@ impl Studio {
         }
     }
 
-    /// Continues the search after the user has confirmed that no other master is on the line.
+    /// Continues the search after the user has confirmed that there is no other master on the line.
     pub(in crate::app) fn start_confirmed_search(&mut self, tab: Tab) {
         let at = |connect: &ConnectDialog| connect.forms.iter().position(|(own, _)| *own == tab);
         if let Some(place) = self.connect.as_ref().and_then(at) {
@@ -118,8 +118,8 @@ impl Studio {
         forms.iter().enumerate().find_map(|(at, (tab, form))| is_it(form.as_ref()).then_some((*tab, at)))
     }
 
-    /// Calls `act` with a form of the dialog and the resources for a search, and then executes the requests of the
-    /// form.
+    /// Calls `act` with a form of the dialog and the resources for a search, and then carries out the actions requested
+    /// by the form.
     fn with_form_context(
         &mut self,
         tab: Tab,
@@ -141,7 +141,7 @@ impl Studio {
         }
     }
 
-    /// Starts listing the serial ports. Ports previously used for the current kind of device come first.
+    /// Starts listing the serial ports. Ports previously used for the current kind of device are listed first.
     fn list_ports(&self) {
         if let Some(connect) = &self.connect {
             list_ports(&self.services, self.settings.links_of(connect.device));

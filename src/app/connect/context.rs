@@ -1,4 +1,4 @@
-//! Resources of a search in addition to its connection form.
+//! Resources that a search uses in addition to its connection form.
 
 use crossbeam_channel::Receiver;
 
@@ -9,7 +9,7 @@ use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 use crate::link::LinkUrl;
 
-/// Resources of a search in addition to its connection form.
+/// The resources that a search uses in addition to its connection form.
 pub struct FinderContext<'a> {
     studio: &'a mut Studio,
     tab: Tab,
@@ -18,7 +18,7 @@ pub struct FinderContext<'a> {
     problem: Option<Text>,
 }
 
-/// Actions of the dialog that a search has requested.
+/// The actions of the dialog that a search has requested.
 #[derive(Default)]
 pub(super) struct NextAction {
     pub(super) found: Option<LinkUrl>,
@@ -39,10 +39,10 @@ impl<'a> FinderContext<'a> {
         &mut self.studio.services
     }
 
-    /// Returns the link of the dialog.
+    /// Returns the link in the dialog.
     ///
     /// # Errors
-    /// Returns a text that explains why the link cannot be used.
+    /// Returns the reason why the link cannot be used.
     pub fn link(&self) -> Result<LinkUrl, Text> {
         self.link.clone()
     }
@@ -52,18 +52,18 @@ impl<'a> FinderContext<'a> {
         self.studio.next_number()
     }
 
-    /// Releases the connection, which a session or a tool may hold. A session that is writing is not released;
-    /// otherwise it shows `why`. The returned channel, if any, closes when the connection is free.
+    /// Releases the connection, which a session or a tool may be using. Sessions other than a writing one show `why` as
+    /// the reason. The returned channel, if any, closes when the connection is free.
     ///
     /// # Errors
-    /// Returns the session that is writing.
+    /// Returns an error if a session is writing. Such a session is not released.
     pub fn release_connection(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         let earlier = self.studio.release_connection(url, why)?;
         self.studio.release_tool_connections(url);
         Ok(earlier)
     }
 
-    /// Asks the user whether another master is on the line. If there is no other master, the search continues.
+    /// Asks the user whether there is another master on the line. If there is none, the search continues.
     pub fn ask_about_other_master(&mut self, url: &LinkUrl) {
         self.studio.question = Some(Question::other_master(
             self.studio.services.world.kinds.display_link(url),

@@ -1,5 +1,5 @@
-//! Connection form of a kind of device, and the search for devices. The folder of a device implements both with its
-//! types, and an adapter provides them to the dialog as trait objects.
+//! The connection form of a kind of device, and the search for devices. The folder of a device implements both with its
+//! own types, and an adapter passes them to the dialog as trait objects.
 
 #![warn(missing_docs)]
 
@@ -14,18 +14,18 @@ use crate::app::payload::{Payload, PayloadKindError};
 use crate::app::services::Services;
 use crate::link::LinkUrl;
 
-/// A form with entries that define a link to a kind of device. Entries for another type of connection are preserved.
+/// A form with entries that define a link to a kind of device. Entries for other types of connections are preserved.
 pub trait FormModel: Clone + PartialEq + Send + 'static {
-    /// The search for devices, or [`NoFinder`] if the form has none.
+    /// The search for devices, or [`NoFinder`] if the form does not support one.
     type Finder: Finder<Form = Self>;
 
-    /// Returns the link to the virtual device, with which the form begins.
+    /// Returns the link to the virtual device, with which the form is initialised.
     fn default_link() -> LinkUrl;
 
     /// Fills in a new form from a link.
     fn from_url(url: &LinkUrl) -> Self;
 
-    /// Builds the link from the entries. Default values are omitted.
+    /// Builds the link from the entries, omitting default values.
     ///
     /// # Errors
     /// Returns a message that names the invalid entry and the allowed values.
@@ -34,7 +34,7 @@ pub trait FormModel: Clone + PartialEq + Send + 'static {
     /// Sets the path of a recording.
     fn set_file(&mut self, _file: String) {}
 
-    /// Returns an example link, shown as a hint.
+    /// Returns an example link to show as a hint.
     fn example_link(&self) -> &'static str;
 }
 
@@ -42,24 +42,24 @@ pub trait FormModel: Clone + PartialEq + Send + 'static {
 pub trait Finder: Default + 'static {
     /// The form that the search fills in.
     type Form;
-    /// Type of the user's actions in the search.
+    /// The user's actions in the search.
     type Action: Any + Send;
-    /// The results of the tasks that the search starts.
+    /// The results of tasks that the search starts.
     type TaskResult: Any + Send;
 
-    /// Executes an action of the user in the search.
+    /// Executes a user action in the search.
     fn handle_action(&mut self, action: Self::Action, form: &mut Self::Form, context: &mut FinderContext<'_>);
 
     /// Handles the result of a task. `finder` is `None` if the dialog has been closed in the meantime.
     fn handle_result(finder: Option<&mut Self>, done: Self::TaskResult, services: &mut Services);
 
-    /// Continues the search after the user has confirmed that no other master is on the line.
+    /// Continues the search after the user has confirmed that there is no other master on the line.
     fn handle_confirmation(&mut self, _context: &mut FinderContext<'_>) {}
 
     /// Processes all events received since the last call.
     fn process_events(&mut self) {}
 
-    /// Returns whether the search occupies the connection of the form.
+    /// Returns whether the search is occupying the connection of the form.
     fn is_running(&self) -> bool {
         false
     }
@@ -74,7 +74,7 @@ pub trait Finder: Default + 'static {
     }
 }
 
-/// The search of a form that cannot search for devices.
+/// The finder of a form that does not support searching for devices.
 pub struct NoFinder<F>(PhantomData<fn() -> F>);
 
 impl<F> Default for NoFinder<F> {
@@ -105,7 +105,7 @@ pub trait AnyForm {
     fn as_any_finder(&self) -> &dyn Any;
     /// Returns the finder for downcasting, mutably.
     fn finder_mut(&mut self) -> &mut dyn Any;
-    /// Builds the link from the entries. Default values are omitted.
+    /// Builds the link from the entries, omitting default values.
     ///
     /// # Errors
     /// Returns a message that names the invalid entry and the allowed values.
@@ -114,7 +114,7 @@ pub trait AnyForm {
     fn fill_from_link(&mut self, url: &LinkUrl);
     /// Sets the path of a recording.
     fn set_file(&mut self, file: String);
-    /// Returns an example link, shown as a hint.
+    /// Returns an example link to show as a hint.
     fn example_link(&self) -> &'static str;
     /// Returns whether the payload contains entries of this form.
     fn accepts_entries(&self, entries: &Payload) -> bool;
@@ -130,11 +130,11 @@ pub trait AnyForm {
     /// # Errors
     /// Returns an error if the action belongs to a different kind of device.
     fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, PayloadKindError>;
-    /// Continues the search after the user has confirmed that no other master is on the line.
+    /// Continues the search after the user has confirmed that there is no other master on the line.
     fn handle_confirmation(&mut self, context: &mut FinderContext<'_>);
     /// Processes pending events of the finder.
     fn process_events(&mut self);
-    /// Returns whether the finder occupies the connection.
+    /// Returns whether the finder is occupying the connection.
     fn is_running(&self) -> bool;
     /// Stops the finder.
     fn stop(&mut self);

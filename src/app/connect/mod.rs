@@ -1,5 +1,5 @@
-//! The connection dialog: a form for the link, the serial ports of this computer, and the search for devices. Each kind
-//! of device provides its form.
+//! The connection dialog, which consists of a form for the link, the serial ports of this computer, and the search for
+//! devices. Each kind of device provides its own form.
 
 mod act;
 pub mod context;
@@ -30,9 +30,9 @@ pub enum ConnectAction {
     Close,
     ListPorts,
     Device(Tab),
-    /// The form for a kind of device was edited. See [`ConnectAction::edit_form`].
+    /// The entries of the form for a kind of device were edited. See [`ConnectAction::edit_form`].
     Edit(Payload),
-    /// A request to the search for devices. See [`ConnectAction::find`].
+    /// The user made a request to the search for devices. See [`ConnectAction::find`].
     Find(Payload),
     /// A link was typed, pasted or selected. A valid link fills in the form.
     Use(String),
@@ -56,7 +56,7 @@ pub struct ConnectDialog {
     pub device: Tab,
     kinds: KindRegistry,
     forms: Vec<(Tab, Box<dyn AnyForm>)>,
-    /// The link as entered. `None` after the form has been edited, because the form then defines the link.
+    /// The link as entered, or `None` after the form has been edited. In that case, the form defines the link.
     pub typed: Option<String>,
     /// Serial ports of this computer, or `None` while they are being listed.
     pub ports: Option<Result<Vec<PortEntry>, Text>>,
@@ -64,7 +64,7 @@ pub struct ConnectDialog {
 }
 
 impl ConnectDialog {
-    /// Creates the dialog for a kind of device. `last` returns the last link used in a tab.
+    /// Creates the dialog for a kind of device. `last` returns the most recently used link of a tab.
     pub(super) fn new(kinds: KindRegistry, device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
         let forms = kinds.devices().iter().map(|kind| (kind.tab(), kind.create_form(last(kind.tab())))).collect();
         ConnectDialog { device, kinds, forms, typed: None, ports: None, problem: None }
@@ -86,7 +86,7 @@ impl ConnectDialog {
         self.forms.iter_mut().map(|(_, form)| form)
     }
 
-    /// Returns the link as entered, or else the link of the form.
+    /// Returns the link as entered or, if none was entered, the link of the form.
     ///
     /// # Errors
     /// Returns a message that names the invalid part and the allowed values.
@@ -97,7 +97,7 @@ impl ConnectDialog {
         }
     }
 
-    /// Parses a link as a link to the chosen kind of device.
+    /// Parses a link to the selected kind of device.
     fn read(&self, link: &str) -> Result<LinkUrl, Text> {
         let url: LinkUrl = link.parse().map_err(|error| target::unusable_link_text(explain::url_error_text(&error)))?;
         target::validated_link(url, |url| {
@@ -119,8 +119,8 @@ impl ConnectDialog {
         self.forms.iter().any(|(_, form)| form.is_running())
     }
 
-    /// Returns the link as entered, or else the link of the form. The string is empty if the form does not have a valid
-    /// link.
+    /// Returns the link as entered or, if none was entered, the link of the form. The string is empty if the form does
+    /// not yield a valid link.
     pub fn typed_link(&self) -> String {
         match &self.typed {
             Some(link) => link.clone(),

@@ -7,10 +7,10 @@ use crate::app::{Text, explain};
 use crate::link::{LinkScheme, LinkUrl, UrlQuery};
 use crate::parameter::Entry;
 
-/// Name and value of a link parameter.
+/// The name and value of a link parameter.
 pub(crate) type NameAndValue = (String, String);
 
-/// Returns the parameters of a link that have no entry in the form. `take` fills in an entry, and returns whether the
+/// Returns the parameters of a link that have no entry in the form. `take` fills in an entry and returns whether the
 /// entry exists.
 pub(crate) fn parameters_without_entry(
     query: &UrlQuery,
@@ -19,12 +19,12 @@ pub(crate) fn parameters_without_entry(
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
 }
 
-/// Values typed into the entries of a form, by the name of the parameter.
+/// The values typed into the entries of a form, by parameter name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EnteredValues(BTreeMap<&'static str, String>);
 
 impl EnteredValues {
-    /// Returns the typed value of a parameter, or an empty string for the default.
+    /// Returns the typed value of a parameter. An empty string means the default.
     pub fn get(&self, key: &str) -> &str {
         self.0.get(key).map_or("", String::as_str)
     }
@@ -45,7 +45,7 @@ impl EnteredValues {
     }
 }
 
-/// Link parameters from the entries of a form, in order. Default values are omitted.
+/// The link parameters of a form's entries, in order. Default values are omitted.
 #[derive(Default)]
 pub(crate) struct Parameters(Vec<NameAndValue>);
 
@@ -59,7 +59,7 @@ impl Parameters {
         self.0.extend(non_empty(entry).map(|value| (name.to_owned(), value)));
     }
 
-    /// Adds typed entries, converting a decimal comma to a point.
+    /// Adds typed entries, converting decimal commas to points.
     pub(crate) fn add_entered(&mut self, entries: &[Entry], typed: &EnteredValues) {
         for entry in entries {
             match entry.is_decimal {
@@ -85,8 +85,8 @@ impl Parameters {
         self.add_others(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
     }
 
-    /// Adds the parameters without an entry that belong to the link. An entry overrides an older parameter of the same
-    /// name.
+    /// Adds those parameters without an entry that belong to the link. An entry overrides an older parameter of the
+    /// same name.
     pub(crate) fn add_others(&mut self, rest: &[NameAndValue], belongs: impl Fn(&str) -> bool) {
         for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
             if self.0.iter().all(|(own, _)| own != name) {
@@ -98,7 +98,7 @@ impl Parameters {
     /// Returns the link with these parameters.
     ///
     /// # Errors
-    /// Returns a message if a character would end a part of the link, or if the parts do not form a link.
+    /// Returns a message if a character would end a part of the link prematurely, or if the parts do not form a link.
     pub(crate) fn build_link(&self, (scheme, target): (LinkScheme, String)) -> Result<LinkUrl, Text> {
         let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
         let unfit = unfit(&target, &['?'])
@@ -117,7 +117,7 @@ impl Parameters {
 pub(crate) mod tests {
     use super::*;
 
-    /// Checks that each link, filled into a form, yields an equivalent link.
+    /// Checks that each link yields an equivalent link after it has been filled into a form.
     pub(crate) fn assert_round_trip(links: &[&str], through: impl Fn(&LinkUrl) -> Result<LinkUrl, Text>) {
         let sorted = |url: &LinkUrl| {
             let mut pairs = url.query.pairs().to_vec();

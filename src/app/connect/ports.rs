@@ -4,19 +4,19 @@ use crate::link::{LinkScheme, LinkUrl, PortInfo};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PortEntry {
-    /// Path or name of the port as in a link.
+    /// Path or name of the port as used in links.
     pub path: String,
-    /// Description of the adapter by the system, which may be empty.
+    /// Description of the adapter as reported by the system. It may be empty.
     pub description: String,
     pub used: bool,
-    /// Whether the port exists at present: either the system lists it, or its path exists, as for a pseudo-terminal. A
+    /// Whether the port currently exists: either the system lists it, or its path exists, as for a pseudo-terminal. A
     /// previously used port may have been unplugged.
     pub listed: bool,
 }
 
-/// Returns the previously used ports, most recent first, then USB adapters, then all other ports.
+/// Returns the previously used ports, most recent first, followed by USB adapters and then all other ports.
 ///
-/// `links` are the previously used links, most recent first. `exists` checks a path that the system does not list.
+/// `links` contains the previously used links, most recent first. `exists` checks a path that the system does not list.
 pub fn offered_ports(ports: &[PortInfo], links: &[String], exists: impl Fn(&str) -> bool) -> Vec<PortEntry> {
     let mut offers: Vec<PortEntry> = Vec::new();
     for url in links.iter().filter_map(|link| link.parse::<LinkUrl>().ok()) {

@@ -1,4 +1,4 @@
-//! Parts common to all connection forms: mandatory entries, host and port, and the reasons why a link cannot be used.
+//! Helpers common to all connection forms: mandatory entries, host and port, and the reasons why a link cannot be used.
 
 use std::net::Ipv6Addr;
 use std::num::NonZeroU16;
@@ -8,7 +8,7 @@ use crate::link::{LinkUrl, UrlError};
 use crate::sim::ConfigError;
 use crate::worker::OpenError;
 
-/// Returns an entry without surrounding blanks.
+/// Returns an entry without surrounding whitespace.
 ///
 /// # Errors
 /// Returns the message `missing` if the entry is empty.
@@ -37,7 +37,7 @@ pub fn is_missing(problem: &Text) -> bool {
 /// Returns the link if its kind of device accepts it.
 ///
 /// # Errors
-/// Returns the same texts as [`rejection_text`].
+/// Returns the reason given by [`rejection_text`].
 pub(crate) fn validated_link(
     url: LinkUrl,
     check: impl FnOnce(&LinkUrl) -> Result<(), OpenError>,
@@ -93,7 +93,7 @@ pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
     }
 }
 
-/// Formats host and port as in a link. An empty port selects the default.
+/// Formats host and port as in a link. An empty port means the default.
 ///
 /// # Errors
 /// Returns the same errors as [`host_and_port`], or `missing` if no host is entered.
@@ -121,7 +121,7 @@ pub(crate) fn split_host_default_port(place: &str, usual: &str) -> (String, Stri
 /// Prefix of the link target for an adapter in the network.
 const TCP: &str = "tcp:";
 
-/// Returns the network address of an adapter, or `None` for an adapter at a serial port.
+/// Returns the network address of an adapter, or `None` for an adapter on a serial port.
 pub(crate) fn network_address_of_adapter(target: &str) -> Option<&str> {
     target.strip_prefix(TCP)
 }

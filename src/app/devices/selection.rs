@@ -1,4 +1,4 @@
-//! The device that each tab shows.
+//! The selection of the device that each tab shows.
 
 use std::collections::HashMap;
 
@@ -18,7 +18,7 @@ impl Selection {
         self.by_tab.get(&tab).copied()
     }
 
-    /// Returns the device that was shown last, in any tab.
+    /// Returns the most recently shown device of any tab.
     pub(in crate::app) fn last(&self) -> Option<SessionId> {
         self.last
     }
@@ -30,8 +30,8 @@ impl Selection {
 
     /// Removes a device. `left` contains the remaining devices.
     ///
-    /// Its tab then shows the device that was opened last in it. If the removed device was shown last among all tabs,
-    /// the device of the last tab replaces it.
+    /// The tab of the removed device then shows its most recently opened device. If the removed device was the most
+    /// recently shown one of all tabs, the device of the last tab takes its place.
     pub(in crate::app) fn remove(&mut self, kinds: KindRegistry, left: &[Box<AnyDevice>], id: SessionId) {
         for (tab, shown) in &mut self.by_tab {
             if *shown == id

@@ -1,5 +1,5 @@
-//! Reasons why a link, a setting, a profile, a table or the logbook cannot be used, as parts of a sentence. Messages of
-//! the operating system or of a library are quoted without changes.
+//! Reasons why a link, a setting, a profile, a table or the logbook cannot be used, phrased as parts of a sentence.
+//! Messages from the operating system or a library are quoted unchanged.
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -1,4 +1,4 @@
-//! Descriptions of the values that a parameter, a setting or an entry accepts.
+//! Descriptions of the values accepted by a parameter, a setting or an entry.
 
 use crate::app::Text;
 use crate::expected::{AllowedValues, Quantity};
@@ -222,7 +222,7 @@ mod tests {
             );
             told.insert(quantity_name(own).id());
         }
-        // A row that no sample reaches has a variant that is not above, or none.
+        // A row that no sample produces has a variant that is not listed above, or none.
         let rows = COMMON.ids().filter(|id| id.starts_with("expected.") || id.starts_with("quantity."));
         let missing: Vec<&str> = rows.filter(|id| !told.contains(id)).collect();
         assert!(missing.is_empty(), "no sample for {missing:?}");

@@ -54,7 +54,7 @@ fn capture_error_text(path: &Path, error: &CaptureError) -> Text {
     }
 }
 
-/// Returns the reason why samples cannot be analysed. `path` is the file with the samples.
+/// Returns the reason why samples cannot be analysed. `path` is the file that contains them.
 pub fn analysis_error_text(path: &Path, error: &AnalysisError) -> Text {
     let text = |id| Text::new(id).with("path", path.display());
     match error {

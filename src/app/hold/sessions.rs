@@ -1,6 +1,6 @@
-//! Random sessions with a keyboard and a mouse, and the events that the system reports for them: key repeats, possibly
-//! as releases followed by presses and across a change of focus; missing releases while another window has the keyboard
-//! focus; and synthetic releases when the window loses it.
+//! Random sessions with a keyboard and a mouse, and the events that the system reports for them. These include key
+//! repeats, possibly reported as releases followed by presses and continuing across a change of focus, missing releases
+//! while another window has the keyboard focus, and synthetic releases when the window loses it.
 
 use super::*;
 
@@ -8,16 +8,17 @@ const SESSIONS: u64 = 60;
 const FRAMES: u64 = 3_000;
 const READY: HoldContext = HoldContext { enabled: true, window: true, keyboard: true, moving: false };
 const KEYS: [PressKey; 2] = [PressKey::Space, PressKey::Enter];
-/// Indices of a key that cannot hold the button, and of the pointer. They follow those of [`KEYS`].
+/// Index of a key that cannot hold the button. It follows the indices of [`KEYS`].
 const OTHER: usize = 2;
+/// Index of the pointer.
 const POINTER: usize = 3;
 
 /// The actual state of the keys and the pointer, which may differ from the reported one.
 #[derive(Default)]
 struct TestOperator {
-    /// Times at which the keys and the pointer that are down were pressed.
+    /// Times at which each key and the pointer were pressed, or `None` while they are up.
     down: [Option<f64>; 4],
-    /// The key that was pressed last. Only this key repeats.
+    /// The most recently pressed key. Only this key repeats.
     last: Option<usize>,
     /// Whether the pointer was pressed on the button and has not left it.
     is_on_button: bool,
@@ -38,16 +39,16 @@ fn only_presses_since_the_last_change_start_a_hold() {
         let mut dice = fastrand::Rng::with_seed(seed);
         let (mut state, mut hands, mut now) = (HoldState::default(), TestOperator::default(), 0.0);
         let mut scene = READY;
-        // The half of a repetition that arrives with the next frame.
+        // The half of a repetition that arrives in the next frame.
         let mut late: Option<HoldInput> = None;
-        // Times of the last change around the button, and of the keyboard focus within the window, which is of no
-        // concern to the pointer.
+        // Times of the last change of the button, and of the keyboard focus within the window, which does not affect
+        // the pointer.
         let (mut changed, mut focused) = (0.0, 0.0);
         for frame in 0..FRAMES {
             now += 0.005 + 0.12 * dice.f64();
             let mut inputs: Vec<HoldInput> = late.take().into_iter().collect();
             let (mut follows, mut acted) = (true, false);
-            // Mostly the button can be held.
+            // Most of the time, the button can be held.
             let is_calm = scene == READY && dice.u8(..5) > 0;
             match dice.u8(..if is_calm { 25 } else { 40 }) {
                 0..=4 => {

@@ -1,5 +1,4 @@
-//! Two cursors, and the statistics of the samples between them. The statistics use all samples, not only those that are
-//! drawn.
+//! Two cursors and the statistics of the samples between them. The statistics use all samples, not only the drawn ones.
 
 use super::{Recorder, Series};
 use crate::analysis::SampleTime;
@@ -22,7 +21,7 @@ impl Cursor {
     }
 }
 
-/// Readings of both cursors on a line, in the unit of the line. A reading is `None` without a valid sample.
+/// The readings of both cursors on a line, in the unit of the line. A reading is `None` if there is no valid sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CursorReadings {
     pub a: Option<f64>,
@@ -80,7 +79,7 @@ impl Recorder {
         let statistics = history.statistics(line.column, history.indices_between(from, to.saturating_add_ns(1)))?;
         let factor = line.factor();
         let (min, max) = (statistics.min.to_f64(), statistics.max.to_f64());
-        // Positions on both sides of the end of a range have no useful mean.
+        // If the line wraps between the cursors, the positions have no useful mean.
         let begin = match line.range_of_samples().map(|range| range as f64) {
             Some(range) if (min / range).floor() != (max / range).floor() => return None,
             Some(range) => (min / range).floor() * range,
@@ -91,7 +90,7 @@ impl Recorder {
             count: statistics.count,
             bad: statistics.bad,
             mean: (statistics.mean - begin) * factor,
-            // The unit may have the opposite sign, which exchanges minimum and maximum.
+            // The unit may invert the sign, which swaps minimum and maximum.
             min: ends.0.min(ends.1),
             max: ends.0.max(ends.1),
             deviation: statistics.deviation * factor.abs(),
@@ -100,7 +99,8 @@ impl Recorder {
 
     /// Returns the sample of a line nearest to a point in time, or `None` if nothing was recorded at that time.
     pub fn sample_at(&self, line: &Series, time: SampleTime) -> Option<Sample> {
-        /// Divisor of the visible range. A cursor is at most the resulting time away from the first or last sample.
+        /// Divisor of the visible range. The resulting time is the maximum distance of a cursor from the first or last
+        /// sample.
         const EDGE_DIVISOR: i64 = 200;
         let history = self.history(line)?;
         let all = history.indices();
@@ -111,7 +111,7 @@ impl Recorder {
             .flatten()
     }
 
-    /// Moves a cursor to the nearest sample. If nothing was recorded at that time, the cursor is set to the time
+    /// Moves a cursor to the nearest sample. If nothing was recorded at that time, the cursor is placed at the time
     /// itself.
     pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<SampleTime>) {
         let nearest = |time: SampleTime| {
@@ -126,7 +126,7 @@ impl Recorder {
         }
     }
 
-    /// Shows both cursors, each a third of the visible samples from an end, or hides them.
+    /// Places both cursors at one third and two thirds of the visible samples, or hides them.
     pub(super) fn show_cursors(&mut self, shown: bool) {
         if !shown {
             self.cursors = [None; 2];

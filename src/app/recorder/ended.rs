@@ -1,5 +1,5 @@
-//! Lines that have ended, because later samples have different units or no longer arrive. They keep their samples and
-//! units, and are listed after the active lines.
+//! Lines that have ended because later samples have different units or no longer arrive. They keep their samples and
+//! units and are listed after the active lines.
 
 use super::{Recorder, Scale, Series, SeriesId};
 use crate::app::Text;
@@ -54,7 +54,7 @@ impl Recorder {
         group.into_iter().for_each(|group| self.break_before_next(group));
     }
 
-    /// Changes the possible units of a line.
+    /// Changes the selectable units of a line.
     pub(in crate::app) fn set_scales(&mut self, id: SeriesId, scales: Vec<Scale>) {
         if self.series_by_id(id).is_none_or(|line| line.scales == scales) {
             return;

@@ -1,4 +1,4 @@
-//! Export of samples as CSV. A thread writes the rows, which it receives in portions. Neither the window nor the
+//! Export of samples as CSV. A thread receives the rows in batches and writes them, so neither the window nor the
 //! recording waits for the disk.
 
 use std::io::{self, Write};
@@ -14,7 +14,7 @@ use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, History};
 use crate::store::{FileError, write_atomically_with};
 
-/// Number of rows in a portion.
+/// Number of rows in a batch.
 const ROWS: usize = 16_384;
 const QUEUED_CHUNKS: usize = 2;
 
@@ -35,7 +35,7 @@ pub struct TableExport {
     until: Option<SampleTime>,
 }
 
-/// Number of an export, which is unique within the process.
+/// The number of an export, unique within the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) struct ExportNumber(u64);
 
@@ -54,7 +54,7 @@ pub struct ExportResult {
     pub rows: Result<Option<u64>, FileError>,
 }
 
-/// Position in a group's samples up to which they have been passed on.
+/// The position in a group's samples up to which they have been passed on.
 #[derive(Debug)]
 struct ExportPosition {
     group: GroupId,
@@ -69,32 +69,32 @@ struct Column {
     column: usize,
     factor: f64,
     range: Option<i64>,
-    /// Whether the values are calculated from another line. If so, a missing value is not an error of the sample.
+    /// Whether the values are calculated from another line. If so, a missing value does not indicate a faulty sample.
     derived: bool,
 }
 
 #[derive(Debug)]
 enum Chunk {
     Rows(Rows),
-    /// End of the samples. Without it, the table is incomplete.
+    /// Marks the end of the samples. Without it, the table is incomplete.
     End,
 }
 
-/// Rows of a table, each with a time and a cell for each column.
+/// Rows of a table, each with a time and one cell per column.
 #[derive(Debug, Default)]
 struct Rows {
     times: Vec<SampleTime>,
     cells: Vec<Cell>,
 }
 
-/// A cell of a table. The cell is empty if the line has no sample at that time. A sample may be invalid.
+/// A cell of a table. It is empty if the line has no sample at that time. The sample may be invalid.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
     value: Option<f64>,
     flags: Flags,
 }
 
-/// The part of an export that runs on a thread. It writes rows as they arrive.
+/// The part of an export that runs on a thread and writes rows as they arrive.
 pub(in crate::app) struct ExportWriter {
     path: PathBuf,
     number: ExportNumber,
@@ -125,10 +125,10 @@ impl Recorder {
         self.export.as_ref()
     }
 
-    /// Starts to write a table of the displayed lines, with either the visible part or the whole recording.
+    /// Starts to write a table of the displayed lines, for either the visible part or the whole recording.
     ///
-    /// Returns the part to run on a thread; [`pass_rows_to_export`](Self::pass_rows_to_export) supplies it with rows. Returns `None` if
-    /// there is nothing to write, or if a table is already being written.
+    /// Returns the part that runs on a thread; [`pass_rows_to_export`](Self::pass_rows_to_export) supplies it with
+    /// rows. Returns `None` if there is nothing to write or if another table is being written.
     pub(in crate::app) fn begin_export(&mut self, path: &Path, visible: bool) -> Option<ExportWriter> {
         if self.export.is_some() {
             return None;
@@ -208,7 +208,7 @@ impl Recorder {
         self.export = Some(export);
     }
 
-    /// Handles the end of the thread. Returns the number of lost samples, or `None` if the thread wrote an earlier
+    /// Handles the end of the thread. Returns the number of lost samples, or `None` if the thread belongs to an earlier
     /// table.
     pub(in crate::app) fn end_export(&mut self, number: ExportNumber, written: bool) -> Option<u64> {
         let export = self.export.take_if(|export| export.number == number)?;
@@ -218,14 +218,14 @@ impl Recorder {
         Some(export.lost)
     }
 
-    /// Returns the duration of the recording in nanoseconds that has not been exported.
+    /// Returns the duration of the unexported part of the recording in nanoseconds.
     pub fn unexported_duration(&self) -> i64 {
         let Some((first, last)) = self.recorded_span() else { return 0 };
         last.nanoseconds_since(self.saved.map_or(first, |saved| saved.max(first)))
     }
 
-    /// Returns the next rows. The samples of all groups are in the order of time, and samples of the same time are in
-    /// one row.
+    /// Returns the next rows. Samples of all groups are in chronological order, and samples with the same time share a
+    /// row.
     fn next_rows(&self, heads: &mut [ExportPosition], columns: &[Column], lost: &mut u64) -> Chunk {
         // The histories have the order of the heads. A group that was removed no longer has samples.
         let histories: Vec<Option<&History>> =
@@ -266,7 +266,7 @@ fn cell_of(column: &Column, histories: &[Option<&History>], due: &[Option<u64>])
     Cell { value, flags }
 }
 
-/// Returns the heading of a column with name and unit, which does not depend on the language of the window.
+/// Returns the heading of a column with name and unit. It does not depend on the language of the window.
 fn column_heading(line: &Series) -> String {
     match line.scale() {
         Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal_text()),
@@ -296,7 +296,7 @@ impl ExportWriter {
         let mut text = String::from(if self.counts { "sample" } else { "time [s]" });
         for heading in &self.headings {
             text.push(',');
-            // Headings are not quoted, so a comma would begin another column.
+            // Headings are not quoted, so a comma would start another column.
             text.push_str(&heading.replace([',', '"'], " "));
         }
         text.push_str(",remark\n");

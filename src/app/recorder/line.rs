@@ -1,4 +1,4 @@
-//! A line of a recorder, which is a column of samples with a name and units.
+//! A line of a recorder: a column of samples with a name and units.
 
 use super::GroupId;
 use crate::analysis::history::{Sample, Value};
@@ -14,7 +14,7 @@ pub struct Scale {
     pub factor: f64,
     /// Useful number of decimals.
     pub decimals: usize,
-    /// Range of the samples after which the displayed value starts again from 0, or `None` for continuous values.
+    /// Range of the samples after which the displayed value wraps to 0, or `None` for continuous values.
     pub range: Option<i64>,
 }
 
@@ -24,7 +24,7 @@ impl Scale {
         Scale { unit: Text::new(unit), factor, decimals, range: None }
     }
 
-    /// Displays values within a range, without unwrapping.
+    /// Restricts displayed values to a range, without unwrapping.
     #[must_use]
     pub fn within(self, range: i64) -> Self {
         Scale { range: Some(range.max(1)), ..self }
@@ -35,15 +35,16 @@ impl Scale {
 pub struct Series {
     pub id: SeriesId,
     pub name: Text,
-    /// Heading of the column in a table.
+    /// Heading of the column in an exported table.
     pub heading: String,
-    /// Index of the colour, 0 to 7. Further lines use the same eight colours again.
+    /// Index of the colour, 0 to 7. More than eight lines reuse the colours.
     pub colour: usize,
     pub shown: bool,
-    /// Displayed range of values in the unit of the line. `None` shows all visible samples.
+    /// Displayed range of values in the unit of the line. `None` means a range that fits all visible samples.
     pub range: Option<(f64, f64)>,
     pub ended: bool,
-    /// Whether the values are calculated from another line. If so, a missing value is not a fault of the device.
+    /// Whether the values are calculated from another line. If so, a missing value does not indicate a fault of the
+    /// device.
     pub derived: bool,
     /// The reason why there are no samples, if known.
     pub remark: Option<Text>,
@@ -54,7 +55,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// Creates a line for a column of a group. `scales` must not be empty; the first one is displayed.
+    /// Creates a line for a column of a group. `scales` must not be empty; its first unit is displayed.
     pub fn new(group: GroupId, column: usize, name: Text, heading: impl Into<String>, scales: Vec<Scale>) -> Self {
         Series {
             id: SeriesId::default(),
@@ -104,7 +105,7 @@ impl Series {
         self.scale().filter(|_| self.scale > 0).map(|scale| scale.unit.clone())
     }
 
-    /// Selects the unit of displayed values, or the default unit if there is no such unit.
+    /// Selects the unit of the displayed values, or the default unit if the given one does not exist.
     pub(super) fn choose_unit(&mut self, unit: Option<&Text>) {
         self.scale = self.scales.iter().position(|scale| Some(&scale.unit) == unit).unwrap_or_default();
     }
@@ -118,7 +119,7 @@ impl Series {
         self.scale().map_or(0, |scale| scale.decimals)
     }
 
-    /// Returns the range after which a displayed value starts again from 0, in units of the samples.
+    /// Returns the range after which displayed values wrap to 0, in units of the samples.
     pub fn range_of_samples(&self) -> Option<i64> {
         self.scale().and_then(|scale| scale.range)
     }

@@ -1,5 +1,5 @@
 //! A chart recorder, which shows incoming samples as lines over time. It can follow the samples and zoom, and it has
-//! two cursors, a trigger and a CSV export. It does not depend on devices or drawing. The owner defines source, unit
+//! two cursors, a trigger and CSV export. It does not depend on devices or drawing. The owner defines the source, unit
 //! and number of the samples.
 
 mod cursors;
@@ -33,9 +33,9 @@ pub enum RecorderAction {
     Show(SeriesId, bool),
     /// Display a line in the unit with this index.
     SetScale(SeriesId, usize),
-    /// Set the displayed range of values of a line, or `None` to show all visible samples.
+    /// Set the displayed range of values of a line. `None` means a range that fits all visible samples.
     SetRange(SeriesId, Option<(f64, f64)>),
-    /// Draw all lines with one axis, or each line with a separate axis.
+    /// Draw all lines on a common axis, or each line on a separate axis.
     ShareAxis(bool),
     Follow,
     Pause,
@@ -43,7 +43,7 @@ pub enum RecorderAction {
     Look(SampleTime, SampleTime),
     /// Set the duration of the view in nanoseconds. The end of the view stays in place.
     SetSpan(i64),
-    /// Make the view longer (above 1) or shorter (below 1) around a point in time.
+    /// Make the view longer (factor above 1) or shorter (below 1) around a point in time.
     Zoom(SampleTime, f64),
     /// Move a cursor to a point in time, or remove it.
     SetCursor(Cursor, Option<SampleTime>),
@@ -57,7 +57,7 @@ pub enum RecorderAction {
 /// Assumed time between two samples whose interval is unknown, in nanoseconds.
 pub const SAMPLE: i64 = 1_000;
 
-/// Number of a group of samples that are acquired together.
+/// The number of a group of samples that are acquired together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct GroupId(u32);
 
@@ -70,7 +70,8 @@ struct Group {
     longest_pause: Option<i64>,
 }
 
-/// Identifier of the samples of a group, unique among all groups, including cleared ones and those of other recorders.
+/// An identifier of the samples of a group. It is unique among all groups, including cleared ones and those of other
+/// recorders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleGroupStamp(u64);
 
@@ -115,7 +116,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Creates an empty recorder whose view follows the samples and shows `span` nanoseconds.
+    /// Creates an empty recorder whose view follows the samples and spans `span` nanoseconds.
     pub fn new(span: i64) -> Self {
         Recorder { view: TimeWindow::Follow { span: span.max(1) }, ..Recorder::default() }
     }
@@ -155,7 +156,7 @@ impl Recorder {
         id
     }
 
-    /// Removes a line and its samples, unless another line shows samples of the same group.
+    /// Removes a line and its samples, unless another line displays samples of the same group.
     pub(in crate::app) fn remove_line(&mut self, id: SeriesId) {
         let Some(at) = self.lines.iter().position(|line| line.id == id) else { return };
         let group = self.lines.remove(at).group;

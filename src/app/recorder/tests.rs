@@ -10,7 +10,8 @@ fn at(milliseconds: i64) -> SampleTime {
     SampleTime::from_nanoseconds(milliseconds * MILLISECOND)
 }
 
-/// A recorder with a line of counts, in steps and in degrees (360° are 4096 steps), and one of voltages.
+/// Creates a recorder with a line of counts, displayable in steps and in degrees (360° are 4096 steps), and a line of
+/// voltages.
 fn recorder(span: i64) -> (Recorder, GroupId, [SeriesId; 2]) {
     let mut recorder = Recorder::new(span);
     let group = recorder.add_group(&[Kind::Whole, Kind::Real], 100_000, Some(500 * MILLISECOND));
@@ -29,7 +30,7 @@ fn add(recorder: &mut Recorder, group: GroupId, time: i64, count: i64, volts: f6
     recorder.append(group, &[at(time)], &parts).unwrap();
 }
 
-/// Adds one sample per millisecond, whose value is its time.
+/// Adds one sample per millisecond. The value of each sample equals its time.
 fn ramp(recorder: &mut Recorder, group: GroupId, from: i64, to: i64) {
     (from..to).for_each(|time| add(recorder, group, time, time, time as f64 / 1000.0, Flags::NONE));
 }
@@ -85,7 +86,7 @@ fn zooming_keeps_the_point_under_the_pointer_and_is_limited() {
     assert!(recorder.window_length() > 0);
 }
 
-/// Python: statistics of 100…200 in steps of 1: mean 150, stdev 29.300170647967224, times 360/4096.
+/// Statistics of 100…200 in steps of 1, calculated in Python: mean 150, stdev 29.300170647967224, times 360/4096.
 #[test]
 fn cursors_measure_on_the_raw_samples() {
     let (mut recorder, group, [counts, volts]) = recorder(1_000 * MILLISECOND);
@@ -105,7 +106,7 @@ fn cursors_measure_on_the_raw_samples() {
     assert_eq!((between.count, between.bad), (100, 1));
     assert_eq!((between.min, between.max), (100.0 * degrees, 200.0 * degrees));
     assert!((between.mean - 150.0 * degrees).abs() < 1e-12);
-    // Without the invalid one in the middle: sqrt(sum((k-150)^2 for k in 100..=200 if k != 150) / 99).
+    // Calculated without the invalid sample in the middle: sqrt(sum((k-150)^2 for k in 100..=200 if k != 150) / 99).
     assert!((between.deviation - 29.447_779_494_755_07 * degrees).abs() < 1e-9, "{}", between.deviation / degrees);
     recorder.handle_action(RecorderAction::SetCursor(Cursor::A, Some(at(150))));
     let measured = recorder.readings_at_cursors(recorder.series_by_id(volts).unwrap()).unwrap();
@@ -181,7 +182,7 @@ fn a_trigger_shows_the_samples_before_it_and_holds() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 500);
     recorder.handle_action(RecorderAction::SetScale(counts, 1));
-    // 600 steps in degrees: a level is in the displayed unit.
+    // 600 steps in degrees, because a level is in the displayed unit.
     arm(&mut recorder, counts, TriggerCondition::Rising, 600.0 * 360.0 / 4096.0, false);
     assert_eq!(state(&recorder), TriggerState::Armed);
     ramp(&mut recorder, group, 500, 601);
@@ -226,7 +227,7 @@ fn an_edge_across_a_gap_does_not_trigger() {
     add(&mut recorder, group, 0, 0, 1.0, Flags::NONE);
     add(&mut recorder, group, 1, 0, 9.0, Flags::BAD);
     add(&mut recorder, group, 2, 0, 9.0, Flags::NONE);
-    // Longer than the longest pause of the group.
+    // This gap is longer than the longest pause of the group.
     add(&mut recorder, group, 10, 0, 1.0, Flags::NONE);
     add(&mut recorder, group, 700, 0, 9.0, Flags::NONE);
     assert_eq!(state(&recorder), TriggerState::Armed);
@@ -246,7 +247,8 @@ fn a_repeated_trigger_shows_complete_windows() {
     arm(&mut recorder, volts, TriggerCondition::Rising, 0.0, true);
     let wave = |time: i64| if time % 70 < 35 { -1.0 } else { 1.0 };
     (0..400).for_each(|time| add(&mut recorder, group, time, 0, wave(time), Flags::NONE));
-    // Edges at 35, 105, 175, …: after 35 + 75 the next picture begins with the edge at 175, then at 315.
+    // Edges are at 35, 105, 175, …: after 35 + 75, the next view begins with the edge at 175, the following one with
+    // that at 315.
     assert_eq!(recorder.window_bounds(), (at(290), at(390)));
     assert_eq!(state(&recorder), TriggerState::Armed);
 }
@@ -363,7 +365,7 @@ fn a_long_export_is_complete_and_can_be_cancelled() {
     assert!(recorder.export().is_some());
 }
 
-/// A cancelled table leaves no file, and the old file stays unchanged.
+/// A cancelled export creates no file, and an existing file stays unchanged.
 #[test]
 fn an_export_is_cancelled_when_its_samples_are_evicted() {
     for clear in [true, false] {

@@ -1,4 +1,4 @@
-//! The trigger, which waits for an event in a line and then shows it with the samples before it.
+//! The trigger, which waits for an event in a line and then displays it with the samples before it.
 
 use super::line::within_range;
 use super::{GroupId, Recorder, SeriesId, TimeWindow};
@@ -29,13 +29,13 @@ impl TriggerCondition {
     }
 }
 
-/// A trigger: its condition, and the range that is displayed around the event.
+/// A trigger: its condition and the range to display around the event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigger {
     pub line: SeriesId,
     pub when: TriggerCondition,
     pub level: f64,
-    /// Fraction of the view before the event, from 0 to 1.
+    /// Fraction of the view that lies before the event, from 0 to 1.
     pub before: f64,
     /// Whether the trigger waits for the next event after each view. Otherwise the view is held.
     pub repeat: bool,
@@ -49,7 +49,7 @@ pub enum TriggerState {
     Fired(SampleTime),
     /// The event occurred at this time, and the view is complete.
     Held(SampleTime),
-    /// The recording is complete, and the event did not occur.
+    /// The recording ended without the event.
     Missed,
 }
 
@@ -59,7 +59,7 @@ pub(super) struct TriggerDetector {
     when: TriggerCondition,
     level: f64,
     state: TriggerState,
-    /// Range after which the values of the line start again from 0, if any.
+    /// Range after which the values of the line wrap to 0, if any.
     range: Option<i64>,
     /// Last valid value, which is needed to detect an edge, or `None` after a gap.
     last: Option<f64>,
@@ -81,7 +81,7 @@ impl TriggerDetector {
         (from, from.saturating_add_ns(self.span))
     }
 
-    /// Checks the next sample, and returns whether the event has occurred.
+    /// Checks the next sample and returns whether the event has occurred.
     fn check_trigger(&mut self, sample: &Sample) -> bool {
         let bad = sample.flags.contains(Flags::BAD);
         let value = Some(sample.value.to_f64()).filter(|value| !bad && value.is_finite());
@@ -101,8 +101,8 @@ impl TriggerDetector {
     }
 
     /// Returns whether the value rises to or through the level between `last` and `value`. For a falling edge, the
-    /// caller inverts the signs of both. Values with a range pass the level once per range. The step from the end of
-    /// the range to 0 is not an edge.
+    /// caller inverts both signs. Values with a range pass the level once per range. The step from the end of the range
+    /// to 0 is not an edge.
     fn passes(&self, last: f64, value: f64) -> bool {
         let level = if self.when == TriggerCondition::Falling { -self.level } else { self.level };
         match self.range {
@@ -127,7 +127,7 @@ impl Recorder {
         if trigger.when.needs_level() && !level.is_finite() {
             return;
         }
-        // In a unit with the opposite sign, a rising edge is a falling one.
+        // In a unit that inverts the sign, a rising edge is a falling one.
         let when = match trigger.when {
             TriggerCondition::Above if factor < 0.0 => TriggerCondition::Below,
             TriggerCondition::Below if factor < 0.0 => TriggerCondition::Above,
@@ -196,8 +196,8 @@ impl Recorder {
             // Every sample is checked, so an edge in the first sample after a view is detected as well.
             if watch.check_trigger(&sample) && watch.state == TriggerState::Armed {
                 watch.state = TriggerState::Fired(sample.time);
-                // A repeating trigger shows its view when it is complete, because the next event would replace an
-                // incomplete one.
+                // A repeating trigger displays its view only when it is complete, because the next event would replace
+                // an incomplete one.
                 shown = if watch.trigger.repeat { shown } else { Some(sample.time) };
             }
         }

@@ -10,7 +10,7 @@ const MAX_LENGTH_NS: i64 = 100 * 86_400 * 1_000_000_000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeWindow {
-    /// The newest samples, for a fixed duration.
+    /// Displays the newest samples for a fixed duration.
     Follow {
         /// Duration of the view in nanoseconds, at least 1.
         span: i64,
@@ -66,7 +66,7 @@ impl Recorder {
     pub(super) fn fit_window(&mut self) {
         self.lines.iter_mut().for_each(|line| line.range = None);
         let Some((first, last)) = self.recorded_span() else { return };
-        // The view ends slightly later, so the last sample is visible.
+        // The view ends slightly after the last sample, so the sample is visible.
         let span = last.nanoseconds_since(first).max(MIN_LENGTH_NS);
         self.view = TimeWindow::Fixed { from: first, to: last.saturating_add_ns(span / 200 + 1) };
     }
@@ -85,7 +85,7 @@ impl Recorder {
         };
     }
 
-    /// Returns the maximum length of the view. For a complete recording, it is little more than the recording.
+    /// Returns the maximum length of the view. For a complete recording, it is slightly longer than the recording.
     fn longest(&self) -> i64 {
         /// Ratio of the longest view to the length of the recording.
         const TIMES: i64 = 4;

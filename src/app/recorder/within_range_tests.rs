@@ -1,10 +1,11 @@
-//! Positions that are displayed within a range: readings, statistics and triggers.
+//! Tests of positions that are displayed within a range: readings, statistics and triggers.
 
 use super::*;
 
 const RANGE: i64 = 1000;
 
-/// Returns a recorder of positions, one a microsecond, displayed in turns of 100 steps within a range of 1000 steps.
+/// Returns a recorder of positions at intervals of one microsecond. They are displayed in turns of 100 steps within a
+/// range of 1000 steps.
 fn recorder(steps: &[i64]) -> (Recorder, SeriesId) {
     let mut recorder = Recorder::new(1_000_000);
     let group = recorder.add_group(&[Kind::Whole], 10_000, None);
@@ -30,7 +31,7 @@ fn readings_wrap_and_differences_follow_the_path() {
     recorder.handle_action(RecorderAction::SetCursor(Cursor::B, Some(at(2))));
     let measured = |recorder: &Recorder| recorder.readings_at_cursors(recorder.series_by_id(line).unwrap()).unwrap();
     let own = measured(&recorder);
-    // 990 steps are 9.90 turns; 1010 are 0.10 turns after the end of the range. The shaft has turned by 0.20 turns.
+    // 990 steps are 9.90 turns, and 1010 are 0.10 turns after the wrap. The shaft has turned by 0.20 turns.
     assert_eq!((own.a, own.b), (Some(9.9), Some(0.1)));
     assert!((own.difference.unwrap() - 0.2).abs() < 1e-12);
     assert_eq!(own.between, None, "a mean across the end of the range is of no use");
@@ -45,7 +46,7 @@ fn readings_wrap_and_differences_follow_the_path() {
 #[test]
 fn a_trigger_ignores_the_wrap_at_the_end_of_the_range() {
     let trigger = |line, when, level| Trigger { line, when, level, before: 0.0, repeat: false };
-    // Backwards across 0: no rising edge at 5 turns, a falling one when the position passes 9.5 turns.
+    // Backwards across 0, there is no rising edge at 5 turns, but a falling one when the position passes 9.5 turns.
     let steps = [20, 10, -10, -40, -60];
     for (when, level, found) in [
         (TriggerCondition::Rising, 5.0, None),
@@ -59,7 +60,7 @@ fn a_trigger_ignores_the_wrap_at_the_end_of_the_range() {
         let state = recorder.trigger().map(|(_, state)| state);
         assert_eq!(state, Some(found.map_or(TriggerState::Missed, TriggerState::Held)), "{when:?}");
     }
-    // Forwards in the third range: 2,490 to 2,510 steps pass 5 turns, which are 500 steps, in it.
+    // Forwards in the third range, 2,490 to 2,510 steps pass 5 turns, which are 500 steps.
     let (mut recorder, line) = recorder(&[2480, 2490, 2510]);
     recorder.finish();
     recorder.handle_action(RecorderAction::Arm(trigger(line, TriggerCondition::Rising, 5.0)));

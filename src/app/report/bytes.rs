@@ -1,4 +1,4 @@
-//! Bytes of a memory in a report.
+//! Formats the bytes of a memory for a report.
 
 use std::ops::Range;
 
@@ -9,8 +9,8 @@ use crate::report::{CellStyle, Table};
 
 const ROW: usize = 16;
 
-/// Returns bytes in rows of 16 with their text. `address` formats the address of a row, and `meaning` returns the
-/// meaning of a range of bytes. Successive rows of the same byte are summarised.
+/// Formats bytes in rows of 16 with their text. `address` formats the address of a row, and `meaning` returns the
+/// meaning of a range of bytes. Consecutive rows of the same byte are summarised.
 pub fn byte_table(
     context: &ReportContext<'_>,
     bytes: &[u8],
@@ -42,7 +42,7 @@ pub fn byte_table(
     table
 }
 
-/// Returns the first byte and the number of its repetitions at the beginning.
+/// Returns the first byte and how many times it is repeated at the start.
 fn leading_repetition(bytes: &[u8]) -> (u8, usize) {
     let first = bytes.first().copied().unwrap_or_default();
     (first, bytes.iter().take_while(|byte| **byte == first).count())

@@ -1,21 +1,21 @@
-//! The part of a report that a kind of device provides.
+//! The content of a report that a kind of device provides.
 
 use crate::app::{Language, Text, format_decimal, plain_decimals};
 use crate::report::{CellStyle, Fact, Section, Table};
 use crate::store::{DeviceKey, Store};
 
-/// Values of a device with their descriptions.
+/// The values of a device with their descriptions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReportContent {
     /// Name and serial number of the device.
     pub title: String,
-    /// Key of the device in the logbook, or `None` if the profile does not belong to a particular device. Whether it is
-    /// virtual is not known from a profile.
+    /// Key of the device in the logbook, or `None` if the profile does not belong to a particular device. A profile
+    /// does not show whether the device is virtual.
     pub key: Option<DeviceKey>,
     pub sections: Vec<Section>,
 }
 
-/// Language of a report, and the user's tables.
+/// The language of a report, and the user's tables.
 #[derive(Clone, Copy, Debug)]
 pub struct ReportContext<'a> {
     pub store: &'a Store,
@@ -37,7 +37,7 @@ impl<'a> ReportContext<'a> {
         Fact::new(self.say(label), self.say(value))
     }
 
-    /// Creates a fact with an identifier, an address or bytes as its value. An empty value is a dash.
+    /// Creates a fact with an identifier, an address or bytes as its value. An empty value is shown as a dash.
     pub fn code(&self, label: impl Into<Text>, value: impl Into<String>) -> Fact {
         let value: String = value.into();
         let shown = if value.trim().is_empty() { NONE.to_owned() } else { value };

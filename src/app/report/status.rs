@@ -9,15 +9,15 @@ use crate::report::{Block, CellStyle, Mark, Section};
 #[derive(Clone, Debug, PartialEq)]
 pub struct StatusLine {
     pub mark: Mark,
-    /// Code as the manual writes it.
+    /// Code in the notation of the manual.
     pub code: String,
     pub text: Text,
-    /// Cause and remedy, if the manual names them.
+    /// Causes and remedies, if the manual names them.
     pub advice: Vec<Text>,
 }
 
-/// Values that were read from a device for a report, and the reported status. The status is `None` for a kind of device
-/// that reports none.
+/// Values that were read from a device for a report, and its reported status. The status is `None` for a kind of device
+/// that does not report one.
 #[derive(Clone, Debug)]
 pub struct DeviceReading {
     pub body: Body,

@@ -7,13 +7,13 @@ pub enum Permit {
     OtherDevice,
     TypeMismatch,
     Mounting,
-    /// Delete fields and create them again.
+    /// Allows deleting and re-creating data fields.
     Recreate,
-    /// Copy the bytes of this data field to another device, although their meaning is unknown.
+    /// Allows copying the bytes of this data field to another device although their meaning is unknown.
     Copy(u8),
 }
 
-/// A permission that changes the plan, with the user's present choice.
+/// A permission that changes the plan, with the user's current choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PermitToggle {
     pub permit: Permit,

@@ -1,5 +1,5 @@
 //! A device or profile whose edits survive a crash. Each kind of device defines its edits and their key. Loading,
-//! storing and discarding drafts is the same for all kinds.
+//! storing and discarding drafts works the same for all kinds.
 
 #![warn(missing_docs)]
 
@@ -20,7 +20,7 @@ pub trait HasDraft: HasSession {
     /// that has no identity.
     fn device_key(&self) -> Option<DeviceKey>;
 
-    /// Returns the type and serial number that name the draft of the device, or `None` if no data has been read.
+    /// Returns the type and serial number used as the name of the device's draft, or `None` if no data has been read.
     ///
     /// The type is included because devices of different types may have the same serial number. The serial number is
     /// empty for a device that has no identity.
@@ -31,16 +31,16 @@ pub trait HasDraft: HasSession {
     /// Returns the current edits.
     fn current_edits(&self) -> Edits<Self>;
 
-    /// Restores earlier edits. Edits that are no longer valid are left out.
+    /// Restores earlier edits. Edits that are no longer valid are omitted.
     fn take_edits(&mut self, edits: Edits<Self>);
 
     /// Adopts a profile that was read again from its file. Edits are kept.
     fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument);
 
-    /// Returns the edits, for counting them.
+    /// Returns the edits, to count them.
     fn pending_edits(&self) -> &dyn PendingEdits;
 
-    /// Returns the edits for undo and redo.
+    /// Returns the edits, to undo and redo them.
     fn pending_mut(&mut self) -> &mut dyn PendingEdits;
 
     /// Discards all edits as one undo step.
@@ -55,7 +55,7 @@ pub trait HasDraft: HasSession {
     fn draft_key(&self) -> Option<DraftKey> {
         match &self.session().source {
             Source::File { key, .. } => Some(DraftKey::for_file(Self::Device::KIND, key)),
-            // The drafts of files are named by 16 hexadecimal digits.
+            // Drafts of files are named with 16 hexadecimal digits.
             Source::New { suggested } => Some(DraftKey::for_file(Self::Device::KIND, &suggested.to_string_lossy())),
             Source::Link(_) => {
                 let (device_type, serial) = self.type_and_serial()?;
@@ -105,14 +105,14 @@ pub trait HasDraft: HasSession {
         self.session().drafting.is_loaded() && self.draft_key().is_some()
     }
 
-    /// Leaves the edits of the previous device on disk, because that device is no longer open.
+    /// Keeps the edits of the previous device on disk, because that device is no longer open.
     fn release_draft(&mut self, services: &mut Services) {
         let (key, edits) = (self.draft_key(), self.current_edits());
         self.session_mut().drafting.leave_on_disk(key, edits, services);
     }
 
-    /// Handles the result of writing a profile. A profile saved to a new file has no earlier draft and does not leave
-    /// one behind.
+    /// Handles the result of writing a profile. If the profile is saved to a new file, its draft and any earlier draft
+    /// of that file are removed.
     fn handle_profile_written(
         &mut self,
         saving: SaveRequest,

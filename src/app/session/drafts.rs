@@ -1,5 +1,5 @@
-//! Drafts, which preserve edits across a crash. Each edit is stored at once together with the other data of the studio,
-//! in one file for each device or profile.
+//! Drafts, which preserve edits across a crash. Each edit is stored immediately with the other data of the studio, in
+//! one file per device or profile.
 //!
 //! A draft has a single owner. A second session with the same device, in this or another window, neither adopts nor
 //! overwrites it. Only the kind of device knows the content of an edit.
@@ -19,7 +19,7 @@ use crate::store::{Claim, Drafts, FileError};
 
 pub(super) const DRAFT_RESTORED_ID: &str = "session.draft_back";
 
-/// Maximum time for another session to release its claim. A closed session may still be writing.
+/// Maximum waiting time for another session to release its claim. A closed session may still be writing.
 const CLAIM_TIMEOUT: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_millis(20);
 
@@ -44,7 +44,7 @@ impl DraftKey {
 pub enum DraftOutcome {
     Looked {
         key: DraftKey,
-        /// Right to store the draft, or `None` if another window or session has it.
+        /// The right to store the draft, or `None` if another window or session holds it.
         claim: Result<Option<Claim>, FileError>,
         result: Result<Option<String>, FileError>,
     },
@@ -67,20 +67,20 @@ impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> Draft
 #[derive(Debug)]
 pub(crate) struct ActiveDraft<E> {
     session: SessionId,
-    /// Edits that were last passed on for storage.
+    /// Edits most recently passed on for storage.
     kept: E,
     busy: bool,
     /// Whether the edits may have changed since they were last passed on for storage.
     due: bool,
-    /// Whether a search for an earlier draft has been completed. The draft is not overwritten before that.
+    /// Whether the search for an earlier draft has been completed. Until then, the draft is not overwritten.
     is_loaded: bool,
-    /// Right to store the draft. If it is `None`, another window or session has it.
+    /// The right to store the draft, or `None` if another window or session holds it.
     claim: Option<Arc<Claim>>,
     is_failure_reported: bool,
 }
 
-/// Returns the name of the draft for a file, which is the same for every path to the file. This accesses the disk, so
-/// it must run in a task.
+/// Returns the name of the draft for a file, which is the same for every path to the file. This function accesses the
+/// disk, so it must run in a task.
 pub(in crate::app) fn file_key(path: &Path) -> String {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     // The hash is FNV-1a in every version of the program.
@@ -92,7 +92,7 @@ pub(in crate::app) fn file_key(path: &Path) -> String {
 }
 
 impl<E: DraftEdits> ActiveDraft<E> {
-    /// Creates the state of a draft for which no search has been made.
+    /// Creates the state of a draft for which no earlier draft has been searched yet.
     pub(in crate::app) fn new(session: SessionId) -> Self {
         ActiveDraft {
             session,
@@ -109,8 +109,8 @@ impl<E: DraftEdits> ActiveDraft<E> {
         self.claim_draft(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
     }
 
-    /// Claims the draft of a newly saved profile, which has no edits. An earlier draft belongs to the replaced file and
-    /// is removed.
+    /// Claims the draft of a newly saved profile without edits. An earlier draft belongs to the replaced file and is
+    /// removed.
     pub(in crate::app) fn begin_for_profile(&mut self, key: DraftKey, services: &Services) {
         self.claim_draft(key, services, |drafts, key| drafts.remove(&key.kind, &key.name).map(|()| None));
     }
@@ -193,7 +193,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         }
     }
 
-    /// Handles the restoration of earlier edits. `edits` are those that are still valid.
+    /// Handles the restoration of earlier edits. `edits` contains those that are still valid.
     pub(in crate::app) fn restore_edits(&mut self, edits: E, name: &str, services: &mut Services) {
         if !edits.has_no_edits() {
             services.notify(Severity::Warning, vec![Text::new(DRAFT_RESTORED_ID)], Some(name));
@@ -244,14 +244,15 @@ impl<E: DraftEdits> ActiveDraft<E> {
         store_edits(key, edits, self.claim.clone(), self.session, services);
     }
 
-    /// Reports that a device without a serial number has no draft. This happens only once, at the first edit.
+    /// Reports that edits of a device without a serial number are not stored as a draft. The report is made once, at
+    /// the first edit.
     pub(in crate::app) fn report_missing_draft(&mut self, name: &str, services: &mut Services) {
         if !std::mem::replace(&mut self.is_failure_reported, true) {
             services.notify(Severity::Warning, vec![Text::new("session.draft_none")], Some(name));
         }
     }
 
-    /// Returns whether a search for an earlier draft has been completed. If so, edits are restored when the device is
+    /// Returns whether the search for an earlier draft has been completed. If so, edits are restored when the device is
     /// opened again.
     pub(crate) fn is_loaded(&self) -> bool {
         self.is_loaded
@@ -261,7 +262,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         !self.busy
     }
 
-    /// Leaves the edits of the previous device on disk, because that device is no longer open.
+    /// Keeps the edits of the previous device on disk, because that device is no longer open.
     pub(in crate::app) fn leave_on_disk(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         let before = std::mem::replace(self, ActiveDraft::new(self.session));
         if let Some(key) = key

@@ -1,5 +1,5 @@
-//! The types and functions that define a kind of device. With these, sessions of all kinds are opened, run and released
-//! in the same way.
+//! The types and functions that define a kind of device. They allow sessions of all kinds to be opened, run and
+//! released in the same way.
 
 #![warn(missing_docs)]
 
@@ -19,13 +19,13 @@ pub trait Kind: Device + Sized {
     /// Edits that survive a crash.
     type Edits: DraftEdits;
 
-    /// Handle of a session that remains outside the session's thread.
+    /// Handle of a session that stays outside the session's thread.
     type SessionHandle: Send;
 
     /// Review of a write: [`Review`](crate::app::review::Review) for a kind of device with a memory.
     type Review;
 
-    /// Whether live values may start automatically on a line that has no other master.
+    /// Whether reading live values may start automatically on a line without another master.
     const STARTS_LIVE: bool = true;
 
     /// Returns the handle that the window keeps when the session moves to its thread.
@@ -61,7 +61,7 @@ pub trait Kind: Device + Sized {
     /// Returns the description of a step of a job.
     fn step_text(what: &Self::JobStep) -> Text;
 
-    /// Returns the texts about the result of a job that writes, or `None` for another job.
+    /// Returns the texts about the result of a job that writes, or `None` for any other job.
     fn result_texts(_output: &Self::Output) -> Option<(Severity, Vec<Text>)> {
         None
     }
@@ -69,10 +69,10 @@ pub trait Kind: Device + Sized {
     /// Returns the reason why a job was aborted, and what to do.
     fn error_texts(error: &Self::Error) -> Vec<Text>;
 
-    /// Returns the reason for the loss of the connection, or `None` if the error does not end it.
+    /// Returns the reason why the connection was lost, or `None` if the error does not end the connection.
     fn connection_error(error: &Self::Error) -> Option<Text>;
 
-    /// Returns the message about the end of a job in a released session, or `None` if the event does not end it.
+    /// Returns the message about the end of a job in a released session, or `None` if the event does not end a job.
     fn job_completions(event: &Event<Self>) -> Option<JobCompletion> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {

@@ -1,5 +1,5 @@
-//! Parts common to all sessions: source, connection, line, trace, backups and writes. Each kind of device adds further
-//! parts in its folder.
+//! The parts common to all sessions: source, connection, line, trace, backups and writes. Each kind of device adds
+//! further parts in its own folder.
 
 mod drafted;
 mod drafts;
@@ -50,7 +50,7 @@ pub enum Source {
         key: String,
         /// The document without the user's edits.
         document: Box<ProfileDocument>,
-        /// Text of the file. Its comments, order and line endings belong to the user and are preserved.
+        /// Text of the file. Its comments, order and line endings are those of the user and are preserved.
         text: String,
     },
     /// A new profile that has not been saved yet.
@@ -73,9 +73,9 @@ impl Source {
 pub enum Phase {
     Opening,
     Connected,
-    /// The link is open, but the device does not reply. Contains the reason and what to do.
+    /// The link is open, but the device does not reply. Contains the reason and a remedy.
     Silent(Text),
-    /// The connection was lost or could not be opened. Contains the reason and what to do.
+    /// The connection was lost or could not be opened. Contains the reason and a remedy.
     Lost(Text),
     /// A profile that is open without a connection.
     Offline,
@@ -95,7 +95,7 @@ pub struct Session<D: Kind> {
     pub review: Option<D::Review>,
 }
 
-/// The state of the session can be used directly.
+/// Gives direct access to the state of the session.
 impl<D: Kind> Deref for Session<D> {
     type Target = SessionState;
 
@@ -111,7 +111,7 @@ impl<D: Kind> DerefMut for Session<D> {
 }
 
 impl<D: Kind> Session<D> {
-    /// Creates a session for a link that is being opened. `kinds` defines which parameters are secret.
+    /// Creates a session for a link that is being opened. `kinds` determines which parameters are secret.
     pub fn for_link(id: SessionId, url: LinkUrl, kinds: KindRegistry) -> Self {
         let mut own = Session::new(id, Source::Link(url), Phase::Opening);
         own.kinds = kinds;
@@ -122,7 +122,7 @@ impl<D: Kind> Session<D> {
         Session::new(id, file.source(document), Phase::Offline)
     }
 
-    /// Creates a session for a profile that is shown once and has no tab, such as in a report.
+    /// Creates a session for a profile that has no tab, such as one shown in a report.
     pub(crate) fn without_tab(document: &ProfileDocument) -> Self {
         let file = ProfileFile { path: PathBuf::new(), key: String::new(), text: String::new() };
         Session::from_file(SessionId::default(), file, document.clone())
@@ -172,7 +172,7 @@ impl<D: Kind> Session<D> {
         self.phase == Phase::Connected && self.line.is_some() && !self.is_busy()
     }
 
-    /// Returns whether the device can be read again. This is also true for a device that did not reply, and for a
+    /// Returns whether the device can be read again. This is also `true` for a device that does not reply, and for a
     /// profile.
     pub fn is_readable(&self) -> bool {
         self.is_savable() || (matches!(self.phase, Phase::Silent(_)) && self.line.is_some() && !self.is_busy())
@@ -192,8 +192,8 @@ impl<D: Kind> Session<D> {
         self.just_connected = true;
     }
 
-    /// Sets the polling interval, or stops polling. Returns whether polling starts with this call, or `None` if there
-    /// is no line.
+    /// Sets the polling interval, or stops polling. Returns whether polling starts with this call, or `None` if the
+    /// session has no line.
     pub(crate) fn poll(&mut self, interval: Option<Duration>) -> Option<bool> {
         let line = self.line.as_mut()?;
         let begins = line.polling_interval().is_none();
@@ -201,8 +201,8 @@ impl<D: Kind> Session<D> {
         Some(begins)
     }
 
-    /// Handles the end of polling, with its reason. `is_silent` is set if the device does not reply at all. Polling
-    /// that was requested again in the meantime continues.
+    /// Handles the end of polling and its reason. `is_silent` is set if the device does not reply at all. Polling that
+    /// has been requested again in the meantime continues.
     pub(in crate::app) fn handle_polling_failure(&mut self, why: Vec<Text>, is_silent: bool, services: &mut Services) {
         if self.is_polling() {
             return;
@@ -216,7 +216,7 @@ impl<D: Kind> Session<D> {
         self.report_message(Severity::Error, texts, stands_there, services);
     }
 
-    /// Starts a job. If this is impossible, the reason is reported and `false` is returned.
+    /// Starts a job. If this is not possible, reports the reason and returns `false`.
     pub(crate) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
         let (name, what, writes) = (self.name(), D::job_text(&job), D::writes_memory(&job));
         let Some(line) = &mut self.line else {
@@ -231,7 +231,7 @@ impl<D: Kind> Session<D> {
             Err(SubmitError::Busy | SubmitError::Unread) => {
                 services.notify(Severity::Warning, vec![Text::new("session.busy")], Some(&name));
             }
-            // The last events of the session state how it ended.
+            // The last events of the session report how it ended.
             Err(SubmitError::Ended) => {}
         }
         false
@@ -264,8 +264,8 @@ impl<D: Kind> Session<D> {
         }
     }
 
-    /// Releases the thread, and ends the running job with `end`. A write that is cancelled ends later and reports its
-    /// result itself.
+    /// Releases the thread and ends the running job with `end`. A cancelled write ends later and reports its own
+    /// result.
     pub(crate) fn release_thread(&mut self, end: JobState, services: &mut Services) {
         self.save_to = None;
         let Source::Link(url) = &self.source else { return };
@@ -279,7 +279,7 @@ impl<D: Kind> Session<D> {
     }
 
     pub(in crate::app) fn connection_lost(&mut self, why: Text, services: &mut Services) {
-        // The message is displayed where the session is shown.
+        // The session itself displays the message.
         services.log.remove_minor(&self.name());
         services.log_only(Severity::Error, vec![why.clone()], Some(&self.name()));
         self.release_thread(JobState::Failed(why.clone()), services);

@@ -30,8 +30,8 @@ impl SessionState {
         services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
     }
 
-    /// Handles values that were read from a device in order to save them to a file. `edits` is the number of edits that
-    /// are not saved, and `remarks` name other missing values.
+    /// Handles values that were read from a device for saving to a file. `edits` is the number of edits that are not
+    /// included, and `remarks` name other missing values.
     pub fn save_read_values(
         &mut self,
         device: Option<DeviceKey>,
@@ -60,8 +60,8 @@ impl SessionState {
         true
     }
 
-    /// Saves a profile in a task. `device` is the one from which it was read, if any. `remarks` name the values that
-    /// are missing from it.
+    /// Saves a profile in a task. `device` is the device from which it was read, if any. `remarks` name the values that
+    /// are missing from the profile.
     pub(crate) fn write_document(
         &mut self,
         path: PathBuf,
@@ -93,7 +93,7 @@ impl SessionState {
         });
     }
 
-    /// Starts a task that assigns a device to an asset, and then lists the backups and writes of the device again.
+    /// Starts a task that assigns a device to an asset and then lists its backups and writes again.
     pub(in crate::app) fn assign_asset(&self, of: DeviceKey, asset: AssetName, services: &Services) {
         let (store, id) = (services.world.store.clone(), self.id);
         services.tasks.run("asset", move || {
@@ -132,9 +132,9 @@ impl SessionState {
 
 pub struct DeviceHistory {
     pub backups: Result<Vec<Backup>, FileError>,
-    /// Writes in the logbook, newest first, or the reason why there are none.
+    /// Writes recorded in the logbook, newest first, or the reason why they are not available.
     pub writes: Result<Vec<Entry>, LogbookError>,
-    /// Total number of write cycles, or `None` if the logbook does not contain it.
+    /// Total number of write cycles, or `None` if it is not in the logbook.
     pub cycles: Option<CycleCount>,
     /// Asset to which the device is assigned.
     pub asset: Option<String>,

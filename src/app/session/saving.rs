@@ -1,5 +1,5 @@
-//! Saving a profile to a file. The user is asked before changes made by other programs are overwritten, and comments
-//! between the entries are preserved.
+//! Saving of profiles to files. The user is asked before changes made by other programs are overwritten, and comments
+//! between entries are preserved.
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ impl ProfileFile {
     }
 }
 
-/// Expected state of a file, which is checked before the file is overwritten.
+/// The expected state of a file, which is checked before the file is overwritten.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileSnapshot {
     /// Key of the file, which is the same for every path to it.
@@ -42,9 +42,9 @@ pub struct SaveRequest {
     pub path: PathBuf,
     pub document: Box<ProfileDocument>,
     pub remarks: Vec<Text>,
-    /// Expected state of the open file. Another file is replaced without a check.
+    /// Expected state of the open file. Any other file is replaced without a check.
     pub opened: Option<FileSnapshot>,
-    /// The device from which the values were read. The logbook records that they were saved.
+    /// The device from which the values were read. The logbook records that the values were saved.
     pub device: Option<DeviceKey>,
     /// Whether the user has agreed to the loss of comments.
     pub may_lose: bool,
@@ -54,7 +54,7 @@ pub struct SaveRequest {
 }
 
 impl SaveRequest {
-    /// Writes the file, or returns the reason why it was not written. Runs in a task.
+    /// Writes the file, or returns the reason why it was not written. This function runs in a task.
     pub(in crate::app) fn run(mut self, kinds: KindRegistry, store: &Store) -> Action {
         let formats = kinds.formats;
         let key = file_key(&self.path);
@@ -80,8 +80,8 @@ impl SaveRequest {
         if let (Ok(()), Some(device)) = (&result, &self.device) {
             record_event(store, device, &Event::saved_profile(&self.path));
         }
-        // The key is determined after writing. A symbolic link may lead to another file by now, and a new file exists
-        // only now.
+        // The key is determined after writing, because a symbolic link may now lead to another file, and a new file
+        // exists only now.
         let file = ProfileFile { key: file_key(&self.path), path: self.path.clone(), text };
         Action::Done(TaskResult::Written { saving: Box::new(self), file, result })
     }
@@ -96,8 +96,8 @@ pub(in crate::app) struct DivergedFile {
     pub(in crate::app) document: Result<Box<ProfileDocument>, ReadError>,
 }
 
-/// Returns the text to be replaced, or the content of the file if another program has changed it. A missing file is not
-/// a change.
+/// Returns the text to replace, or the content of the file if another program has changed it. A missing file does not
+/// count as changed.
 fn text_to_replace(
     path: &Path,
     opened: &str,
@@ -113,7 +113,7 @@ fn text_to_replace(
     };
     let normalized = |text: &str| ProfileDocument::parse(text, formats).ok().map(|document| document.emit());
     let found = normalized(&text);
-    // Only comments have changed. They are preserved like all others.
+    // Only comments have changed. They are preserved like any others.
     if text == opened || found.is_some() && (found == normalized(opened) || found == Some(wanted.emit())) {
         return Ok(text);
     }

@@ -1,5 +1,5 @@
-//! Events of a session: samples, results of jobs, interruptions, and loss of the connection. Each kind of device
-//! handles its results. The end of a job is reported in the same way for all kinds.
+//! Events of a session: samples, job results, interruptions, and loss of the connection. Each kind of device handles
+//! its own results. The end of a job is reported in the same way for all kinds.
 
 #![warn(missing_docs)]
 
@@ -30,19 +30,19 @@ pub enum EarlyEnd<'e, E> {
 
 /// A device that handles the events of its session.
 pub trait SessionEvents: HasSession {
-    /// Records samples. `dropped` samples before them were lost.
+    /// Records samples. `dropped` is the number of samples lost before them.
     fn handle_samples(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
-    /// Returns the explanation of a frame for the trace, which is empty if the bytes need none. This method is called
-    /// once for each frame, in order.
+    /// Returns the explanation of a frame for the trace. It is empty if the bytes need no explanation. This method is
+    /// called once per frame, in order.
     fn explain_frame(&mut self, _frame: &TraceEntry) -> FrameExplanation {
         FrameExplanation::default()
     }
 
-    /// Handles a message that the device has sent during a job.
+    /// Handles a message that the device sent during a job.
     fn message_received(&mut self, remark: DeviceMessage<Self>, services: &mut Services);
 
-    /// Handles the result of a finished job.
+    /// Handles the result of a completed job.
     fn handle_finished_job(&mut self, output: Output<Self>, services: &mut Services);
 
     /// Returns whether the error means that the link is open, but the device does not reply.
@@ -62,20 +62,20 @@ pub trait SessionEvents: HasSession {
         true
     }
 
-    /// Handles an interruption of a request. Returns whether the review reports it.
+    /// Handles an interruption of a request. Returns whether the review reports the interruption.
     fn handle_early_end(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
         false
     }
 
-    /// Handles the end of polling, if no request was involved.
+    /// Handles the end of polling if no request was involved.
     fn on_polling_end(&mut self) {}
 
-    /// Starts a job. If this is impossible, the reason is reported and `false` is returned.
+    /// Starts a job. If this is not possible, reports the reason and returns `false`.
     fn try_submit(&mut self, job: Job<Self>, services: &mut Services) -> bool {
         self.session_mut().submit(job, services)
     }
 
-    /// Starts a job. If this is impossible, the reason is reported.
+    /// Starts a job. If this is not possible, reports the reason.
     fn submit(&mut self, job: Job<Self>, services: &mut Services) {
         self.try_submit(job, services);
     }
@@ -85,7 +85,7 @@ pub trait SessionEvents: HasSession {
         self.poll_line(services);
     }
 
-    /// Processes the session's pending events. Kinds of devices with additional work override this method.
+    /// Processes the session's pending events. Kinds of devices that have additional work override this method.
     fn poll_line(&mut self, services: &mut Services) {
         // Samples that precede a job are handled before its result. Later ones are handled in the next call.
         self.fetch_samples_and_frames();
@@ -133,7 +133,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().drafting.mark_draft_due();
     }
 
-    /// Handles the failure of a sample, which has ended polling.
+    /// Handles the failure of a sample that has ended polling.
     fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
         self.on_polling_end();
         match Self::Device::connection_error(error) {
@@ -145,7 +145,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// Handles a job that was cancelled. Values that it had written are read again.
+    /// Handles the cancellation of a job. Values that the job has written are read again.
     fn cancelled(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         services.end_job(self.session().id, id, JobState::Cancelled);
         self.session_mut().save_to = None;
@@ -182,7 +182,7 @@ pub trait SessionEvents: HasSession {
     /// Handles the loss of the connection. Known data and edits are kept.
     fn connection_lost(&mut self, why: Text, services: &mut Services) {
         self.prepare_release();
-        // The last frames are fetched, because they show the cause best.
+        // The last frames are fetched because they best show the cause.
         self.fetch_samples_and_frames();
         self.discard_requests();
         self.handle_early_end(EarlyEnd::Lost, std::slice::from_ref(&why), services);
@@ -197,7 +197,7 @@ pub trait SessionEvents: HasSession {
     }
 }
 
-/// Returns the first text, for places with room for only one.
+/// Returns the first text, for places that have room for only one.
 pub(crate) fn first(texts: &[Text]) -> Text {
     texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"))
 }

@@ -1,4 +1,4 @@
-//! Tracking positions across wrap-arounds, with speed and acceleration. Damaged positions are bridged if the shaft
+//! Tracking of positions across wrap-arounds, with speed and acceleration. Damaged positions are bridged if the shaft
 //! cannot have made an unnoticed turn.
 
 use super::PositionScales;
@@ -14,7 +14,7 @@ pub(super) struct PositionTracker {
     motion: Motion,
     /// Last position without wrap-around, with its time.
     last: Option<(SampleTime, i64)>,
-    /// Speed between the last two positions in steps per second, without its sign.
+    /// Absolute speed between the last two positions, in steps per second.
     pace: Option<f64>,
     /// Whether samples without a position have arrived since the last position.
     has_missed: bool,

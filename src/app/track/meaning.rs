@@ -1,11 +1,11 @@
-//! Meaning of positions: range, size of a step, and units.
+//! Scales of positions: range, size of a step, and units.
 
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Scale, Series};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionScales {
-    /// Number of positions in the range after which they wrap, or `None` for a linear encoder.
+    /// Number of positions after which the position wraps, or `None` for a linear encoder.
     pub(in crate::app) range: Option<i64>,
     /// Units of position, speed and acceleration. Samples are in steps.
     pub scales: [Vec<Scale>; 3],
@@ -15,7 +15,7 @@ pub struct PositionScales {
 }
 
 impl PositionScales {
-    /// Creates the meaning of steps whose size is unknown.
+    /// Creates the scales for steps of unknown size.
     pub fn for_steps(range: Option<i64>) -> Self {
         let scales = [
             vec![Scale::new("unit.steps", 1.0, 0)],
@@ -25,7 +25,7 @@ impl PositionScales {
         PositionScales { range, scales, is_linear: false, step: None }
     }
 
-    /// Creates the meaning of positions on a shaft. The number of steps per revolution may be fractional.
+    /// Creates the scales for positions of a shaft. The number of steps per revolution may be fractional.
     pub fn for_steps_per_turn(range: Option<i64>, steps_per_turn: f64) -> Self {
         let turns = 1.0 / steps_per_turn.max(f64::MIN_POSITIVE);
         let mut scales = [
@@ -51,7 +51,7 @@ impl PositionScales {
         PositionScales { range, scales, is_linear: false, step: Some(turns) }
     }
 
-    /// Displays positions within the range by default, as the device sends them, instead of continuous positions.
+    /// Displays positions within the range by default, as the device sends them, instead of unwrapped positions.
     #[must_use]
     pub fn within_range(mut self) -> Self {
         let [positions, ..] = &mut self.scales;
@@ -59,7 +59,7 @@ impl PositionScales {
         self
     }
 
-    /// Creates the meaning of linear positions, with the length of a step in millimetres.
+    /// Creates the scales for linear positions. `millimetres` is the length of a step.
     pub fn for_millimetres(millimetres: f64) -> Self {
         let scales = [
             vec![Scale::new("unit.millimetres", millimetres, 4), Scale::new("unit.steps", 1.0, 0)],
@@ -76,7 +76,7 @@ impl PositionScales {
         PositionScales { range: None, scales, is_linear: true, step: Some(millimetres) }
     }
 
-    /// Returns whether both describe the same positions. The units may differ.
+    /// Returns whether both scales apply to the same positions. The units may differ.
     pub(super) fn is_same_location(&self, other: &PositionScales) -> bool {
         let own = |meaning: &PositionScales| (meaning.range, meaning.is_linear, meaning.step);
         own(self) == own(other)

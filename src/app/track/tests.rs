@@ -1,4 +1,4 @@
-//! Tests of streamed positions: they arrive in batches, and lines break at gaps.
+//! Tests of streamed positions, which arrive in batches. Lines must break at gaps.
 
 use super::*;
 use crate::app::recorder::{Scale, Series};
@@ -16,7 +16,8 @@ impl Watchable for Nothing {
     }
 }
 
-/// Returns a revolution of 1000 steps, 50 steps per sample, 20 000 of them per second: 1000 revolutions.
+/// Returns samples of a shaft with 1000 steps per revolution, which turns by 50 steps per sample, at 20 000 samples per
+/// second. The shaft makes 1000 revolutions per second.
 fn stream(from: u64, count: u64) -> Vec<PositionSample> {
     (from..from + count)
         .map(|number| PositionSample {
@@ -39,7 +40,7 @@ fn samples(track: &DeviceRecorder<Nothing>, line: usize) -> Vec<(i64, f64, Flags
 fn a_stream_is_recorded_completely() {
     let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
     let mut track = DeviceRecorder::<Nothing>::default();
-    // In portions of odd sizes.
+    // In batches of odd sizes.
     let all = stream(0, 40_000);
     all.chunks(173).for_each(|portion| track.add_positions(portion, &meaning));
     assert_eq!((track.position_count(), track.dropped_count()), (40_000, 0));
@@ -48,7 +49,7 @@ fn a_stream_is_recorded_completely() {
         assert_eq!(flags, Flags::NONE);
     }
     let speeds = samples(&track, 1);
-    // A quarter of a second is averaged.
+    // The speed is averaged over a quarter of a second.
     assert!(speeds[..5_000].iter().all(|(_, speed, _)| speed.is_nan()));
     assert!(speeds[5_001..].iter().all(|(_, speed, _)| (speed - 1e6).abs() < 1e-3));
 }
@@ -66,10 +67,10 @@ fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
     track.add_positions(&stream(9, 2), &meaning);
     track.mark_gap();
     track.add_positions(&stream(11, 1), &meaning);
-    // One that was read singly before is not recorded again.
+    // A position that was already read individually is not recorded again.
     track.add_positions(&stream(5, 1), &meaning);
     let (none, bad, broken) = (Flags::NONE, Flags::BAD | Flags::BREAK, Flags::BREAK);
-    // A damaged one is between two that are joined; one that the device marks invalid separates its neighbours.
+    // A damaged position between two others does not separate them, but one that the device marks as invalid does.
     let expected = [
         (0, 0.0, none),
         (50_000, 50.0, none),
@@ -85,8 +86,8 @@ fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
     assert_eq!((track.position_count(), track.dropped_count()), (9, 3));
 }
 
-/// Issue 22.21: one frame of ten is damaged; the speed is available as soon as a window has passed, and stays: 50 steps
-/// in 50 µs.
+/// Issue 22.21: one frame in ten is damaged. The speed is available after one averaging window and stays at 50 steps in
+/// 50 µs.
 #[test]
 fn damaged_frames_do_not_interrupt_the_speed() {
     let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
@@ -109,8 +110,8 @@ fn damaged_frames_do_not_interrupt_the_speed() {
     }
 }
 
-/// Issue 22.21: at 50 steps in 50 µs a shaft of 1000 steps completes a turn after 20 samples: this many damaged ones
-/// are not bridged, a few are.
+/// Issue 22.21: at 50 steps in 50 µs, a shaft with 1000 steps completes a turn after 20 samples. A gap of this many
+/// damaged samples is not bridged, but a gap of a few is.
 #[test]
 fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
     let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
@@ -124,7 +125,7 @@ fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
     }
 }
 
-/// Returns `count` positions, one per second from a start time.
+/// Returns `count` positions at intervals of one second, beginning at a start time.
 fn seconds(from: u64, count: u64) -> Vec<PositionSample> {
     (from..from + count)
         .map(|second| PositionSample {
@@ -140,13 +141,14 @@ fn names(track: &DeviceRecorder<Nothing>) -> Vec<(String, bool)> {
     track.recorder.series().iter().map(|line| (line.heading.clone(), line.ended)).collect()
 }
 
-/// Returns the positions of lines, by their headings.
+/// Returns the positions of the line with the given heading.
 fn steps(track: &DeviceRecorder<Nothing>, heading: &str) -> Vec<f64> {
     let at = track.recorder.series().iter().position(|line| line.heading == heading).unwrap();
     samples(track, at).into_iter().map(|(_, steps, _)| steps).collect()
 }
 
-/// Issue 21.12: another scale. Earlier recordings stay under the old one, in the selected unit, and can be exported.
+/// Issue 21.12: after a change of the scale, earlier recordings keep the old scale and the selected unit, and can be
+/// exported.
 #[test]
 fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     let mut track = DeviceRecorder::<Nothing>::default();
@@ -162,14 +164,14 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     assert_eq!(names(&track), expected);
     assert_eq!(steps(&track, "position until 09:00:02"), [0.0, 10.0, 20.0]);
     assert_eq!(steps(&track, "position"), [30.0, 40.0]);
-    // A step was 0.36 degrees, and is 0.9.
+    // A step was 0.36° before the change and is 0.9° after it.
     let factor = |at: usize| track.recorder.series()[at].factor();
     assert_eq!((factor(3), factor(0)), (360.0 / 1000.0, 360.0 / 400.0));
     assert_eq!(
         track.recorder.recorded_span().map(|(from, to)| (from.as_nanoseconds(), to.as_nanoseconds())),
         Some((0, 4_000_000_000))
     );
-    // They are drawn where they are, and nowhere else.
+    // They are drawn only at their original times.
     let drawn = |track: &DeviceRecorder<Nothing>| track.recorder.visible_series().filter(|line| line.ended).count();
     assert_eq!(drawn(&track), 2, "not the acceleration, which was hidden");
     track.recorder.handle_action(recorder::RecorderAction::Look(
@@ -181,7 +183,7 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     assert_eq!(names(&track).len(), 3, "whoever clears it wants them gone");
 }
 
-/// Issue 21.12: an entered pitch is another unit for the same steps.
+/// Issue 21.12: an entered pitch adds another unit for the same steps.
 #[test]
 fn another_unit_of_the_same_steps_uses_the_same_lines() {
     let on_spindle = |millimetres: f64| {
@@ -203,7 +205,7 @@ fn another_unit_of_the_same_steps_uses_the_same_lines() {
     assert_eq!((line.scales()[0].factor, line.scale().unwrap().unit.id()), (0.0125, "unit.steps"));
 }
 
-/// Issue 21.12: a value that is no longer watched, and watched again.
+/// Issue 21.12: a value that is no longer watched and later watched again.
 #[test]
 fn a_value_no_longer_watched_keeps_its_samples() {
     let mut track = DeviceRecorder::<Nothing>::default();
@@ -231,7 +233,8 @@ fn a_value_no_longer_watched_keeps_its_samples() {
     assert_eq!(steps(&track, "nothing"), [4.0]);
 }
 
-/// Issue 21.12: another device. Elsewhere the user is asked before two minutes are lost.
+/// Issue 21.12: when another device is connected. In other cases, the user is asked before two minutes of data are
+/// lost.
 #[test]
 fn minutes_of_another_device_are_kept() {
     let meaning = PositionScales::for_steps_per_turn(None, 1000.0);
@@ -247,7 +250,7 @@ fn minutes_of_another_device_are_kept() {
     }
 }
 
-/// Issue 21.12: words of which only the newest are stored are decoded again, and the rest is not lost.
+/// Issue 21.12: if only the newest words are stored, these are decoded again, and the others are not lost.
 #[test]
 fn samples_that_cannot_be_decoded_again_are_kept() {
     let (before, after) =

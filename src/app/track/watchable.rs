@@ -18,7 +18,7 @@ pub trait Watchable: Clone + PartialEq {
     }
 }
 
-/// Devices without watched values use this type.
+/// Placeholder for devices without watched values.
 impl Watchable for Infallible {
     fn is_whole(&self) -> bool {
         match *self {}
@@ -35,6 +35,6 @@ pub struct WatchedValue {
     pub at: Moment,
     pub value: Option<Value>,
     pub is_warned: bool,
-    /// The reason why there will never be a value, if any.
+    /// The reason why the value will never be available, if any.
     pub never: Option<Text>,
 }

@@ -1,4 +1,4 @@
-//! Assembly of the clap command line: the common part, and the options and commands of all kinds of device.
+//! Assembly of the clap command line from the common part and the options and commands of all kinds of devices.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -9,7 +9,7 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Subcommand};
 use super::{COMMON_HEADING, Cli, Command, CommonArgs};
 use crate::cli::commands::{CliCommand, CommandId, Commands, DeviceCommands};
 
-/// Display order of options that a kind of device adds. They follow the shared options.
+/// Display order of options added by a kind of device. They follow the shared options.
 const AFTER_SHARED: usize = 200;
 
 pub(in crate::cli) struct Arguments {
@@ -23,7 +23,7 @@ pub(in crate::cli) enum ParsedCommand {
     Own(&'static dyn CliCommand, ArgMatches),
 }
 
-/// Parses the arguments of a process, starting with the program name.
+/// Parses the arguments of a process. The first one is the program name.
 pub(in crate::cli) fn parse_arguments(
     words: impl IntoIterator<Item = OsString>,
     commands: Commands,
@@ -53,10 +53,10 @@ fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Err
     Ok(Arguments { common, profile, command })
 }
 
-/// Returns the command line with all commands and options, as the program parses it and its manual describes it.
+/// Returns the command line with all commands and options, as parsed by the program and described in its manual.
 pub fn command(commands: Commands) -> clap::Command {
     let front = commands.common_options().fold(Cli::command(), |front, option| {
-        // Several kinds of device may have the same option.
+        // Several kinds of devices may have the same option.
         let is_new = front.get_arguments().all(|other| other.get_id() != option.get_id());
         if is_new { front.arg(option.help_heading(COMMON_HEADING).display_order(AFTER_SHARED)) } else { front }
     });
@@ -64,7 +64,7 @@ pub fn command(commands: Commands) -> clap::Command {
     let extended = CommandId::ALL
         .into_iter()
         .fold(shared, |all, id| all.mut_subcommand(id.name(), |command| add_kind_options(command, id, commands)));
-    // The entries are about devices, so the names are those of a command for any device.
+    // The entries are about devices, so the names are those of a command that applies to any device.
     let names = kind_name_parser(CommandId::Identify, commands);
     let extended = extended.mut_subcommand("log", |log| log.mut_arg("device", |device| device.value_parser(names)));
     let options = commands.kind_commands().flat_map(|own| own.report_options());
@@ -73,10 +73,10 @@ pub fn command(commands: Commands) -> clap::Command {
     extended.subcommands(commands.kind_commands().map(|own| own.command()))
 }
 
-/// Adds the options of the kinds of device to a shared command.
+/// Adds the options of the kinds of devices to a shared command.
 fn add_kind_options(command: clap::Command, id: CommandId, commands: Commands) -> clap::Command {
     let mut command = command;
-    // In place: `mut_arg` would move it after the other arguments.
+    // Change the argument in place, because `mut_arg` would move it after the other arguments.
     command = command.mut_args(|argument| match argument.get_id().as_str() {
         "device" | "protocol" => argument.value_parser(kind_name_parser(id, commands)),
         "action" => argument.value_parser(action_parser(commands)),
@@ -86,7 +86,7 @@ fn add_kind_options(command: clap::Command, id: CommandId, commands: Commands) -
         let own = device.options(id).into_iter();
         let settings = device.setting_options().into_iter().filter(|_| id == CommandId::Simulate);
         for option in own.chain(settings) {
-            // Several kinds of device may have the same option.
+            // Several kinds of devices may have the same option.
             if command.get_arguments().all(|other| other.get_id() != option.get_id()) {
                 command = command.arg(option.display_order(AFTER_SHARED));
             }
@@ -100,7 +100,7 @@ fn add_kind_options(command: clap::Command, id: CommandId, commands: Commands) -
     if help.is_empty() { command } else { command.after_long_help(help.join("\n\n")) }
 }
 
-/// Returns the kinds of device that a command accepts, including protocols if the command accepts them.
+/// Returns the parser for the kinds of devices that a command accepts, including protocols if the command accepts them.
 fn kind_name_parser(id: CommandId, commands: Commands) -> PossibleValuesParser {
     let devices = commands.devices().iter().filter(|device| id != CommandId::Find || device.is_searchable());
     let devices = devices.map(|device| PossibleValue::new(device.name()).help(device.description()));
@@ -109,7 +109,8 @@ fn kind_name_parser(id: CommandId, commands: Commands) -> PossibleValuesParser {
     PossibleValuesParser::new(devices.chain(protocols).collect::<Vec<_>>())
 }
 
-/// Returns the actions of all kinds of device, each with its meaning for the kinds that support it.
+/// Returns the parser for the actions of all kinds of devices. Each action has its meanings for the kinds that support
+/// it.
 fn action_parser(commands: Commands) -> PossibleValuesParser {
     let single = commands.devices().iter().map(|device| (device.name(), device.action_values()));
     let combined = commands.devices().iter().map(|device| (device.name(), device.combined_actions()));
@@ -128,7 +129,7 @@ fn action_parser(commands: Commands) -> PossibleValuesParser {
     PossibleValuesParser::new(values.collect::<Vec<_>>())
 }
 
-/// Returns a summary of which commands exist for which kinds of device.
+/// Returns a summary that lists the kinds of devices for each command.
 fn command_summary(commands: Commands) -> String {
     let devices = commands.devices();
     let list = |is: &dyn Fn(&dyn DeviceCommands) -> bool| {

@@ -1,5 +1,5 @@
-//! Serves a virtual device on TCP and UDP at the same port. Packets are sent at exact times by sleeping, because socket
-//! time-outs only have the resolution of the system tick.
+//! Serves a virtual device over TCP and UDP on the same port number. Packets are sent at exact times by sleeping,
+//! because socket time-outs only have the resolution of the system tick.
 
 use std::io::ErrorKind;
 use std::net::{SocketAddr, SocketAddrV4, TcpListener, ToSocketAddrs, UdpSocket};
@@ -12,14 +12,14 @@ use super::IDLE_WAIT;
 use crate::link::{Clock, RealClock, request_realtime_priority};
 use crate::sim::DatagramDevice;
 
-/// Maximum sleep of the sender. Every packet is due at least this long after its request.
+/// Maximum sleep of the sending thread. Every packet is due at least this long after its request.
 const MAX_SLEEP: Duration = Duration::from_millis(4);
 /// Number of ports to try if the port is not specified.
 const PORTS_TO_TRY: usize = 50;
 /// Buffer size in bytes, larger than any packet.
 const BUFFER_SIZE: usize = 2048;
 
-/// Binds a TCP and a UDP socket to the same IPv4 port. Port 0 selects a port that is free for both.
+/// Binds a TCP and a UDP socket to the same IPv4 port number. Port 0 selects a number that is free for both.
 pub(super) fn bind_tcp_and_udp(address: &str) -> std::io::Result<(TcpListener, UdpSocket, SocketAddrV4)> {
     let mut last = std::io::Error::from(ErrorKind::AddrNotAvailable);
     for place in address.to_socket_addrs()? {
@@ -45,7 +45,7 @@ fn bind_both(place: SocketAddrV4) -> std::io::Result<(TcpListener, UdpSocket, So
 
 pub(super) struct ServedDevice {
     socket: UdpSocket,
-    /// Device, locked while its packets are taken and sent, so that packets cannot overtake each other.
+    /// The device. It is locked while its packets are taken and sent, so packets cannot overtake each other.
     device: Mutex<Box<dyn DatagramDevice>>,
     clock: Arc<RealClock>,
 }
@@ -95,7 +95,7 @@ impl ServedDevice {
         }
     }
 
-    /// Calls `work` with the device and sends all packets that are due. Returns the time until the next packet.
+    /// Calls `work` with the device and sends all packets that are due. Returns the time until the next packet is due.
     fn drive_device(&self, work: impl FnOnce(&mut dyn DatagramDevice, &RealClock)) -> Duration {
         let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
         work(&mut **device, &self.clock);

@@ -1,4 +1,4 @@
-//! Application of changes to a text. The rest of the text stays as it is.
+//! Application of changes to a text. The rest of the text stays unchanged.
 
 use std::ops::Range;
 
@@ -24,7 +24,7 @@ pub(in crate::profile) fn apply_change(text: &str, change: &Change) -> Option<St
     match (part_at(text, within, last), &change.to) {
         (Some(part), Some(to)) => {
             let own = text.get(part.value.span.clone())?;
-            // Elements identified only by their index are the same only if their content is the same.
+            // Elements that are identified only by their index are the same only if their contents are.
             if let (PathStep::At(_), Some(from)) = (last, &change.from)
                 && !is_equivalent_value(own, from)
             {
@@ -39,7 +39,7 @@ pub(in crate::profile) fn apply_change(text: &str, change: &Change) -> Option<St
     }
 }
 
-/// Returns the value at a path and the steps to the preceding values, nearest first.
+/// Returns the value at a path, and the steps to the preceding values, nearest first.
 pub(super) fn value_at(text: &str, path: &[PathStep]) -> Option<(String, Vec<PathStep>)> {
     let root = read(text)?;
     let (last, way) = path.split_last()?;
@@ -53,7 +53,7 @@ pub(super) fn value_at(text: &str, path: &[PathStep]) -> Option<(String, Vec<Pat
 
 fn part_at<'n>(text: &str, node: &'n SourceNode, step: &PathStep) -> Option<&'n NodePart> {
     if let PathStep::At(at) = step {
-        // An element with a name is not addressed by its index.
+        // An element that has a name is not addressed by its index.
         return if matches!(node.kind, Kind::List(_)) { node.parts().get(*at) } else { None };
     }
     path_steps(text, node).iter().position(|own| own == step).and_then(|at| node.parts().get(at))
@@ -63,7 +63,7 @@ fn replace_range(text: &str, place: &Range<usize>, by: &str) -> Option<String> {
     Some([text.get(..place.start)?, by, text.get(place.end..)?].concat())
 }
 
-/// Replaces the comment that this program wrote after an entry. A comment by the user is left unchanged.
+/// Replaces the comment that the program wrote after an entry. A comment written by the user stays unchanged.
 fn replace_comment(text: &str, at: usize, comments: &(Option<String>, Option<String>)) -> Option<String> {
     let found = trailing_comment(text, at);
     match (found, comments) {
@@ -90,7 +90,7 @@ fn remove_entry(text: &str, part: &NodePart) -> Option<String> {
     if part.comma {
         return replace_range(text, &(part.start()..after + blanks), "");
     }
-    // The last entry on a line is removed with the comma before it.
+    // The last entry on a line is removed together with the preceding comma.
     let start = before.trim_end().len();
     let start = if before.get(..start)?.ends_with(',') { start - 1 } else { part.start() };
     replace_range(text, &(start..after), "")
@@ -133,7 +133,7 @@ fn insert_entry(text: &str, within: &SourceNode, change: &Change, last: &PathSte
     let follows = text.get(place..)?.lines().next().unwrap_or_default();
     let close = match follows.trim() {
         "" => String::new(),
-        // Text that follows on the same line would become part of the new comment.
+        // Any text that follows on the same line would become part of the new comment.
         _ if parts.is_empty() => format!("{end}{}", indent_at(text, within.span.start)),
         _ => format!("{end}{indent}"),
     };
@@ -144,7 +144,7 @@ fn insert_entry(text: &str, within: &SourceNode, change: &Change, last: &PathSte
     }
 }
 
-/// Skips a comment directly after an opening bracket.
+/// Skips a comment that directly follows an opening bracket.
 fn skip_comment(text: &str) -> &str {
     match trailing_comment(text, 0) {
         Some((place, _)) => text.get(place.end..).unwrap_or_default(),
@@ -164,7 +164,7 @@ fn indent_value(value: &str, indent: &str, end: &str) -> String {
     let mut lines = value.lines();
     let first = lines.next().unwrap_or_default().to_owned();
     let rest: Vec<&str> = lines.collect();
-    // The last line holds the closing bracket, which has the same indentation as the first.
+    // The last line contains the closing bracket, which has the same indentation as the first line.
     let own = rest.last().map_or(0, |line| line.len() - line.trim_start().len());
     rest.into_iter().fold(first, |all, line| format!("{all}{end}{indent}{}", line.get(own..).unwrap_or(line.trim())))
 }

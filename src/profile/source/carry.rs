@@ -1,4 +1,4 @@
-//! Transfer of changes between two generated texts to the user's text.
+//! Transfer of the changes between two generated texts to the user's text.
 
 use super::apply::{apply_change, value_at};
 use super::changes::{Change, find_changes};
@@ -9,14 +9,14 @@ use super::tree::comments_in;
 pub struct UpdatedText {
     /// Updated text.
     pub text: String,
-    /// User comments that the new text does not contain.
+    /// User comments that are missing from the new text.
     pub lost: Vec<String>,
 }
 
-/// Applies the changes from `before` to `after` to the user's text. `before` is the generated text with the same
+/// Applies the changes between `before` and `after` to the user's text. `before` is the generated text with the same
 /// content as the user's text.
 ///
-/// Returns `None` if a change does not fit. The caller must check that the result means the same as `after`.
+/// Returns `None` if a change does not fit. The caller must check that the result has the same meaning as `after`.
 pub(in crate::profile) fn carry_changes(text: &str, before: &str, after: &str) -> Option<UpdatedText> {
     let mut carried = text.to_owned();
     for change in find_changes(before, after)? {

@@ -1,4 +1,4 @@
-//! Source text of a profile that a user has edited: entries with their locations, differences between two texts, and
+//! The source text of a profile edited by a user: entries with their locations, differences between two texts, and
 //! changes. Comments, order, notation and line endings are preserved.
 
 mod apply;

@@ -1,11 +1,11 @@
-//! RON syntax tree with source locations. The `ron` crate has already parsed the text without errors. If this parser
-//! returns `None`, the complete file is rewritten.
+//! A RON syntax tree with source locations. The `ron` crate has already parsed the text successfully. If this parser
+//! returns `None`, the whole file is rewritten.
 
 use std::ops::Range;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SourceNode {
-    /// Range of the value in the source text. For `Some(…)`, only the content is included.
+    /// Range of the value in the source text. For `Some(…)`, this is the range of the content.
     pub(super) span: Range<usize>,
     pub(super) kind: Kind,
 }
@@ -24,7 +24,7 @@ pub(super) enum Kind {
 pub(super) struct NodePart {
     pub(super) key: Option<Range<usize>>,
     pub(super) value: SourceNode,
-    /// End of the value, including a comma after it.
+    /// End of the value, including any comma after it.
     pub(super) end: usize,
     pub(super) comma: bool,
 }
@@ -71,7 +71,7 @@ pub(super) fn comments_in(text: &str) -> Vec<&str> {
     found
 }
 
-/// Returns the comment after a position on the same line, and its range.
+/// Returns the comment that follows a position on the same line, and its range.
 pub(super) fn trailing_comment(text: &str, at: usize) -> Option<(Range<usize>, &str)> {
     let rest = text.get(at..)?;
     let blanks = rest.len() - rest.trim_start_matches([' ', '\t']).len();
@@ -113,7 +113,7 @@ impl<'t> TreeReader<'t> {
     fn read_comment(&mut self) -> Option<&'t str> {
         let rest = self.remaining();
         if let Some(line) = rest.strip_prefix("//") {
-            // A carriage return belongs to the end of the line.
+            // A carriage return is part of the line ending.
             let line = line.lines().next().unwrap_or_default();
             self.at += 2 + line.len();
             return Some(line.trim());
@@ -207,7 +207,7 @@ impl<'t> TreeReader<'t> {
         self.take_sign(")").then_some(node)
     }
 
-    /// Parses the values between brackets, and returns whether they have keys.
+    /// Parses the values between brackets and returns whether they have keys.
     fn read_parts(&mut self, open: char, close: char) -> Option<(Vec<NodePart>, bool)> {
         self.at += open.len_utf8();
         let (mut parts, mut named) = (Vec::new(), false);

@@ -1,4 +1,4 @@
-//! Pages as lists of graphic elements, and their output to a PDF document. Lengths are in points from the top left
+//! Pages as lists of graphic elements, and their conversion to a PDF document. Lengths are in points from the top left
 //! corner.
 
 use krilla::color::rgb;
@@ -10,7 +10,7 @@ use krilla::surface::Surface;
 use super::typeface::{Face, Typefaces};
 use crate::drawing::{Drawing, DrawingLength, DrawingShape, LabelAlign, PathSegment};
 
-/// A colour as red, green and blue.
+/// An RGB colour.
 pub(super) type Colour = [u8; 3];
 
 pub(super) const TEXT: Colour = [0x1a, 0x1e, 0x22];
@@ -20,13 +20,13 @@ pub(super) const LINE: Colour = [0xd5, 0xda, 0xdf];
 /// A graphic element of a page.
 #[derive(Clone, Debug)]
 pub(super) enum PageMark {
-    /// A text, placed by the left end of its baseline.
+    /// A text, positioned by the left end of its baseline.
     Text { x: f32, y: f32, size: f32, face: Face, colour: Colour, text: String },
     /// A horizontal line.
     Rule { x: f32, y: f32, width: f32, thickness: f32, colour: Colour },
-    /// A drawing in the given scale.
+    /// A drawing at the given scale.
     Drawing { x: f32, y: f32, scale: f32, drawing: Drawing },
-    /// A picture of pixels.
+    /// A raster image.
     Image { x: f32, y: f32, width: f32, height: f32, image: Image },
 }
 
@@ -143,7 +143,7 @@ fn stroke(width: f32, [red, green, blue]: Colour) -> Stroke {
     Stroke { paint: rgb::Color::new(red, green, blue).into(), width, ..Stroke::default() }
 }
 
-/// Parses a colour of a drawing. An invalid colour becomes black.
+/// Parses the colour of a drawing. An invalid colour becomes black.
 fn parse_colour(text: &str) -> Colour {
     let digits: Vec<u8> = text
         .chars()

@@ -1,4 +1,4 @@
-//! Layout of the content of a report: heading, sections, and the lines for signatures.
+//! Layout of the content of a report: heading, sections and signature lines.
 
 use krilla::image::Image;
 
@@ -17,20 +17,21 @@ const SECTION: Style = Style { face: Face::Strong, size: 12.0, colour: TEXT };
 const HEADING: Style = Style { face: Face::Strong, size: 9.5, colour: TEXT };
 const SIGNATURE: Style = Style { face: Face::Text, size: 8.0, colour: MUTED };
 
-/// Width of the labels of facts: 45 mm, and the distance to their values: 4 mm.
+/// Width of the labels of facts in points: 45 mm.
 const LABELS: f32 = 127.6;
+/// Distance between a label and its value in points: 4 mm.
 const LABEL_GAP: f32 = 11.3;
-/// Distance between two facts.
+/// Vertical distance between two facts, in points.
 const FACT_GAP: f32 = 2.5;
-/// Number of lines up to which a fact is not divided between two pages.
+/// Maximum number of lines for which a fact is kept on one page.
 const KEPT_LINES: usize = 6;
-/// Width of a paragraph.
+/// Maximum line length of a paragraph, in points.
 const MEASURE: f32 = 425.2;
-/// Points of a drawing unit, unless the drawing is wider than the page.
+/// Size of a drawing unit in points, unless the drawing is wider than the page.
 const DRAWING_UNIT: f32 = 0.75;
-/// Height of the room above a line for a signature.
+/// Height of the space above a signature line, in points.
 const SIGNATURE_ROOM: f32 = 45.0;
-/// Greatest height and width of a logo.
+/// Maximum height and width of a logo, in points.
 const LOGO: (f32, f32) = (31.0, 142.0);
 
 impl Flow<'_> {
@@ -124,13 +125,13 @@ impl Flow<'_> {
         }
     }
 
-    /// Returns the height of the part that stays on the page of the heading before it.
+    /// Returns the height of the part that must be on the same page as the preceding heading.
     fn lead_height(&self, blocks: &[Block]) -> f32 {
         match blocks {
             [] => 0.0,
             [Block::Heading(_), after @ ..] => HEADING.line_height() + 12.0 + self.lead_height(after),
             [Block::Paragraph(text), Block::Paragraph(_), ..] => self.paragraph_height(text),
-            // A paragraph explains the part after it.
+            // A paragraph explains the part that follows it.
             [Block::Paragraph(text), after @ ..] => self.paragraph_height(text) + self.lead_height(after),
             [Block::Facts(_), ..] => 2.0 * (BODY.line_height() + FACT_GAP),
             [Block::Table(table), ..] => TableLayout::new(self, table).lead_height(self),
@@ -244,7 +245,7 @@ mod tests {
         assert!(heights.iter().all(|y| *y <= END), "{heights:?}");
         let (label, lines): (Vec<_>, Vec<_>) = texts.into_iter().partition(|text| text == "Note");
         assert_eq!((label.len(), lines), (1, words));
-        // A page has room for 728 points: 57 lines of 12.6 points.
+        // A page has room for 728 points, which are 57 lines of 12.6 points.
         assert_eq!(flow.pages.len(), 6);
     }
 }

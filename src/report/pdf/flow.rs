@@ -1,23 +1,23 @@
-//! Placement of content on pages. A page ends where the next part does not fit.
+//! Placement of content on pages. A new page begins wherever the next part does not fit.
 
 use super::canvas::{Colour, PageMark};
 use super::typeface::{Face, Typefaces};
 
 /// Size of A4 in points.
 pub(super) const PAGE: (f32, f32) = (595.28, 841.89);
-/// Margin at the left, the right and the top: 18 mm.
+/// Left, right and top margin in points: 18 mm.
 pub(super) const MARGIN: f32 = 51.02;
-/// Margin at the bottom, with the page number: 22 mm.
+/// Bottom margin in points, which contains the page number: 22 mm.
 pub(super) const BOTTOM: f32 = 62.36;
-/// Width of the content.
+/// Width of the content in points.
 pub(super) const WIDTH: f32 = PAGE.0 - 2.0 * MARGIN;
 pub(super) const END: f32 = PAGE.1 - BOTTOM;
-/// Height of a line relative to the size of its font.
+/// Height of a line relative to the font size.
 const LINE_HEIGHT: f32 = 1.4;
-/// Height of the baseline below the top of a line, relative to the size of the font.
+/// Distance of the baseline from the top of a line, relative to the font size.
 const BASELINE: f32 = 1.05;
 
-/// A style of text.
+/// A text style.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Style {
     pub(super) face: Face,
@@ -25,11 +25,11 @@ pub(super) struct Style {
     pub(super) colour: Colour,
 }
 
-/// Pages in the making.
+/// Pages under construction.
 pub(super) struct Flow<'a> {
     pub(super) faces: &'a Typefaces,
     pub(super) pages: Vec<Vec<PageMark>>,
-    /// Top of the next part on the last page.
+    /// Vertical position of the next part on the last page.
     pub(super) y: f32,
 }
 
@@ -44,7 +44,7 @@ impl<'a> Flow<'a> {
         Flow { faces, pages: vec![Vec::new()], y: MARGIN }
     }
 
-    /// Returns the height that is left on the page.
+    /// Returns the remaining height of the page.
     pub(super) fn room(&self) -> f32 {
         END - self.y
     }
@@ -59,14 +59,14 @@ impl<'a> Flow<'a> {
         self.y = MARGIN;
     }
 
-    /// Begins a new page unless there is enough room on the present one.
+    /// Begins a new page unless the current one has enough space.
     pub(super) fn ensure(&mut self, height: f32) {
         if height > self.room() && !self.is_page_empty() {
             self.break_page();
         }
     }
 
-    /// Adds distance to the part before. There is none at the top of a page.
+    /// Adds vertical space after the preceding part. There is none at the top of a page.
     pub(super) fn skip(&mut self, distance: f32) {
         if !self.is_page_empty() {
             self.y += distance;

@@ -1,4 +1,4 @@
-//! Layout of a table: column widths, rows that are never split between pages, and a heading on each page.
+//! Layout of a table: column widths, rows that are kept on one page, and a heading on each page.
 
 use super::canvas::{Colour, LINE, MUTED, TEXT};
 use super::flow::{Flow, MARGIN, Style, WIDTH};
@@ -6,11 +6,11 @@ use super::typeface::Face;
 use crate::report::{CellStyle, Mark, Row, Table};
 
 const HEADING: Style = Style { face: Face::Text, size: 8.0, colour: MUTED };
-/// Distance between two columns.
+/// Horizontal distance between two columns, in points.
 const GAP: f32 = 9.0;
-/// Distance between the text of a row and its rules.
+/// Distance between the text of a row and its rules, in points.
 const PADDING: f32 = 2.4;
-/// Minimum width in digits at which text is broken into lines.
+/// A number as wide as the narrowest column in which text is broken into lines.
 const LEAST_DIGITS: &str = "0000000";
 const GOOD: Colour = [0x0b, 0x7a, 0x52];
 const WARNING: Colour = [0xa9, 0x4b, 0x06];
@@ -46,7 +46,7 @@ impl<'a> TableLayout<'a> {
                 flow.break_page();
                 self.place_heading(flow);
             }
-            // Only a row that is higher than a page is divided.
+            // Only a row that is higher than a page is split.
             while row_height(&lines) > flow.room() {
                 let fits =
                     ((flow.room() - 2.0 * PADDING) / cell_style(CellStyle::Text).line_height()).max(1.0) as usize;
@@ -80,7 +80,7 @@ impl<'a> TableLayout<'a> {
         let (top, height) = (flow.y, self.heading_height());
         let mut x = MARGIN;
         for ((lines, column), width) in self.heading_lines.iter().zip(&self.table.columns).zip(&self.widths) {
-            // Headings are aligned with the rule below them.
+            // Headings are aligned to the rule below them.
             let above = height - PADDING - lines.len() as f32 * HEADING.line_height();
             for (line, number) in lines.iter().zip(0_u8..) {
                 let y = top + above + f32::from(number) * HEADING.line_height();
@@ -100,7 +100,7 @@ impl<'a> TableLayout<'a> {
         for (index, ((lines, column), width)) in cells.iter().zip(&self.table.columns).zip(&self.widths).enumerate() {
             let own = cell_style(column.style);
             let style = if index == last { marked(own, row.mark) } else { own };
-            // Cells in a smaller font have their baseline at the same height.
+            // Cells with a smaller font have the same baseline.
             let lower = (cell_style(CellStyle::Text).size - style.size) * 1.05;
             for (line, number) in lines.iter().zip(0_u16..) {
                 let y = top + PADDING + lower + f32::from(number) * cell_style(CellStyle::Text).line_height();
@@ -135,8 +135,8 @@ const fn marked(style: Style, mark: Mark) -> Style {
     }
 }
 
-/// Returns the widths of the columns. Columns that must not be broken have the width of their content, and the others
-/// share the rest according to their content.
+/// Returns the widths of the columns. Columns that must not be broken are as wide as their content. The others share
+/// the remaining width in proportion to their content.
 fn column_widths(flow: &Flow<'_>, table: &Table) -> Vec<f32> {
     let available = WIDTH - GAP * table.columns.len().saturating_sub(1) as f32;
     let bounds: Vec<(f32, f32)> = table
@@ -164,7 +164,7 @@ fn column_widths(flow: &Flow<'_>, table: &Table) -> Vec<f32> {
     let least: f32 = bounds.iter().map(|(least, _)| least).sum();
     let wanted: f32 = bounds.iter().map(|(_, wanted)| wanted).sum();
     if wanted <= available {
-        // The rest goes to the columns that may be broken.
+        // The remaining width goes to the columns that may be broken.
         let flexible = |style| matches!(style, CellStyle::Text | CellStyle::Code);
         let growing = table.columns.iter().zip(&bounds).filter(|(column, _)| flexible(column.style));
         let total: f32 = growing.map(|(_, (_, wanted))| wanted).sum();

@@ -1,5 +1,5 @@
-//! Typefaces with the widths of their characters. Texts are set without kerning and ligatures, which the built-in fonts
-//! do not need at the sizes of a report.
+//! Typefaces and their glyph widths. Texts are set without kerning and ligatures, which the built-in fonts do not need
+//! at the sizes of a report.
 
 use std::borrow::Cow;
 
@@ -26,7 +26,7 @@ struct Typeface {
     bytes: skrifa::FontRef<'static>,
 }
 
-/// A part of a text in one typeface.
+/// A run of text in a single typeface.
 pub(super) struct Run {
     pub(super) font: Font,
     pub(super) glyphs: Vec<KrillaGlyph>,
@@ -50,7 +50,7 @@ impl Typefaces {
         }
     }
 
-    /// Returns the typeface that has a character, preferably the given one, and its glyph with its advance in ems.
+    /// Returns a typeface that contains a character, preferably the given one, and the glyph with its advance in ems.
     fn glyph(&self, face: Face, character: char) -> (Face, u32, f32) {
         let found = [face, Face::Mono, Face::Text].into_iter().find_map(|face| {
             let (glyph, advance) = self.face(face).glyph(character)?;
@@ -59,7 +59,7 @@ impl Typefaces {
         found.unwrap_or((face, 0, 0.5))
     }
 
-    /// Replaces each character that no typeface has by its code point, for example `[U+96FB]`.
+    /// Replaces each character that is missing from all typefaces with its code point, such as `[U+96FB]`.
     fn displayable<'a>(&self, text: &'a str) -> Cow<'a, str> {
         let is_missing =
             |character: char| [Face::Text, Face::Mono].iter().all(|face| self.face(*face).glyph(character).is_none());
@@ -82,7 +82,7 @@ impl Typefaces {
         self.displayable(text).chars().map(|character| self.glyph(face, character).2 * size).sum()
     }
 
-    /// Splits a text into parts of one typeface each.
+    /// Splits a text into runs of a single typeface.
     pub(super) fn runs(&self, face: Face, size: f32, text: &str) -> Vec<Run> {
         let mut runs: Vec<(Face, Run)> = Vec::new();
         for character in self.displayable(text).chars() {
@@ -100,7 +100,7 @@ impl Typefaces {
         runs.into_iter().map(|(_, run)| run).collect()
     }
 
-    /// Breaks a text into lines of at most the given width, between words, or within a word that is too long.
+    /// Breaks a text into lines of at most the given width. Only words that are too long are split.
     pub(super) fn lines(&self, face: Face, size: f32, text: &str, width: f32) -> Vec<String> {
         let mut lines = Vec::new();
         for paragraph in text.split('\n') {
@@ -147,7 +147,7 @@ mod tests {
 
     use super::*;
 
-    /// U+96FB, U+52D5 and U+6A5F: the name of an electric motor in Japanese, which the built-in fonts do not contain.
+    /// U+96FB, U+52D5 and U+6A5F form the Japanese word for an electric motor. The built-in fonts do not contain them.
     #[test]
     fn characters_without_a_glyph_are_printed_as_code_points() {
         let typefaces = Typefaces::load().unwrap();
@@ -156,7 +156,7 @@ mod tests {
             typefaces.runs(Face::Text, 9.0, "電動機/7 Größe Ω").into_iter().map(|run| run.text).collect();
         assert_eq!(text, printed);
         assert_eq!(typefaces.lines(Face::Text, 9.0, "電動機/7 Größe Ω", 1_000.0), [printed]);
-        // Each missing character becomes eight characters, which are broken like others.
+        // Each missing character becomes eight characters, which may be broken like any others.
         let lines = typefaces.lines(Face::Strong, 9.0, "電動機", 60.0);
         assert!(lines.len() > 1 && lines.concat() == "[U+96FB][U+52D5][U+6A5F]", "{lines:?}");
     }

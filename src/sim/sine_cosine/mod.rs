@@ -1,18 +1,18 @@
 //! A virtual analogue source: the four wires of a sine/cosine encoder that turns at a given speed, with adjustable
 //! errors. It is deterministic: the same settings, changes and sample numbers yield the same voltages, regardless of
-//! the block sizes requested. This module uses no clock, thread or device.
+//! the requested block sizes. This module does not use clocks, threads or devices.
 //!
 //! The model is from Heydemann (Applied Optics 20, 3382). See section 7 of the project's sine/cosine reference. With θ
 //! as the true angle, the cosine channel is R·cos θ + p, and the sine channel is R·sin(θ − α)/r + q. Both tracks have
 //! the same shape a quarter of a period apart, so a third harmonic h results in cos θ − h·cos 3θ and sin θ + h·sin 3θ.
 //!
-//! Angles are integer fractions of a turn, and times are whole nanoseconds. No error accumulates over time.
+//! Angles are integer fractions of a turn, and times are whole nanoseconds, so no error accumulates over time.
 //!
 //! The following assumptions have no source in a manual. At a receiver with a resistor between the wires of a pair, an
-//! open wire takes the voltage of its partner, and their difference is zero. Without the resistor, it stays at the mean
-//! level, where the bias of the receiver holds it. Interference and hum are added to SIN and COS but not to their
-//! references, because a receiver rejects the part common to both. The interference is half as strong in the cosine
-//! channel and has the opposite sign there.
+//! open wire takes the voltage of the other wire, and their difference is zero. Without the resistor, it stays at the
+//! mean level, at which the bias of the receiver holds it. Interference and hum are added to SIN and COS but not to
+//! their references, because a receiver rejects the part common to both. The interference is half as strong in the
+//! cosine channel and has the opposite sign there.
 
 mod settings;
 
@@ -28,21 +28,21 @@ use crate::analysis::wiring::{Wire, Wires};
 const TURN: u64 = 60_000 * 1_000_000_000;
 /// Parts per interference period. At 0.001 Hz, the phase advances by one part per nanosecond.
 const CYCLE: u64 = 1_000 * 1_000_000_000;
-/// Maximum number of setting changes remembered.
+/// Maximum number of stored changes of the settings.
 const MAX_CHANGES: usize = 64;
 
 /// An analogue source whose samples are numbered from 0.
 #[derive(Clone, Debug)]
 pub struct Source {
     start: SampleTime,
-    /// Segments in chronological order, never empty.
+    /// Segments with constant settings in chronological order, never empty.
     segments: VecDeque<Segment>,
 }
 
 #[derive(Clone, Debug)]
 struct Segment {
     from: u64,
-    /// Nanoseconds from the start to the first sample of the segment.
+    /// Time in nanoseconds from the start to the first sample of the segment.
     elapsed: u64,
     /// Shaft position at the first sample of the segment, in parts of a turn.
     turn: u64,
@@ -55,8 +55,8 @@ impl Source {
         Source { start, segments: VecDeque::from([Segment { from: 0, elapsed: 0, turn: 0, checked }]) }
     }
 
-    /// Changes the settings from sample `at` on. The shaft continues from its position. A change at or before the
-    /// latest one replaces it.
+    /// Changes the settings, starting with sample `at`. The shaft continues from its position. A change at or before
+    /// the latest one replaces it.
     pub fn change_settings(&mut self, at: u64, checked: CheckedSettings) {
         let at = self.segments.back().map_or(at, |last| at.max(last.from));
         let Some(before) = self.segments.back() else { return };
@@ -74,13 +74,13 @@ impl Source {
         self.segments.back().map(|segment| segment.checked.settings())
     }
 
-    /// Returns the time of a sample. Returns `None` if the changes before the sample are no longer stored.
+    /// Returns the time of a sample, or `None` if the settings that applied to it are no longer stored.
     pub fn time(&self, index: u64) -> Option<SampleTime> {
         let segment = self.segment_at(index)?;
         Some(self.start.saturating_add_ns(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))
     }
 
-    /// Returns `count` samples from `first` on. Returns `None` if the changes before these samples are no longer
+    /// Returns `count` samples starting at `first`, or `None` if the settings that applied to them are no longer
     /// stored. The latest 64 changes are stored.
     pub fn samples_from(&self, first: u64, count: usize) -> Option<Wires> {
         let column = || Vec::with_capacity(count.min(1 << 20));
@@ -112,7 +112,7 @@ impl Segment {
         self.elapsed.saturating_add(index.saturating_sub(self.from).saturating_mul(self.period()))
     }
 
-    /// Returns the rotation from one sample to the next in parts of a turn, modulo a turn.
+    /// Returns the rotation between consecutive samples in parts of a turn, modulo a turn.
     fn phase_step(&self) -> u64 {
         let speed = (self.checked.settings().speed_rpm * 1_000.0).round() as i128;
         modulo(speed * i128::from(self.period()), TURN)
@@ -175,15 +175,15 @@ impl PhaseAccumulator {
     }
 }
 
-/// Settings preprocessed for fast calculations.
+/// Settings that have been preprocessed for fast calculation.
 struct Model<'a> {
     settings: &'a Settings,
     periods: u64,
-    /// Amplitude of the signal's phase shift from eccentricity, in radians.
+    /// Amplitude in radians of the phase shift that the eccentricity causes in the signal.
     eccentricity: f64,
     phase_error: f64,
     third: f64,
-    /// Noise of each wire, such that the difference of two wires has the noise of the settings.
+    /// Noise of each wire. The difference between two wires has the noise given in the settings.
     noise: f64,
 }
 
@@ -203,7 +203,8 @@ impl<'a> Model<'a> {
     fn channel_voltages(&self, shaft: PhaseAccumulator) -> (f64, f64) {
         let settings = self.settings;
         let (once_sine, once_cosine) = shaft.angle_radians().sin_cos();
-        // The angle is still in whole parts when it is multiplied by the periods. 65 536 turns fit into 64 bits.
+        // The angle is still in whole parts when it is multiplied by the number of periods. 65 536 turns fit into 64
+        // bits.
         let signal = PhaseAccumulator { at: shaft.at * self.periods % TURN, ..shaft };
         let angle = signal.angle_radians() + self.eccentricity * once_sine;
         let amplitude = settings.amplitude_v * (1.0 + settings.modulation_percent / 100.0 * once_cosine);
@@ -213,7 +214,7 @@ impl<'a> Model<'a> {
         (amplitude * sine / settings.gain_ratio + settings.offset_sine_v, amplitude * cosine + settings.offset_cosine_v)
     }
 
-    /// Returns SIN, REFSIN, COS and REFCOS at the receiver for the given differences.
+    /// Returns SIN, REFSIN, COS and REFCOS at the receiver for the given differential voltages.
     fn wire_voltages(&self, index: u64, [sine, cosine]: [f64; 2]) -> [f64; 4] {
         let level = self.settings.level_v;
         let pair = |difference: f64| match self.settings.references {
@@ -246,11 +247,11 @@ fn modulo(number: i128, whole: u64) -> u64 {
     u64::try_from(number.rem_euclid(i128::from(whole))).unwrap_or(0)
 }
 
-/// Returns two independent, normally distributed numbers that depend only on `seed` and `index` (Box and Muller 1958).
+/// Returns two independent, normally distributed numbers that depend only on `seed` and `place` (Box and Muller 1958).
 fn gaussian_pair(seed: u64, place: u64) -> [f64; 2] {
     let first = splitmix64(seed ^ splitmix64(place));
     let second = splitmix64(first ^ seed);
-    // Use 53 bits of each. The first number must be above 0.
+    // Use 53 bits of each number. The first one must be above 0.
     let unit = |bits: u64| (bits >> 11) as f64 / (1_u64 << 53) as f64;
     let length = (-2.0 * (1.0 - unit(first)).ln()).sqrt();
     let (sine, cosine) = (TAU * unit(second)).sin_cos();

@@ -1,8 +1,8 @@
-//! Settings of the virtual sine/cosine source with their ranges.
+//! Settings of the virtual sine/cosine source and their ranges.
 
 use crate::analysis::wiring::Wire;
 
-/// Settings of the analogue source. Voltages are peak values unless stated as rms.
+/// The settings of the analogue source. Voltages are peak values unless stated as rms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Number of signal periods per revolution, a whole number.
@@ -17,7 +17,7 @@ pub struct Settings {
     pub offset_sine_v: f64,
     /// Offset p of the cosine channel in volts.
     pub offset_cosine_v: f64,
-    /// Amplitude ratio r of the cosine channel to the sine channel.
+    /// Ratio r of the cosine amplitude to the sine amplitude.
     pub gain_ratio: f64,
     /// Phase error α in degrees. The sine follows the cosine by a quarter of a period plus α.
     pub phase_error_deg: f64,
@@ -53,9 +53,10 @@ pub struct Settings {
 /// Level of REFSIN and REFCOS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReferenceLevel {
-    /// The mean level, as in HIPERFACE encoders. Only SIN and COS carry the signal.
+    /// The references are at the mean level, as in HIPERFACE encoders. Only SIN and COS carry the signal.
     Level,
-    /// The inverted signal, as in encoders with complementary outputs. Each wire carries half of the signal.
+    /// The references carry the inverted signal, as in encoders with complementary outputs. Each wire carries half of
+    /// the signal.
     Complement,
 }
 
@@ -98,7 +99,7 @@ pub enum Quantity {
     Eccentricity,
 }
 
-/// The error for a setting outside its range.
+/// The error for a setting that is outside its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{quantity:?} must be from {least} to {most}, not {value}")]
 pub struct SettingError {
@@ -138,7 +139,7 @@ impl Quantity {
         Quantity::Eccentricity,
     ];
 
-    /// Returns the unit symbol, which is the same in every language. The symbol is empty for a plain number.
+    /// Returns the unit symbol, which is the same in every language, or an empty string for a plain number.
     pub const fn unit(self) -> &'static str {
         match self {
             Quantity::Periods | Quantity::GainRatio => "",
@@ -191,8 +192,7 @@ impl Settings {
         self
     }
 
-    /// Returns the sample period in whole nanoseconds. For example, 100 kHz yields 10 000 ns and 44.1 kHz yields 22 676
-    /// ns.
+    /// Returns the sample period in whole nanoseconds, such as 10 000 ns for 100 kHz and 22 676 ns for 44.1 kHz.
     pub fn period_ns(&self) -> i64 {
         (1e9 / self.rate_hz).round() as i64
     }
@@ -200,8 +200,8 @@ impl Settings {
     /// Validates the settings.
     ///
     /// # Errors
-    /// Returns a [`SettingError`] with the first setting outside its range, and the range. A number of periods that is
-    /// not whole is also rejected.
+    /// Returns a [`SettingError`] with the first setting that is outside its range, and the range. A fractional number
+    /// of periods is also rejected.
     pub fn validate(self) -> Result<CheckedSettings, SettingError> {
         for quantity in Quantity::ALL {
             let (value, (least, most)) = (self.get(quantity), quantity.value_range());
@@ -245,8 +245,8 @@ impl CheckedSettings {
 
 impl Default for Settings {
     /// Returns the settings of a good HIPERFACE encoder: 1024 periods at 60 rev/min, sampled at 100 kHz, with an
-    /// amplitude of 0.5 V and 0.5 mV of noise. The interference frequencies are the usual 8 kHz of a drive and 50 Hz of
-    /// the mains.
+    /// amplitude of 0.5 V and 0.5 mV of noise. The interference frequency is 8 kHz, which is usual for a drive, and the
+    /// mains frequency is 50 Hz.
     fn default() -> Self {
         Settings {
             periods: 1024.0,

@@ -1,4 +1,4 @@
-//! Tests of the voltages against the tables of the reference and calculations in Python.
+//! Tests that compare the voltages with the tables of the reference and with calculations in Python.
 
 use super::*;
 

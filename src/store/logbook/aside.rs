@@ -1,5 +1,5 @@
-//! Damaged files of the logbook. Such a file is renamed, and the new file that replaces it records this: the write
-//! cycles in the damaged file are no longer counted.
+//! Damaged files of the logbook. Such a file is renamed, and the new file that replaces it contains a record of this,
+//! because the write cycles in the damaged file are no longer counted.
 
 use std::ffi::OsString;
 use std::fs;
@@ -15,20 +15,20 @@ use super::error::LogbookErrorKind;
 use super::schema;
 use crate::store::file_lock::wait_for;
 
-/// Suffixes of the files that belong to a database.
+/// Suffixes of the additional files of a database.
 const ENDINGS: [&str; 2] = ["-wal", "-shm"];
-/// Suffix of the new file until it replaces the damaged one.
+/// Suffix of the new file before it replaces the damaged one.
 const NEW: &str = "-new";
 
-/// Renames a damaged file and creates a new one. Returns the other name, or `None` if the file is not damaged, because
-/// another program has begun a new one meanwhile.
+/// Renames a damaged file and creates a new one. Returns the new name of the damaged file, or `None` if the file is
+/// intact because another program has already replaced it.
 pub(super) fn set_aside(path: &Path, patience: Duration) -> Result<Option<PathBuf>, LogbookErrorKind> {
     let _lock = wait_for(path).map_err(LogbookErrorKind::Folder)?;
     if !is_damaged(path) {
         return Ok(None);
     }
     let kept = unused_name(path);
-    // There is a file at any time, because without one the write cycles would count as none.
+    // A file must exist at all times, because without one the number of write cycles would be taken as zero.
     let copied = fs::hard_link(path, &kept).or_else(|_| fs::copy(path, &kept).map(drop));
     copied.map_err(|_| LogbookErrorKind::NoAccess)?;
     let new = with_ending(path, NEW);
@@ -45,24 +45,24 @@ pub(super) fn set_aside(path: &Path, patience: Duration) -> Result<Option<PathBu
 }
 
 fn begin_new(new: &Path, kept: &Path, patience: Duration) -> Result<(), LogbookErrorKind> {
-    // A program that was killed here may have left one.
+    // A program that was killed at this point may have left a file behind.
     let _ = fs::remove_file(new);
     let database = schema::open(new, patience)?;
     let row = (Timestamp::now().to_string(), kept.to_string_lossy());
     database.execute("INSERT INTO damage (at, kept) VALUES (?1, ?2)", row)?;
-    // Closing moves everything into the file itself.
+    // Closing the database moves everything into the file itself.
     database.close().map_err(|(_, error)| error)?;
     Ok(())
 }
 
-/// Returns the last damaged file, whose entries are missing in this logbook.
+/// Returns the most recent damaged file, whose entries are missing from this logbook.
 pub(super) fn last_damaged(database: &Connection) -> rusqlite::Result<Option<PathBuf>> {
     let sql = "SELECT kept FROM damage ORDER BY rowid DESC LIMIT 1";
     let kept = database.query_row(sql, [], |row| row.get::<_, String>(0)).optional()?;
     Ok(kept.map(PathBuf::from))
 }
 
-/// Returns whether an error means that the file itself is damaged, and not just a value in it.
+/// Returns whether an error means that the file itself is damaged, rather than a value in it.
 pub(super) fn is_damage(error: &rusqlite::Error) -> bool {
     let code = error.sqlite_error_code();
     matches!(code, Some(ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt))
@@ -71,7 +71,7 @@ pub(super) fn is_damage(error: &rusqlite::Error) -> bool {
 fn is_damaged(path: &Path) -> bool {
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let Ok(database) = Connection::open_with_flags(path, flags) else { return false };
-    // The damaged file is kept as it is.
+    // The damaged file must stay unchanged.
     let _ = database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
     match database.query_row("PRAGMA quick_check(1)", [], |row| row.get::<_, String>(0)) {
         Ok(found) => found != "ok",

@@ -1,12 +1,13 @@
-//! Names of assets: the motor or the axis on which a device is mounted. An asset stays when its encoder is exchanged.
+//! Names of assets. An asset is the motor or axis on which a device is mounted, and stays the same when its encoder is
+//! exchanged.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// Maximum number of characters of a name.
+/// Maximum number of characters in a name.
 const LONGEST: usize = 80;
 
-/// Name of an asset. Capital letters and spaces within the name matter, because the name may come from a scanner.
+/// The name of an asset. Letter case and inner spaces are significant, because the name may come from a scanner.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct AssetName(String);
 
@@ -29,7 +30,7 @@ impl AssetName {
 impl FromStr for AssetName {
     type Err = AssetNameError;
 
-    /// Parses a name. Spaces around it are removed.
+    /// Parses a name. Surrounding spaces are removed.
     fn from_str(text: &str) -> Result<Self, AssetNameError> {
         let name = text.trim();
         let found = name.chars().count();

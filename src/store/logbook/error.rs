@@ -1,4 +1,4 @@
-//! Reasons why the logbook cannot be used: SQLite result codes grouped by what the user can do about them.
+//! Reasons why the logbook cannot be used. SQLite result codes are grouped by what the user can do about them.
 
 use std::path::{Path, PathBuf};
 
@@ -18,13 +18,13 @@ pub struct LogbookError {
 pub enum LogbookErrorKind {
     #[error(transparent)]
     Folder(FileError),
-    /// The file cannot be opened, because its name is that of a folder, or because permission is missing.
+    /// The file cannot be opened because its path refers to a folder or permission is missing.
     #[error("the file cannot be opened")]
     NoAccess,
     /// The file can be read but not written.
     #[error("the file is write-protected")]
     WriteProtected,
-    /// Another program kept the file locked for longer than the time limit.
+    /// Another program held the lock on the file for longer than the time limit.
     #[error("the file is in use by another program")]
     Locked,
     #[error("the disk is full")]
@@ -32,22 +32,22 @@ pub enum LogbookErrorKind {
     /// The file is damaged or not a database.
     #[error("the file is damaged: {what}")]
     Damaged { what: String },
-    /// The file was damaged. It is kept under another name, and a new file was begun.
+    /// The file was damaged. It has been renamed, and a new file has been started.
     #[error("the file was damaged and is kept as {kept}; a new one was begun")]
     SetAside { kept: PathBuf },
     /// The file was created by a newer version of the program and is left unchanged.
     #[error("the file uses schema {found} of a newer version; this version supports schemas up to {known}")]
     Newer {
         found: i64,
-        /// Latest schema that this version of the program supports.
+        /// Latest schema version that this program supports.
         known: i64,
     },
-    /// The entry does not exist or has already been concluded.
+    /// The entry does not exist or has already been completed.
     #[error("entry {entry} is not open")]
     NotOpen { entry: EntryId },
     #[error("{what}")]
     Database {
-        /// Extended result code of SQLite, or `None` if the value was rejected before it reached SQLite.
+        /// Extended SQLite result code, or `None` if the value was rejected before it reached SQLite.
         code: Option<i32>,
         what: String,
     },

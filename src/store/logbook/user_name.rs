@@ -1,26 +1,27 @@
-//! The user's name in the entries of the logbook: in full, as initials, or not at all. A plant's rules may forbid
+//! The form of the user's name in logbook entries: in full, as initials, or not at all. The rules of a plant may forbid
 //! names.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-/// Form of the user's name in the entries of this process.
+/// The form of the user's name in the entries of this process.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UserName {
-    /// The user name of the system.
+    /// The system user name.
     #[default]
     Full,
-    /// The first letters of the user's real name, or of the user name.
+    /// The initials of the user's real name, or of the user name if the real name is unknown.
     Initials,
     Off,
 }
 
-/// The form for all entries of this process, which belong to one user. The value is 0 until the settings are read.
+/// The form for all entries of this process, which belong to a single user. The value is 0 until the settings have been
+/// read.
 static CHOICE: AtomicU8 = AtomicU8::new(0);
 
 impl UserName {
-    /// Applies the form to all further entries of this process.
+    /// Applies this form to all further entries of this process.
     pub fn apply(self) {
         CHOICE.store(self as u8, Ordering::Relaxed);
     }

@@ -1,4 +1,4 @@
-//! The about dialog, with the program and its components. Also the help for the open page, with references to the
+//! The about dialog, which shows the program and its components, and the help for the open page, which refers to the
 //! manual.
 
 use egui::{ScrollArea, Ui};

@@ -1,4 +1,4 @@
-//! The connection dialog: a link as a form, recent links, the ports of this computer, and the search for an encoder
+//! The connection dialog: a form for the link, recent links, the ports of this computer, and the search for an encoder
 //! with unknown settings.
 
 pub(crate) mod entries;

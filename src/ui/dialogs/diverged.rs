@@ -12,12 +12,12 @@ use crate::ui::{Theme, icons};
 
 /// Maximum height of the list in points. The buttons stay visible below a long list.
 const MAX_LIST_HEIGHT: f32 = 320.0;
-/// Maximum number of characters shown of a value. A memory may contain thousands.
+/// Maximum number of displayed characters of a value. A memory may contain thousands of them.
 const MAX_VALUE_CHARS: usize = 60;
 
-/// Draws the dialog if there is a conflict to resolve.
+/// Draws the dialog if there is a conflict.
 pub(in crate::ui) fn diverged_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    // A question that results from the choice is shown first.
+    // If the choice leads to a question, the question is shown first.
     let Some(diverged) = studio.diverged.as_ref().filter(|_| studio.question.is_none()) else { return };
     modal(ctx, theme, "diverged", 640.0, |ui| {
         ui.label(theme.heading(theme.translate("diverged.title")));

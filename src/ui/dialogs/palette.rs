@@ -1,4 +1,4 @@
-//! The command palette, which finds an action or a page by its name.
+//! The command palette, which finds actions and pages by name.
 
 use egui::{Align, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
@@ -11,10 +11,10 @@ use crate::ui::entries::text_entry;
 const DIALOG_WIDTH: f32 = 560.0;
 const ROW_HEIGHT: f32 = 28.0;
 const ROWS: usize = 11;
-/// Width of the column of keys, enough for *Ctrl+Shift+Z*.
+/// Width of the column of keys, which fits *Ctrl+Shift+Z*.
 const KEYS: f32 = 104.0;
 
-/// State of the palette: the typed text, and the row that Enter selects.
+/// State of the palette: the typed text, and the row selected for Enter.
 #[derive(Default)]
 pub(in crate::ui) struct PaletteUiState {
     typed: String,
@@ -54,7 +54,7 @@ pub(in crate::ui) fn palette_ui(
     })
 }
 
-/// Returns the commands that match the typed text. The best match comes first, and unavailable commands come last.
+/// Returns the commands that match the typed text. Better matches come first, and unavailable commands come last.
 fn matching_commands(typed: &str, commands: Vec<Command>) -> Vec<Command> {
     let fitting = commands.into_iter().filter_map(|command| {
         let fit = match_score(typed, &command.name)
@@ -105,7 +105,7 @@ fn row_ui(ui: &mut Ui, theme: &Theme, rect: Rect, command: &Command, is_lit: boo
     let inner = rect.shrink2(vec2(theme.space.between, 0.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(inner).layout(Layout::right_to_left(Align::Center)), |ui| {
         ui.spacing_mut().item_spacing.x = theme.space.between;
-        // The keys have a column of their own, and so the names of the devices are aligned.
+        // The keys have a separate column, so the names of the devices are aligned.
         ui.allocate_ui_with_layout(vec2(KEYS, ROW_HEIGHT), Layout::right_to_left(Align::Center), |ui| {
             ui.set_min_width(KEYS);
             if let Some(keys) = command.shortcut {

@@ -1,4 +1,4 @@
-//! The question before an action that would cause a loss of data.
+//! The question asked before an action that would cause data loss.
 
 use egui::RichText;
 

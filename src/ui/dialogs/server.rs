@@ -1,4 +1,4 @@
-//! The form for the server of the logbook.
+//! The form for the logbook server.
 
 use egui::{RichText, Ui};
 
@@ -12,7 +12,7 @@ const WIDTH: f32 = 560.0;
 /// Height in points of the lines reserved for the result of a test.
 const OUTCOME_HEIGHT: f32 = 60.0;
 
-/// Text typed into the form. It is dropped when the form is closed.
+/// Text typed into the form. It is discarded when the form is closed.
 #[derive(Default)]
 pub(in crate::ui) struct ServerView {
     typed: Option<Typed>,
@@ -21,7 +21,7 @@ pub(in crate::ui) struct ServerView {
 struct Typed {
     address: String,
     password: String,
-    /// Entry of the password, whose state could contain the password after the form is closed.
+    /// The password entry. Its state could still contain the password after the form is closed.
     entry: Option<egui::Id>,
 }
 
@@ -72,7 +72,7 @@ fn outcome_ui(ui: &mut Ui, theme: &Theme, form: &ServerForm) {
         Some(Err(text)) => paragraph(ui, RichText::new(theme.format_text(text)).color(palette.bad)),
         None => ui.skip_ahead_auto_ids(1),
     }
-    // The buttons do not move under the pointer.
+    // This keeps the buttons from moving under the pointer.
     ui.add_space((top + OUTCOME_HEIGHT - ui.cursor().top()).max(0.0));
 }
 

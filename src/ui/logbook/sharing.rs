@@ -1,4 +1,4 @@
-//! The line below the entries, which shows whether the logbook is shared and what is missing from it.
+//! The line below the entries, which shows whether the logbook is shared and which entries are missing from it.
 
 use egui::{RichText, Ui};
 
@@ -22,7 +22,7 @@ pub(super) fn sharing_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &
     });
 }
 
-/// Returns the icon, colour and text of the state. A damaged file takes precedence over an unreachable server.
+/// Returns the icon, colour and text of the sharing state. A damaged file takes precedence over an unreachable server.
 fn state(theme: &Theme, studio: &Studio) -> (&'static str, crate::app::Rgb, Text) {
     let palette = theme.palette;
     let matches = studio.logbook().matches().and_then(|matches| matches.as_ref().ok());

@@ -1,4 +1,4 @@
-//! The panels of jobs and of the log, with completed work and notices.
+//! The Jobs and Log panels, which show completed jobs and notices.
 
 use egui::{RichText, ScrollArea, Ui};
 use egui_extras::{Column, TableBuilder};
@@ -22,7 +22,7 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     TableBuilder::new(ui)
         .id_salt("jobs")
         .auto_shrink(false)
-        // Otherwise, the last rows of a low panel would be below its end.
+        // Otherwise, the last rows of a low panel would be cut off.
         .min_scrolled_height(0.0)
         .column(Column::exact(64.0))
         .column(Column::exact(72.0))

@@ -1,4 +1,4 @@
-//! The panel with the position in large digits and the plot of its recording.
+//! The Live panel, which shows the position in large digits and a plot of its recording.
 
 use std::time::Duration;
 
@@ -10,22 +10,24 @@ use crate::ui::controls::{dropdown, empty_placeholder, enabled_button, icon_butt
 use crate::ui::page::with_stable_ids;
 use crate::ui::{Theme, Views, icons, plot};
 
-/// Polling intervals in microseconds. The first one is zero: each poll begins as soon as the previous one has ended.
+/// Polling intervals in microseconds. The first one is zero, which means that each poll begins as soon as the previous
+/// one has ended.
 const RATES: [(u64, &str); 4] =
     [(0, "live.fastest"), (50_000, "live.every_50"), (200_000, "live.every_200"), (1_000_000, "live.every_1000")];
 /// Sample intervals of a streaming adapter, in microseconds.
 const STREAMS: [(u64, &str); 3] = [(50, "live.stream_20k"), (200, "live.stream_5k"), (1_000, "live.stream_1k")];
-/// Polling interval in microseconds used if the chosen rate is not offered.
+/// Polling interval in microseconds to use if the chosen rate is not offered.
 const DEFAULT_INTERVAL_US: u64 = 50_000;
 
-/// Panel height in points below which the numbers beside the position are on one line.
+/// Panel height in points below which the numbers beside the position share one line.
 pub(crate) const LOW_PANEL_HEIGHT: f32 = 460.0;
 
-/// Minimum width of the rate selector, and minimum width of the panel at which the first button has a label, in points.
+/// Minimum width of the rate selector, in points.
 const MIN_RATE_WIDTH: f32 = 64.0;
+/// Minimum width of the panel at which the first button has a label, in points.
 const ONE_ROW: f32 = 280.0;
 
-/// Time in seconds after which an unchanged position is marked.
+/// Time in seconds after which an unchanged position is marked as such.
 const UNCHANGED_MARK_S: f32 = 0.4;
 
 pub(in crate::ui) fn live_ui(
@@ -53,7 +55,7 @@ pub(in crate::ui) fn live_ui(
     }
 }
 
-/// Draws the reason why the values are paused. The space is always reserved, so the content below does not move.
+/// Draws the reason why the values are paused. Its space is always reserved, so the content below does not move.
 fn pause_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, paused: bool) {
     let size = egui::vec2(ui.available_width().max(0.0), theme.sizes.caption + theme.space.inside);
     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -66,7 +68,7 @@ fn pause_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, paused: bool) {
 }
 
 /// Returns whether a job prevents the position from being read. Very short jobs are ignored, because the number would
-/// only flicker.
+/// flicker.
 fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     let waits = device.is_polling() && device.is_busy();
     let id = egui::Id::unique(device.id()).with("job_pause");
@@ -92,13 +94,13 @@ pub(in crate::ui) fn plot_ui(
     }
 }
 
-/// Draws a short remark beside the position. It is truncated at the edge of the panel, because a panel must not outgrow
-/// the window.
+/// Draws a short remark beside the position. It is truncated at the edge of the panel, because a panel must not become
+/// wider than the window.
 pub(crate) fn remark_ui(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
     ui.add(egui::Label::new(RichText::new(theme.translate(word)).color(ink)).truncate());
 }
 
-/// Draws the rows of a position that has not been read. They reserve space, so the buttons below do not move later.
+/// Draws the rows for a position that has not been read. They reserve space, so the buttons below do not move later.
 pub(crate) fn unknown_rows(ui: &mut Ui, theme: &Theme, labels: &[&'static str]) {
     const UNKNOWN: &str = "–";
     if ui.available_height() < LOW_PANEL_HEIGHT {
@@ -110,7 +112,7 @@ pub(crate) fn unknown_rows(ui: &mut Ui, theme: &Theme, labels: &[&'static str]) 
     }
 }
 
-/// Draws the position as sent by the device, in a smaller font if it does not fit on one line.
+/// Draws the position as sent by the device. It is drawn in a smaller font if it does not fit on one line.
 pub(crate) fn raw_row(ui: &mut Ui, theme: &Theme, value: String) {
     let value = theme.monospace(value);
     let room = ui.available_width() - label_width(ui) - ui.spacing().item_spacing.x;

@@ -1,4 +1,4 @@
-//! The panels around the workspace: live values, the trace, jobs, the log.
+//! The panels around the workspace: live values, trace, jobs and log.
 
 mod lists;
 pub(crate) mod live;

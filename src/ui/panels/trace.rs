@@ -1,6 +1,6 @@
-//! The trace panel of the selected session: time, gap, direction, bytes, meaning. The newest frame is at the bottom and
-//! stays visible until the user scrolls up or pauses the list. The visible frames then keep their position while others
-//! arrive. A selected frame is shown with all of its bytes beside the list.
+//! The trace panel of the selected session: time, gap, direction, bytes and meaning. The newest frame is at the bottom
+//! and stays visible until the user scrolls up or pauses the list. Then the visible frames keep their position while
+//! others arrive. A selected frame is shown beside the list with all of its bytes.
 
 mod detail;
 
@@ -18,10 +18,11 @@ const ROW_HEIGHT: f32 = 18.0;
 const TIME: &str = "%H:%M:%S%.3f";
 /// Width of the search entry in points.
 const SEARCH_WIDTH: f32 = 200.0;
-/// Widths of the columns with the time and the gap, and of the arrow.
+/// Widths of the time and gap columns, in points.
 const TIMES: [f32; 2] = [96.0, 76.0];
+/// Width of the direction arrow, in points.
 const ARROW_WIDTH: f32 = 16.0;
-/// Fraction of the remaining width for the column of bytes.
+/// Fraction of the remaining width for the bytes column.
 const BYTES_SHARE: f32 = 0.48;
 /// Width of a selected frame beside the list in points.
 const DETAIL_WIDTH: f32 = 290.0;
@@ -35,7 +36,7 @@ pub(in crate::ui) struct TraceView {
     paused_at: Option<u64>,
     /// Number of the selected frame.
     selected: Option<u64>,
-    /// Number of rows that the log had removed when the list was last drawn with the same filter.
+    /// Number of rows that the log had removed when the list was last drawn with this filter.
     removed: Option<u64>,
     offset: f32,
     /// Whether the user has scrolled up.
@@ -48,7 +49,7 @@ impl TraceView {
             let filter = std::mem::take(&mut self.filter);
             *self = TraceView { session: Some(session), filter, ..TraceView::default() };
         }
-        // A new connection starts a new log, to which an old pause does not apply.
+        // A new connection starts a new log, to which an earlier pause does not apply.
         self.paused_at = self.paused_at.filter(|end| *end <= log.next_number());
     }
 }
@@ -129,7 +130,7 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jum
         .id_salt("trace")
         .auto_shrink(false)
         .sense(Sense::click())
-        // Otherwise, the last rows of a low panel would be below its end.
+        // Otherwise, the last rows of a low panel would be cut off.
         .min_scrolled_height(0.0)
         .stick_to_bottom(true);
     if jumps_to_end {
@@ -156,8 +157,8 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jum
                 let before = number.checked_sub(1).and_then(|before| log.line_by_number(before));
                 row.set_selected(selected == Some(number));
                 let height = line_ui(&mut row, theme, log, line, before);
-                // While frames arrive, the row under the pointer is another one at the release. A row that has just
-                // appeared has no response yet.
+                // While frames arrive, a different row may be under the pointer when the button is released. A row that
+                // has just appeared has no response yet.
                 if pressed.is_some_and(|place| height.contains(place.y)) {
                     clicked = Some(number);
                 }
@@ -175,7 +176,7 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jum
     view.is_behind = view.offset + drawn.inner_rect.height() < drawn.content_size.y - pitch / 2.0;
 }
 
-/// Draws search, filter, pause and save. Returns whether the newest frame is to be shown.
+/// Draws the search, filter, pause and save controls. Returns whether to show the newest frame.
 fn toolbar_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, actions: &mut Vec<Action>) -> bool {
     let mut jumps_to_end = false;
     ui.horizontal(|ui| {

@@ -1,4 +1,4 @@
-//! Ticks and their labels: round steps of values, and of time in a suitable unit. All functions are pure.
+//! Ticks and their labels: round steps for values, and for times in a suitable unit. All functions are pure.
 
 use crate::analysis::SampleTime;
 use crate::app::recorder::SAMPLE;
@@ -11,7 +11,7 @@ pub(super) fn value_label(value: f64, step: f64, language: Language) -> String {
     if value.abs() >= 1e9 { format!("{value:.2e}") } else { format_decimal(value, decimals, language) }
 }
 
-/// Returns a range that contains `low` to `high` and has at least the length `least`. Its limits are multiples of a
+/// Returns a range that includes `low` to `high` and has at least the length `least`. Its limits are multiples of a
 /// round step, so the range does not change with every sample.
 pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     let (low, high) = if high - low < least {
@@ -22,7 +22,8 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     };
     let span = high - low;
     if !span.is_finite() || span <= 0.0 {
-        // The values are so large that a double cannot hold their difference. They are not measured.
+        // The values are so large that their difference exceeds the range of a double. Such values are not measured
+        // values.
         return (f64::MIN / 4.0, f64::MAX / 4.0);
     }
     let (low, high) = (low - span * 0.04, high + span * 0.04);
@@ -33,7 +34,7 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
 #[derive(Debug, PartialEq)]
 pub(super) struct TimeTicks {
     pub(super) ticks: Vec<(SampleTime, String)>,
-    /// Reference time of the labels. `None` if they count from the beginning.
+    /// Reference time of the labels, or `None` if the labels count from the beginning.
     pub(super) base: Option<String>,
 }
 
@@ -42,7 +43,7 @@ const SECOND: i64 = 1_000_000_000;
 pub(super) fn time_ticks(from: SampleTime, to: SampleTime, most: usize, language: Language) -> TimeTicks {
     let span = to.nanoseconds_since(from).max(1);
     let step = time_step(span, most.max(1));
-    // If labels would differ in their last digits only, they count from a round time before them.
+    // If labels would differ only in their last digits, they count from a round time before them.
     let coarse = if step < SECOND && from.as_nanoseconds().abs() > 2000 * step {
         Some(axis_base_time(from, step))
     } else {
@@ -154,7 +155,7 @@ fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
     }
 }
 
-/// Formats a point in time with the precision of a plot that spans `span` nanoseconds.
+/// Formats a time with the precision of a plot that spans `span` nanoseconds.
 pub(super) fn time_of_day(time: SampleTime, span: i64, language: Language) -> String {
     let nanoseconds = time.as_nanoseconds();
     let digits = [(SECOND, 3), (SECOND / 1_000, 6), (0, 9)].into_iter().find(|(least, _)| span >= *least);
@@ -286,7 +287,7 @@ mod tests {
     #[test]
     fn every_time_span_has_a_reasonable_number_of_ticks() {
         let mut span = 1;
-        // A hundred days: no view is longer.
+        // A hundred days, the length of the longest view.
         while span < 8_640_000 * SECOND {
             for from in [0, -span, 123_456_789_012, i64::MAX / 2] {
                 let ticks = time_ticks(

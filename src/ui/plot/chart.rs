@@ -9,7 +9,7 @@ use super::{Context, axes};
 use crate::app::recorder::{Cursor, Series, TriggerState};
 use crate::ui::Theme;
 
-/// Lane height in points below which the names of the lines are omitted.
+/// Lane height in points below which line names are omitted.
 const LOW_LANE_HEIGHT: f32 = 64.0;
 
 pub(super) fn series_colour(theme: &Theme, line: &Series) -> Color32 {
@@ -77,13 +77,14 @@ fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &F
     }
 }
 
-/// Minimum distance of a label from the edge of its lane, and half the height of a label.
+/// Minimum distance of a label from the edge of its lane, in points.
 const EDGE_DISTANCE: f32 = 2.0;
+/// Half of the height of a label, in points.
 const HALF_LABEL_HEIGHT: f32 = 5.5;
 
 /// Returns the labelled ticks with the heights of their labels. A label is normally beside its tick line, because the
-/// space between two lanes holds half a label. In a small lane with fewer than two such ticks, the labels of the
-/// outermost ticks are on the inside.
+/// space between two lanes holds half a label. If a small lane has fewer than two such ticks, the labels of the
+/// outermost ticks are moved inside.
 fn labelled_ticks(ticks: &[(f64, f32)], top: f32, bottom: f32) -> Vec<(f64, f32)> {
     let inside: Vec<(f64, f32)> =
         ticks.iter().copied().filter(|(_, y)| (top + EDGE_DISTANCE..=bottom - EDGE_DISTANCE).contains(y)).collect();
@@ -133,7 +134,7 @@ fn paint_lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: 
 fn paint_names(painter: &Painter, context: &Context<'_>, lane: &Lane) {
     let theme = context.theme;
     if lane.rect.height() < LOW_LANE_HEIGHT {
-        // The names would cover the line. The numbers below show them too.
+        // The names would cover the line. The numbers below also show them.
         return;
     }
     let mut place = lane.rect.min + vec2(8.0, 4.0);
@@ -164,7 +165,7 @@ fn paint_cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font
         let handle = Rect::from_center_size(pos2(x, layout.chart.top() + 8.0), vec2(16.0, 16.0));
         painter.rect_filled(handle, 3.0, palette.text);
         painter.text(handle.center(), Align2::CENTER_CENTER, cursor.keyword(), font.clone(), palette.sunken.into());
-        // Mark where the cursor crosses the lines. These are the raw samples of the readout.
+        // Marks the points at which the cursor crosses the lines. These are the raw samples of the readout.
         for (lane, line) in layout.lanes.iter().flat_map(|lane| lane.lines.iter().map(move |line| (lane, line))) {
             if let Some(line) = context.recorder.series_by_id(*line) {
                 paint_dot(painter, context, layout, lane, line, time);
@@ -247,7 +248,7 @@ mod tests {
 
     #[test]
     fn a_low_lane_has_labels_at_both_ends() {
-        // Lines at both edges and in the middle; heights grow downwards.
+        // Lines at both edges and in the middle. Heights increase downwards.
         let low = [(-5.0, 27.0), (0.0, 13.5), (5.0, 0.0)];
         assert_eq!(labelled_ticks(&low, 0.0, 27.0), [(-5.0, 21.5), (5.0, 5.5)]);
         let high = [(-5.0, 100.0), (-2.5, 75.0), (0.0, 50.0), (2.5, 25.0), (5.0, 0.0)];

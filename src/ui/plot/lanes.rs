@@ -1,5 +1,5 @@
-//! The layout of a plot: one lane per line or a common lane, and the values of each. The reduced samples are
-//! recalculated only when samples or view have changed.
+//! The layout of a plot, with one lane per line or a common lane, and the values in each lane. The reduced samples are
+//! recalculated only if the samples or the view have changed.
 
 use std::ops::Range;
 
@@ -12,13 +12,15 @@ use crate::app::recorder::{Recorder, SampleGroupStamp, Series, SeriesId};
 
 /// Gap between two lanes, in points.
 const LANE_GAP: f32 = 6.0;
-/// Minimum and maximum width of the value labels on the left, in points.
+/// Minimum width of the value labels on the left, in points.
 const MIN_LABEL_WIDTH: f32 = 44.0;
+/// Maximum width of the value labels on the left, in points.
 const MAX_LABEL_WIDTH: f32 = 110.0;
 /// Height of the time labels at the bottom, in points.
 const TIME_LABEL_HEIGHT: f32 = 18.0;
-/// Minimum distance between two ticks in points, normally and in a small lane.
+/// Minimum distance between two ticks of a normal lane, in points.
 const TICK_SPACING: f32 = 28.0;
+/// Minimum distance between two ticks of a low lane, in points.
 const LOW_LANE_TICK_SPACING: f32 = 13.0;
 /// Width in points of a character of an axis label, whose font is monospaced.
 const CHARACTER_WIDTH: f32 = 6.7;
@@ -51,7 +53,7 @@ pub(super) struct ReducedLane {
     gutter: f32,
 }
 
-/// Inputs of a picture, which is drawn again only if they change.
+/// The inputs of a picture. The picture is calculated again only if they change.
 #[derive(Clone, PartialEq)]
 struct PictureInputs {
     samples: Option<SampleGroupStamp>,
@@ -77,7 +79,7 @@ impl ReducedLane {
             if self.made.iter().any(|(id, made, own)| *id == line.id && *made == wanted && *own == range) {
                 continue;
             }
-            // Lines share one cut if their samples were taken together.
+            // Lines share a cut if their samples were taken together.
             if !cuts.iter().any(|(made, _)| *made == wanted) {
                 cuts.push((wanted.clone(), history.divide_into_pixels(grid)));
             }
@@ -100,7 +102,7 @@ impl ReducedLane {
     /// Returns the minimum and maximum of the visible values, in the line's unit.
     fn value_extent(&self, line: &Series, time: &TimeAxis, chart: Rect) -> Option<(f64, f64)> {
         let picture = self.picture_of(line.id)?;
-        // The neighbours beyond the edges only continue the line. They do not count for the range.
+        // The samples beyond the edges only continue the line. They do not affect the range.
         let visible = |pixel: &&crate::analysis::history::Pixel| {
             time.x(pixel.to) >= chart.left() && time.x(pixel.from) <= chart.right()
         };
@@ -120,7 +122,7 @@ pub(super) fn compute_layout(
     reduced: &mut ReducedLane,
 ) -> Layout {
     // The width of the labels depends on the values, and the values depend on the width. The width of the previous
-    // frame is tried first. A picture that changes little is then made only once.
+    // frame is tried first, so a picture that changes little is calculated only once.
     let (from, to) = recorder.window_bounds();
     let groups = lane_groups(recorder);
     let mut gutter = reduced.gutter.clamp(MIN_LABEL_WIDTH, MAX_LABEL_WIDTH);
@@ -135,7 +137,7 @@ pub(super) fn compute_layout(
         let lanes = lay_out_lanes(chart, &groups, &time, reduced);
         let needed = (max_label_len(&lanes) as f32 * CHARACTER_WIDTH + 10.0).clamp(MIN_LABEL_WIDTH, MAX_LABEL_WIDTH);
         if needed <= gutter || rect.width() < gutter * 3.0 {
-            // The space is released in the next frame if it is more than a character or two. The width must not jump
+            // Space is released in the next frame only if it exceeds a character or two, so the width does not change
             // with every sample.
             reduced.gutter = if gutter - needed > 2.0 * CHARACTER_WIDTH { needed } else { gutter };
             return Layout { lanes, time, chart };
@@ -178,8 +180,8 @@ fn value_step((low, high): (f64, f64), height: f32) -> f64 {
     if axes::tick_values(low, high, step).count() < 2 { of_distance(LOW_LANE_TICK_SPACING) } else { step }
 }
 
-/// Returns the value range of a lane, as chosen by the user or fitted to the values. Returns `None` if the lane has no
-/// values.
+/// Returns the value range of a lane, either chosen by the user or fitted to the values. Returns `None` if the lane has
+/// no values.
 fn lane_range(lines: &[&Series], time: &TimeAxis, chart: Rect, reduced: &ReducedLane) -> Option<(f64, f64)> {
     if let Some(range) = lines.iter().find_map(|line| line.range) {
         return Some(range);
@@ -255,7 +257,7 @@ mod tests {
         let chart = compute_layout(&recorder, RECT, 1.0, &mut reduced).chart;
         assert!(reduced.made == made, "nothing has changed");
         assert_eq!(chart.left(), RECT.left() + gutter);
-        // Wide labels of an earlier picture do not keep the space forever.
+        // Wide labels of an earlier picture must not reserve space forever.
         let short = self::recorder(1.0);
         compute_layout(&short, RECT, 1.0, &mut reduced);
         assert!(compute_layout(&short, RECT, 1.0, &mut reduced).chart.left() < chart.left());

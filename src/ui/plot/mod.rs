@@ -1,8 +1,8 @@
-//! The plot. It draws a recorder, and turns pointer and keyboard input into actions.
+//! The plot, which draws a recorder and turns pointer and keyboard input into actions.
 //!
 //! A drag selects a box to zoom into, or moves a cursor. A drag with the right button or Shift moves the picture. The
-//! wheel makes the time span longer or shorter around the pointer. A double click shows everything. Keys: ← and → move,
-//! + and − zoom, Home shows everything, End shows the newest samples, and A and B set the cursors.
+//! wheel lengthens or shortens the time span around the pointer. A double click shows everything. Keys: ← and → move, +
+//! and − zoom, Home shows everything, End shows the newest samples, and A and B set the cursors.
 
 mod axes;
 mod chart;
@@ -28,12 +28,12 @@ pub struct PlotUiState {
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
     shot: snapshot::Screenshot,
-    /// Whether the plot fills the page. `None` if it cannot be enlarged.
+    /// Whether the plot fills the page, or `None` if it cannot be enlarged.
     large: Option<bool>,
 }
 
 impl PlotUiState {
-    /// Creates the state of a plot in a side panel that can expand to the whole page.
+    /// Creates the state of a plot in a side panel, which can expand to the whole page.
     pub(in crate::ui) fn for_panel() -> Self {
         PlotUiState { large: Some(false), ..PlotUiState::default() }
     }
@@ -42,7 +42,7 @@ impl PlotUiState {
         self.large == Some(true)
     }
 
-    /// Moves the plot back into its panel. Returns false if the plot was already there.
+    /// Moves the plot back to its panel. Returns `false` if it was already there.
     pub(in crate::ui) fn restore_size(&mut self) -> bool {
         let was = self.is_expanded();
         self.large = self.large.map(|_| false);
@@ -50,7 +50,7 @@ impl PlotUiState {
     }
 }
 
-/// Recorder of a plot, and the list for the user's actions.
+/// The recorder of a plot, and the list that collects the user's actions.
 pub(super) struct Context<'a> {
     theme: &'a Theme,
     recorder: &'a Recorder,
@@ -64,7 +64,7 @@ impl Context<'_> {
     }
 }
 
-/// Draws a recorder with its toolbar in the available space. `invitation` explains how to record samples.
+/// Draws a recorder and its toolbar in the available space. `invitation` explains how to record samples.
 pub fn plot_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -82,7 +82,7 @@ pub fn plot_ui(
     toolbar::toolbar_ui(ui, context, view);
     let top = ui.cursor().top();
     let below = ui.available_height();
-    // The readout is below the chart. Its height is known from the previous frame.
+    // The readout is below the chart. Its height is taken from the previous frame.
     let readout_id = ui.scope_id().with("readout");
     let readout = ui.data(|data| data.get_temp::<f32>(readout_id)).unwrap_or(0.0);
     // In a low panel, the numbers scroll, and the chart keeps half of the space.
@@ -94,7 +94,7 @@ pub fn plot_ui(
         ui.data_mut(|data| data.insert_temp(readout_id, used));
         ui.ctx().request_repaint();
     }
-    // The picture excludes the tools. It includes the numbers if all of them are visible.
+    // The picture excludes the toolbar. It includes the numbers if all of them are visible.
     let shown = ui.min_rect();
     let bottom = if used <= shown.bottom() - top - height + 0.5 { shown.bottom() } else { top + height };
     let picture = Rect::from_min_max(egui::pos2(shown.left(), top), egui::pos2(shown.right(), bottom));

@@ -1,4 +1,4 @@
-//! Pointer and keyboard on the chart.
+//! Pointer and keyboard input on the chart.
 
 use egui::{EventFilter, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui};
 
@@ -9,7 +9,7 @@ use crate::app::recorder::{Cursor, RecorderAction};
 
 /// Distance in points within which the pointer grabs a cursor.
 const GRAB_DISTANCE: f32 = 6.0;
-/// Size in points of a dragged box below which the drag is a click.
+/// Size of a dragged box, in points, below which the drag counts as a click.
 const CLICK_SIZE: f32 = 5.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub(super) enum Drag {
         from: Pos2,
         to: Pos2,
     },
-    /// The picture itself, with the time under the pointer at the start of the drag.
+    /// A drag of the picture, with the time under the pointer at the start of the drag.
     Picture {
         under: SampleTime,
         window: (SampleTime, SampleTime),
@@ -94,8 +94,7 @@ fn continue_drag(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout
     }
 }
 
-/// Zooms into the chosen box. A wide box selects a time span, a tall box a value range, and a box that is both selects
-/// both.
+/// Zooms into the dragged box. A wide box selects a time span, a tall box a value range, and a large box both.
 fn zoom_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     let chosen = chosen.intersect(layout.chart);
     if chosen.width() >= CLICK_SIZE {
@@ -103,7 +102,7 @@ fn zoom_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     }
     let Some(lane) = layout.lanes.iter().find(|lane| lane.rect.contains(chosen.center())) else { return };
     let part = chosen.intersect(lane.rect).height();
-    // A drag is never exactly along a line. A flat box therefore selects only the time, and so does one over the whole
+    // A drag is never exactly horizontal. A flat box therefore selects only the time, as does one that covers the whole
     // lane.
     if part >= CLICK_SIZE * 3.0 && part < lane.rect.height() * 0.9 {
         let axis = lane.value_axis();
@@ -121,7 +120,7 @@ fn handle_hover(ui: &Ui, response: &Response, context: &mut Context<'_>, layout:
         ui.ctx().set_cursor_icon(egui::CursorIcon::ResizeHorizontal);
     }
     let zoom = ui.input(egui::InputState::zoom_delta);
-    // Take the wheel input, or the page around the plot would scroll too.
+    // Consume the wheel input. Otherwise, the page around the plot would scroll as well.
     let scroll = ui.input_mut(|input| std::mem::take(&mut input.smooth_scroll_delta));
     let factor = f64::from((-scroll.y * 0.005).exp() / zoom);
     if (factor - 1.0).abs() > 1e-4 {

@@ -1,4 +1,4 @@
-//! The numbers below the chart. For each line, they show the raw sample under the pointer, or the newest one, and the
+//! The numbers below the chart. For each line, they show the raw sample under the pointer or the newest sample, and the
 //! readings of the cursors.
 
 use egui::{RichText, Sense, Ui, vec2};
@@ -53,7 +53,7 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Sam
     }
 }
 
-/// Minimum width in points at which the numbers of all lines are stacked.
+/// Minimum width in points at which the numbers of the lines are stacked.
 const STACKED_WIDTH: f32 = 640.0;
 
 fn table_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<SampleTime>) {
@@ -168,7 +168,7 @@ fn cursor_figures(theme: &Theme, line: &Series, measured: &CursorReadings) -> Ve
             (theme.translate("recorder.mean"), number(Some(between.mean))),
             (theme.translate("recorder.min"), number(Some(between.min))),
             (theme.translate("recorder.max"), number(Some(between.max))),
-            // One more decimal, because noise is smaller than the values.
+            // Use one more decimal, because noise is smaller than the values.
             ("σ".to_owned(), theme.format_number(between.deviation, decimals + 1)),
             ("n".to_owned(), between.count.to_string()),
         ]);
@@ -208,7 +208,7 @@ fn small_text(theme: &Theme, words: impl Into<String>) -> RichText {
 }
 
 fn figure_ui(ui: &mut Ui, theme: &Theme, label: &str, value: &str) {
-    // The sign and the number must not be separated at the end of a line.
+    // The sign and the number must not be separated by a line break.
     let mut job = egui::text::LayoutJob::default();
     let format = |size, colour: crate::app::Rgb| egui::TextFormat {
         font_id: egui::FontId::monospace(size),

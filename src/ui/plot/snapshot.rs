@@ -1,5 +1,5 @@
-//! A picture of the plot. The window delivers its pixels some frames later, and the part with the plot is cut out. The
-//! whole plot must be visible, without a menu or the pointer over it.
+//! Pictures of the plot. The window delivers its pixels some frames after a request, and the part that contains the
+//! plot is cropped. The whole plot must be visible, without a menu or the pointer over it.
 
 use std::sync::{Arc, OnceLock};
 
@@ -11,9 +11,9 @@ use crate::app::{Action, Picture};
 pub(super) enum Screenshot {
     #[default]
     None,
-    /// A picture was requested and waits until the plot is visible. Contains the number of frames waited so far.
+    /// A picture was requested and is waiting until the plot is visible. Contains the number of frames waited so far.
     Wanted(usize),
-    /// The window's pixels were requested. The rectangle is the plot's position in the previous frame.
+    /// The window's pixels were requested. The rectangle is the position of the plot in the previous frame.
     Asked(Arc<OnceLock<Arc<ColorImage>>>, Rect),
 }
 
@@ -21,7 +21,7 @@ pub(super) enum Screenshot {
 const FRAMES: usize = 60;
 
 impl Screenshot {
-    /// Requests a picture of a later frame, because the menu is still open in the present one.
+    /// Requests a picture of a later frame, because the menu is still open in the current one.
     pub(super) fn request(&mut self, ctx: &Context) {
         *self = Screenshot::Wanted(0);
         ctx.request_repaint();
@@ -32,8 +32,8 @@ impl Screenshot {
         !matches!(self, Screenshot::None)
     }
 
-    /// Handles the plot drawn at `plot`. Requests the window's pixels once the whole plot is visible. When the pixels
-    /// have arrived, crops the picture to the plot.
+    /// Handles the plot drawn at `plot`. Requests the window's pixels once the whole plot is visible. When they have
+    /// arrived, crops them to the plot.
     pub(super) fn handle_plot(&mut self, ui: &Ui, plot: Rect, actions: &mut Vec<Action>) {
         match self {
             Screenshot::None => {}
@@ -118,7 +118,7 @@ mod tests {
         );
     }
 
-    /// Draws a frame with a plot at the given position in an area of the given size. Returns the requests made in the
+    /// Draws a frame with a plot at the given position in an area of the given size. Returns the requests made in this
     /// frame.
     fn frame(ctx: &Context, shot: &mut Screenshot, area: f32, plot: Rect) -> Vec<Action> {
         let mut actions = Vec::new();
@@ -132,8 +132,7 @@ mod tests {
         actions
     }
 
-    /// The picture shows the whole plot as it was in the frame of the pixels, without the menu and without its
-    /// surroundings.
+    /// The picture shows the whole plot as it was in the frame of the pixels, without the menu or anything else.
     #[test]
     fn the_snapshot_shows_exactly_the_plot_of_its_frame() {
         let ctx = Context::default();
@@ -144,7 +143,7 @@ mod tests {
         assert!(frame(&ctx, &mut shot, 8.0, place(1.0)).is_empty());
         assert!(matches!(shot, Screenshot::Wanted(1)), "the menu is still open in this frame");
         frame(&ctx, &mut shot, 8.0, place(1.0));
-        // It moves in the kept frame, and again before the pixels have arrived.
+        // The plot moves in the captured frame, and again before the pixels have arrived.
         frame(&ctx, &mut shot, 8.0, place(4.0));
         let Screenshot::Asked(pixels, _) = &shot else { panic!() };
         let mut image = ColorImage::filled([8, 8], Color32::BLACK);
@@ -158,7 +157,7 @@ mod tests {
         assert!(!shot.is_wanted());
     }
 
-    /// No picture is taken of a plot that is partly hidden, and this is reported.
+    /// A plot that is partly hidden is not captured, and this is reported.
     #[test]
     fn a_partly_hidden_plot_yields_no_snapshot() {
         let ctx = Context::default();

@@ -1,4 +1,4 @@
-//! The plot's tools: hold and follow, the time span, cursors, trigger, lines and their units, export.
+//! The plot's toolbar: hold and follow, time span, cursors, trigger, lines with their units, and export.
 
 use egui::{RichText, Ui};
 
@@ -22,7 +22,7 @@ const SPANS: [(i64, &str); 10] = [
     (86_400, "recorder.span_86400"),
 ];
 
-/// Minimum width in points at which all tools are in one row. In a narrower panel, some of them are in a menu.
+/// Minimum width in points at which all tools fit in one row. In a narrower panel, some of them are in a menu.
 const ONE_ROW: f32 = 284.0;
 
 pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut PlotUiState) {
@@ -30,7 +30,7 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut Plot
     let narrow = ui.available_width() < ONE_ROW;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(theme.space.inside, theme.space.inside);
-        // The padding is smaller, so one row suffices in a panel at the side of the window.
+        // The padding is reduced, so one row is enough in a side panel.
         ui.spacing_mut().button_padding.x = 6.0;
         let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
             icon_button(ui, enabled, icon, &theme.translate(id)).clicked()
@@ -77,11 +77,11 @@ fn switch_ui(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: 
     response.on_hover_text(&word).on_disabled_hover_text(&word).clicked()
 }
 
-/// Draws the time span selector. It shows a preset, or the span that results from zooming.
+/// Draws the time span selector. It shows a preset or the span that results from zooming.
 fn span_ui(ui: &mut Ui, context: &mut Context<'_>) {
     const SECOND: i64 = 1_000_000_000;
     if context.recorder.counts_samples() {
-        // Samples without times have no seconds. The number of samples is selected by zooming.
+        // Samples without times have no seconds. Their number is selected by zooming.
         return;
     }
     let (theme, span) = (context.theme, context.recorder.window_length());

@@ -1,5 +1,5 @@
-//! A line of samples as shapes. Dense samples are one mesh without antialiasing, which is fast to fill. Sparse samples
-//! are a smooth line with dots. Breaks are gaps, and invalid samples and warnings are always visible.
+//! Drawing a line of samples as shapes. Dense samples form one mesh without antialiasing, which is fast to fill. Sparse
+//! samples form a smooth line with dots. Breaks appear as gaps, and invalid samples and warnings are always visible.
 
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
@@ -8,7 +8,7 @@ use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, HistoryPicture};
 
 const LINE_WIDTH: f32 = 1.5;
-/// Maximum number of points for a smooth line.
+/// Maximum number of points of a smooth line.
 const MAX_SMOOTH_POINTS: usize = 1500;
 /// Minimum sample spacing in points at which each sample is drawn with a dot.
 const DOT_SPACING: f32 = 8.0;
@@ -28,8 +28,8 @@ impl TimeAxis {
         self.left + (time.nanoseconds_since(self.from) as f64 * self.scale) as f32
     }
 
-    /// Returns the left edge of the pixel column for a time. Columns have fixed positions that do not depend on the
-    /// samples.
+    /// Returns the left edge of the pixel column for a time. The positions of columns are fixed and do not depend on
+    /// the samples.
     fn column(&self, time: SampleTime) -> f32 {
         self.left + ((self.x(time) - self.left) / self.pixel).floor() * self.pixel
     }
@@ -43,7 +43,7 @@ impl TimeAxis {
 pub(super) struct ValueAxis {
     pub(super) low: f64,
     pub(super) bottom: f32,
-    /// Points per value unit. It is never zero.
+    /// Points per value unit, never zero.
     pub(super) scale: f64,
 }
 
@@ -55,7 +55,7 @@ impl ValueAxis {
     }
 
     pub(super) fn y(&self, value: f64) -> f32 {
-        // The exact place does not matter far outside, but it must stay in the range of f32.
+        // Far outside, the exact position does not matter, but it must stay within the range of f32.
         let y = f64::from(self.bottom) - (value - self.low) * self.scale;
         y.clamp(-1e6, 1e6) as f32
     }
@@ -71,7 +71,7 @@ pub(super) struct TraceStyle {
     /// Factor from the unit of the samples to the displayed unit.
     pub(super) factor: f64,
     pub(super) marks: bool,
-    /// Colours of invalid samples and of samples with a warning.
+    /// Colours of invalid samples and of warnings.
     pub(super) bad: Color32,
     pub(super) warning: Color32,
 }
@@ -113,11 +113,11 @@ fn draw_dense_trace(
         let y = |own: f64| value.y(own * pen.factor);
         let (one, other) = (y(values.min), y(values.max));
         let (mut top, mut bottom) = (one.min(other), one.max(other));
-        // The last sample is always in the column. The first may be slightly before it.
+        // The last sample is always in the column. The first one may be slightly before it.
         let left = time.column(pixel.to);
         if let Some((x, y)) = before.filter(|_| pixel.joined) {
             (top, bottom) = (top.min(y), bottom.max(y));
-            // Bridge the columns without samples in between.
+            // Bridge the gap if there are columns without samples in between.
             if left > x + 0.01 {
                 add_bar(
                     &mut mesh,
@@ -165,7 +165,7 @@ fn draw_sparse_trace(
     for (at, pixel) in picture.pixels.iter().enumerate() {
         let Some(values) = pixel.values else { continue };
         let here = pos2(time.x(pixel.from), value.y(values.first * pen.factor));
-        // A sample that is joined to neither side would be invisible.
+        // Without this, a sample that is joined on neither side would be invisible.
         let lonely = !pixel.joined && picture.pixels.get(at + 1).is_none_or(|next| !next.joined);
         if (dots || lonely) && lane.contains(here) {
             out.push(Shape::circle_filled(here, 2.0, pen.colour));
@@ -192,7 +192,7 @@ fn draw_sparse_trace(
 fn add_segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
     let along = (to - from).normalized() * (LINE_WIDTH / 2.0);
     let (across, first) = (along.rot90(), mesh.vertices.len() as u32);
-    // Extend the pieces slightly, because they would leave a notch at an angle.
+    // Extend the segments slightly. Otherwise, they would leave a notch at an angle.
     let (from, to) = (from - along * 0.5, to + along * 0.5);
     mesh.vertices.extend([from + across, to + across, from - across, to - across].map(|pos| Vertex {
         pos,
@@ -229,7 +229,7 @@ fn clip_segment(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
     (enters <= leaves).then(|| (from + along * enters, from + along * leaves))
 }
 
-/// Draws ticks at the bottom of the lane for invalid samples and warnings, regardless of the zoom.
+/// Draws ticks at the bottom of the lane for invalid samples and warnings, at any zoom level.
 fn add_flag_ticks(picture: &HistoryPicture, lane: Rect, time: &TimeAxis, pen: &TraceStyle, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
     for pixel in &picture.pixels {
@@ -270,7 +270,7 @@ mod tests {
         assert_eq!(clip_segment(pos2(50.0, -50.0), pos2(50.0, 25.0), LANE), Some((pos2(50.0, 0.0), pos2(50.0, 25.0))));
     }
 
-    /// Draws `count` samples spread evenly over 100 columns of one nanosecond each, some of them flagged.
+    /// Draws `count` samples spread evenly over 100 columns of one nanosecond each. `flags` marks some of them.
     fn drawn(count: i64, value: impl Fn(i64) -> f64, flags: impl Fn(i64) -> Flags) -> Vec<Shape> {
         let mut history = History::new(&[Kind::Real], 1_000_000);
         let times: Vec<SampleTime> = (0..count).map(|at| SampleTime::from_nanoseconds(at * 100_000 / count)).collect();

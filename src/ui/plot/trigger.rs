@@ -1,4 +1,4 @@
-//! The form of a trigger: the line, the event, the level, and the fraction of the samples before the event.
+//! The form for a trigger: the line, the event, the level, and the fraction of the view before the event.
 
 use egui::{RichText, Ui};
 

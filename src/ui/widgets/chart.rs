@@ -1,5 +1,5 @@
-//! Small static charts with curves or bars: the position error over a period, its harmonics, a spectrum. Drawn by
-//! egui_plot, in the window's theme.
+//! Small static charts with curves or bars, such as the position error over a period, its harmonics, or a spectrum.
+//! They are drawn by egui_plot in the theme of the window.
 //!
 //! * **Size**: the available width, the given height.
 //! * **Keyboard**: none; Tab skips it.
@@ -23,15 +23,15 @@ pub struct Chart<'a> {
     pub height: f32,
     pub x_unit: &'a str,
     pub y_unit: &'a str,
-    /// Limits of the horizontal axis. `None` fits them to the data.
+    /// Limits of the horizontal axis, or `None` to fit them to the data.
     pub x_range: Option<(f64, f64)>,
-    /// Tick spacing of the horizontal axis. `None` is automatic.
+    /// Tick spacing of the horizontal axis, or `None` for automatic spacing.
     pub x_step: Option<f64>,
     /// Value that the vertical axis always includes.
     pub y_floor: Option<f64>,
-    /// Labels at individual points, such as peaks.
+    /// Labels at individual points such as peaks.
     pub marks: &'a [(f64, f64, String)],
-    /// Whether to draw bars instead of lines. The positions of bars are whole numbers.
+    /// Whether to draw bars instead of lines. Bar positions are whole numbers.
     pub bars: bool,
 }
 
@@ -43,10 +43,10 @@ pub struct Trace {
     pub dashed: bool,
 }
 
-/// Fraction of the width covered by bars.
+/// Total width of the bars at a position, as a fraction of the distance between positions.
 const BARS: f64 = 0.7;
 
-/// Draws a chart, with a legend above if there are several series.
+/// Draws a chart. If there are several series, a legend is drawn above it.
 pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
     legend_ui(ui, theme, chart.traces);
     let own = *theme;
@@ -59,7 +59,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
         HoverPosition::Elsewhere { .. } => None,
     };
     theme.sunken_frame().show(ui, |ui| {
-        // Use one colour for all ticks. Otherwise, they fade as they get closer together.
+        // Use one colour for all ticks. By default, ticks fade as they get closer together.
         ui.visuals_mut().widgets.noninteractive.fg_stroke.color = theme.palette.muted.into();
         ui.visuals_mut().override_text_color = Some(theme.palette.muted.into());
         let mut plot = Plot::new(chart.label)
@@ -153,7 +153,7 @@ fn paint_bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace])
     }
 }
 
-/// Returns the side of a point on which its label fits.
+/// Returns the alignment with which a label fits beside a point.
 fn label_side(traces: &[Trace], x: f64) -> Align2 {
     let ends = traces.iter().flat_map(|trace| trace.points.first().into_iter().chain(trace.points.last()));
     let (least, most) = ends.fold((x, x), |(least, most), (end, _)| (least.min(*end), most.max(*end)));
@@ -164,7 +164,7 @@ fn label_side(traces: &[Trace], x: f64) -> Align2 {
     }
 }
 
-/// Returns an axis with a label at each tick, provided that ticks are at least the given number of points apart.
+/// Returns an axis with a label at each tick, provided that ticks are at least `least` points apart.
 fn with_label_spacing(hints: AxisHints<'static>, theme: Theme, least: f32) -> AxisHints<'static> {
     hints.formatter(move |mark, _| tick_label(&theme, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
 }
@@ -177,7 +177,7 @@ fn round_step((least, most): (f64, f64)) -> f64 {
     times * power
 }
 
-/// Returns the ticks of a range at the given step. Their number is limited to those that can be distinguished.
+/// Returns the ticks of a range at the given step. Their number is limited so that they can be distinguished.
 fn grid_marks((least, most): (f64, f64), step: f64) -> Vec<GridMark> {
     const MAX_TICKS: usize = 64;
     let first = (least / step).ceil();

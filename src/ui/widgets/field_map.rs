@@ -1,13 +1,14 @@
 //! A map of a memory as a strip of blocks, which shows the data fields and the free space.
 //!
-//! * **Size**: the available width; the blocks are as large as fits two lines, and wrap.
-//! * **Keyboard**: Tab and the left and right arrows go from field to field, Home and End to the ends; Enter or Space
-//!   selects. The caller's buttons also offer resizing.
-//! * **Pointer**: a click selects; the handle at the end of the last field drags its size, in whole blocks, shown before
-//!   the release; Escape cancels.
+//! * **Size**: the available width. The blocks are as large as possible on two lines; more blocks wrap to further
+//!   lines.
+//! * **Keyboard**: Tab and the left and right arrows move from field to field, Home and End move to the first and last
+//!   field, and Enter or Space selects a field. The caller's buttons also offer resizing.
+//! * **Pointer**: a click selects a field. Dragging the handle at the end of the last field changes its size in whole
+//!   blocks, with a preview until the release. Escape cancels.
 //! * **Accessible**: a button for each field and one for the free space, with the given labels.
-//! * **Painting**: a field in the colour of its series; locked, unreadable and edited fields carry an icon, unreadable ones
-//!   are hatched; the selected one is outlined in the accent.
+//! * **Painting**: each field has the colour of its series. Locked, unreadable and edited fields have an icon,
+//!   unreadable ones are also hatched, and the selected one is outlined in the accent colour.
 
 mod paint;
 mod strip;
@@ -35,7 +36,7 @@ pub struct MapField {
     pub locked: bool,
     /// Whether the field's access code is unknown.
     pub unreadable: bool,
-    /// Whether the field has edits that are not written.
+    /// Whether the field has edits that have not been written.
     pub edited: bool,
     pub tooltip: String,
 }
@@ -50,7 +51,7 @@ pub struct FieldMap<'a> {
     pub free_tooltip: &'a str,
     pub selected: Option<u8>,
     pub block_bytes: usize,
-    /// Sizes in blocks to which the last field can be dragged. `None` hides the handle.
+    /// Sizes in blocks to which the last field can be dragged, or `None` to hide the handle.
     pub resize: Option<RangeInclusive<usize>>,
 }
 
@@ -58,13 +59,13 @@ pub struct FieldMap<'a> {
 pub enum MapEvent {
     Select(u8),
     SelectFree,
-    /// The user resized the last field. The size differs from the current one.
+    /// The user resized the last field. The new size differs from the current one.
     ResizeLast {
         blocks: usize,
     },
 }
 
-/// Draws the map and returns the user's action. A `Ui` can have only one map, unless each map has a separate id
+/// Draws the map and returns the user's action. A `Ui` can contain only one map, unless each map has a separate id
 /// (`push_id`).
 pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEvent> {
     let sizes: Vec<usize> = map.fields.iter().map(|field| field.blocks.max(1)).collect();
@@ -101,8 +102,8 @@ pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEv
     paint_boundary_handle(ui, theme, &strip, base, map, taken.saturating_sub(last), last).or(event)
 }
 
-/// Handles the arrow keys before the parts of the map are announced. The focus thus moves in memory order instead of to
-/// the nearest widget.
+/// Handles the arrow keys before the parts of the map are announced. The focus thus moves in memory order rather than
+/// to the nearest widget.
 fn handle_arrow_keys(ui: &Ui, ids: &[Id], has_free: bool) {
     let ids = if has_free { ids } else { ids.split_last().map_or(ids, |(_, fields)| fields) };
     let focused = ui.memory(egui::Memory::focused);
@@ -155,13 +156,13 @@ fn announce_part(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<b
             }
             response
         } else {
-            // These ids must differ from the plain numbers, which egui uses for tooltips.
+            // These ids must not be plain numbers, which egui uses for tooltips.
             ui.interact(*rect, id.with("line").with(number), Sense::CLICK)
         };
         part.clicked |= response.clicked();
         part.state.hovered |= response.hovered();
         if response.clicked() {
-            // The arrow keys continue from the clicked field.
+            // Arrow keys continue from the clicked field.
             ui.memory_mut(|memory| memory.request_focus(id));
         }
         show_tooltip(response, tooltip);

@@ -1,13 +1,14 @@
-//! A frame with one cell per bit in the order of transmission, and the names of its fields below.
+//! A frame with one cell per bit in transmission order, and the names of its fields below.
 //!
-//! * **Size**: the available width; the cells are as large as possible with the frame on as few lines as possible. A field
-//!   is moved to the next line as a whole, and is split only if it is longer than a line.
-//! * **Keyboard**: none; Tab skips it.
-//! * **Pointer**: the meaning of a field, under it.
-//! * **Accessible**: an image with the given label; its value is the fields with theirs. A field is a label with its name
-//!   and its value.
-//! * **Painting**: the bits of a field in the colour of its series, ones stronger than zeros, groups of four counted from
-//!   its last bit; a field that is lit is filled with the colour of its verdict and carries its icon.
+//! * **Size**: the available width. The cells are as large as possible while the frame takes as few lines as possible.
+//!   A field is moved to the next line as a whole, and is split only if it is longer than a line.
+//! * **Keyboard**: none. Tab skips the frame.
+//! * **Pointer**: a tooltip shows the meaning of the field under the pointer.
+//! * **Accessible**: an image with the given label, whose value lists the fields with their values. Each field is a
+//!   label with its name and value.
+//! * **Painting**: bits have the colour of their field, with ones more intense than zeros, in groups of four counted
+//!   from the last bit of the field. A lit field is filled with the colour of its verdict and has the icon of the
+//!   verdict.
 
 mod layout;
 
@@ -28,9 +29,9 @@ pub struct StripField {
     pub value: String,
     /// Number of bits, at least 1.
     pub bits: usize,
-    /// Colour index, one of eight colours. `None` if the field only encloses other fields.
+    /// Colour index, one of eight colours, or `None` if the field only encloses other fields.
     pub colour: Option<usize>,
-    /// Verdict that the field reports. `None` if it does not report anything.
+    /// Verdict that the field reports, or `None` if it does not report one.
     pub lit: Option<Verdict>,
     pub tooltip: String,
 }
@@ -40,11 +41,11 @@ pub struct FrameStrip<'a> {
     pub label: &'a str,
     /// Fields in transmission order.
     pub fields: &'a [StripField],
-    /// Bits in transmission order. A bit that is `None` or beyond the end is unknown.
+    /// Bits in transmission order. A bit is unknown if it is `None` or beyond the end.
     pub bits: &'a [Option<bool>],
 }
 
-/// Heights of a cell, of the bar below it, and of the two text lines.
+/// Height of a cell, in points.
 const CELL_HEIGHT: f32 = 24.0;
 const BAR_HEIGHT: f32 = 2.0;
 const NAME_HEIGHT: f32 = 15.0;

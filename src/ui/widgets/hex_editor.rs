@@ -1,14 +1,17 @@
-//! An editor for bytes, sixteen per line, as hex and as text.
+//! An editor for bytes, with sixteen bytes per line, shown as hexadecimal digits and as text.
 //!
-//! * **Size**: the width of its columns, the height of its lines, at most [`HexModel::lines`] of them before it scrolls;
-//!   below it one line with the cursor position, or why something was not done.
-//! * **Keyboard**: arrows, Home, End, Page, with Ctrl to the ends, with Shift selecting; digits overwrite nibble by nibble,
-//!   in the text column characters; Tab goes from hex to text and on; Delete writes 00, Backspace restores the device's
-//!   bytes; Ctrl+A, C, V, Z, Shift+Z, Y.
-//! * **Pointer**: a press sets the cursor, dragging or Shift selects, a double click selects an aligned word of four.
-//! * **Accessible**: a text input with the given label; its value is the address and the selected bytes: `0x0A: 3F`.
-//! * **Painting**: changed bytes underlined and in the colour of edits; the selection in the accent; marks as brackets
-//!   below their bytes.
+//! * **Size**: the width of its columns and the height of its lines. It scrolls if there are more than
+//!   [`HexModel::lines`] lines. A line below shows the cursor position, or the reason why an action was rejected.
+//! * **Keyboard**: the arrows, Home, End, Page Up and Page Down move the cursor, with Ctrl to the ends, and with Shift
+//!   extend the selection. Digits overwrite nibble by nibble, and characters overwrite bytes in the text column. Tab
+//!   moves from the hex column to the text column and on. Delete writes 00, and Backspace restores the bytes of the
+//!   device. Ctrl+A, C, V, Z, Shift+Z and Y work as usual.
+//! * **Pointer**: a press sets the cursor, dragging or Shift selects, and a double click selects an aligned word of
+//!   four bytes.
+//! * **Accessible**: a text input with the given label, whose value is the address and the selected bytes, such as
+//!   `0x0A: 3F`.
+//! * **Painting**: changed bytes are underlined and have the colour of edits, the selection has the accent colour, and
+//!   marks are brackets below their bytes.
 
 mod addresses;
 mod grid;
@@ -33,12 +36,12 @@ pub use view::HexView;
 
 #[derive(Clone, Copy, Debug)]
 pub struct HexModel<'a> {
-    /// Bytes read from the device. Displayed bytes beyond their end are treated as changed.
+    /// Bytes read from the device. Displayed bytes beyond their end count as changed.
     pub device: &'a [u8],
     /// Displayed bytes, including the user's edits.
     pub wanted: &'a [u8],
     pub marks: &'a [HexMark<'a>],
-    /// Reason why the bytes cannot be edited. `None` if they are editable.
+    /// Reason why the bytes cannot be edited, or `None` if they can.
     pub read_only: Option<&'a Text>,
     /// Maximum number of visible lines.
     pub lines: usize,
@@ -53,15 +56,15 @@ pub struct HexMark<'a> {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HexEdit {
-    /// Writes bytes starting at an address. The range always fits.
+    /// Writes bytes starting at an address. They always fit.
     Put {
         address: usize,
-        /// New bytes. There is at least one.
+        /// New bytes, at least one.
         bytes: Vec<u8>,
     },
     Undo,
     Redo,
-    /// Restores the device's bytes. At least one byte differs from them.
+    /// Restores the bytes of the device. At least one of the bytes differs from them.
     Revert {
         range: Range<usize>,
     },
@@ -86,13 +89,15 @@ impl<'a> HexModel<'a> {
     }
 }
 
-/// Heights of a line, of the area around the lines, and of the typed view below the editor.
+/// Height of a line, in points.
 const LINE_HEIGHT: f32 = 20.0;
+/// Height of the area around the lines, in points.
 const SURROUNDING_HEIGHT: f32 = 60.0;
+/// Height of the typed view below the editor, in points.
 const TYPED_VIEW_WIDTH: f32 = 240.0;
 
-/// Returns the number of lines that an editor shows in the given height. Beside the typed view, the editor fills the
-/// height. Above it, the editor leaves space for the typed view but shows at least sixteen lines.
+/// Returns the number of lines that an editor shows in the given height. If the typed view is beside the editor, the
+/// editor fills the height. Otherwise, it leaves space for the typed view below but shows at least sixteen lines.
 pub fn hex_lines(height: f32, beside: bool) -> usize {
     if beside {
         ((height - SURROUNDING_HEIGHT) / LINE_HEIGHT).clamp(4.0, 64.0) as usize
@@ -116,7 +121,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
     let grid = Grid::new(ui, theme, model);
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
-        // Scrolling must not fade the edges. A half-visible line of bytes must be readable.
+        // Do not fade the edges while scrolling, because a half-visible line of bytes must be readable.
         ui.spacing_mut().scroll.fade.strength = 0.0;
         let narrow = ui.available_width() < grid.width + Grid::width_around(ui, theme);
         let frame = theme.sunken_frame().show(ui, |ui| {
@@ -165,7 +170,7 @@ fn body_ui(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>
 
 fn handle_pointer(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) {
     if response.gained_focus() {
-        // The editor must receive the next arrow key. It moves the cursor and not the focus.
+        // The editor must receive the next arrow key, which moves the cursor and not the focus.
         ui.request_repaint();
     }
     if response.has_focus() {
@@ -182,7 +187,7 @@ fn handle_pointer(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_
     let (pressed, down, shift) =
         ui.input(|input| (input.pointer.primary_pressed(), input.pointer.primary_down(), input.modifiers.shift));
     let Some(pos) = response.interact_pointer_pos() else { return };
-    // Outside the lines, the editor scrolls by one line at a time.
+    // Outside the lines, the editor scrolls one line at a time.
     let pos = response.interact_rect.expand(grid.row).clamp(pos);
     if model.wanted.is_empty() {
         return;
@@ -202,7 +207,7 @@ fn handle_pointer(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_
     }
 }
 
-/// Sets the accessible name and value. Screen readers and tests use them.
+/// Sets the accessible name and value, which are used by screen readers and tests.
 fn set_widget_info(ui: &Ui, response: &Response, label: &str, model: &HexModel<'_>, view: &HexView) {
     let selected = view.selection();
     let value = model.wanted.get(selected.clone()).filter(|bytes| !bytes.is_empty()).map(|bytes| {
@@ -222,7 +227,7 @@ fn set_widget_info(ui: &Ui, response: &Response, label: &str, model: &HexModel<'
     });
 }
 
-/// Draws the cursor location, or the reason why an action was rejected.
+/// Draws the cursor address, or the reason why an action was rejected.
 fn status_ui(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
     ui.horizontal(|ui| {
         ui.set_min_height(grid.row);
@@ -251,7 +256,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view
     });
 }
 
-/// Returns a caption with its addresses in the monospaced font. The text font would display the `x` in `0x` as a
+/// Returns a caption with its addresses in the monospaced font. The text font would display the `x` of `0x` as a
 /// multiplication sign.
 fn caption_layout(theme: &Theme, words: &str, colour: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();

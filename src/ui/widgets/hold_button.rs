@@ -1,13 +1,13 @@
 //! A button that is active while it is held, for motion that ends when the finger leaves it.
 //!
 //! * **Size**: as given, at least 56 points high, for use with gloves.
-//! * **Keyboard**: Space or Enter, held while the button has the keyboard focus; a key works only after its release
-//!   was seen there ([`HoldState`]), which the caption states until then.
-//! * **Pointer**: the first button, or a touch; leaving the button ends the hold, and returning does not start it
+//! * **Keyboard**: Space or Enter, held while the button has the keyboard focus. A key works only after its release on
+//!   the button has been detected ([`HoldState`]); until then, the caption says so.
+//! * **Pointer**: the primary button, or a touch. Leaving the button ends the hold, and returning does not start it
 //!   again.
-//! * **Accessible**: a button with its label; a click by a screen reader has no duration and does nothing.
-//! * **Painting**: the label with its effect below; filled with the accent while held, unless what it started has ended
-//!   by itself.
+//! * **Accessible**: a button with its label. A click by a screen reader has no duration and does nothing.
+//! * **Painting**: the label with its effect below. The button is filled with the accent colour while held, unless its
+//!   action has already ended.
 
 use egui::accesskit::Role;
 use egui::{
@@ -26,11 +26,11 @@ pub struct HoldButton<'a> {
     pub caption: &'a str,
     pub label: &'a str,
     pub enabled: bool,
-    /// Whether the action of the hold has ended without a release. If so, the button looks released.
+    /// Whether the action of the hold has ended without a release. In this case, the button looks released.
     pub has_ended: bool,
 }
 
-/// Context of the hold buttons. The window sets it before they are drawn.
+/// The context of all hold buttons. The window sets it before they are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::ui) struct HoldButtonContext {
     /// Whether the window is covered, so that no hold button can be pressed.
@@ -46,7 +46,7 @@ struct HoldButtonState {
     modifiers: Modifiers,
 }
 
-/// State of the hold buttons in the previous frame, as seen by the window.
+/// The state of the hold buttons in the previous frame, from the perspective of the window.
 #[derive(Clone, Copy, Default)]
 struct HoldButtonFrame {
     /// Button with the keyboard focus, and the last pass in which it had the focus.
@@ -104,7 +104,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
     state.begin_frame(scene, last + 1 == pass);
     let place = response.interact_rect;
     let pressed_here = response.is_pointer_button_down_on();
-    // All events count here in their order, even those that the window has hidden from the widgets.
+    // All events count here, in order, even those that the window has hidden from the widgets.
     let (down, inside) = ui.input(|input| {
         for event in &input.raw.events {
             if let Event::ModifiersChanged(now) = event
@@ -149,8 +149,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
     event
 }
 
-/// Translates an event for the button at `place`. `pressed_here` states whether the current pointer press began on the
-/// button.
+/// Translates an event for the button at `place`. `pressed_here` states whether the current pointer press began on it.
 fn translate_event(event: &Event, place: Rect, pressed_here: bool) -> Option<HoldInput> {
     Some(match event {
         Event::WindowFocused(has) => HoldInput::WindowFocus(*has),

@@ -1,11 +1,12 @@
-//! The Lissajous figure of sine over cosine, with the ring that should contain the amplitude vector.
+//! The Lissajous figure of sine against cosine, with the ring in which the amplitude vector should lie.
 //!
 //! * **Size**: a square of the given width.
-//! * **Keyboard**: none; Tab skips the figure.
-//! * **Pointer**: shows the hovered location in volts, as length and as angle.
+//! * **Keyboard**: none. Tab skips the figure.
+//! * **Pointer**: shows the voltages, the length and the angle of the vector under the pointer.
 //! * **Accessible**: an image with the given label and value.
-//! * **Painting**: samples as a density, brighter for more, the fitted ellipse as a line, the good ring as a band
-//!   between two lines, fault limits dashed; zero in the middle, the same scale on both axes.
+//! * **Painting**: samples as a density that is brighter where there are more of them, the fitted ellipse as a line,
+//!   the good range as a ring between two lines, and the fault limits as dashed lines. Zero is in the middle, and both
+//!   axes have the same scale.
 
 use egui::accesskit::Role;
 use egui::epaint::{Mesh, PathStroke};
@@ -21,9 +22,9 @@ use crate::ui::widgets::series_colour;
 #[derive(Clone, Debug, Default)]
 pub struct Lissajous<'a> {
     pub figures: &'a [LissajousFigure],
-    /// Limits of the good range for the length of the amplitude vector, in volts.
+    /// Limits of the good range of the length of the amplitude vector, in volts.
     pub ok_v: (f64, f64),
-    /// Limits for the length of the amplitude vector, in volts, outside which the signal is faulty.
+    /// Limits of the length of the amplitude vector, in volts, outside which the signal is faulty.
     pub fault_v: (f64, f64),
     pub label: &'a str,
     pub value: &'a str,
@@ -31,7 +32,7 @@ pub struct Lissajous<'a> {
 
 #[derive(Clone, Debug, Default)]
 pub struct LissajousFigure {
-    /// Picture of the samples in the colour of the series, with the square that it covers.
+    /// Picture of the samples in the colour of the series, and the square that it covers.
     pub picture: Option<(TextureId, PlotSquare)>,
     /// Fitted closed curve as (cosine, sine) points, in volts.
     pub curve: Vec<(f64, f64)>,
@@ -41,10 +42,10 @@ pub struct LissajousFigure {
 }
 
 const CIRCLE: usize = 120;
-/// Label steps of an axis in volts. The axis uses the finest step for which the labels fit.
+/// Label steps of an axis in volts. The axis uses the finest step at which the labels fit.
 const STEPS: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
-/// The square on the screen in which the figure is drawn, with the voltage at its edge.
+/// The square on the screen in which the figure is drawn, and the voltage at its edge.
 #[derive(Clone, Copy)]
 struct PlotArea {
     rect: Rect,
@@ -95,8 +96,8 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
     }
 }
 
-/// Returns a single-colour picture of a sample density. The picture is brighter where there are more samples, and even
-/// a single sample is visible.
+/// Returns a single-colour picture of a sample density. It is brighter where there are more samples, and even a single
+/// sample is visible.
 pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
     /// Brightness of a single sample, as a fraction of full brightness.
     const MIN_BRIGHTNESS: f32 = 0.4;
@@ -106,14 +107,14 @@ pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
         0 => 0.0,
         count => MIN_BRIGHTNESS + (1.0 - MIN_BRIGHTNESS) * (f64::from(count).ln_1p() / scale) as f32,
     };
-    // Pictures begin at the top, and densities at the bottom.
+    // Pictures start at the top, densities at the bottom.
     let rows = density.cell_counts().chunks(side).rev();
     let pixels = rows.flatten().map(|count| colour.gamma_multiply(brightness(*count))).collect();
     ColorImage::new([side, side], pixels)
 }
 
-/// Returns the voltage from the centre to the edge. The range covers all samples and curves, and at least the good
-/// ring.
+/// Returns the voltage at the edge of the square. The range includes all samples and curves, and at least the ring of
+/// the good range.
 fn voltage_range(figure: &Lissajous<'_>) -> f64 {
     let curves = figure.figures.iter().flat_map(|own| &own.curve).map(|(x, y)| x.abs().max(y.abs()));
     let pictures = figure.figures.iter().filter_map(|own| Some(own.picture?.1.half_v));
@@ -205,7 +206,7 @@ fn paint_curve(painter: &Painter, place: &PlotArea, figure: &LissajousFigure, co
     }
 }
 
-/// Draws the values under the pointer: both voltages, the vector length and the angle.
+/// Draws the values under the pointer: both voltages, and the length and angle of the vector.
 fn paint_readout(painter: &Painter, theme: &Theme, place: &PlotArea, pos: Pos2) {
     let (x, y) = place.volts(pos);
     let muted = Stroke::new(1.0, Color32::from(theme.palette.muted).gamma_multiply(0.6));

@@ -1,5 +1,5 @@
 //! Widgets that egui does not provide. Each widget draws its input, stores only its selection, and returns the user's
-//! request. The widgets are independent of the devices, and share the appearance of keyboard focus, hatching and series
+//! request. The widgets do not depend on the devices. They share the appearance of keyboard focus, hatching and series
 //! colours.
 
 mod bit_cell;
@@ -36,7 +36,7 @@ pub use step_ring::{StepRing, step_ring};
 pub use steps::{Gauge, StepRow, StepState, Steps, StepsEvent, steps};
 pub use typed_view::typed_view;
 
-/// Draws the focus ring, which is two points wide, in the accent colour, one point outside the widget.
+/// Draws the focus ring around a widget, one point outside it and two points wide, in the accent colour.
 pub(crate) fn focus_ring(painter: &Painter, theme: &Theme, rect: Rect, corners: impl Into<CornerRadius>) {
     let corners = corners.into() + CornerRadius::same(1);
     painter.rect_stroke(rect.expand(1.0), corners, Stroke::new(2.0, theme.palette.accent), StrokeKind::Outside);

@@ -2,16 +2,19 @@
 //! numeric parameters: number, name, value, unit, range and factory setting. Thousands of rows scroll as easily as ten:
 //! a register is requested only while it is visible.
 //!
-//! * **Size**: the available width and the given height; the least important columns are hidden, and shown in the
-//!   tooltip. [`RegisterView::problem`] contains the reason for rejecting a value, to be shown by the caller.
-//! * **Keyboard**: arrows, Page, Home and End move from line to line; right and left unfold and fold bit fields and
-//!   groups; Enter, F2 or a character edits the value, Enter accepts it, as does an arrow up or down, which moves on to
-//!   that line; Escape cancels the entry; Backspace restores the value of the device; Ctrl+C copies.
-//! * **Pointer**: a press selects, on a heading or caret folds, on the box of a number edits; a double click edits.
-//! * **Accessible**: a table with the given label, whose value is the selection; a row for each visible register, with
-//!   its value and state; a button for each group.
-//! * **Painting**: edited values are underlined in the colour of edits; a dot marks a change since the last reading, a
-//!   flash a write cycle, a disk non-volatile storage. Editable numbers are in boxes.
+//! * **Size**: the available width and the given height. The least important columns are hidden if space is short, and
+//!   their values are shown in the tooltip. [`RegisterView::problem`] contains the reason why a value was rejected,
+//!   which the caller displays.
+//! * **Keyboard**: the arrows, Page Up, Page Down, Home and End move from line to line, and the left and right arrows
+//!   fold and unfold bit fields and groups. Enter, F2 or a character edits the value. Enter accepts it, as does an up
+//!   or down arrow, which then moves to another line. Escape cancels the entry, Backspace restores the value of the
+//!   device, and Ctrl+C copies.
+//! * **Pointer**: a press selects a line, folds on a heading or caret, and edits in the box of a number. A double click
+//!   edits.
+//! * **Accessible**: a table with the given label, whose value is the selection, a row for each visible register with
+//!   its value and state, and a button for each group.
+//! * **Painting**: edited values are underlined and have the colour of edits. A dot marks a change since the last
+//!   reading, a flash a write cost, and a disk non-volatile storage. Editable numbers are in boxes.
 
 mod columns;
 mod editor;
@@ -44,17 +47,17 @@ pub struct RegisterLocation {
 pub struct RegisterTable<'a> {
     pub label: &'a str,
     pub groups: &'a [RegisterGroup],
-    /// Function that returns a register of a group. The function is called only for visible or unfolded registers.
+    /// Function that returns a register of a group. It is called only for visible or unfolded registers.
     pub row: &'a dyn Fn(RegisterLocation) -> RegisterRow,
     pub kind: RegisterKind,
 }
 
-/// Value type of a table. It determines the columns.
+/// The value type of a table, which determines the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
-    /// Byte values, shown both in hexadecimal digits and as numbers.
+    /// Bytes, shown as hexadecimal digits and as numbers.
     Bytes {
-        /// Number of bytes in the widest register. All of them must be visible.
+        /// Number of bytes of the widest register. All of them must be visible.
         widest: usize,
     },
     Numbers,
@@ -72,27 +75,27 @@ pub struct RegisterRow {
     /// Register address such as `0x04:0x1F`, or a number.
     pub address: String,
     pub name: String,
-    /// Value in the form in which it is entered: bytes in hexadecimal digits, or a number. Empty if the register has
-    /// not been read.
+    /// Value in the form in which it is entered: bytes as hexadecimal digits, or a number. The string is empty if the
+    /// register has not been read.
     pub value: String,
     pub decimal: String,
     pub meaning: String,
     /// Access: `R`, `W` or `RW`.
     pub access: String,
-    /// Factory setting in the same form as the value, or empty if unknown.
+    /// Factory setting in the same form as the value. The string is empty if it is unknown.
     pub default: String,
     pub range: String,
     pub differs: bool,
     pub changed: bool,
-    /// Previous value, or empty if unknown.
+    /// Previous value. The string is empty if it is unknown.
     pub before: String,
-    /// Whether the value has edits that are not written.
+    /// Whether the value has been edited but not written.
     pub edited: bool,
     /// Description of the cost of writing the register, if any.
     pub cost: Option<String>,
-    /// Details of non-volatile storage. `None` if the register loses its value when the supply is switched off.
+    /// Details of the non-volatile storage, or `None` if the register loses its value without power.
     pub kept: Option<String>,
-    /// Reason why the value cannot be edited. `None` if it is editable.
+    /// Reason why the value cannot be edited, or `None` if it can.
     pub read_only: Option<String>,
     pub fields: Vec<RegisterBits>,
 }
@@ -116,14 +119,14 @@ pub enum RegisterEvent {
 pub struct RegisterTableOutput {
     pub event: Option<RegisterEvent>,
     pub groups: Range<usize>,
-    /// Whether columns are hidden or narrower than usual. If so, parts of a row may be cut off.
+    /// Whether columns are hidden or narrower than usual. In this case, parts of a row may be cut off.
     pub is_narrow: bool,
 }
 
 const LINE_HEIGHT: f32 = 16.0;
 /// Margin in points between the edge of the table and its lines.
 const MARGIN: i8 = 4;
-/// Number of characters reserved for the longest number. −2³¹ takes eleven.
+/// Number of characters reserved for the longest number. −2³¹ has eleven.
 const NUMBER: usize = 11;
 
 /// Returns the width of a value, including the gap to the next column.
@@ -132,7 +135,7 @@ fn value_width(theme: &Theme, kind: RegisterKind) -> f32 {
         RegisterKind::Bytes { widest } => widest * 3,
         RegisterKind::Numbers => NUMBER,
     };
-    // In the font for bytes, the width of a character is 0.6 of its size.
+    // In the monospaced font, the width of a character is 0.6 of its size.
     characters as f32 * 0.6 * theme.sizes.body + theme.space.between
 }
 
@@ -151,8 +154,8 @@ impl RegisterRow {
     }
 }
 
-/// Draws the table at the given height and returns the user's actions. `take` receives the text entered for a register.
-/// If it rejects the text, it returns the reason.
+/// Draws the table with the given height and returns the user's actions. `take` receives the text entered for a
+/// register and returns the reason if it rejects the text.
 pub fn register_table(
     ui: &mut Ui,
     theme: &Theme,
@@ -174,7 +177,7 @@ pub fn register_table(
         ui.spacing_mut().scroll.fade.strength = 0.0;
         let frame = theme.sunken_frame().inner_margin(MARGIN).show(ui, |ui| {
             controls::fill_width(ui);
-            // The lines are beside the scroll bar.
+            // The lines end at the scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
             let mut columns = Columns::new(table.kind, width, value_width(theme, table.kind));
             columns.has_small_names = view.small_names_at == Some(columns.width());
@@ -211,7 +214,7 @@ fn body_ui(
     let shown = area.min_scrolled_height(height).show_viewport(ui, |ui, viewport| {
         let size = Vec2::new(columns.width(), lines.total() as f32 * LINE_HEIGHT);
         let (whole, _) = ui.allocate_exact_size(size, Sense::hover());
-        // The clip rectangle is wider than the table and includes its neighbours.
+        // The clip rectangle is larger than the table and includes its neighbours.
         let body = Rect::from_x_y_ranges(whole.x_range(), ui.clip_rect().y_range());
         let response = ui.interact(body, id, Sense::click());
         let at = |line: usize| {
@@ -255,7 +258,7 @@ fn body_ui(
             let builder = UiBuilder::new().id_salt(id.with("edit")).max_rect(cell);
             editor::editor_ui(&mut ui.new_child(builder), theme, id, cell, table, view, take);
         }
-        // A value that was just rejected stays visible. The next press discards it.
+        // A value that was just rejected stays visible until the next press discards it.
         let refused_now = view.is_refused() && !was_refused;
         if let Some(place) = view.wanted.take()
             && !refused_now

@@ -1,11 +1,12 @@
-//! One period as a ring of 32 steps, with the locations of the absolute and the analogue position.
+//! One period as a ring of 32 steps, with the absolute and the analogue position.
 //!
 //! * **Size**: a square of the given width.
-//! * **Keyboard**: none; Tab skips the ring.
+//! * **Keyboard**: none. Tab skips the ring.
 //! * **Pointer**: none.
 //! * **Accessible**: an image with the given label and value.
-//! * **Painting**: one segment per step, zero at the top and clockwise, the segment of the absolute position filled;
-//!   the analogue position as a hand; an arc in the given colour between both shows their distance.
+//! * **Painting**: one segment per step, clockwise from zero at the top, with the segment of the absolute position
+//!   filled. The analogue position is a hand, and an arc in the given colour shows its distance from the absolute
+//!   position.
 
 use egui::accesskit::Role;
 use egui::epaint::PathStroke;
@@ -16,11 +17,11 @@ use crate::ui::widgets::series_colour;
 
 #[derive(Clone, Copy, Debug)]
 pub struct StepRing<'a> {
-    /// Number of the step at the absolute position, 0 to 31.
+    /// Step that contains the absolute position, 0 to 31.
     pub step: u64,
     /// Analogue position in periods, 0 to 1.
     pub phase: f64,
-    /// Offset in periods from the analogue to the absolute position. `None` if its direction is ambiguous.
+    /// Offset in periods from the analogue to the absolute position, or `None` if its direction is ambiguous.
     pub apart: Option<f64>,
     pub colour: Color32,
     pub label: &'a str,
@@ -30,10 +31,10 @@ pub struct StepRing<'a> {
 const STEPS: u8 = 32;
 /// Width of the ring, as a fraction of the radius.
 const RING_WIDTH: f32 = 0.14;
-/// Fraction of a step left empty at each end of its segment.
+/// Fraction of a step that is left empty at each end of its segment.
 const GAP: f64 = 0.08;
 
-/// A circle, given by its centre point and radius.
+/// A circle, given by its centre and radius.
 #[derive(Clone, Copy)]
 struct Dial {
     middle: Pos2,

@@ -1,13 +1,14 @@
-//! A guided procedure as a list of steps: completed, present and future ones, and measured values compared with their
+//! A guided procedure as a list of completed, current and future steps, with measured values compared with their
 //! limits.
 //!
-//! * **Size**: the available width; one line per step, the present one as high as its content.
+//! * **Size**: the available width, with one line per step. The current step is as high as its content.
 //! * **Keyboard**: Tab moves from button to button.
-//! * **Pointer**: the buttons; a tooltip explains why one is disabled.
-//! * **Accessible**: a label for each step, with its state; a progress indicator for each gauge, with its value and the
-//!   allowed range; buttons with the given labels.
-//! * **Painting**: a rail with a dot per step, filled, ringed or hollow, its icon in the colour of the result; a gauge
-//!   shows the allowed band, its best part stronger, and a hand at the value, in the warning colour outside.
+//! * **Pointer**: clicks the buttons. A tooltip explains why a button is disabled.
+//! * **Accessible**: a label for each step with its state, a progress indicator for each gauge with its value and
+//!   allowed range, and buttons with the given labels.
+//! * **Painting**: a rail with a filled, ringed or hollow dot per step and an icon in the colour of the result. A gauge
+//!   shows the allowed band with its best part more intense, and a hand at the value, which has the warning colour
+//!   outside the band.
 
 mod gauge;
 
@@ -28,7 +29,7 @@ pub struct StepRow {
     /// Current task, result, or reason for failure. It may be empty.
     pub note: String,
     pub gauges: Vec<Gauge>,
-    /// Completed fraction, 0 to 1. `None` if the step is not running or the fraction is unknown.
+    /// Completed fraction, 0 to 1, or `None` if the step is not running or the fraction is unknown.
     pub progress: Option<f32>,
 }
 
@@ -51,9 +52,9 @@ pub struct Gauge {
     /// Value with its unit, formatted for display.
     pub shown: String,
     pub allowed: RangeInclusive<f64>,
-    /// Best range. `None` if all allowed values are equally good.
+    /// Best range, or `None` if all allowed values are equally good.
     pub best: Option<RangeInclusive<f64>>,
-    /// Label for the allowed range, such as `498…502 rpm`.
+    /// Label of the allowed range, such as `498…502 rpm`.
     pub limits: String,
     pub scale: RangeInclusive<f64>,
 }
@@ -61,9 +62,9 @@ pub struct Gauge {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Steps<'a> {
     pub steps: &'a [StepRow],
-    /// Label of the waiting step's start button, with the reason if the button is disabled.
+    /// Label of the waiting step's start button, and the reason if the button is disabled.
     pub start: Option<(&'a str, Result<(), &'a str>)>,
-    /// Label of the button that skips the waiting step. `None` if it cannot be skipped.
+    /// Label of the button that skips the waiting step, or `None` if it cannot be skipped.
     pub skip: Option<&'a str>,
 }
 
@@ -102,8 +103,9 @@ impl StepState {
     }
 }
 
-/// Radius of a step's dot, and width of the rail.
+/// Radius of a step's dot, in points.
 const DOT_RADIUS: f32 = 9.0;
+/// Width of the rail with the dots, in points.
 const RAIL_WIDTH: f32 = 32.0;
 
 pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
@@ -124,7 +126,7 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
                     event = event.or(content_ui(ui, theme, model, step));
                 });
             });
-            // Scroll again when the step grows: its gauges and buttons must be visible.
+            // Scroll again if the step grows, because its gauges and buttons must be visible.
             let height = drawn.response.rect.height();
             let before: Option<(usize, f32)> = ui.data(|data| data.get_temp(at));
             if step.state.is_complete() && before.is_none_or(|(own, seen)| own != number || height > seen + 1.0) {
@@ -186,8 +188,8 @@ fn content_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> 
     buttons_ui(ui, theme, model)
 }
 
-/// Draws the buttons. Start is at the end of the text, followed by Skip and the obstacle. The start button thus does
-/// not move while the speed of the motor changes.
+/// Draws the buttons. Start is at the end of the text, followed by Skip and the obstacle, so the start button does not
+/// move while the speed of the motor changes.
 fn buttons_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     if model.start.is_none() && model.skip.is_none() {

@@ -1,4 +1,4 @@
-//! Tests that operate the widgets like a user, through accessible labels, keys and pointer.
+//! Tests that operate the widgets like a user: through accessible labels, keys and the pointer.
 
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
@@ -19,7 +19,7 @@ pub(crate) fn theme() -> Theme {
     Theme::new(ThemeData::built_in().unwrap(), ColorScheme::Dark, Language::English)
 }
 
-/// Creates a window with a widget and its state between two buttons.
+/// Creates a window that contains a widget and its state between two buttons.
 pub(crate) fn window<State>(
     state: State,
     draw: impl Fn(&mut egui::Ui, &mut State) + 'static,
@@ -30,7 +30,7 @@ pub(crate) fn window<State>(
             install_fonts(ctx);
             theme().apply_to(ctx);
         })
-        // A double click is two within a third of a second.
+        // A double click consists of two clicks within a third of a second.
         .with_step_dt(0.02)
         .build_ui_state(
             move |ui, state| {

@@ -1,6 +1,6 @@
-//! The virtual sine/cosine source as a producer, paced by the clock like a real one. After a delay, because the
-//! computer was busy or asleep, the source catches up on the samples of the last quarter of a second. Older samples are
-//! lost and counted.
+//! The virtual sine/cosine source as a producer. The clock sets its pace, as with a real source. If it is delayed
+//! because the computer was busy or asleep, it catches up on the samples of the last quarter of a second. Older samples
+//! are lost and counted.
 
 use std::time::Duration;
 
@@ -13,10 +13,11 @@ use crate::units::Moment;
 
 /// Duration of a batch at full rate, in nanoseconds.
 const BATCH_NS: i64 = 10_000_000;
-/// Maximum delay up to which the source catches up, in nanoseconds.
+/// Maximum delay, in nanoseconds, for which the source catches up.
 const LATE_NS: i64 = 250_000_000;
 
-/// The error for samples whose settings are no longer stored, because the source was changed too often in the meantime.
+/// The error for samples whose settings are no longer stored because the settings have been changed too often in the
+/// meantime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the settings for the requested samples are no longer stored")]
 pub struct StaleSettings;
@@ -29,7 +30,7 @@ pub struct AnalogueSource {
 }
 
 impl AnalogueSource {
-    /// Creates a source that starts at `start` according to the clock of its stream.
+    /// Creates a source that starts at `start` on the clock of its stream.
     pub fn new(checked: CheckedSettings, start: Moment) -> Self {
         AnalogueSource { source: Source::new(checked, SampleTime::from(start)), next: 0 }
     }
@@ -50,7 +51,7 @@ impl Producer for AnalogueSource {
         };
         let period_ns = settings.period_ns();
         let now = clock.now();
-        // The samples of a batch exist when the last of them is due.
+        // The samples of a batch exist once the last of them is due.
         let full = time.saturating_add_ns((BATCH_NS - period_ns).max(0)).as_nanoseconds();
         let full = Moment::from_elapsed(Duration::from_nanos(u64::try_from(full).unwrap_or(0)));
         clock.sleep_until(full.min(now + patience));

@@ -8,17 +8,17 @@ use crate::link::{RealClock, VirtualClock};
 use crate::sim::sine_cosine::{Quantity, Settings};
 use crate::units::Moment;
 
-/// Time limit longer than any test.
+/// A time limit that exceeds the duration of any test.
 const HANGS: Duration = Duration::from_secs(20);
 
-/// A producer that counts as fast as possible, with a millisecond per batch on its clock, until it stalls or fails.
+/// A producer that counts as fast as possible, with one millisecond per batch on its clock, until it stalls or fails.
 struct Numbers {
     sizes: VecDeque<usize>,
     next: u64,
     fails: bool,
-    /// Requests received.
+    /// Received requests.
     heard: Sender<u64>,
-    /// Goes with it.
+    /// Dropped together with the producer.
     _alive: Sender<Never>,
 }
 
@@ -121,7 +121,7 @@ fn a_batch_larger_than_the_ring_is_kept_alone() {
 
 #[test]
 fn the_window_is_woken_twenty_times_a_second_and_at_the_end() {
-    // One second of a batch each millisecond.
+    // One second with a batch every millisecond.
     let (producer, ..) = numbers(std::iter::repeat_n(1, 1_000), true);
     let wakes = Arc::new(AtomicUsize::new(0));
     let counter = wakes.clone();
@@ -181,12 +181,12 @@ fn the_virtual_source_follows_the_clock() {
     let second = next(&mut source, &clock).unwrap();
     assert_eq!((second.first, second.samples.count(), second.lost), (1_000, 1_000, 0));
     assert_eq!(second.time, first.time.saturating_add_ns(10_000_000));
-    // The computer slept for a minute: a quarter of a second is made up for.
+    // The computer slept for a minute, and the source catches up on a quarter of a second.
     clock.sleep_until(Moment::from_elapsed(Duration::from_secs(65)));
     let late = next(&mut source, &clock).unwrap();
     assert_eq!((late.first, late.samples.count(), late.lost), (5_975_001, 25_000, 5_973_001));
     assert_eq!(late.time, first.time.saturating_add_ns(5_975_001 * 10_000));
-    // Another rate from the next sample on, 10 µs after the last.
+    // Another rate, starting with the next sample, 10 µs after the last one.
     source.apply_change(settings(10.0));
     let slow: Vec<_> = (0..12).map(|_| next(&mut source, &clock)).collect();
     let slow: Vec<_> = slow.into_iter().flatten().collect();
@@ -208,7 +208,7 @@ fn the_virtual_source_yields_the_samples_by_index() {
 
 #[test]
 fn no_sample_is_missing_while_the_computer_keeps_up() {
-    // At 44.1 kHz a sample takes 22 676 ns.
+    // At 44.1 kHz, the sample period is 22 676 ns.
     let clock = VirtualClock::default();
     let checked =
         Settings::default().with_value(Quantity::Rate, 44_100.0).with_value(Quantity::Noise, 0.0).validate().unwrap();
@@ -220,6 +220,6 @@ fn no_sample_is_missing_while_the_computer_keeps_up() {
         assert_eq!(batch.time.as_nanoseconds(), expected as i64 * 22_676);
         expected += batch.samples.count() as u64;
     }
-    // 4 s are 176 398 samples, and the last batch of 10 ms ends later.
+    // 4 s contain 176 398 samples, and the last batch of 10 ms ends later.
     assert!((176_398..=176_840).contains(&expected), "{expected}");
 }

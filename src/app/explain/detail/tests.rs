@@ -1,10 +1,10 @@
-//! Tests of messages from lower layers, in both languages. Those of a device's layers are tested with the device.
+//! Tests of messages from lower layers, in both languages. Messages from a device's layers are tested with that device.
 
 use super::*;
 use crate::app::Language::{English, German};
 use crate::link::{LinkUrl, read_trace};
 
-/// Checks that the English text equals the message of the lower layer, and that the German text does not.
+/// Checks that the English text equals the message of the lower layer, and that the German text differs from it.
 #[track_caller]
 pub(crate) fn check(text: &Text, error: &dyn std::fmt::Display) {
     assert_eq!(text.to_string_in(English), error.to_string());

@@ -1,5 +1,5 @@
-//! Devices that are currently connected to a bench. Benches that hold the same device are told of each other. This is a
-//! warning, not a lock.
+//! Devices that are currently connected to a bench. If several benches hold the same device, each of them is notified
+//! of the others. This is a warning and not a lock.
 
 use std::time::Duration;
 
@@ -27,8 +27,8 @@ pub struct DeviceHold {
 }
 
 impl LogbookServer {
-    /// Announces with the following transfers that a device is connected to this program. Virtual devices and devices
-    /// without a serial number cannot be told apart, so they are not announced.
+    /// Announces, starting with the next transfer, that a device is connected to this program. Virtual devices and
+    /// devices without a serial number cannot be told apart and are not announced.
     pub fn hold(&self, device: &DeviceKey) -> Option<DeviceHold> {
         if device.is_virtual || device.serial_number.is_empty() {
             return None;
@@ -47,7 +47,7 @@ impl Drop for DeviceHold {
     }
 }
 
-/// Renews the holds of a program, and returns the other holders of the same devices.
+/// Renews the holds of a program and returns the other holders of the same devices.
 pub(super) fn renew(
     client: &mut Client,
     program: &str,

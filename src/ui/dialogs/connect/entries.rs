@@ -1,4 +1,4 @@
-//! Entries that the connection forms share.
+//! Entries shared by the connection forms.
 
 use egui::{RichText, Ui};
 
@@ -88,7 +88,7 @@ pub(crate) fn parity(ui: &mut Ui, theme: &Theme, own: &mut Parity) {
     dropdown(ui, &theme.translate("settings_card.parity"), own, parities);
 }
 
-/// Draws the heading of the rarely needed entries. Returns whether the entries are expanded.
+/// Draws the heading of rarely needed entries. Returns whether these entries are expanded.
 pub(crate) fn expandable_ui(ui: &mut Ui, theme: &Theme, open: &mut bool) -> bool {
     disclosure(ui, RichText::new(theme.translate("connect.more")), open);
     *open
@@ -103,7 +103,7 @@ pub(crate) fn echo_ui(ui: &mut Ui, theme: &Theme, echo: &mut Echo) {
     });
 }
 
-/// Function that returns a device message in the window's language.
+/// A function that returns a device message in the language of the window.
 type TranslateFn = fn(&Theme, &'static str) -> String;
 
 pub(crate) fn entries_ui(
@@ -136,7 +136,7 @@ pub(crate) fn entry_row(
 
 pub(crate) fn field(ui: &mut Ui, theme: &Theme, word: &str, own: &Entry, typed: &mut EnteredValues) {
     let mut text = typed.get(own.key).to_owned();
-    // The width depends on the hint. A number needs less space than a list of faults.
+    // The width depends on the hint, because a number needs less space than a list of faults.
     let width = match own.hint.len() {
         1..=4 => 56.0,
         _ if own.hint.parse::<f64>().is_ok() => 96.0,
@@ -150,13 +150,13 @@ pub(crate) fn field(ui: &mut Ui, theme: &Theme, word: &str, own: &Entry, typed: 
     }
 }
 
-/// Draws the choice to leave the encoder's supply on when the adapter is closed.
+/// Draws the choice whether to leave the encoder's supply on when the adapter is closed.
 pub(crate) fn supply_choice_ui(ui: &mut Ui, theme: &Theme, leave_on: &mut bool) {
     ui.checkbox(leave_on, theme.translate("connect.leave_supply"));
     paragraph(ui, theme.caption(theme.translate("connect.leave_supply_words")));
 }
 
-/// Draws a choice between a few options, side by side.
+/// Draws a choice between a few options side by side.
 pub(crate) fn segmented_control<T: PartialEq + Copy, const N: usize>(
     ui: &mut Ui,
     theme: &Theme,

@@ -1,5 +1,5 @@
-//! The form of a kind of device in the connection dialog. The device's folder implements a typed trait, and the dialog
-//! uses an object-safe one. One adapter connects the two.
+//! The form for a kind of device in the connection dialog. The folder of the device implements a typed trait, and the
+//! dialog uses an object-safe one. An adapter connects the two.
 
 use egui::Ui;
 
@@ -10,10 +10,10 @@ use crate::ui::Theme;
 
 pub trait TypedConnectForm: 'static {
     type Form: FormModel;
-    /// UI selections that are not part of the link.
+    /// Selections in the form that are not part of the link.
     type Memory: Default;
 
-    /// Draws the form. `more` states whether the rarely needed entries are expanded. All kinds share this setting.
+    /// Draws the form. `more` states whether the rarely needed entries are expanded. All kinds share this state.
     fn form_ui(
         ui: &mut Ui,
         theme: &Theme,
@@ -24,9 +24,9 @@ pub trait TypedConnectForm: 'static {
     );
 }
 
-/// The connection form of a kind of device with its selections, as used by the dialog.
+/// The connection form for a kind of device with its selections, as used by the dialog.
 pub trait ConnectForm {
-    /// Draws the form. `more` states whether the rarely needed entries are expanded. All kinds share this setting.
+    /// Draws the form. `more` states whether the rarely needed entries are expanded. All kinds share this state.
     fn form_ui(&mut self, ui: &mut Ui, theme: &Theme, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>);
 }
 
@@ -42,7 +42,7 @@ impl<F: TypedConnectForm> ConnectForm for FormAdapter<F> {
         let mut form = own.clone();
         F::form_ui(ui, theme, dialog, &mut form, (&mut self.0, more), actions);
         if form != *own {
-            // The edit comes first, because the other clicked actions depend on it.
+            // The edit comes first, because the other actions depend on it.
             actions.insert(0, Action::Connect(Connect::edit_form(form)));
         }
     }

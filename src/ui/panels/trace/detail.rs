@@ -1,4 +1,4 @@
-//! A selected frame of the trace: all of its bytes, and its meaning line by line.
+//! The details of a selected frame: all of its bytes, and its meaning line by line.
 
 use egui::text::LayoutJob;
 use egui::{FontId, Label, RichText, ScrollArea, TextFormat, Ui};
@@ -9,10 +9,10 @@ use crate::link::Direction;
 use crate::ui::controls::{fill_width, icon_button};
 use crate::ui::{Theme, icons};
 
-/// Number of bytes in a line.
+/// Number of bytes per line.
 const COLUMNS: usize = 8;
 
-/// Draws the frame. Returns whether it is to be closed.
+/// Draws the frame. Returns whether to close it.
 pub(super) fn frame_ui(ui: &mut Ui, theme: &Theme, log: &TraceLog, line: &TraceLine) -> bool {
     let mut closes = false;
     ui.horizontal(|ui| {
@@ -40,7 +40,7 @@ pub(super) fn frame_ui(ui: &mut Ui, theme: &Theme, log: &TraceLog, line: &TraceL
     closes
 }
 
-/// Returns the bytes in lines with their offsets. The header of the transport is muted.
+/// Returns the bytes in lines with their offsets. The transport header is muted.
 fn hex_dump(theme: &Theme, line: &TraceLine) -> LayoutJob {
     let font = FontId::monospace(theme.sizes.body);
     let format = |muted: bool| {

@@ -1,4 +1,4 @@
-//! Painting a field map.
+//! Painting of a field map.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKind, Ui, Vec2};
 
@@ -62,7 +62,7 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
     }
 }
 
-/// Draws the number and icons at the top of a field and the caption below, if they fit. In a narrow field, icons
+/// Draws the number and icons of a field at the top and its caption below, if they fit. In a narrow field, icons
 /// replace the caption.
 fn draw_label(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     let palette = theme.palette;
@@ -87,7 +87,7 @@ fn draw_label(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     if number.size().x <= run.width() - 2.0 {
         painter.galley(egui::pos2(left, y - number.size().y / 2.0), number, palette.text.into());
     }
-    // Draw as many icons as fit. The tooltip has all of them.
+    // Draw as many icons as fit. The tooltip contains all of them.
     let room = if beside { shown.len() } else { (((run.width() - 2.0) / pitch) as usize).max(1) };
     let count = shown.len().min(room);
     let width = count as f32 * pitch;
@@ -102,7 +102,7 @@ fn draw_label(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     }
 }
 
-/// Returns as much of a caption as fits. Parts separated by ` · ` are dropped from the end.
+/// Returns as much of a caption as fits. Parts separated by ` · ` are omitted from the end.
 fn fitting_caption(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync::Arc<egui::Galley>> {
     let mut rest = caption;
     while !rest.is_empty() {
@@ -158,7 +158,7 @@ pub(super) fn draw_drag_ghost(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rec
         painter.extend(Shape::dashed_line(&path, Stroke::new(1.5, accent), theme.space.inside, theme.space.inside));
     }
     let Some(last) = runs.last() else { return };
-    // The label is on the accent, inside the end of the preview and always inside the map.
+    // The label is on the accent, at the end of the preview but always inside the map.
     let font = FontId::monospace(theme.sizes.caption);
     let galley = painter.layout_no_wrap(words.to_owned(), font, theme.palette.on_accent.into());
     let size = galley.size() + Vec2::new(theme.space.between, theme.space.inside);

@@ -4,7 +4,7 @@ use egui::{Pos2, Rect, Vec2};
 
 use crate::ui::Theme;
 
-/// Layout of the blocks, from left to right and line by line.
+/// The layout of the blocks, from left to right and line by line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strip {
     /// Upper left corner of the map.
@@ -20,7 +20,7 @@ impl Strip {
     /// Possible block widths in grid steps, largest first.
     const STEPS: [f32; 6] = [12.0, 10.0, 8.0, 6.0, 5.0, 4.0];
 
-    /// Creates a strip with the largest blocks for which `count` blocks fit on two lines. If even the smallest blocks
+    /// Creates a strip with the largest blocks with which `count` blocks fit on two lines. If even the smallest blocks
     /// do not fit, the strip has more lines.
     pub(super) fn new(theme: &Theme, room: f32, count: usize) -> Self {
         let (margin, gap) = (theme.space.inside, theme.space.between);
@@ -42,7 +42,7 @@ impl Strip {
         Strip { origin, ..self }
     }
 
-    /// Returns the rectangles that cover the blocks from `first` up to but excluding `end`, one per line.
+    /// Returns the rectangles, one per line, that cover the blocks from `first` up to but excluding `end`.
     pub(super) fn range_rects(&self, first: usize, end: usize) -> Vec<Rect> {
         let mut runs = Vec::new();
         let mut at = first;

@@ -1,4 +1,4 @@
-//! The layout of the fields of a frame. All bits have cells of one width, on as few lines as possible.
+//! The layout of the fields of a frame. All bits have cells of the same width, on as few lines as possible.
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RequiredSpace {
@@ -10,7 +10,7 @@ pub(super) struct RequiredSpace {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PlacedPiece {
     pub(super) field: usize,
-    /// Index of the piece's first bit within the field.
+    /// Index within the field of the first bit of the piece.
     pub(super) first: usize,
     pub(super) bits: usize,
     pub(super) line: usize,
@@ -44,7 +44,7 @@ fn groups_between(from: usize, to: usize, field_bits: usize) -> usize {
     behind(from).saturating_sub(behind(to))
 }
 
-/// Places the fields within a width, separated by `gap`. A field longer than a line is split.
+/// Places the fields within a width, separated by `gap`. A field that is longer than a line is split.
 pub(super) fn arrange_fields(wants: &[RequiredSpace], width: f32, gap: f32) -> StripPlacement {
     let fewest = CELLS.last().map_or(1, |least| place_with_cell(wants, width, gap, *least).lines);
     let fits =
@@ -89,7 +89,7 @@ mod tests {
 
     const GAP: f32 = 8.0;
 
-    /// Returns the frame of the kit encoder, with its acknowledge, start and control bits.
+    /// Returns the frame of the kit encoder, including its acknowledge, start and control bits.
     fn kit() -> Vec<RequiredSpace> {
         let want = |(bits, words)| RequiredSpace { bits, words };
         [(3, 26.0), (1, 27.0), (1, 26.0), (16, 32.0), (17, 48.0), (1, 30.0), (1, 40.0), (6, 24.0)]
@@ -106,8 +106,8 @@ mod tests {
 
     #[test]
     fn a_frame_is_placed_on_one_line_if_it_fits() {
-        // 42 bits in groups of four with 3 + 4 + 1 gaps between them, four single bits as wide as their texts, 123
-        // together, and seven gaps between fields.
+        // 42 bits in groups of four with 3 + 4 + 1 gaps between them, four single bits as wide as their texts, 123 in
+        // total, and seven gaps between fields.
         let placing = arrange_fields(&kit(), 1100.0, GAP);
         assert_eq!((placing.lines, placing.cell), (1, 20.0));
         let expected = 42.0 * 20.0 + 8.0 * 3.0 + 123.0 + 7.0 * 8.0;
@@ -128,7 +128,7 @@ mod tests {
         let placing = arrange_fields(&kit(), 420.0, GAP);
         assert_eq!(lines(&placing), [vec![0, 1, 2, 3], vec![4, 5, 6, 7]]);
         assert!(placing.pieces.iter().all(|own| own.left + own.width <= 420.0));
-        // With cells one point narrower the lines would be as many: they are as wide as possible.
+        // Narrower cells would result in the same number of lines, so the cells are as wide as possible.
         let wider = place_with_cell(&kit(), 420.0, GAP, placing.cell + 1.0);
         assert!(wider.lines > placing.lines);
     }
@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn groups_of_four_are_counted_from_the_last_bit() {
         let piece = PlacedPiece { field: 0, first: 0, bits: 17, line: 0, left: 0.0, width: 0.0 };
-        // 17 bits: one, then four times four.
+        // 17 bits: a single bit followed by four groups of four.
         let offsets: Vec<f32> = [0, 1, 4, 5, 16].map(|at| piece.offset(at, 17, 10.0)).into_iter().collect();
         assert_eq!(offsets, [0.0, 13.0, 43.0, 56.0, 172.0]);
     }

@@ -1,4 +1,4 @@
-//! The addresses of the bytes in a hex editor, as text.
+//! The addresses in a hex editor, as text.
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HexAddresses {

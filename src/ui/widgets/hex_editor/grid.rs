@@ -1,4 +1,4 @@
-//! The layout of the cells of a hex editor.
+//! The layout of a hex editor's cells.
 
 use egui::{FontId, Pos2, Rect, Ui, Vec2};
 
@@ -30,7 +30,7 @@ fn snap_to_grid(length: f32) -> f32 {
 }
 
 impl Grid {
-    /// Returns the width of the frame and the scroll bar around the bytes.
+    /// Returns the width of the frame and scroll bar around the bytes.
     pub(super) fn width_around(ui: &Ui, theme: &Theme) -> f32 {
         2.0 * theme.space.between + ui.spacing().scroll.allocated_width()
     }
@@ -46,7 +46,7 @@ impl Grid {
             let text_left = hex_left + byte * WIDTH as f32 + gap * 3.0;
             (gap, byte, hex_left, text_left, text_left + letter * WIDTH as f32 + theme.space.inside)
         };
-        // In a small window, first the columns are closer together and then the bytes, so no characters are truncated.
+        // In a small window, first the columns and then the bytes move closer together, so no characters are cut off.
         let (far, near) = (theme.space.between, theme.space.inside);
         let room = ui.available_width() - Self::width_around(ui, theme);
         let closest = places(near, byte - 3.0);

@@ -1,4 +1,4 @@
-//! Keyboard input of a hex editor. The keys that it handles are consumed, and nothing else acts on them.
+//! Keyboard input of a hex editor. Keys handled here are consumed and have no other effect.
 
 use egui::{Event, FocusDirection, Key, Modifiers, Ui};
 
@@ -15,8 +15,8 @@ struct KeyReaction {
     leave: Option<FocusDirection>,
 }
 
-/// Handles the keys of the current frame. This function must be called before the widget is announced, because Tab
-/// could otherwise not leave the widget.
+/// Handles the keys of the current frame. This function must be called before the widget is announced. Otherwise, Tab
+/// could not leave the widget.
 pub(super) fn handle_keys(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let mut reaction = KeyReaction::default();
     ui.input_mut(|input| input.events.retain(|event| !handle_input(event, model, view, &mut reaction)));
@@ -60,7 +60,7 @@ fn handle_input(event: &Event, model: &HexModel<'_>, view: &mut HexView, reactio
     }
 }
 
-/// Handles Tab. It moves from the hex column to the text column and on to the next widget, or backwards.
+/// Handles Tab, which moves from the hex column to the text column and on to the next widget, or backwards.
 fn handle_tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut KeyReaction) -> bool {
     if modifiers.command || modifiers.alt {
         return false;
@@ -82,7 +82,7 @@ fn handle_movement(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &
     let (at, last) = (view.cursor(), model.wanted.len().saturating_sub(1));
     let page = WIDTH * view.page.max(1);
     let up = |by: usize| if at >= by { at - by } else { at % WIDTH };
-    // Below the last line, the cursor keeps its column in the last line that has it.
+    // Below the last line, the cursor keeps its column in the last line that contains it.
     let down = |by: usize| if at + by <= last { at + by } else { at + (last - at) / WIDTH * WIDTH };
     let to = match key {
         Key::ArrowLeft => at.saturating_sub(1),
@@ -139,7 +139,7 @@ fn handle_edit_key(
     true
 }
 
-/// Applies a change, or reports the reason if the change is not possible.
+/// Applies a change, or reports the reason if it is not possible.
 fn apply_change(
     model: &HexModel<'_>,
     view: &mut HexView,
@@ -206,7 +206,7 @@ fn ascii_bytes(text: &str) -> Result<Vec<u8>, Text> {
     text.chars().map(byte).collect()
 }
 
-/// Writes bytes at the start of the selection. The written bytes are then selected, or the cursor is placed after them.
+/// Writes bytes at the start of the selection. Afterwards, they are selected, or the cursor is placed after them.
 fn write_bytes(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction, select: bool) {
     let address = view.selection().start;
     let room = model.wanted.len().saturating_sub(address);

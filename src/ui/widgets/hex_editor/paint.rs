@@ -1,4 +1,4 @@
-//! Painting a hex editor.
+//! Painting of a hex editor.
 
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Stroke, StrokeKind, Ui, Vec2};
 

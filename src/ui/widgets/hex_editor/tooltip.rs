@@ -1,4 +1,4 @@
-//! Tooltip of a byte in a hex editor.
+//! The tooltip of a byte in a hex editor.
 
 use egui::Ui;
 
@@ -6,7 +6,7 @@ use super::HexModel;
 use crate::bits;
 use crate::ui::{Theme, icons};
 
-/// Draws a byte in every representation, with the device's byte and the mark that contains it.
+/// Draws a byte in every representation, with the byte of the device and the mark that contains it.
 pub(super) fn byte(ui: &mut Ui, theme: &Theme, model: &HexModel<'_>, at: usize) {
     let Some(byte) = model.wanted.get(at).copied() else { return };
     ui.spacing_mut().item_spacing = egui::vec2(theme.space.groups, theme.space.inside);
@@ -22,7 +22,7 @@ pub(super) fn byte(ui: &mut Ui, theme: &Theme, model: &HexModel<'_>, at: usize) 
         row(ui, theme.translate("widget.hex_tip_decimal"), theme.monospace(byte.to_string()));
         row(ui, theme.translate("widget.hex_tip_binary"), theme.monospace(bits::format_binary(byte)));
         if let Some(character) = bits::ascii(byte) {
-            // The quotation marks show a blank.
+            // The quotation marks make a space visible.
             row(ui, theme.translate("widget.hex_tip_character"), theme.monospace(format!("'{character}'")));
         }
         if let Some(own) = model.device.get(at).filter(|own| **own != byte) {

@@ -15,7 +15,7 @@ pub struct HexView {
     pub(super) problem: Option<Text>,
     pub(super) reveal: bool,
     pub(super) page: usize,
-    /// Copy of the bytes before the last undo or redo, if any.
+    /// Copy of the bytes from before the last undo or redo, if any.
     before: Option<Vec<u8>>,
 }
 
@@ -31,7 +31,7 @@ impl HexView {
         self.cursor
     }
 
-    /// Returns the selected addresses. The selection includes at least the byte at the cursor, unless the editor has no
+    /// Returns the selected addresses. The selection contains at least the byte at the cursor, unless the editor has no
     /// bytes.
     pub fn selection(&self) -> Range<usize> {
         let (first, last) = (self.anchor.min(self.cursor), self.anchor.max(self.cursor));
@@ -47,15 +47,16 @@ impl HexView {
         self.reveal = true;
     }
 
-    /// Returns the bytes to display as numbers: the selection, or all bytes from the cursor onward if only one byte is
-    /// selected.
+    /// Returns the bytes to interpret as numbers: the selection, or all bytes from the cursor onward if only one byte
+    /// is selected.
     pub fn to_read<'a>(&self, bytes: &'a [u8]) -> &'a [u8] {
         let selected = self.selection();
         let range = if selected.len() > 1 { selected } else { self.cursor..bytes.len() };
         bytes.get(range).unwrap_or_default()
     }
 
-    /// Moves the cursor to the first byte changed by an undo or redo. `before` are the bytes before the change.
+    /// Moves the cursor to the first byte changed by an undo or redo step. `before` contains the bytes before the
+    /// change.
     pub fn move_to_change(&mut self, before: &[u8]) {
         self.pending = None;
         self.before = Some(before.to_vec());
@@ -85,7 +86,7 @@ impl HexView {
         self.anchor = self.anchor.min(last);
     }
 
-    /// Moves the cursor, extending the selection if `selecting` is set.
+    /// Moves the cursor. If `selecting` is set, extends the selection.
     pub(super) fn move_cursor(&mut self, to: usize, selecting: bool) {
         self.pending = None;
         self.cursor = to.min(self.len.saturating_sub(1));

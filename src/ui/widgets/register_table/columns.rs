@@ -1,4 +1,4 @@
-//! Columns of a register table. The least important ones are hidden if they do not fit, and two columns share the
+//! The columns of a register table. The least important ones are hidden if they do not fit, and two columns share the
 //! remaining width.
 
 use egui::Rangef;
@@ -43,7 +43,7 @@ const NUMBERS: [ColumnWidth; 7] = [
 ];
 /// Columns in the order in which they are hidden if space is short. The tooltip shows hidden values.
 const HIDING_ORDER: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
-/// Fraction of the remaining width for the name column. The meaning column gets the rest.
+/// Fraction of the remaining width for the name column. The meaning column receives the rest.
 const NAME_SHARE: f32 = 0.45;
 
 /// Visible columns, from left to right.
@@ -52,7 +52,7 @@ pub(super) struct Columns {
     ranges: Vec<(Column, Rangef)>,
     /// Whether columns are hidden or narrower than usual.
     is_narrow: bool,
-    /// Whether names are drawn in the small size, because one of them does not fit otherwise.
+    /// Whether names are drawn in the small size because one of them does not fit otherwise.
     pub(super) has_small_names: bool,
 }
 
@@ -71,7 +71,7 @@ impl Columns {
             }
         }
         let (usual, least) = total(&shown);
-        // In between, all columns are reduced by the same share of the difference to their minimum.
+        // In between, all columns are narrowed by the same fraction of the difference to their minimum.
         let share = if usual > least { ((width - least) / (usual - least)).clamp(0.0, 1.0) } else { 1.0 };
         let spare = (width - usual).max(0.0);
         let mut left = 0.0;
@@ -94,7 +94,7 @@ impl Columns {
         self.is_narrow
     }
 
-    /// Returns the horizontal extent of a column, measured from the table's left edge. Returns `None` if the column is
+    /// Returns the horizontal extent of a column, measured from the left edge of the table, or `None` if the column is
     /// hidden.
     pub(super) fn column_range(&self, column: Column) -> Option<Rangef> {
         self.ranges.iter().find(|(own, _)| *own == column).map(|(_, range)| *range)
@@ -149,7 +149,7 @@ mod tests {
         assert!(!is_narrow(720.0) && is_narrow(719.0) && is_narrow(500.0));
     }
 
-    /// At a usual width of 694 and a minimum width of 550, each column has half of its spare width at 622.
+    /// The usual width is 694 and the minimum width is 550. At 622, each column has half of its spare width.
     #[test]
     fn columns_are_narrowed_before_one_is_hidden() {
         let columns = Columns::new(BYTES, 622.0, 100.0);

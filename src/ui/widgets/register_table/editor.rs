@@ -1,5 +1,5 @@
-//! Editor of a register value. The entry takes effect when Enter is pressed or the editor loses focus. If the value is
-//! rejected, the editor stays open and shows the reason.
+//! The editor for a register value. The value takes effect when Enter is pressed or the editor loses focus. If the
+//! value is rejected, the editor stays open and shows the reason.
 
 use egui::{FontId, Id, Key, Margin, Rect, TextEdit, Ui, Vec2, WidgetInfo};
 
@@ -22,7 +22,7 @@ pub(super) fn editor_ui(
     }
     let before = edit.text.clone();
     ui.spacing_mut().interact_size.y = cell.height();
-    // The entry is drawn where the value was.
+    // The entry is drawn in place of the value.
     let inset = theme.space.inside;
     let cell = Rect::from_min_max(cell.min - Vec2::new(inset, 0.0), cell.max - Vec2::new(inset, 0.0));
     let entry = TextEdit::singleline(&mut edit.text)
@@ -65,7 +65,7 @@ pub(super) fn editor_ui(
     }
 }
 
-/// Selects the whole value, so typing replaces it. If the edit began with a typed character, the cursor is placed after
+/// Selects the whole value, so typing replaces it. If the edit began with a typed character, places the cursor after
 /// that character instead.
 fn select(ui: &Ui, response: &egui::Response, text: &str, typed: bool) {
     use egui::text::{CCursor, CCursorRange};

@@ -1,4 +1,4 @@
-//! Keyboard input of a register table. The keys that it handles are consumed, and nothing else acts on them.
+//! Keyboard input of a register table. Keys handled here are consumed and have no other effect.
 
 use egui::{Event, EventFilter, FocusDirection, Id, Key, Modifiers, Ui};
 
@@ -12,7 +12,7 @@ pub(super) fn reserve_keys(ui: &Ui, id: Id) {
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
 }
 
-/// Inserts the events held back in the previous frame before the current events, if the table has the keyboard focus.
+/// Inserts the events held back in the previous frame before the current events if the table has the keyboard focus.
 pub(super) fn restore_deferred_keys(ui: &Ui, view: &mut RegisterView, id: Id) {
     let late = std::mem::take(&mut view.late);
     let focused = ui.memory(|memory| memory.focused());
@@ -25,8 +25,8 @@ pub(super) fn entry_id(table: Id) -> Id {
     table.with("entry")
 }
 
-/// Holds back everything typed in the current frame after a key that ends an edit. Such a key is Enter, or an up or
-/// down arrow, which acts as Enter and then moves to another line.
+/// Holds back everything typed in the current frame after a key that ends an edit. This is Enter, or an up or down
+/// arrow, which acts as Enter and then moves to another line.
 pub(super) fn defer_keys(ui: &Ui, view: &mut RegisterView) {
     ui.input_mut(|input| {
         let mut ended = false;
@@ -63,7 +63,7 @@ pub(super) fn is_vertical(event: &Event) -> bool {
 }
 
 /// Returns whether an event is typing for the table or its editor. Keys that stop a drive or belong to the window are
-/// not typing, and are never held back.
+/// not typing and are never held back.
 fn is_typing_event(event: &Event) -> bool {
     use Key::{ArrowDown, ArrowLeft, ArrowRight, ArrowUp, Backspace, Delete, End, Enter, Home};
     match event {
@@ -86,7 +86,7 @@ pub(super) fn handle_keys(
     let mut copied = None;
     ui.input_mut(|input| {
         input.events.retain(|own| match own {
-            // The editor has the keyboard from the next frame on.
+            // The editor receives the keyboard from the next frame on.
             _ if is_typing_event(own) && view.edit.as_ref().is_some_and(|edit| edit.begins) => {
                 view.late.push(own.clone());
                 false
@@ -153,7 +153,8 @@ fn move_selection(at: usize, lines: &Lines, view: &mut RegisterView, next: impl 
     true
 }
 
-/// Folds with Left and unfolds with Right. Left on a folded register moves to the heading of its group.
+/// Folds with the left arrow and unfolds with the right arrow. On a folded register, the left arrow moves to the
+/// heading of its group.
 fn handle_fold_key(key: Key, modifiers: Modifiers, table: &RegisterTable<'_>, view: &mut RegisterView) -> bool {
     let open = match key {
         Key::ArrowLeft => false,

@@ -1,4 +1,4 @@
-//! Painting a register table.
+//! Painting of a register table.
 
 use egui::{
     Align2, Color32, FontId, Pos2, Rangef, Rect, Response, Sense, Stroke, TextStyle, TextWrapMode, Ui, Vec2, pos2,
@@ -120,7 +120,7 @@ pub(super) fn row(
             Column::Value if row.value.is_empty() => (theme.monospace("–"), palette.muted),
             Column::Value => (theme.monospace(&row.value), value),
             Column::Decimal => (theme.monospace(&row.decimal), value),
-            // The number replaces an empty meaning if the column of the number is hidden.
+            // The number takes the place of an empty meaning if its column is hidden.
             Column::Meaning if row.meaning.is_empty() && columns.column_range(Column::Decimal).is_none() => {
                 (theme.monospace(&row.decimal), value)
             }
@@ -131,7 +131,7 @@ pub(super) fn row(
             Column::Default if row.differs => (theme.monospace(format!("≠ {}", row.default)), palette.text),
             Column::Default => (theme.monospace(&row.default), palette.muted),
         };
-        // A meaning that is too long is drawn smaller. It is cut only if it still does not fit.
+        // A meaning that is too long is drawn smaller. It is truncated only if it still does not fit.
         let words = match column {
             Column::Name if !columns.has_small_names && is_too_long(ui, theme, range, &words) => {
                 fits = false;
@@ -142,7 +142,7 @@ pub(super) fn row(
         };
         let right = column == Column::Decimal;
         let range = match (column, columns.column_range(Column::Meaning)) {
-            // A text may use the column of the meaning too.
+            // A text may also use the meaning column.
             (Column::Value, Some(meaning)) if row.meaning.is_empty() => Rangef::new(range.min, meaning.max),
             _ => range,
         };
@@ -156,7 +156,7 @@ pub(super) fn row(
     fits
 }
 
-/// Returns the clickable area that starts editing a line's value.
+/// Returns the area of a line in which a click starts editing the value.
 pub(super) fn value_edit_rect(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
     let inset = theme.space.inside;
     let x = rect.left() + value.min - inset..=rect.left() + value.max - theme.space.between;
@@ -211,7 +211,7 @@ fn is_too_long(ui: &Ui, theme: &Theme, range: Rangef, words: &egui::RichText) ->
     galley.size().x > range.span() - theme.space.between
 }
 
-/// Draws text within a column and returns its width. A text that is too long is truncated.
+/// Draws text within a column and returns its width. Text that is too long is truncated.
 fn draw_label(
     ui: &Ui,
     theme: &Theme,

@@ -25,7 +25,7 @@ pub struct RegisterView {
     /// Width of the table at which a name did not fit. At this width, all names are drawn in the small size.
     pub(super) small_names_at: Option<f32>,
     /// Events typed in the previous frame after a key that moves the focus to or from the editor. The next frame
-    /// determines which of them receives these events.
+    /// determines whether the table or the editor receives them.
     pub(super) late: Vec<Event>,
 }
 
@@ -42,7 +42,7 @@ pub(super) struct Edit {
     pub(super) problem: Option<Text>,
     /// Whether the edit has just begun and must receive the keyboard focus.
     pub(super) begins: bool,
-    /// Whether the edit began with a typed character instead of the existing value.
+    /// Whether the edit began with a typed character rather than the existing value.
     pub(super) typed: bool,
 }
 
@@ -95,8 +95,8 @@ impl RegisterView {
         self.folded.contains(&group)
     }
 
-    /// Adapts to a changed set of registers. The selection and the edit follow their register, and end if the register
-    /// no longer exists.
+    /// Adapts to a changed set of registers. The selection and the edit follow their register and end if it no longer
+    /// exists.
     pub fn follow_registers(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
             Some(SelectedRow::Row(place)) => now(place).map(SelectedRow::Row),

@@ -6,7 +6,7 @@ use egui::{Color32, FontId, Rect, RichText, Sense, Shape, Stroke, Ui, Vec2, Widg
 use super::Gauge;
 use crate::ui::{Theme, icons};
 
-/// Minimum width of the scale, and the widths of the parts before it.
+/// Minimum width of the scale of a gauge, in points.
 const MIN_SCALE_WIDTH: f32 = 96.0;
 const ICON_WIDTH: f32 = 16.0;
 const NAME_WIDTH: f32 = 112.0;
@@ -65,7 +65,7 @@ fn column_ui(ui: &mut Ui, width: f32, words: RichText) {
     });
 }
 
-/// Draws the allowed band with a pointer at the value, or an arrow at the end of the scale if the value is beyond it.
+/// Draws the allowed band with a pointer at the value, or an arrow at the end of the scale if the value lies beyond it.
 fn scale_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, ROW_HEIGHT), Sense::hover());
     response.widget_info(|| {

@@ -1,4 +1,4 @@
-//! Tests of the field map with keys and pointer.
+//! Tests of the field map with keys and the pointer.
 
 use egui::{Key, Vec2};
 use egui_kittest::Harness;

@@ -30,7 +30,7 @@ fn a_frame_describes_its_fields() {
         let fields = fields.clone();
         let mut harness = window((), move |ui, ()| {
             ui.set_max_width(width);
-            // Fewer bits than the fields have: the rest is not known.
+            // If there are fewer bits than the fields have, the rest is unknown.
             let bits: Vec<Option<bool>> = (0..20).map(|at| Some(at % 3 == 0)).collect();
             frame_strip(ui, &theme(), &FrameStrip { label: "Frame", fields: &fields, bits: &bits });
         });

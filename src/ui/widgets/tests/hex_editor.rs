@@ -1,4 +1,4 @@
-//! Tests of the hex editor with keys, pointer and clipboard.
+//! Tests of the hex editor with keys, the pointer and the clipboard.
 
 use egui::{Event, Key, Modifiers, Pos2};
 use egui_kittest::Harness;
@@ -129,7 +129,7 @@ fn the_cursor_moves_to_the_undone_edit() {
     harness.state_mut().view.select(40..42);
     press(&mut harness, &[(CTRL, Key::Z)]);
     assert_eq!((harness.state().view.cursor(), harness.state().view.selection()), (16, 16..17));
-    // Nothing remains to undo: the cursor stays.
+    // There is nothing left to undo, so the cursor stays.
     harness.state_mut().view.select(40..41);
     press(&mut harness, &[(CTRL, Key::Z)]);
     assert_eq!(harness.state().view.cursor(), 40);
@@ -228,7 +228,7 @@ fn press_at(harness: &mut Harness<'_, Bytes>, pos: Pos2, modifiers: Modifiers, r
 fn the_pointer_sets_the_cursor_and_selects() {
     let mut harness = editor(32, None);
     let rect = harness.get_by_label(BYTES).rect();
-    // The middle of the second line of two; columns are 24 points wide after 28 points of address.
+    // The middle of the second of two lines. Columns are 24 points wide and follow 28 points of address.
     let at = |place: f32| Pos2::new(rect.left() + 28.0 + 24.0 * (place + 0.5), rect.top() + rect.height() * 0.75);
     press_at(&mut harness, at(2.0), NONE, at(2.0));
     assert_eq!(value(&harness), "0x12: 12");

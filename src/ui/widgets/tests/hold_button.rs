@@ -1,4 +1,4 @@
-//! A button that is active while it is held.
+//! Tests of a button that is active while it is held.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, ViewportId};
 use egui_kittest::Harness;
@@ -90,7 +90,7 @@ fn a_press_that_began_elsewhere_starts_no_hold() {
 
 #[test]
 fn disabling_the_button_or_losing_focus_ends_a_hold() {
-    // Locked by an error, and the window without the keyboard focus.
+    // The button is locked by an error, or the window does not have the keyboard focus.
     for cause in [0, 1] {
         let mut harness = jog();
         let at = midpoint(&harness);
@@ -104,7 +104,7 @@ fn disabling_the_button_or_losing_focus_ends_a_hold() {
         assert_eq!(step(&mut harness, []), [], "{cause}");
         harness.state_mut().locked = false;
         harness.input_mut().focused = true;
-        // The finger is still there, and must be lifted first.
+        // The finger is still on the button and must be lifted first.
         assert_eq!(step(&mut harness, []), [], "{cause}");
     }
     // A button that is not drawn does not report anything, which ends the hold.
@@ -117,7 +117,7 @@ fn disabling_the_button_or_losing_focus_ends_a_hold() {
     assert_eq!(step(&mut harness, []), []);
 }
 
-/// Waits for the minimum time between a release and a fresh press.
+/// Waits for the minimum time between the release of a key and a fresh press.
 fn wait(harness: &mut Harness<'_, Jog>) {
     for _ in 0..4 {
         assert_eq!(step(harness, []), []);
@@ -140,7 +140,7 @@ fn a_key_holds_the_button_and_repeats_start_nothing() {
     assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
     assert_eq!(step(&mut harness, [key(true, true)]), [Hold]);
     assert_eq!(step(&mut harness, [key(false, false)]), [Release]);
-    // Pressed before the button had the keyboard focus.
+    // The key was pressed before the button had the keyboard focus.
     focus(&mut harness, "before");
     step(&mut harness, [key(true, false)]);
     harness.get_by_label("Jog up").focus();
@@ -160,7 +160,7 @@ fn step_after(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) 
     events
 }
 
-/// Issue 21.2: a key that repeats by a release and an immediate press, which arrive in two frames of any distance.
+/// Issue 21.2: a key repeat may be reported as a release and an immediate press in two frames, however far apart.
 #[test]
 fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
@@ -174,7 +174,7 @@ fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     }
 }
 
-/// Issue 21.2: a user's press a tenth of a second after the release, with no other event in between.
+/// Issue 21.2: a user presses the key a tenth of a second after releasing it, with no other event in between.
 #[test]
 fn a_release_requests_the_frame_that_rearms_the_key() {
     let mut harness = armed();
@@ -184,7 +184,7 @@ fn a_release_requests_the_frame_that_rearms_the_key() {
         assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
         assert_eq!(step(&mut harness, [key(false, false)]), [Release]);
         let mut waited = 0.0;
-        // Independent of the harness's own clock: a frame is drawn when it was requested.
+        // Independently of the harness's own clock, a frame is drawn when it was requested.
         while next(&harness) < 1.0 && waited < 0.09 {
             let apart = next(&harness).max(0.001);
             waited += apart;
@@ -197,8 +197,8 @@ fn a_release_requests_the_frame_that_rearms_the_key() {
     }
 }
 
-/// Issue 21.2: the events of the window system when Space is held over a change of the window. What egui reports as a
-/// first press is none.
+/// Issue 21.2: the events that the window system reports when Space is held while the user switches to another window
+/// and back. What egui reports as a first press is a repetition.
 #[test]
 fn a_key_held_during_a_window_change_starts_no_hold() {
     for held_before in [false, true] {
@@ -207,7 +207,7 @@ fn a_key_held_during_a_window_change_starts_no_hold() {
             assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
         }
         harness.input_mut().focused = false;
-        // If it is down, the release is artificial.
+        // If the key is down, the release is artificial.
         let made_up = held_before.then(|| key(false, false));
         let expected: &[HoldEvent] = if held_before { &[Release] } else { &[] };
         assert_eq!(step(&mut harness, made_up.into_iter().chain([Event::WindowFocused(false)])), expected);
@@ -221,14 +221,14 @@ fn a_key_held_during_a_window_change_starts_no_hold() {
         step(&mut harness, [key(false, false)]);
         wait(&mut harness);
         assert_eq!(step(&mut harness, [key(true, false)]), [Press], "{held_before}");
-        // All of it between two frames.
+        // All of these events arrive between two frames.
         let blink = [key(false, false), Event::WindowFocused(false), Event::WindowFocused(true), key(true, false)];
         assert_eq!(step(&mut harness, blink), [Release], "{held_before}");
         assert_eq!(step(&mut harness, [key(true, true)]), [], "{held_before}");
     }
 }
 
-/// Issue 21.2: a button that was not drawn, was locked, or was covered by a dialog has seen no key up.
+/// Issue 21.2: a button that was not drawn, was locked, or was covered by a dialog does not know that a key is up.
 #[test]
 fn a_key_down_before_the_button_was_enabled_starts_no_hold() {
     type Change = fn(&mut Jog, bool);
@@ -259,8 +259,8 @@ fn a_key_down_before_the_button_was_enabled_starts_no_hold() {
     assert_eq!(step(&mut harness, [key(true, true)]), []);
 }
 
-/// Issue 21.2: under a dialog the pointer does not hold anything either, nor does a press that began there after it is
-/// closed.
+/// Issue 21.2: under a dialog, the pointer cannot hold the button either. A press that began there has no effect after
+/// the dialog is closed.
 #[test]
 fn a_press_under_a_dialog_starts_no_hold() {
     let mut harness = jog();
@@ -275,7 +275,7 @@ fn a_press_under_a_dialog_starts_no_hold() {
     assert_eq!(step(&mut harness, [button(at, true)]), [Press]);
 }
 
-/// Issue 21.2: any key, any modifier, another button and a second finger end a hold by the pointer.
+/// Issue 21.2: any key, modifier, other button or second finger ends a hold by the pointer.
 #[test]
 fn any_other_input_ends_a_pointer_hold() {
     let other = |key| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
@@ -313,7 +313,7 @@ fn any_other_input_ends_a_pointer_hold() {
     }
 }
 
-/// Issue 21.2: a key on the button while something else moves is a stop.
+/// Issue 21.2: a key press on the button during another motion is a request to stop.
 #[test]
 fn a_key_stops_a_running_motion() {
     let mut harness = armed();

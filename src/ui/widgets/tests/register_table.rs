@@ -1,4 +1,4 @@
-//! Tests of a register table as large as that of the kit encoder, with keys, pointer and accessible labels.
+//! Tests of a register table as large as that of the kit encoder, with keys, the pointer and accessible labels.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ struct Registers {
     view: RegisterView,
     events: Vec<RegisterEvent>,
     output: RegisterTableOutput,
-    /// Registers asked for in the last frame.
+    /// Number of registers requested in the last frame.
     asked: usize,
 }
 
@@ -88,11 +88,11 @@ fn place(group: usize, row: usize) -> RegisterLocation {
     RegisterLocation { group, row }
 }
 
-/// Clicks a row at a distance from its left edge, in points.
+/// Clicks a row at the given distance from its left edge, in points.
 fn click(harness: &mut Harness<'_, Registers>, label: &str, from_left: f32, times: usize) {
     let rect = harness.get_by_label(label).rect();
     let pos = Pos2::new(rect.left() + from_left, rect.center().y);
-    // Not a double click with an earlier one.
+    // This is not a double click together with the previous one.
     harness.run_steps(20);
     for _ in 0..times {
         harness.event(Event::PointerMoved(pos));
@@ -112,7 +112,7 @@ fn only_visible_groups_are_requested() {
         press(&mut harness, &[(NONE, key)]);
         assert_eq!(harness.state().output.groups, groups);
         harness.get_by_label(label);
-        // 400 points hold 23 lines; some are requested again by the selection.
+        // 400 points hold 23 lines. Some registers are requested again for the selection.
         assert!(harness.state().asked < 30, "{}", harness.state().asked);
     }
 }
@@ -160,7 +160,7 @@ fn a_typed_value_is_refused_or_accepted() {
     assert_eq!(harness.state().edits, BTreeMap::from([(place(5, 7), 0x2A)]));
     assert!(harness.get_by_label(TABLE).is_focused());
     assert_eq!(selected(&harness), "05:07 register 7: 2A, 42, edited, not written");
-    // A character begins; Escape cancels.
+    // A typed character begins the edit, and Escape cancels it.
     harness.event(Event::Text("f".to_owned()));
     harness.run();
     assert_eq!(entry(&harness), Some("f".to_owned()));
@@ -196,7 +196,7 @@ fn the_pointer_selects_folds_and_edits() {
     harness.get_by_label("b2 flag 2");
     click(&mut harness, "00:02 register 2", 200.0, 2);
     harness.get_by_role(egui::accesskit::Role::TextInput);
-    // A value left unchanged is accepted as it is.
+    // A value that was not changed is accepted.
     click(&mut harness, "Bank 00", 100.0, 1);
     assert_eq!(harness.state().edits.get(&place(0, 2)), Some(&2));
     assert!(harness.state().view.is_folded(0) && harness.query_by_label("00:03 register 3").is_none());
@@ -222,8 +222,8 @@ fn one_click_edits_a_number_box() {
         [(RegisterKind::Numbers, Some("00:00 register 0")), (RegisterKind::Bytes { widest: 1 }, None)]
     {
         let mut harness = table_harness(kind);
-        // Twelve characters of 7.8 points and 8 between columns are 101.6; with 42 + 40 + 150 before it and 356 after
-        // it 689.6. The name has 45 % of the rest.
+        // Twelve characters of 7.8 points and 8 between columns are 101.6. With 42 + 40 + 150 before it and 356 after
+        // it, the total is 689.6. The name gets 45 % of the rest.
         let spare = (harness.get_by_label("00:00 register 0").rect().width() - 689.6).max(0.0);
         let value = 232.0 + (spare * 0.45).floor() + 30.0;
         click(&mut harness, "00:00 register 0", value, 1);
@@ -234,7 +234,7 @@ fn one_click_edits_a_number_box() {
     }
 }
 
-/// Types over the value of a box, and presses another one.
+/// Text typed into a box takes effect when another box is clicked.
 #[test]
 fn typed_text_is_accepted_when_another_box_is_clicked() {
     let mut harness = table_harness(RegisterKind::Numbers);
@@ -249,7 +249,7 @@ fn typed_text_is_accepted_when_another_box_is_clicked() {
     click(&mut harness, "00:08 register 8", value, 1);
     assert_eq!(harness.state().edits.get(&place(0, 5)), Some(&0x7A));
     assert_eq!(entry(&harness).as_deref(), Some("00:08 register 8"));
-    // A rejected value stays with its reason, and is discarded only by a further press.
+    // A rejected value stays visible with its reason and is discarded only by another press.
     harness.event(Event::Text("xy".to_owned()));
     harness.run();
     click(&mut harness, "00:10 register 16", value, 1);
@@ -276,8 +276,8 @@ fn typed_text_stays_with_its_register_when_lines_change() {
     assert_eq!((typed(&harness), harness.state().view.selected()), (None, None));
 }
 
-/// Issue 26.4: a window that draws slowly gets several keys at once, at 10 ms a key. None is lost, whether the keyboard
-/// is still with the table or goes back to it, and each is heard once.
+/// Issue 26.4: a window that is drawn slowly receives several keys at once, 10 ms apart. None of them is lost or
+/// handled twice, whether the keyboard focus is still on the table or returns to it.
 #[test]
 fn text_typed_in_a_single_frame_is_complete() {
     let mut harness = table();
@@ -299,7 +299,7 @@ fn text_typed_in_a_single_frame_is_complete() {
         key(Key::Enter),
     ]
     .concat();
-    // In one frame, and in two that are cut at any place.
+    // All events in one frame, or in two frames split at any point.
     for cut in 0..=all.len() {
         harness.state_mut().edits.clear();
         harness.state_mut().view.select(place(0, 5));

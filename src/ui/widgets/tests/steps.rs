@@ -1,4 +1,4 @@
-//! Tests of a guided procedure with buttons and accessible values.
+//! Tests of a guided procedure with its buttons and accessible values.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};

@@ -1,4 +1,4 @@
-//! Tests of the table of values.
+//! Tests of the table of typed values.
 
 use egui_kittest::kittest::Queryable;
 
