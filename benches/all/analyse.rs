@@ -1,6 +1,6 @@
-//! Time to fit and analyse a capture of ten million samples (goal: 0.5 s), and to read a table of 100 MB (goal: 100
-//! MB/s), each compared with a naive solution: a matrix of all samples solved by QR and an arc tangent for every
-//! sample; the lines of a text, split and parsed by the standard library.
+//! Time to fit and analyse a capture of ten million samples (goal: 0.5 s) and to read a table of 100 MB (goal: 100
+//! MB/s). Each is compared with a naive solution: a matrix of all samples solved by QR with an arc tangent for every
+//! sample, and lines of text split and parsed with the standard library.
 
 use crate::median;
 use std::f64::consts::TAU;
@@ -24,7 +24,7 @@ const ROUNDS: usize = 5;
 const ELLIPSE: Ellipse =
     Ellipse { amplitude_v: 0.5, offset_cosine_v: 0.02, offset_sine_v: -0.03, gain_ratio: 1.05, phase_error_rad: 0.052 };
 
-/// Returns a thousand samples per period, with some noise.
+/// Returns a thousand samples per period with some noise.
 fn capture(count: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let mut random = fastrand::Rng::with_seed(1);
     let time: Vec<f64> = (0..count).map(|at| at as f64 * 1e-6).collect();
@@ -75,7 +75,7 @@ pub(crate) fn run() {
         density
     };
     println!("{:<28} {:>8.3}", "density of the Lissajous", median(ROUNDS, density));
-    // A tenth of the samples: all of them would need gigabytes.
+    // A tenth of the samples, because all of them would need gigabytes.
     let tenth = SAMPLES / 10;
     let naive = median(ROUNDS, || naive_fit(&sine[..tenth], &cosine[..tenth])) * 10.0;
     println!("{:<28} {naive:>8.3}  (ten times a tenth of the samples)", "QR of all, atan2 of all");

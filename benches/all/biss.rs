@@ -1,5 +1,5 @@
 //! Speed of decoding BiSS frames with their checksum (goal: 20 million per second on one core), compared with a
-//! checksum calculated bit by bit; and how many times faster than 20 000 frames per second the stream of an adapter is
+//! checksum calculated bit by bit. Also how many times faster than 20 000 frames per second the stream of an adapter is
 //! parsed and recorded.
 //!
 //! `cargo bench -- biss`
@@ -14,15 +14,16 @@ use encoder_studio::buses::bridge::protocol::{
 };
 use encoder_studio::devices::biss::protocol::{Crc, FrameError, Layout, PositionData};
 
-/// Frames in a batch, and the number of its decodings in one measurement.
+/// Number of frames in a batch.
 const FRAMES: usize = 1 << 16;
+/// Number of times that the batch is decoded in one measurement.
 const PASSES: usize = 16;
 const ROUNDS: usize = 9;
 /// Period of the stream.
 const PERIOD_US: u32 = 50;
 const SECONDS: u32 = 10;
 
-/// Returns the frames of any positions, one in a thousand with a flipped bit.
+/// Returns the frames of random positions, one in a thousand of them with a flipped bit.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut random = fastrand::Rng::with_seed(1);
     (0..FRAMES)
@@ -39,7 +40,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
         .collect()
 }
 
-/// Decodes the batch a number of times; returns millions of frames per second.
+/// Decodes the batch repeatedly and returns the rate in millions of frames per second.
 fn rate<T>(frames: &[u64], decode: impl Fn(u64) -> T) -> f64 {
     let mut readings = Vec::with_capacity(FRAMES);
     let seconds = median(ROUNDS, || {
@@ -52,7 +53,7 @@ fn rate<T>(frames: &[u64], decode: impl Fn(u64) -> T) -> f64 {
     (FRAMES * PASSES) as f64 / seconds / 1e6
 }
 
-/// Decodes the kit encoder's frame as in the manual: a bit of the checksum at a time.
+/// Decodes the kit encoder's frame as described in the manual, with the checksum calculated bit by bit.
 fn bit_by_bit(raw: u64) -> Option<PositionData> {
     let data = raw >> 6;
     let mut sum = 0u8;
@@ -82,7 +83,8 @@ fn decoding() {
     println!("{:<32} {:>7.1}", "20 + 26 bits, CRC16", rate(&frames, |raw| wide.parse(raw)));
 }
 
-/// Returns the data that an adapter sends in ten seconds: a shaft at 3000 revolutions per minute, 56 frames per packet.
+/// Returns the data that an adapter sends in ten seconds with a shaft at 3000 revolutions per minute and 56 frames per
+/// packet.
 fn sent(layout: &Layout) -> Vec<u8> {
     let frame = |index: u32| {
         let steps = u64::from(index) * 131_072 * u64::from(PERIOD_US) / 20_000;
@@ -99,7 +101,7 @@ fn sent(layout: &Layout) -> Vec<u8> {
     (0..count).step_by(56).flat_map(packet).collect()
 }
 
-/// Records all of it in a history; returns the number of frames.
+/// Records all data in a history and returns the number of frames.
 fn receive(bytes: &[u8], layout: &Layout) -> u64 {
     let mut receiver = Receiver::default();
     let mut continuity = Continuity::at_start();

@@ -1,6 +1,6 @@
-//! Growth of what a session accumulates, each at three sizes: samples, registers, trace frames, logbook entries and
-//! connected devices. The slope is the exponent by which the time grows from the smallest to the largest size: 0 if it
-//! does not depend on the size, 1 if it is proportional. Prints figures without a verdict.
+//! Growth of the data that a session accumulates, each at three sizes: samples, registers, trace frames, logbook
+//! entries and connected devices. The slope is the exponent by which the time grows from the smallest to the largest
+//! size: 0 if it does not depend on the size, 1 if it is proportional. Prints figures without a verdict.
 //!
 //! `cargo bench -- growth`
 
@@ -39,7 +39,7 @@ pub(crate) fn run(parts: &[String]) {
     }
 }
 
-/// Prints the times of three sizes, with the slope after the last one.
+/// Prints the times for three sizes, with the slope after the last one.
 fn print(what: &str, times: &[(usize, f64)]) {
     for (at, (size, seconds)) in times.iter().enumerate() {
         let slope = match times {
@@ -107,7 +107,7 @@ fn samples() {
     }
 }
 
-/// Returns a BiSS profile with this number of registers of OEM data, all of which have the value `byte`.
+/// Returns a BiSS profile with the given number of OEM data registers, all of which have the value `byte`.
 fn profile(registers: usize, byte: u8) -> String {
     let line = vec![format!("{byte:02X}"); 16].join(" ");
     let mut banks = String::new();

@@ -1,9 +1,9 @@
-//! Time from the release of a jog to the stop word at the drive's socket (at most an interval and 5 ms), and the jitter
-//! of a cyclic connection while a window is drawn; each compared with a naive solution, a thread that sleeps an
+//! Time from the release of a jog to the stop word at the drive's socket (at most an interval and 5 ms), and jitter of
+//! a cyclic connection while a window is drawn. Each is compared with a naive solution, a thread that sleeps for an
 //! interval and then checks.
 //!
-//! `cargo bench -- hiperdrive`; `HIPERDRIVE_RELEASES` (200) and `HIPERDRIVE_SECONDS` (20) set number and duration; for
-//! the naive solution a minute is enough.
+//! `cargo bench -- hiperdrive`; `HIPERDRIVE_RELEASES` (200) and `HIPERDRIVE_SECONDS` (20) set the number and duration.
+//! A minute is enough for the naive solution.
 
 use std::net::UdpSocket;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -108,14 +108,14 @@ trait DeviceConnection {
     fn name(&self) -> &'static str;
     fn intend(&self, wish: MotionRequest);
     fn refresh(&self);
-    /// Returns the received packets, by the errors of their intervals.
+    /// Returns a histogram of the received packets by the errors of their intervals.
     fn arrivals(&self) -> Histogram;
 }
 
-/// Opens one.
+/// A function that opens a connection to a drive.
 type Begin = fn() -> (Box<dyn DeviceConnection>, Target);
 
-/// Ours.
+/// The program's own connection.
 struct Ours {
     motion: Motion,
     _cyclic: Cyclic,
@@ -139,7 +139,7 @@ impl DeviceConnection for Ours {
     }
 }
 
-/// A loop that sleeps, checks and sends.
+/// A naive connection: a loop that sleeps, checks and sends.
 struct Naive {
     shared: Arc<Mutex<(MotionIntent, Histogram)>>,
     clock: Arc<RealClock>,
@@ -191,7 +191,7 @@ fn ours() -> (Box<dyn DeviceConnection>, Target) {
         timeout: Some(20),
         reference: Some(0),
     };
-    // They are not read again here: the time is that of a reading at the end.
+    // They are not read again here. The time is that of a reading at the end.
     let read = clock.now() + Duration::from_secs(3600);
     motion
         .publish_limits(DriveNumber::FIRST, DriveLimits::from_rules(rules, (Topology::Adapter, Variant::new(7)), read));
@@ -223,7 +223,7 @@ fn naive() -> (Box<dyn DeviceConnection>, Target) {
     (Box::new(Naive { shared, clock, end, thread: Some(thread) }), target)
 }
 
-/// Returns the times from a release to the stop word at the socket, in milliseconds, sorted.
+/// Returns the sorted times from a release to the stop word at the socket, in milliseconds.
 fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f64> {
     let mut random = fastrand::Rng::with_seed(7);
     let mut took = Vec::with_capacity(count);
@@ -252,7 +252,7 @@ fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f6
     took
 }
 
-/// Measures the intervals between sent packets at the socket, and between received ones.
+/// Measures the intervals between packets that are sent, at the socket, and between packets that are received.
 fn evenness(way: &dyn DeviceConnection, target: &Target, time: Duration) -> [Histogram; 2] {
     sleep(INTERVAL * 5);
     target.words.try_iter().for_each(drop);
@@ -268,7 +268,7 @@ fn evenness(way: &dyn DeviceConnection, target: &Target, time: Duration) -> [His
     [sent, way.arrivals()]
 }
 
-/// Starts a window that draws 60 times per second, half of the time.
+/// Starts a window that draws 60 times per second, which takes half of the time.
 fn window() -> (Arc<AtomicBool>, JoinHandle<()>) {
     let end = Arc::new(AtomicBool::new(false));
     let ends = end.clone();

@@ -41,7 +41,7 @@ pub(crate) fn run(parts: &[String]) {
     }
 }
 
-/// The naive alternative: vectors that grow, a sample at a time, without flags.
+/// The naive alternative: vectors that grow sample by sample, without flags.
 #[derive(Default)]
 struct Naive {
     times: Vec<i64>,
@@ -87,9 +87,9 @@ impl Naive {
     }
 }
 
-/// Measures both in turns, and then copies the same bytes into memory that the system has to provide first, which is
-/// the least cost of keeping them. The worst stall is the longest batch that is long in every round, which excludes
-/// other activity of the computer.
+/// Measures both solutions in turn, and then copies the same bytes to memory that the system has to provide first,
+/// which is the minimum cost of keeping them. The worst stall is the longest batch that is long in every round, which
+/// excludes other activity of the computer.
 fn append(batch: usize) {
     let samples = 4_000_000;
     let batches = samples / batch;
@@ -128,7 +128,7 @@ fn append(batch: usize) {
     println!("  a bare copy   {:6.2} ns, worst stall {:8.1} µs", each(copy), micros(copy_worst));
 }
 
-/// Returns the time of all batches, the median, and the worst one.
+/// Returns the total time of all batches, the median, and the worst one.
 fn copies(times: &[SampleTime], columns: &[Vec<f64>], batches: usize) -> (Duration, Duration) {
     let mut least = vec![Duration::MAX; batches];
     let mut totals: Vec<Duration> = (0..ROUNDS)
@@ -149,7 +149,7 @@ fn copies(times: &[SampleTime], columns: &[Vec<f64>], batches: usize) -> (Durati
     (median(&mut totals), least.into_iter().max().unwrap())
 }
 
-/// Pictures while the view moves by a tenth of a pixel column a picture.
+/// Draws pictures while the view moves by a tenth of a pixel column per picture.
 fn pictures(history: &History) {
     let all = history.indices();
     let (first, last) = (history.time(all.start).unwrap(), history.time(all.end - 1).unwrap());
@@ -179,7 +179,7 @@ fn pictures(history: &History) {
     println!("  {:>14}: {:8.1} µs", "all, full scan", micros(median(&mut took)));
 }
 
-/// Computes first, min, max, last from the raw samples, as a plot without a pyramid has to.
+/// Computes the first, minimum, maximum and last value from the raw samples, as a plot without a pyramid has to.
 fn scan(history: &History) -> Vec<Duration> {
     let columns: Vec<Vec<f64>> = (0..SIGNALS)
         .map(|column| history.indices().map(|index| history.sample(column, index).unwrap().value.to_f64()).collect())
@@ -217,11 +217,11 @@ fn memory(history: &History, columns: usize) {
     println!("  memory {:.1} MB, {ratio:.3} × the raw columns", history.memory() as f64 / 1e6);
 }
 
-/// A day's or an hour's samples with pauses, of which no more than ten million are kept.
+/// Records the samples of an hour or a day with pauses. No more than ten million samples are kept.
 fn soak_of(label: &str, samples: usize, period: i64, columns: usize, kind: Kind) {
     const BATCH: usize = 10_000;
     const RANGE: i64 = 4096 * 32_768;
-    /// Number of batches between two pauses of a second.
+    /// Number of batches between two pauses of one second.
     const PAUSE: usize = 500;
     let began = Instant::now();
     let mut history = History::new(&vec![kind; columns], SAMPLES).with_longest_pause(period * 10);
@@ -302,7 +302,7 @@ fn filled(kind: Kind, columns: usize, flagged: bool) -> History {
 }
 
 fn times(start: usize, count: usize) -> Vec<SampleTime> {
-    // A little uneven, as on a real line.
+    // Slightly uneven, as on a real line.
     (start..start + count)
         .map(|at| SampleTime::from_nanoseconds(at as i64 * PERIOD + (at * 7919 % 50_000) as i64))
         .collect()

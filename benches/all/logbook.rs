@@ -1,7 +1,7 @@
-//! Times of a logbook with 100,000 entries: to open the view (goal: 200 ms) and to search (goal: 50 ms). With a server in
-//! `ENCODER_STUDIO_LOGBOOK`, a database that may be filled, also the times to send all entries, to copy them to a new
-//! bench, and of view and search there when the server is asked for new entries first. The naive solution searches on
-//! the server.
+//! Times of a logbook with 100,000 entries for opening the view (goal: 200 ms) and for searching (goal: 50 ms).
+//! `ENCODER_STUDIO_LOGBOOK` may name a server with a database that may be filled. In that case, also the times for
+//! sending all entries, for copying them to a new bench, and for opening the view and searching there when the server
+//! is first asked for new entries. The naive solution searches on the server.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -12,12 +12,13 @@ use rusqlite::Connection;
 use crate::median;
 
 const ENTRIES: u32 = 100_000;
-/// Maximum number of entries that the view shows, and one more.
+/// Number of entries to query, which is one more than the view shows.
 const SHOWN: u32 = 2_001;
 const ROUNDS: usize = 7;
 const TIMEOUT: Duration = Duration::from_secs(30);
 
-/// Adds entries of 500 devices and ten benches, three writes in ten. One entry in a thousand has the word `needle`.
+/// Adds entries for 500 devices on ten benches. Three entries in ten are writes. One entry in a thousand contains the
+/// word `needle`.
 pub(crate) fn fill(path: &Path, entries: u32) {
     drop(Logbook::open(path).unwrap());
     let mut database = Connection::open(path).unwrap();

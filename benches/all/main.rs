@@ -1,6 +1,6 @@
-//! Benchmarks, each beside a naive solution or a physical limit. They print figures without a verdict.
+//! Benchmarks, each compared with a naive solution or a physical limit. They print figures without a verdict.
 //!
-//! `cargo bench` runs all, `cargo bench -- NAME` one; more words choose a part of it.
+//! `cargo bench` runs all of them, `cargo bench -- NAME` a single one. Further words select parts of it.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod analyse;
@@ -19,7 +19,7 @@ mod window;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Returns the median of some rounds, in seconds.
+/// Returns the median duration of the given number of rounds, in seconds.
 fn median<T>(rounds: usize, mut work: impl FnMut() -> T) -> f64 {
     let mut times: Vec<f64> = (0..rounds)
         .map(|_| {
@@ -32,7 +32,7 @@ fn median<T>(rounds: usize, mut work: impl FnMut() -> T) -> f64 {
     times[rounds / 2]
 }
 
-/// A benchmark with its name; the words are the parts to run.
+/// A benchmark with its name. The words passed to the function select the parts to run.
 type Benchmark = (&'static str, fn(&[String]));
 
 const ALL: &[Benchmark] = &[

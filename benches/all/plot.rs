@@ -1,6 +1,6 @@
 //! Cost of a frame of the plot panel: layout, reduction and tessellation of four lines of ten million samples, all
-//! visible, zoomed out and in, still and following; compared with egui_plot on the same samples. Prints figures without
-//! a verdict.
+//! visible, zoomed out and in, paused and following. Compared with egui_plot on the same samples. Prints figures
+//! without a verdict.
 //!
 //! `cargo bench -- plot`
 
@@ -17,10 +17,10 @@ use encoder_studio::ui::{Theme, install_fonts};
 
 const SAMPLES: usize = 10_000_000;
 const SIGNALS: usize = 4;
-/// Nanoseconds between samples.
+/// Sample period in nanoseconds.
 const PERIOD: i64 = 10_000;
 const ROUNDS: usize = 101;
-/// A plot of a thousand pixels, plus the gutter of the labels.
+/// Size of a plot with a width of a thousand pixels, plus the gutter for the labels.
 const SIZE: Vec2 = Vec2::new(1060.0, 600.0);
 
 pub(crate) fn run(parts: &[String]) {
@@ -35,7 +35,7 @@ pub(crate) fn run(parts: &[String]) {
     let mut bench = Bench::new();
     let all = (SampleTime::ORIGIN, SampleTime::from_nanoseconds(SAMPLES as i64 * PERIOD));
     let span = all.1.nanoseconds_since(all.0);
-    // Each frame shows another stretch, so that nothing of the previous one can be reused.
+    // Each frame shows another part, so nothing of the previous frame can be reused.
     let stretch = |share: f64, round: usize| {
         let length = (span as f64 * share) as i64;
         let from = (span - length).max(0) / 3 + round as i64 * length / 997;
@@ -109,7 +109,7 @@ fn append(recorder: &mut Recorder, group: GroupId, first: usize, count: usize, f
     recorder.append(group, &times, &parts).unwrap();
 }
 
-/// Returns a sine with a slower one and something like noise on it.
+/// Returns a sample of a sine with a slower sine and pseudo-noise added.
 fn value(signal: usize, at: usize) -> f64 {
     let noise = (at.wrapping_mul(2_654_435_761) >> 16) % 1000;
     let time = at as f64 * 1e-5;
@@ -132,7 +132,7 @@ impl Bench {
     }
 
     fn rounds(&mut self, recorder: &mut Recorder, mut before: impl FnMut(&mut Recorder, usize)) -> String {
-        // Parts that are laid out once, as the letters, are ready.
+        // Parts that are laid out only once, such as letters, are ready now.
         self.frame(recorder);
         let mut took: Vec<(Duration, usize)> = (0..ROUNDS)
             .map(|round| {
@@ -150,7 +150,7 @@ impl Bench {
         )
     }
 
-    /// Draws one frame, without the graphics card.
+    /// Draws one frame without the graphics card.
     fn frame(&mut self, recorder: &Recorder) -> (Duration, usize) {
         frame(&self.ctx, |ui| {
             let (theme, mut actions) = (self.theme, Vec::new());
@@ -174,7 +174,7 @@ fn frame(ctx: &Context, mut content: impl FnMut(&mut egui::Ui)) -> (Duration, us
     (took, vertices)
 }
 
-/// Draws the same samples as lines of egui_plot, which reads each of them for every frame.
+/// Draws the same samples as lines of egui_plot, which reads each sample for every frame.
 fn egui_plot_frame() -> String {
     let columns: Vec<Vec<egui_plot::PlotPoint>> = (0..SIGNALS)
         .map(|signal| {

@@ -1,5 +1,5 @@
-//! Rate of polling the position, compared with the least time that the protocol allows, and with two naive solutions:
-//! waiting for the longest time in the manual, and a fixed 250 ms after each request.
+//! Rate of polling the position, compared with the minimum time that the protocol allows, and with two naive solutions:
+//! waiting for the longest time in the manual, and waiting for a fixed 250 ms after each request.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -12,15 +12,15 @@ use encoder_studio::link::{ByteLink, Clock, RealClock, SimLink, VirtualClock};
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
 
-/// The virtual encoder's time for 42h.
+/// Time in milliseconds that the virtual encoder needs for 42h.
 const PROCESSING: f64 = 3.7;
-/// Longest time for 42h in the manual's table.
+/// Longest time in milliseconds for 42h in the manual's table.
 const LONGEST: f64 = 10.0;
-/// Settings bytes to poll with: 9600 and 38400, even, 44 bits.
+/// Settings bytes of the polled encoders: 9600 and 38400 baud, even parity, a time-out of 44 bits.
 const SETTINGS: [u8; 2] = [0xE4, 0xE6];
 
-/// Returns the least time of 42h: a request of three characters, silence, processing, a reply of seven characters,
-/// silence; a character has 11 bits.
+/// Returns the minimum time for 42h in milliseconds: a request of three characters, silence, processing, a reply of
+/// seven characters, and silence. A character has 11 bits.
 fn least_ms(baud: f64) -> f64 {
     (3.0 * 11.0 + 44.0 + 7.0 * 11.0 + 44.0) * 1000.0 / baud + PROCESSING
 }
@@ -34,7 +34,7 @@ fn median(mut cycles: Vec<f64>) -> f64 {
     cycles[cycles.len() / 2]
 }
 
-/// Returns the median time from one position to the next, in milliseconds, as the program polls.
+/// Returns the median time from one position to the next, in milliseconds, as polled by the program.
 fn studio(settings: u8, clock: Arc<dyn Clock>, count: usize) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     let mut station = Station::new(Duration::from_millis(20));
@@ -52,7 +52,7 @@ fn studio(settings: u8, clock: Arc<dyn Clock>, count: usize) -> f64 {
     median((0..count).map(cycle).collect())
 }
 
-/// Polls by sending, waiting for a fixed time, and reading the received bytes.
+/// Polls naively by sending, waiting for a fixed time, and reading the received bytes.
 fn naive(settings: u8, clock: &dyn Clock, owned: Arc<dyn Clock>, wait_ms: f64, count: usize) -> f64 {
     let mut link = SimLink::connect(bus(settings), owned);
     link.set_format(LineSettings::from_byte(settings).character_format().unwrap()).unwrap();

@@ -1,8 +1,8 @@
-//! A long run: the five virtual devices are polled as fast as their links allow, a virtual encoder supplies sine and
-//! cosine, and the window is laid out and tessellated 60 times a second. Prints the time of a frame on each page and the
-//! use of the process at ten points of time, with the slope from the second point on.
+//! A long run. The five virtual devices are polled as fast as their links allow, a virtual encoder supplies sine and
+//! cosine, and the window is laid out and tessellated 60 times per second. Prints the time of a frame on each page and
+//! the resource usage of the process at ten points in time, with the slope from the second point on.
 //!
-//! `cargo bench -- soak 600` runs for ten minutes, `cargo bench` for one.
+//! `cargo bench -- soak 600` runs for ten minutes, `cargo bench` for one minute.
 
 use std::fs;
 use std::path::Path;
@@ -29,7 +29,7 @@ const TABS: [Tab; 6] = [
 const DEVICES: usize = 5;
 const POINTS: usize = 10;
 const FRAME: Duration = Duration::from_micros(16_667);
-/// Time for which a tab is shown.
+/// Time for which each tab is displayed.
 const SHOWN: Duration = Duration::from_secs(1);
 
 pub(crate) struct Shown(Window);
@@ -97,7 +97,7 @@ fn connected(folder: &Path) -> Screen {
     screen
 }
 
-/// Returns the window as after the start of the program, with its files in a folder.
+/// Returns the window in its state after the start of the program, with its files in the given folder.
 pub(crate) fn open_window(folder: &Path) -> Screen {
     let environment = StudioEnvironment::production(Store::at_root(folder), program().studio);
     let mut studio = Studio::new(environment, Arc::new(|| {}));
@@ -143,7 +143,7 @@ fn polled(studio: &Studio) -> usize {
     studio.devices().iter().filter(|own| own.is_polling()).count()
 }
 
-/// Use of the process at one point of time.
+/// The resource usage of the process at one point in time.
 struct Usage {
     at: Instant,
     /// User and system time in seconds.
@@ -151,7 +151,7 @@ struct Usage {
     bytes: f64,
     handles: f64,
     threads: f64,
-    /// Bytes of all recordings.
+    /// Memory of all recordings in bytes.
     recorded: f64,
     dropped: u64,
 }
@@ -189,7 +189,7 @@ impl Usage {
     }
 }
 
-/// Returns the slope of the least-squares line through the points, per second.
+/// Returns the slope per second of the least-squares line through the points.
 fn slope(points: &[Usage], began: Instant, value: impl Fn(&Usage) -> f64) -> f64 {
     let pairs: Vec<(f64, f64)> =
         points.iter().map(|own| (own.at.duration_since(began).as_secs_f64(), value(own))).collect();

@@ -1,6 +1,6 @@
-//! Speed of decoding SSI frames (goal: 100 million per second on one core for 25 bits in Gray), compared with a decoder
-//! that reads them bit by bit; time to find the layout of 2000 frames; and how often the result is right for a thousand
-//! recordings of many kinds of encoders.
+//! Speed of decoding SSI frames (goal: 100 million per second on one core for 25 bits in Gray code), compared with a
+//! decoder that reads them bit by bit. Also the time to find the layout of 2000 frames, and how often the result is
+//! correct for a thousand recordings of many kinds of encoders.
 //!
 //! `cargo bench -- ssi`
 
@@ -23,7 +23,7 @@ fn layout(text: &str) -> Layout {
     settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
 }
 
-/// Returns the frames of any positions, some with an error bit.
+/// Returns the frames of random positions, some of them with an error bit.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut random = fastrand::Rng::with_seed(1);
     let frame = |_| {
@@ -33,7 +33,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
     (0..FRAMES).map(frame).collect()
 }
 
-/// Decodes 25 bits in Gray, 12 of them turns, as in the manual: bit by bit, from the first clock on.
+/// Decodes 25 bits in Gray code, 12 of them turns, as described in the manual: bit by bit, from the first clock on.
 fn bit_by_bit(frame: u64) -> (u32, u32) {
     let (mut turns, mut steps, mut before) = (0_u32, 0_u32, 0_u64);
     for clock in 1..=25 {
@@ -83,7 +83,8 @@ pub(crate) fn run() {
     thousand_recordings(&families);
 }
 
-/// Measures how often the first layout is right, and the tick wrong, for recordings made by other means.
+/// Measures how often the first class contains the correct layout, and how often a result reported as certain is wrong,
+/// for recordings that were generated independently.
 fn thousand_recordings(families: &Families) {
     let begun = Instant::now();
     let (mut first, mut ticks, mut wrong) = (0, 0, 0);

@@ -1,6 +1,6 @@
-//! Start-up time of the window, and its cost while open: the program compared with an empty window, both drawn in
-//! software; the time of a frame with forty million samples in the plot, and whether an adapter's stream of 20 000
-//! frames per second is shown without loss. Needs a display, or Xvfb; prints a message if there is neither.
+//! Start-up time of the window and its cost while open: the program compared with an empty window, both drawn in
+//! software. Also the time of a frame with forty million samples in the plot, and whether an adapter's stream of 20 000
+//! frames per second is displayed without loss. Needs a display or Xvfb, and prints a message if neither is available.
 //!
 //! `cargo bench -- window`
 
@@ -14,7 +14,7 @@ const STARTS: usize = 9;
 const IDLE: Duration = Duration::from_secs(10);
 
 pub(crate) fn run(parts: &[String]) {
-    // Started again as a program of its own.
+    // This process was started again as a separate program.
     match parts.first().map(String::as_str) {
         Some("minimal") => return minimal(),
         Some("plot") => return plot(),
@@ -71,8 +71,8 @@ pub(crate) fn run(parts: &[String]) {
 
 const STREAMED: Duration = Duration::from_secs(15);
 
-/// Runs the complete window with the position of a virtual BiSS encoder at the virtual adapter in its plot, as drawn
-/// when the adapter streams 20 000 frames per second.
+/// Runs the complete window with a plot of the position of a virtual BiSS encoder, while the virtual adapter streams 20
+/// 000 frames per second.
 fn stream() {
     use encoder_studio::app::{Action, Studio, StudioEnvironment, Tab, ThemeData};
     use encoder_studio::kinds::program;
@@ -82,7 +82,7 @@ fn stream() {
     struct Streaming {
         window: Window,
         began: Option<Instant>,
-        /// Microseconds that each picture took.
+        /// Duration of each frame in microseconds.
         took: Vec<u64>,
     }
     impl eframe::App for Streaming {
@@ -139,7 +139,7 @@ fn stream() {
                 std::sync::Arc::new(move || ctx.request_repaint()),
             );
             studio.handle_action(Action::ShowTab(Tab::named("Biss")));
-            // 2 MHz: a frame of 43 clocks takes 21.5 µs plus 27 µs of waiting.
+            // At 2 MHz, a frame of 43 clocks takes 21.5 µs plus 27 µs of waiting.
             studio.start_with(Some("sim:?bridge=on&clock=2000000&rpm=300".parse()?), None);
             let window = Window::new(studio, ThemeData::built_in()?, program().tabs);
             Ok(Box::new(Streaming { window, began: None, took: Vec::new() }))
@@ -148,7 +148,7 @@ fn stream() {
     .unwrap();
 }
 
-/// Four lines of ten million samples: sine, cosine, REFSIN, REFCOS, at a microsecond each.
+/// Number of samples in each of four lines (sine, cosine, REFSIN, REFCOS) at one microsecond each.
 const SAMPLES: usize = 10_000_000;
 
 fn write_capture(path: &std::path::Path) {
@@ -162,7 +162,7 @@ fn write_capture(path: &std::path::Path) {
     }
 }
 
-/// Runs the complete window with the capture in its scope: every frame another stretch, as fast as possible.
+/// Runs the complete window with the capture in its scope. Every frame shows another part, as fast as possible.
 fn plot() {
     use encoder_studio::analysis::SampleTime;
     use encoder_studio::app::{Action, Studio, StudioEnvironment, ThemeData, recorder};
@@ -176,7 +176,7 @@ fn plot() {
 
     struct Plotting {
         window: Window,
-        /// Nanoseconds since the program began, of each picture.
+        /// Time at which each frame was drawn.
         times: Vec<Instant>,
     }
     impl eframe::App for Plotting {
@@ -197,7 +197,7 @@ fn plot() {
                 if self.times.len() == 1 {
                     let lines = studio.tool_as::<Signals>().expect("there is a Signals tab").scope().recorder.series();
                     for (at, line) in lines.iter().enumerate() {
-                        // Sine, cosine, and both references.
+                        // Sine, cosine and both references.
                         let shown = [0, 1, 4, 6].contains(&at);
                         mailbox.send(Action::Recorder(
                             encoder_studio::app::RecorderOwner::Tool(encoder_studio::app::Tab::named("Signals")),
@@ -209,7 +209,7 @@ fn plot() {
             self.window.draw(ui);
             ui.ctx().request_repaint();
             if self.times.len() > PICTURES {
-                // The first ones lay out letters and fill the memory.
+                // The first frames lay out letters and fill the memory.
                 let mut took: Vec<u64> =
                     self.times.windows(2).skip(20).map(|pair| (pair[1] - pair[0]).as_micros() as u64).collect();
                 let folder = std::env::var("XDG_DATA_HOME").unwrap();
@@ -251,7 +251,7 @@ fn plot() {
     .unwrap();
 }
 
-/// Runs the empty window: the least cost of eframe, the driver and the X server.
+/// Runs an empty window, which shows the minimum cost of eframe, the driver and the X server.
 fn minimal() {
     struct Nothing(Option<Instant>);
     impl eframe::App for Nothing {
@@ -297,7 +297,7 @@ fn resident_mb(process: u32) -> f64 {
     kilobytes.trim().trim_end_matches(" kB").parse::<f64>().unwrap() * 1.024e-3
 }
 
-/// Returns the share of one processor over some seconds, in percent.
+/// Returns the usage of one processor by a child process over some seconds, in percent.
 fn busy(child: &Child) -> f64 {
     let ticks = || -> f64 {
         let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).unwrap();

@@ -1,10 +1,10 @@
-//! Rules for the adapter's workspace beside the studio: codec and core need no operating system and no unsafe code, and
-//! every module is documented and short.
+//! Rules for the adapter's workspace beside the studio: codec and core require neither an operating system nor unsafe
+//! code, and every module is documented and short.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the sources under a folder of the adapter's workspace, with their text.
+/// Returns the source files in the given folders of the adapter's workspace, with their text.
 pub(crate) fn adapter_sources(folders: &[&str]) -> Vec<(PathBuf, String)> {
     let mut files = Vec::new();
     for folder in folders {

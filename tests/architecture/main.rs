@@ -1,5 +1,5 @@
 //! Architecture rules that the compiler does not check: layers use only lower ones, protocol code is pure, simulators
-//! use no procedures, consent is given by the user, and every text is in the table.
+//! do not use procedures, only the user gives consent, and every text is in a catalogue.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
@@ -15,7 +15,7 @@ mod words;
 use paths::{Used, paths};
 use places::{Owner, Place, modules_of};
 
-/// The only file that lists all devices, and the additions of buses and Signals.
+/// The only file that lists all devices and what the buses and Signals add.
 const LIST_OF_KINDS: &str = "src/kinds.rs";
 
 struct Source {
@@ -26,19 +26,18 @@ struct Source {
 }
 
 impl Source {
-    /// Returns the lines of code with their numbers, without comments and tests.
+    /// Returns the lines of code with their numbers, excluding comments and tests.
     fn code(&self) -> impl Iterator<Item = (usize, &str)> {
         self.without_tests().lines().enumerate().map(|(at, line)| (at + 1, line.split("//").next().unwrap_or_default()))
     }
 
-    /// Returns the text without a test module, which is at the end of its file; `#[cfg(test)] mod tests;` may be
-    /// anywhere.
+    /// Returns the text without a test module at the end of the file. `#[cfg(test)] mod tests;` may be anywhere.
     fn without_tests(&self) -> &str {
         let end = self.text.find("\n#[cfg(test)]\nmod tests {").unwrap_or(self.text.len());
         &self.text[..end]
     }
 
-    /// Returns the folder of the file, under `src`.
+    /// Returns the folder of the file below `src`.
     fn folder(&self) -> Option<&str> {
         Some(self.path.strip_prefix("src/")?.rsplit_once('/')?.0)
     }
@@ -47,7 +46,7 @@ impl Source {
         self.path.contains("/tests") || self.path.contains("vectors")
     }
 
-    /// Returns the modules of other folders that the code uses.
+    /// Returns the modules of other folders that the code uses, each with its location.
     fn uses(&self, text: &str) -> Vec<(Used, Place)> {
         let used = paths(&self.modules, text);
         let placed = used.into_iter().filter_map(|used| Place::of(&used.path).map(|place| (used, place)));
@@ -83,8 +82,8 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns whether a path is the list of devices at the virtual adapter, which opening an adapter requires. It is the
-/// only part of that list that a device, a bus's tests and Signals use.
+/// Returns whether a path leads to the list of devices at the virtual adapter, which is needed to open an adapter. This
+/// is the only part of the list of kinds that devices, tests of a bus and Signals use.
 fn is_attachable_kinds(path: &[String]) -> bool {
     path == ["kinds", "attachable_kinds"]
 }
@@ -99,7 +98,7 @@ fn layers_use_only_lower_layers() {
     }
 }
 
-/// Layers on one level use each other only where this list allows it.
+/// Layers on the same level use each other only where this list allows it.
 #[test]
 fn modules_of_one_layer_use_each_other_only_where_allowed() {
     const ALLOWED: [(&str, &str); 4] =
@@ -114,7 +113,7 @@ fn modules_of_one_layer_use_each_other_only_where_allowed() {
     }
 }
 
-/// No two folders of the core depend on each other, because they would effectively be one. A folder includes its
+/// No two folders of the core depend on each other, because they would effectively be one folder. A folder includes its
 /// subfolders.
 #[test]
 fn no_two_folders_of_the_core_use_each_other() {
@@ -130,7 +129,7 @@ fn no_two_folders_of_the_core_use_each_other() {
             uses.entry(own).or_default().extend(other.filter(apart));
         }
     }
-    // A folder that uses none of the remaining ones cannot be in a circle.
+    // A folder that uses none of the remaining folders cannot be part of a cycle.
     while let Some(last) = uses.iter().find(|(_, used)| !used.iter().any(|own| uses.contains_key(own))) {
         let last = *last.0;
         uses.remove(last);
@@ -138,8 +137,8 @@ fn no_two_folders_of_the_core_use_each_other() {
     assert!(uses.is_empty(), "these use each other: {uses:?}");
 }
 
-/// A device is used only by itself and by the list of kinds, a bus by its users: devices, and Signals at an adapter's
-/// inputs. Signals is used by the list only.
+/// A device is used only by itself and by the list of kinds. A bus is used only by devices, and by Signals at the
+/// inputs of an adapter. Signals is used only by the list.
 #[test]
 fn devices_and_buses_are_used_only_where_allowed() {
     for source in sources() {
@@ -202,8 +201,7 @@ fn only_the_window_and_the_command_line_give_consent() {
     assert_eq!(found, ["src/app/session/memory.rs", "src/cli/consent.rs"]);
 }
 
-/// No operation is executed without a confirmed plan; the one function that confirms it keeps the before-image as
-/// well.
+/// Operations are executed only with a confirmed plan. The single function that confirms a plan also saves the backup.
 #[test]
 fn only_write_plan_confirms_a_plan() {
     let confirms = |source: &Source| source.code().any(|(_, code)| code.contains("ConfirmedPlan::confirm("));
@@ -224,7 +222,7 @@ fn every_module_is_documented_and_short() {
     }
 }
 
-/// Returns the names of a catalogue of texts.
+/// Returns the ids of the texts in an owner's catalogue.
 fn ids_of(owner: &Owner) -> BTreeSet<String> {
     let name = match owner {
         Owner::Core => "common",
@@ -237,7 +235,7 @@ fn ids_of(owner: &Owner) -> BTreeSet<String> {
     names.map(|(name, _)| name.to_owned()).collect()
 }
 
-/// The text names that a source may use: those of its owner's catalogue, and the common ones.
+/// The text ids that a source file may use: those of its owner's catalogue, and the common ones.
 struct Known(Vec<(Owner, BTreeSet<String>)>);
 
 impl Known {
@@ -268,7 +266,8 @@ fn every_text_is_in_the_table_and_every_row_is_used() {
     let areas: BTreeSet<&str> =
         known.0.iter().flat_map(|(_, ids)| ids).filter_map(|id| id.split_once('.')).map(|(area, _)| area).collect();
     let mut used = BTreeSet::new();
-    // Besides the layers from the state upwards: the entries of parameters, which are named where these are declared.
+    // These are the layers from the state upwards, and files that declare parameters together with the names of their
+    // entries.
     let says = |source: &&Source| source.place.floor() >= 5 || source.text.contains("parameters! {");
     for source in sources.iter().filter(says).filter(|source| !source.path.ends_with("texts.rs")) {
         for (line, code) in source.code() {
@@ -285,7 +284,7 @@ fn every_text_is_in_the_table_and_every_row_is_used() {
             }
         }
     }
-    // A text named by the number of a table's row is checked against that table.
+    // The id of a text for a numbered table row is checked against that table.
     let is_numbered = |id: &str| id.split_once('.').is_some_and(|(_, name)| name.parse::<u16>().is_ok());
     let ids = known.0.iter().flat_map(|(_, ids)| ids);
     let unused: Vec<&String> = ids.filter(|id| !used.contains(*id) && !is_numbered(id)).collect();
@@ -301,12 +300,12 @@ fn only_the_window_draws() {
     }
 }
 
-/// The texts of the window come from the catalogues. A literal of a view may be the id of a text, or be invisible; a
-/// word has three letters or more that are not all capitals.
+/// The texts of the window come from the catalogues. A literal in a view may be the id of a text or invisible. A word
+/// consists of three or more letters that are not all capitals.
 #[test]
 fn no_view_contains_a_literal_text() {
-    /// Code before a literal that is an identifier for egui, an argument of a text, or a name for the system or the
-    /// compiler.
+    /// Code that precedes a literal which is an identifier for egui, an argument of a text, or a name for the system or
+    /// the compiler.
     const NAMES: [&str; 21] = [
         "Id::unique(",
         "id_salt(",
@@ -330,10 +329,10 @@ fn no_view_contains_a_literal_text() {
         "target_os =",
         "reason =",
     ];
-    /// The name of the program, examples of input, and names from the manual.
+    /// The name of the program, example inputs, and names from the manual.
     const ALLOWED: [&str; 7] =
         ["encoder-studio", "drop:0.01", "capture.trace", "atm60,code=gray", "error%1bposition%24ge", "nERR", "nWARN"];
-    /// Files that are not views: messages on the terminal, and the names of renderers and fonts.
+    /// Files that are not views, and contain messages on the terminal and the names of renderers and fonts.
     const NO_VIEWS: [&str; 3] = ["src/ui/renderer.rs", "src/ui/run.rs", "src/ui/theme.rs"];
     let sources = sources();
     let known = Known::read(&sources);
@@ -382,14 +381,14 @@ fn has_word(text: &str) -> bool {
     words.into_iter().any(|word| word.chars().count() >= 3 && word.chars().any(char::is_lowercase))
 }
 
-/// A string literal with the text before it.
+/// A string literal and the text before it.
 struct Literal {
     line: usize,
     before: String,
     text: String,
 }
 
-/// Returns the string literals of a source: not those in its comments, nor those of the tests at its end.
+/// Returns the string literals of a source file, except those in comments and in the tests at its end.
 fn literals(source: &str) -> Vec<Literal> {
     let source = source.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     let characters: Vec<char> = source.chars().collect();
@@ -402,7 +401,7 @@ fn literals(source: &str) -> Vec<Literal> {
                     at += 1;
                 }
             }
-            // A character in quotes may be a quotation mark; a lifetime has no second quote.
+            // A character literal may be a quotation mark. A lifetime has no second quote.
             ('\'', Some('\\')) => at += 3,
             ('\'', Some(_)) if characters.get(at + 2) == Some(&'\'') => at += 3,
             ('"', _) => {
@@ -427,7 +426,7 @@ fn literals(source: &str) -> Vec<Literal> {
     found
 }
 
-/// Returns a text without its escape sequences, none of which stands for a letter.
+/// Returns a text without its escape sequences, none of which represents a letter.
 fn unescaped(text: &str) -> String {
     let mut characters = text.chars();
     let mut bare = String::new();

@@ -1,6 +1,6 @@
-//! The owner and the layer of a module: `src/<layer>` is the core's, `src/devices/<device>/<module>` a device's.
+//! The owner and layer of a module. `src/<layer>` belongs to the core, and `src/devices/<device>/<module>` to a device.
 
-/// Layers and their levels.
+/// All layers with their levels.
 const LAYERS: [(&str, u8); 21] = [
     ("units", 1),
     ("bits", 1),
@@ -25,10 +25,10 @@ const LAYERS: [(&str, u8); 21] = [
     ("kinds", 6),
 ];
 
-/// Layers that do not exist in the core, which knows neither the bytes nor the procedures of a device.
+/// Layers that the core does not have, because it knows neither the bytes nor the procedures of a device.
 const NEVER_OF_THE_CORE: [&str; 2] = ["protocol", "procedures"];
 
-/// The modules of a device, a bus and Signals, with their layers.
+/// The modules of a device, a bus or Signals, with their layers.
 const MODULES: [(&str, &str); 8] = [
     ("protocol", "protocol"),
     ("profile", "profile"),
@@ -49,7 +49,7 @@ pub(crate) enum Owner {
     Signals,
 }
 
-/// The owner of a module, and its layer.
+/// The owner and layer of a module.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Place {
     pub(crate) owner: Owner,
@@ -57,7 +57,7 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// Returns the owner and layer of a module path from the crate root, or `None` if the first segment is not a
+    /// Returns the owner and layer of a module path from the crate root, or `None` if its first segment is not a
     /// module.
     pub(crate) fn of(path: &[String]) -> Option<Self> {
         let names: Vec<&str> = path.iter().map(String::as_str).collect();
@@ -67,7 +67,7 @@ impl Place {
             ["devices" | "buses"] => place(Owner::Core, "lib"),
             ["signals"] => place(Owner::Signals, "lib"),
             ["devices", name] => place(Owner::Device((*name).to_owned()), "kinds"),
-            // Anything but a module of a device is a type that `mod.rs` re-exports.
+            // Anything that is not a module of a device is a type that `mod.rs` re-exports.
             ["devices", name, module, ..] => {
                 place(Owner::Device((*name).to_owned()), layer_of_module(module).unwrap_or("kinds"))
             }
@@ -92,7 +92,7 @@ fn layer_of_module(name: &str) -> Option<&'static str> {
     MODULES.iter().find(|(module, _)| *module == name).map(|(_, layer)| *layer)
 }
 
-/// Returns the modules of a file's path under `src`: `app/hiperface/mod.rs` is `app`, `hiperface`.
+/// Returns the modules for a file path below `src`, such as `app` and `hiperface` for `app/hiperface/mod.rs`.
 pub(crate) fn modules_of(path: &str) -> Vec<String> {
     let mut modules: Vec<String> = path.trim_end_matches(".rs").split('/').map(ToOwned::to_owned).collect();
     if matches!(modules.last().map(String::as_str), Some("mod" | "lib")) {
@@ -123,7 +123,7 @@ fn a_module_has_one_owner_and_one_layer() {
         ("worker/commit.rs", core("worker")),
         ("link/line/echo.rs", core("link")),
         ("analysis/check.rs", core("analysis")),
-        // Protocols and procedures belong to a device or a bus, and a folder without a layer has no place.
+        // Protocols and procedures belong to a device or a bus. A folder without a layer has no place.
         ("protocol/hiperface/crc.rs", None),
         ("procedures/echo.rs", None),
         ("device/line.rs", None),

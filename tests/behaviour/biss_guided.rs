@@ -1,5 +1,5 @@
-//! The procedures that need a turning motor, with a foreign encoder and with the virtual one, without a terminal: a run
-//! starts as soon as the measured values fit.
+//! The procedures that require a turning motor, with a foreign encoder and with the virtual one, without a terminal. A
+//! run starts as soon as the measured values are within their limits.
 
 use std::time::Duration;
 
@@ -16,7 +16,8 @@ fn written(encoder: &Foreign) -> Vec<String> {
     encoder.registers_written().into_iter().filter(|line| !line.starts_with("0x40 ")).collect()
 }
 
-/// Reference 5.2 and 5.1, and afterwards operation without the password.
+/// Writes of a calibration: reference 5.2 and 5.1, followed by the return to operation and the clearing of the
+/// password.
 const CALIBRATION: [&str; 6] = ["0x6B 2A", "0x6A 01", "0x00:0x00 01", "0x00:0x00 02", "0x6A 00", "0x6B 00"];
 
 #[test]
@@ -88,7 +89,7 @@ fn a_dynamic_filter_prevents_a_calibration() {
     assert!(!written(&encoder).contains(&"0x00:0x00 01".to_owned()));
 }
 
-/// The second run fails: the encoder is in operation afterwards, and its table is lost.
+/// The second run fails. Afterwards, the encoder is in operation, and its table is lost.
 #[test]
 fn a_failed_run_returns_to_operation() {
     let bench = Bench::new();
@@ -101,8 +102,8 @@ fn a_failed_run_returns_to_operation() {
     }
 }
 
-/// Temperature → calibration → Wiegand test → preset → data, in one run. The motor stands still while the data are
-/// read, turns, and stops after the test.
+/// Temperature → calibration → Wiegand test → preset → data, in a single run. The motor is at standstill while the data
+/// are read, then turns, and stops after the test.
 #[test]
 fn a_mounting_run_performs_all_steps() {
     let bench = Bench::new();
@@ -139,8 +140,8 @@ fn invalid_mounting_steps_are_usage_errors() {
     bench.run(&["do", "biss", "mounting", "preset=16777216", "--yes", "--link", "sim:"]).fails(1, &["16777215"]);
 }
 
-/// The virtual encoder turns 515 times each way: 15.5 s at 2000 rpm. Issue 22.19: a failed test is no success; 5.2 V
-/// are less than 5.3 V (reference 4).
+/// The virtual encoder turns 515 times in each direction, which takes 15.5 s at 2000 rpm. Issue 22.19: a failed test is
+/// not a success; 5.2 V is below 5.3 V (reference 4).
 #[test]
 fn the_virtual_encoder_passes_the_guided_procedures() {
     let bench = Bench::new();
@@ -156,7 +157,7 @@ fn the_virtual_encoder_passes_the_guided_procedures() {
     assert_eq!((&result["ok"], &result["lowest_cw_v"], &result["saved"]), (&json!(false), &json!(5.2), &json!(true)));
 }
 
-/// The first question is about the motor; a motor that needs this encoder is rejected.
+/// The first question is about the motor. A motor that needs this encoder is rejected.
 #[test]
 fn on_a_terminal_the_user_names_the_motor_source() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Reading a foreign kit encoder, over its configuration pin and over an adapter.
+//! Reading a foreign kit encoder over its configuration pin and over an adapter.
 
 use serde_json::{Value, json};
 
@@ -7,7 +7,7 @@ use super::support::{Bench, Foreign, Ran, finish, signal};
 
 const JSON: &str = "--json";
 
-/// Starts the same encoder on each connection.
+/// Starts the same encoder on each type of connection.
 fn both(bench: &Bench, arguments: &[&str]) -> Option<[Foreign; 3]> {
     Some([bench.kit(arguments)?, bench.adapter(arguments)?, bench.adapter_on_terminal(arguments)?])
 }
@@ -48,7 +48,7 @@ fn the_configuration_pin_may_echo_and_use_either_byte_order() {
     assert_eq!(ask(&bench, &noisy, &["identify", "biss", JSON]).json()["serial_number"], json!("12345678"));
 }
 
-/// BiSS reference 7: error register 12h is the multiturn and a field too low, warning 01h the temperature.
+/// BiSS reference 7: error register 12h means the multiturn and a too weak field, warning 01h the temperature.
 #[test]
 fn status_names_the_set_bits() {
     let bench = Bench::new();
@@ -68,15 +68,15 @@ fn status_names_the_set_bits() {
         assert_eq!(told["warnings"], json!([{"code": 0, "text": "temperature too high"}]));
         let text = ask(&bench, encoder, &["status", "biss"]);
         assert!(text.out.contains("magnetic field too low"), "{text:?}");
-        // The position's own bits, or the registers if it has none.
+        // The bits of the position itself, or the registers if the position has no bits.
         let position = ask(&bench, encoder, &["position", "biss", JSON]).json();
         assert_eq!((&position["valid"], &position["warning"]), (&json!(false), &json!(true)));
     }
 }
 
-/// Issue 22.19: a Wiegand sensor whose test was never saved is not reported as good. One verdict per line: an encoder
-/// with factory settings, and one with the errors of reference 7 that is hotter than its data sheet allows (105 °C), at
-/// an adapter that measures its supply on a disturbed line.
+/// Issue 22.19: a Wiegand sensor whose test was never saved is not reported as good. Each line has one verdict. The
+/// encoders are one with factory settings, and one with the errors of reference 7 that exceeds the maximum temperature
+/// of its data sheet (105 °C), on a disturbed line at an adapter that measures its supply.
 #[test]
 fn a_check_judges_the_encoders_own_diagnostics() {
     let bench = Bench::new();
@@ -110,8 +110,8 @@ fn a_check_judges_the_encoders_own_diagnostics() {
     bench.run(&["do", "biss", "check", "restart", "--link", "sim:"]).fails(2, &["no argument"]);
 }
 
-/// Issue 22.20: if an encoder does not report its frame, the position is only the word, until the link names turns and
-/// steps: turn 1234h and 270°.
+/// Issue 22.20: if an encoder does not report its frame, the position is printed only as a word, unless the link
+/// specifies turns and steps: turn 1234h and 270°.
 #[test]
 fn a_position_is_raw_until_the_link_gives_the_frame() {
     let bench = Bench::new();
@@ -129,7 +129,7 @@ fn a_position_is_raw_until_the_link_gives_the_frame() {
     assert_eq!((&told["turns"], &told["steps"], &told["degrees"]), (&json!(4660), &json!(98_304), &json!(270.0)));
 }
 
-/// Turn 1234h and 270°: the same word on each connection, and over BiSS the frame with its CRC in addition.
+/// Turn 1234h and 270°: the same word on each connection, and over BiSS also the frame with its CRC.
 #[test]
 fn the_position_has_turns_steps_and_degrees() {
     let bench = Bench::new();
@@ -155,7 +155,7 @@ fn the_position_has_turns_steps_and_degrees() {
     }
 }
 
-/// 360° per second counterclockwise.
+/// The shaft turns counterclockwise at 360° per second.
 #[test]
 fn positions_of_a_turning_shaft_are_printed() {
     let bench = Bench::new();
@@ -168,7 +168,7 @@ fn positions_of_a_turning_shaft_are_printed() {
         let moved = place(&lines[10]) - place(&lines[0]);
         let speed = moved / (time(&lines[10]) - time(&lines[0]));
         assert!((speed + 1.0).abs() < 0.1, "{speed} revolutions a second: {ran:?}");
-        // Data is not read while the shaft turns.
+        // Data are not read while the shaft turns.
         let file = bench.file("p.ron");
         ask(&bench, encoder, &["save", "biss", "-o", &file, JSON]).fails(1, &["is turning", "Stop the shaft"]);
         ask(&bench, encoder, &["read", "biss", "0x24:0x10", JSON]).fails(1, &["is turning", "Stop the shaft"]);
@@ -184,7 +184,7 @@ fn a_frame_with_a_wrong_crc_is_counted_and_not_printed() {
     let ran = ask(&bench, &encoder, &["position", "biss", "--csv", "--count", "20", "--interval", "0"]);
     assert_eq!((ran.status, ran.out.lines().count()), (Some(0), 21), "{ran:?}");
     assert!(ran.out.lines().skip(1).all(|line| line.contains(",4660,98304,270,")), "{ran:?}");
-    // 20 good frames, and between them every third of all frames.
+    // 20 frames are good, and every third of all frames between them is damaged.
     let count: u64 = ran.err.strip_prefix("crc errors: ").unwrap().trim().parse().unwrap();
     assert!((9..=10).contains(&count), "{ran:?}");
     let Some(hopeless) = bench.adapter(&["--damage", "1"]) else { return };
@@ -229,7 +229,7 @@ fn a_value_without_a_meaning_has_no_meaning_key() {
     assert_eq!(read("0x66")["text"], json!("30 °C"));
 }
 
-/// Bank selection aside.
+/// Reading writes nothing except the bank selection.
 #[test]
 fn reading_writes_nothing() {
     let bench = Bench::new();
@@ -333,7 +333,7 @@ fn access_codes_are_refused() {
     let bench = Bench::new();
     bench.run(&["identify", "biss", "--link", "sim:", "--code", "0=66"]).fails(2, &["--code"]);
     let mut command = bench.program(&["read", "biss", "0x66", "--link", "sim:", "--json"]);
-    // Codes in the environment may be for other devices.
+    // Codes in the environment may belong to other devices.
     command.env("ENCODER_STUDIO_CODES", "0=66");
     assert_eq!(finish(command).json()["value"], json!(80));
 }

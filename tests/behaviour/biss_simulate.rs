@@ -1,4 +1,4 @@
-//! `simulate biss`, examined by hosts that are not our program, with the frames and the rules of the references.
+//! `simulate biss`, examined by independent hosts with the frames and rules of the references.
 
 use std::io::Write;
 use std::net::TcpStream;
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::support::{Bench, Simulated, foreign_host, python};
 
-/// UBICOM reference 6: the published exchanges, with an encoder at 25 °C and at 270.0° of turn 1234h.
+/// Checks the published exchanges of UBICOM reference 6 with an encoder at 25 °C and 270.0° of turn 1234h.
 fn examine(path: &str) {
     let replies = foreign_host(
         "ubicom_host.py",
@@ -58,7 +58,7 @@ fn the_configuration_pin_answers_the_frames_of_the_reference() {
     let terminal = Simulated::start(&bench, &[&["biss", "--pty", &bench.file("enc")], &WARM[..]].concat());
     assert!(bench.path("enc").is_symlink());
     examine(&terminal.place);
-    // The next client finds the mode that the first has set.
+    // The next client finds the mode set by the first one.
     let mode = foreign_host("ubicom_host.py", &terminal.place, &["80 01 01 02 00 2A 00 51"]);
     assert_eq!(mode, ["80 01 01 01 00 07 75"]);
     terminal.end("INT");
@@ -68,7 +68,7 @@ fn the_configuration_pin_answers_the_frames_of_the_reference() {
     port.end("TERM");
 }
 
-/// The encoder supports one speed (UBICOM reference 1) and does not understand a line at another speed.
+/// The encoder supports a single speed (UBICOM reference 1) and does not understand a line at another one.
 #[test]
 fn the_baud_rate_can_be_set_in_the_link() {
     let bench = Bench::new();
@@ -84,7 +84,7 @@ fn the_baud_rate_can_be_set_in_the_link() {
     terminal.end("INT");
 }
 
-/// Saving a preset restarts the encoder: it is silent for half a second, and in operation afterwards.
+/// Saving a preset restarts the encoder. It is silent for half a second and then in operation.
 #[test]
 fn a_restart_is_silent_and_configured_faults_are_injected() {
     let bench = Bench::new();
@@ -118,7 +118,7 @@ fn host_replies(path: &str, actions: &[&str]) -> Vec<Value> {
     lines.iter().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// Checks a session with an adapter: bridge reference 2 to 4.
+/// Checks a session with an adapter according to bridge reference 2 to 4.
 fn examine_adapter(path: &str) {
     let said = host_replies(
         path,
@@ -151,7 +151,7 @@ fn examine_adapter(path: &str) {
     // BiSS reference 2: MT 1234, ST 18000.
     assert_eq!((&said[3]["status"], &said[3]["raw"]), (&json!(0), &json!("024698000CF")));
     let values: Vec<&Value> = said[4..14].iter().map(|told| &told["value"]).collect();
-    // 25 °C; bank 2; minimum time-out; bank 3; 16 bits of turns; a mode without and with the password; back.
+    // 25 °C; bank 2; minimum time-out; bank 3; 16 bits of turns; a mode without and with the password; and back.
     assert_eq!(values, [0x4B, 0x02, 0x1C, 0x03, 0x10, 0x00, 0x2A, 0x07, 0x00, 0x00]);
     assert_eq!(said[16], json!({"value": 0x46}));
 }
@@ -171,8 +171,8 @@ fn the_adapter_reads_frames_and_registers_of_every_bank() {
     terminal.end("TERM");
 }
 
-/// 20 000 frames per second: none is missing, and each has its time, its CRC and its position on a shaft that turns ten
-/// times per second.
+/// 20 000 frames per second, none of which is missing. Each has its time, its CRC and its position on a shaft that
+/// turns ten times per second.
 #[test]
 fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
     let bench = Bench::new();
@@ -188,14 +188,14 @@ fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
     }
     assert_eq!((&stream["period_us"], &stream["ended"]), (&json!(50), &json!(true)), "{stream}");
     let number = |key: &str| stream[key].as_u64().unwrap();
-    // On a busy computer the host may start to count late; the counted frames have no gap even then.
+    // On a busy computer, the host may start to count late. Even then, there is no gap in the counted frames.
     assert!(number("frames") > 30_000, "{stream}");
     let (moved, expected) = (number("last_steps") - number("first_steps"), (number("frames") - 1) * 131_072 / 2_000);
     assert!(moved.abs_diff(expected) <= 1, "{moved} steps where {expected} were expected: {stream}");
     assert_eq!(said[3]["status"], json!(0), "single frames again when the stream has ended");
 }
 
-/// Faults of the adapter's own bytes: damaged bytes are dropped on both sides, lost ones are requested again.
+/// Faults in the bytes of the adapter itself: both sides discard damaged bytes, and lost ones are requested again.
 #[test]
 fn configured_adapter_line_faults_are_injected() {
     let bench = Bench::new();
@@ -219,13 +219,13 @@ fn configured_adapter_line_faults_are_injected() {
     assert_eq!((&died[4]["error"], &died[5]["status"]), (&json!(4), &json!(1)), "{died:?}");
 }
 
-/// A client starts a stream and reads nothing of it.
+/// A client starts a stream and does not read any of it.
 #[test]
 fn an_interrupt_ends_the_simulation_with_a_busy_client() {
     let bench = Bench::new();
     let port = Simulated::start(&bench, &["biss", "--bridge", "--listen", "127.0.0.1:0"]);
     let mut client = TcpStream::connect(&port.place).unwrap();
-    // ANALOG_CONFIG and ANALOG_STREAM: a million samples per second, four bytes each.
+    // ANALOG_CONFIG and ANALOG_STREAM: a million samples per second with four bytes each.
     client.write_all(b"\x06\x0B\x30\x40\x42\x0F\x03\x33\xCC\x00").unwrap();
     client.write_all(b"\x06\x0C\x31\x01\x78\x9F\x00").unwrap();
     std::thread::sleep(Duration::from_secs(5));

@@ -1,4 +1,5 @@
-//! The tour of the README: a virtual kit encoder and the commands, from reading it to restoring its original content.
+//! The tour of the README: a virtual kit encoder and the commands that read it, change it and restore its original
+//! content.
 
 use serde_json::json;
 

@@ -1,4 +1,4 @@
-//! Writing into a foreign kit encoder, over its configuration pin and over an adapter.
+//! Writing to a foreign kit encoder over its configuration pin and over an adapter.
 
 use encoder_studio::store::DeviceKey;
 use serde_json::{Value, json};
@@ -6,11 +6,12 @@ use serde_json::{Value, json};
 use super::biss_profile::PROFILE;
 use super::support::{Bench, Foreign, Ran, run_on_terminal};
 
-/// The content of the profile for bank 24h and 25h, and its preset value of 270°.
+/// The profile's content of banks 24h and 25h.
 const AS_PROFILE: &str = r#"{"0x24:0x00": "000102030405060708090A0B0C0D0E0F101112131415161718191A1B1C1D1E1F202122232425262728292A2B2C2D2E2F303132333435363738393A3B3C3D3E3F", "0x25:0x00": "A1B2C3"}"#;
+/// The preset value of the profile: 270°.
 const PRESET: &str = "008001000000";
 
-/// Starts the same encoder on each connection.
+/// Starts the same encoder on each type of connection.
 fn both(bench: &Bench, arguments: &[&str]) -> Option<[Foreign; 2]> {
     Some([bench.kit(arguments)?, bench.adapter(arguments)?])
 }
@@ -19,13 +20,13 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// Returns the registers written since the last time, without bank selection.
+/// Returns the registers written since the last call, without bank selections.
 fn written(encoder: &Foreign) -> Vec<String> {
     encoder.registers_written().into_iter().filter(|line| !line.starts_with("0x40 ")).collect()
 }
 
-/// Reference 5.3: password and mode, open the OEM data, the registers, save, back to operation; and the password is
-/// reset.
+/// Returns the writes that save OEM data (reference 5.3): password and mode, opening the OEM data, the registers,
+/// saving, and the return to operation with the password cleared.
 fn saved(registers: &[&str]) -> Vec<String> {
     let around = (["0x6B 2A", "0x6A 04", "0x00:0x1A 02"], ["0x00:0x1A 03", "0x6A 00", "0x6B 00"]);
     [&around.0[..], registers, &around.1].concat().into_iter().map(str::to_owned).collect()
@@ -48,18 +49,18 @@ fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
         assert_eq!((&dry["operations"], &dry["write_cycles"]), (&expected, &json!(1)), "{dry}");
         let told = ask(&bench, encoder, &["restore", &file, "--yes"]).json();
         assert_eq!((&told["written"], &told["verified"], &told["write_cycles"]), (&json!(3), &json!(3), &json!(1)));
-        // All other registers of the data, filter and preset value.
+        // All other registers of the data, the filter and the preset value.
         assert!(told["unchanged"].as_u64() >= Some(4096 - 3), "{told}");
         assert_eq!(written(encoder), saved(&["0x24:0x01 A1", "0x24:0x02 A2", "0x24:0x0F EE"]));
         assert_eq!(ask(&bench, encoder, &["verify", &file]).json()["equal"], json!(true));
 
-        // The before-image is a profile, and restoring it restores the previous content.
+        // The backup is a profile, and restoring it restores the previous content.
         let backup = told["backup"].as_str().unwrap();
         let undone = ask(&bench, encoder, &["restore", backup, "--yes"]).json();
         assert_eq!((&undone["written"], &undone["write_cycles"]), (&json!(3), &json!(1)));
         let there = ask(&bench, encoder, &["read", "biss", "0x24:0x00+16"]).json();
         assert_eq!(there["value"], json!("000102030405060708090A0B0C0D0E0F"));
-        // Repeated: nothing differs, nothing is sent, nothing is kept.
+        // When the restore is repeated, nothing differs, and nothing is sent or saved.
         written(encoder);
         let again = ask(&bench, encoder, &["restore", backup, "--yes"]).json();
         assert_eq!((&again["written"], &again["write_cycles"], &again["backup"]), (&json!(0), &json!(0), &Value::Null));
@@ -78,7 +79,7 @@ fn write_stores_exactly_these_bytes() {
             (&json!("0x25:0x10"), &json!(1), &json!(1))
         );
         assert_eq!(written(encoder), saved(&["0x25:0x10 5A"]));
-        // Only the changed registers of a run.
+        // Only the changed registers of a run are written.
         let told = ask(&bench, encoder, &["write", "biss", "0x25:0x00+4", "A1 00 C3 01", "--yes"]).json();
         assert_eq!((&told["written"], &told["write_cycles"]), (&json!(2), &json!(1)));
         assert_eq!(written(encoder), saved(&["0x25:0x01 00", "0x25:0x03 01"]));
@@ -87,13 +88,13 @@ fn write_stores_exactly_these_bytes() {
         assert_eq!(written(encoder), [""; 0]);
         assert_eq!(ask(&bench, encoder, &["read", "biss", "0x25:0x00+4"]).json()["value"], json!("A100C301"));
         assert_eq!(ask(&bench, encoder, &["read", "biss", "0x6A"]).json()["value"], json!(0), "operation");
-        // Motor data is opened with another command.
+        // Motor data are opened with a different command.
         ask(&bench, encoder, &["write", "biss", "0x04:0x00", "1", "--yes"]).json();
         assert!(written(encoder).contains(&"0x00:0x1A 01".to_owned()));
     }
 }
 
-/// A restore stores the preset value and the filter, and carries no preset out (reference 5.4 and 5.5).
+/// A restore stores the preset value and the filter but does not execute a preset (reference 5.4 and 5.5).
 #[test]
 fn filter_and_preset_value_are_restored_without_executing_the_preset() {
     let bench = Bench::new();
@@ -134,7 +135,7 @@ fn the_mounting_of_another_encoder_is_not_changed() {
     assert_eq!(value["value"], json!(PRESET));
 }
 
-/// Issue 22.9: another type is named, and rejected without explicit permission.
+/// Issue 22.9: another type is named and rejected without explicit permission.
 #[test]
 fn an_encoder_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -150,7 +151,7 @@ fn an_encoder_of_another_type_needs_a_separate_permission() {
     assert_eq!((dry.status, written(&encoder)), (Some(0), vec![]));
     let other = bench.file("hiperface.ron");
     assert_eq!(bench.run(&["save", "hiperface", "--link", "sim:", "-o", &other]).status, Some(0));
-    // The file names the kind of device: a HIPERFACE encoder is searched for, and does not answer.
+    // The file names the kind of device, so a HIPERFACE encoder is addressed, which does not answer.
     ask(&bench, &encoder, &["restore", &other, "--dry-run"]).fails(1, &[]);
     assert_eq!(encoder.requests(), [""; 0]);
 }
@@ -217,7 +218,7 @@ fn data_is_not_written_while_the_shaft_turns() {
     assert_eq!(written(&encoder), [""; 0]);
 }
 
-/// The reference's filter procedure, and a preset of all, of the singleturn, of the multiturn.
+/// The filter procedure of the reference, and presets of the whole position, the singleturn and the multiturn.
 #[test]
 fn filter_and_preset_are_actions() {
     let bench = Bench::new();
@@ -235,10 +236,10 @@ fn filter_and_preset_are_actions() {
             let told = ask(&bench, encoder, &[&["do", "biss", "preset"], words, &["--yes"]].concat()).json();
             told["write_cycles"].as_u64().unwrap()
         };
-        // 270° and turn 5: stored, then executed.
+        // 270° and turn 5 are stored and then executed.
         assert_eq!(preset(&["98304", "5"]), 2);
         assert_eq!(place(encoder), (5, 98_304));
-        // Already stored, and the shaft has moved since: nothing to store.
+        // The preset is already stored, and the shaft has moved since, so there is nothing to store.
         assert_eq!(preset(&[]), 1);
         assert_eq!(preset(&["1000", "singleturn"]), 2);
         assert_eq!(place(encoder), (5, 1000), "the turn stays");
@@ -249,7 +250,7 @@ fn filter_and_preset_are_actions() {
     }
 }
 
-/// Manual 6.1: 1000 write cycles. A warning is printed from 800 on; beyond 1000 nothing is written unless forced.
+/// Manual 6.1: 1000 write cycles. From 800 on, a warning is printed. Beyond 1000, nothing is written unless forced.
 #[test]
 fn a_worn_flash_is_reported_and_written_only_if_forced() {
     let bench = Bench::new();
@@ -274,7 +275,7 @@ fn a_worn_flash_is_reported_and_written_only_if_forced() {
     assert_eq!(bench.logbook().write_cycles(&device).unwrap(), 1001);
 }
 
-/// The link is lost once while reading and at three points while writing.
+/// The link is lost once during reading and at three points during writing.
 #[test]
 fn a_link_lost_during_a_write_is_reported_with_the_backup() {
     let bench = Bench::new();
@@ -295,8 +296,8 @@ fn a_link_lost_during_a_write_is_reported_with_the_backup() {
     }
 }
 
-/// Issue 22.15: registers that were written and never saved are reported, and no comparison takes them for the
-/// encoder's content. Only `lead-back` restores the mode.
+/// Issue 22.15: registers that were written but never saved are reported, and no comparison treats them as the content
+/// of the encoder. Only `lead-back` restores the mode.
 #[test]
 fn unsaved_registers_of_a_killed_write_are_not_compared() {
     let bench = Bench::new();
@@ -325,7 +326,7 @@ fn unsaved_registers_of_a_killed_write_are_not_compared() {
     }
 }
 
-/// Issue 22.16: the supply is restored at the end of the program.
+/// Issue 22.16: the supply is restored when the program ends.
 #[test]
 fn the_adapters_supply_is_restored_on_exit() {
     let bench = Bench::new();
@@ -344,7 +345,7 @@ fn the_adapters_supply_is_restored_on_exit() {
     bench.run(&["read", "biss", "0x66", "--link", &url]).fails(2, &["leave-supply=no", "as-found, on or off"]);
 }
 
-/// Reference 5: the mode and the password that another host has set are reset.
+/// Reference 5: a mode and password set by another host are reset.
 #[test]
 fn an_encoder_left_in_a_mode_is_returned_to_operation() {
     let bench = Bench::new();
@@ -359,8 +360,8 @@ fn an_encoder_left_in_a_mode_is_returned_to_operation() {
     }
 }
 
-/// Issue 22.15: restoring the mode discards unsaved changes: on a terminal the program asks, unless --yes answers it.
-/// It stores nothing, so that a script needs no --yes.
+/// Issue 22.15: restoring the mode discards unsaved changes. On a terminal, the program asks first unless --yes is
+/// given. Nothing is stored, so a script does not need --yes.
 #[test]
 fn on_a_terminal_the_return_to_operation_needs_confirmation() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Actions on a foreign encoder, checked frame by frame, and unusual encoders.
+//! Actions on a foreign encoder, checked frame by frame, and on unusual encoders.
 
 use serde_json::{Value, json};
 
@@ -14,7 +14,7 @@ fn data_fields_are_created_protected_resized_and_deleted() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C9","bytes":"0815"}]"#]) else { return };
     let steps: [(&[&str], &str); 7] = [
-        // The manual's field 1, with its access code required as the text demands.
+        // Field 1 of the manual's example, with its access code as the text requires.
         (&["create-field", "1", "16", "code=2"], "40 4D 01 E8 55"),
         (&["lock-field", "1"], "40 4D 01 A8 55"),
         (&["unlock-field", "1"], "40 4D 01 E8 55"),
@@ -54,7 +54,7 @@ fn a_position_is_set_in_phase_or_exactly() {
     assert_eq!(sent.len(), 1, "{sent:?}");
     let bytes: Vec<u32> = sent[0].split(' ').map(|byte| u32::from_str_radix(byte, 16).unwrap()).collect();
     let set = bytes[2..6].iter().fold(0, |word, byte| word << 8 | byte);
-    // The five lowest bits are those of the sine signal, 17 here, and the rest is as near as that allows.
+    // The lowest five bits are those of the sine signal, 17 here. The rest is as close as this allows.
     assert_eq!(set % 32, 0x000E_0531 % 32);
     assert!(set.abs_diff(4096) <= 16, "{set}");
 
@@ -90,7 +90,7 @@ fn settings_are_stored_and_the_counter_is_cleared() {
         write("settings", "0xE5").json();
         assert_eq!(encoder.writes(), ["40 57 E5 55 A7"], "{reply:?}");
         write("settings", "0x97").fails(1, &["reserved"]);
-        // A counter overflow is a warning, not a failure.
+        // A counter overflow is a warning and not a failure.
         let ran = act(&bench, &encoder, &["increment-counter"]);
         ran.json();
         assert!(ran.err.contains("08h"), "{ran:?}");
@@ -110,7 +110,7 @@ fn a_reset_is_awaited() {
     assert_eq!(encoder.writes(), ["40 53 13"]);
 }
 
-/// The reference's extended label: rotary, 16 periods, 4096 turns.
+/// The extended label from the reference: rotary, 16 periods, 4096 turns.
 const LABEL: &str = "530000000010000010 0053454C33372D484642302D4B30322020202000030048 0073";
 
 #[test]
@@ -132,7 +132,7 @@ fn an_encoder_is_identified_by_its_extended_label() {
 #[test]
 fn a_linear_encoder_reports_millimetres() {
     let bench = Bench::new();
-    // Linear, periods of 1,000,000 nm, 1000 of them.
+    // A linear encoder with 1000 periods of 1,000,000 nm.
     let label = format!("00 01 000F4240 000003E8 {} {}", "20".repeat(18), "00".repeat(36));
     let Some(encoder) = bench.encoder(&["--type", "FF", "--label", &label, "--position", "1329"]) else { return };
     let line = bench.run(&["position", "hiperface", "--link", &encoder.url, "--json"]).json();
@@ -153,8 +153,8 @@ fn an_unknown_type_takes_periods_and_turns_from_the_link() {
     assert_eq!((&line["turns"], &line["steps"]), (&json!(2), &json!(0x131)));
 }
 
-/// Issue 22.12: a restore onto another encoder creates data fields; restoring its before-image deletes them again,
-/// except for a field that was changed meanwhile, which is named, and the fields before it.
+/// Issue 22.12: a restore to another encoder creates data fields. Restoring its backup deletes them again, except for a
+/// field that was changed in the meantime, which is reported, and the fields before it.
 #[test]
 fn undoing_a_restore_deletes_only_the_fields_it_created() {
     let bench = Bench::new();
@@ -190,7 +190,7 @@ fn undoing_a_restore_deletes_only_the_fields_it_created() {
         let deleted = |number: u8| frame(&format!("40 4D 0{number} 48 55"));
         let defined: Vec<String> = target.writes().into_iter().filter(|frame| frame.starts_with("40 4D")).collect();
         if changed {
-            // The last one is as written; the one before it is not.
+            // The last field is as written, but the one before it is not.
             assert_eq!(defined, [deleted(2)], "{undo:?}");
             assert!(undo.err.contains("Data field 1"), "{undo:?}");
             assert_eq!(target.host_address(&["40 4A 01 00 01 55"]), [frame("40 4A 01 00 01 77")]);
@@ -198,7 +198,7 @@ fn undoing_a_restore_deletes_only_the_fields_it_created() {
             assert_eq!(defined, [deleted(2), deleted(1)], "{undo:?}");
             assert!(!undo.err.contains("data field"), "{undo:?}");
         }
-        // The previous fields have their bytes again.
+        // The previous fields contain their bytes again.
         assert_eq!(target.host_address(&["40 4A 00 00 01 55"]), [frame("40 4A 00 00 01 AA")]);
     }
 }

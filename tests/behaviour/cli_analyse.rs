@@ -1,4 +1,5 @@
-//! `analyse`: synthetic captures result in their own parameters, and invalid ones in one sentence.
+//! The `analyse` command: the analysis of a synthetic capture yields its parameters, and an invalid capture one
+//! sentence.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -8,7 +9,7 @@ use serde_json::Value;
 
 use super::support::Bench;
 
-/// R, p, q, r, and α in degrees, as defined in the program's documentation.
+/// R, p, q, r, and α in degrees, as defined in the documentation of the program.
 #[derive(Clone, Copy)]
 struct Signal {
     amplitude: f64,
@@ -18,7 +19,7 @@ struct Signal {
     phase_deg: f64,
 }
 
-/// Section 7 of the reference.
+/// The example signal from section 7 of the reference.
 const REFERENCE: Signal =
     Signal { amplitude: 0.5, offset_cosine: 0.02, offset_sine: -0.03, ratio: 1.05, phase_deg: 3.0 };
 
@@ -56,7 +57,7 @@ fn near(told: &Value, key: &str, expected: f64, tolerance: f64) {
 #[test]
 fn the_parameters_of_the_reference_signal_are_recovered() {
     let bench = Bench::new();
-    // 360 points of a period and the six of 0, 60 … 300°; they cover one step less than the period.
+    // 360 points of a period, and six at 0, 60 … 300°, which cover one step less than the period.
     for (count, header) in [(360, "time,sin,cos\n"), (6, "")] {
         let file = bench.write("c.csv", table(header, &rows(&REFERENCE, count, 0.0, 1.0)));
         let told = bench.run(&["analyse", &file, "--json"]).json();
@@ -68,13 +69,13 @@ fn the_parameters_of_the_reference_signal_are_recovered() {
         near(&told, "periods", 1.0 - 1.0 / count as f64, 1e-7);
         near(&told, "residual_rms", 0.0, 1e-7);
         near(&told, "error_pp_deg_corrected", 0.0, 1e-4);
-        // Python: max − min of degrees(atan2(y, x)) − θ over 720 angles from 0° is 2.310392 + 7.660480.
+        // Calculated in Python: max − min of degrees(atan2(y, x)) − θ over 720 angles from 0° is 2.310392 + 7.660480.
         near(&told, "error_pp_deg_raw", 9.970_873, 1e-4);
     }
 }
 
-/// 2 mV rms of noise in 0.5 V: 1000 points per period, 7.25 periods. A parameter scatters by σ·√(2/n) = 33 µV; the
-/// limit is five of them.
+/// 2 mV rms of noise in 0.5 V, with 1000 points per period over 7.25 periods. The standard deviation of a parameter is
+/// σ·√(2/n) = 33 µV. The limit is five standard deviations.
 #[test]
 fn noise_moves_the_parameters_within_its_statistics() {
     let bench = Bench::new();
@@ -218,7 +219,7 @@ fn the_example_captures_are_judged_as_documented() {
     let good = bench.run(&["analyse", &path("healthy.csv")]);
     assert_eq!(good.status, Some(0), "{good:?}");
     assert!(good.out.contains("within the limits") && good.out.contains("periods"), "{good:?}");
-    // The parameters of the capture: R, p, q, r, α; 0.5 mV rms of noise on 400 points.
+    // The parameters of the capture R, p, q, r and α, with 0.5 mV rms of noise on 400 points.
     let told = bench.run(&["analyse", &path("offset-gain-phase.csv"), "--json"]).json();
     let expected = [
         ("amplitude_v", 0.5, 2e-4),
@@ -237,10 +238,10 @@ fn the_example_captures_are_judged_as_documented() {
     assert!(told["findings"].as_array().unwrap().len() >= 4, "{told}");
 }
 
-/// Made with Python: 5000 rows of 0.05 ms, `turn = 1.25·i/5000`, `true = turn + 120/1296000·sin(2π·turn)`, θ =
-/// 2π·16·true, cosine 0.49·cos θ + 0.010, sine 0.49·sin(θ − 2°)/1.04 − 0.015, 0.3 mV rms of noise from
-/// `random.Random(16).gauss`, four decimals; reference `360·turn mod 360`, absolute `floor(32·16·true − 0.5) mod 512`;
-/// decimal commas.
+/// The capture was made in Python: 5000 rows of 0.05 ms, `turn = 1.25·i/5000`, `true = turn +
+/// 120/1296000·sin(2π·turn)`, θ = 2π·16·true, cosine 0.49·cos θ + 0.010, sine 0.49·sin(θ − 2°)/1.04 − 0.015, 0.3 mV rms
+/// of noise from `random.Random(16).gauss`, four decimals; reference `360·turn mod 360`, absolute `floor(32·16·true −
+/// 0.5) mod 512`; decimal commas.
 #[test]
 fn the_example_revolution_reveals_its_eccentricity() {
     let bench = Bench::new();
@@ -257,11 +258,11 @@ fn the_example_revolution_reveals_its_eccentricity() {
     near(&told, "offset_sin_v", -0.015, 4e-5);
     near(&told, "gain_ratio", 1.04, 2e-4);
     near(&told, "phase_error_deg", 2.0, 0.01);
-    // The mean over a 16th of a revolution lessens 120″ by (π/16)²/6 = 0.6 %.
+    // Averaging over a 16th of a revolution reduces 120″ by (π/16)²/6 = 0.6 %.
     near(&told, "inl_deg", 119.2 / 3600.0, 0.4 / 3600.0);
     near(&told, "inl_deg_corrected", 119.2 / 3600.0, 0.4 / 3600.0);
-    // Python: half of peak to peak of the errors of this ellipse, 5.801567° electrical, in 16 periods; noise of 0.035°
-    // occurs up to four times that on either side.
+    // Calculated in Python: half of the peak-to-peak error of this ellipse, 5.801567° electrical, in 16 periods. Noise
+    // of 0.035° reaches up to four times that on either side.
     near(&told, "dnl_deg", 0.181_3, 0.008);
     near(&told, "dnl_deg_corrected", 0.0, 0.012);
     let text = bench.run(&["analyse", path, "--periods", "16"]).out;
@@ -270,7 +271,7 @@ fn the_example_revolution_reveals_its_eccentricity() {
         "{text}"
     );
 
-    // Without the number of periods there is a hint; with a wrong one the right one is named.
+    // If the number of periods is missing, there is a hint. If it is wrong, the correct one is named.
     let ran = bench.run(&["analyse", path, "--json"]);
     assert!(ran.json().get("inl_deg").is_none() && ran.err.contains("--periods"), "{ran:?}");
     let ran = bench.run(&["analyse", path, "--json", "--periods", "32"]);
@@ -310,7 +311,7 @@ fn interference_and_a_broken_wire_are_reported() {
         told["findings"].to_string().contains("There is interference of 10.0 mV (2.0 % of the amplitude) at 8000 Hz"),
         "{told}"
     );
-    // COS is at ground, its reference at 2.5 V.
+    // COS is at ground, and its reference is at 2.5 V.
     let wires = good.iter().fold("t,SIN,REFSIN,COS,REFCOS\n".to_owned(), |mut text, [t, sine, _]| {
         writeln!(text, "{t:.6},{:.6},2.5,0.02,2.5", sine + 2.5).unwrap();
         text
@@ -319,7 +320,7 @@ fn interference_and_a_broken_wire_are_reported() {
     bench.run(&["analyse", &file]).fails(1, &["cosine channel has no signal", "COS is at ground"]);
 }
 
-/// 2 kHz at 2.5 µs, and the effect of a slow recorder, a second recording in the file or too few samples.
+/// 2 kHz sampled at 2.5 µs, and the effects of a slow recorder, a second recording in the file, and too few samples.
 #[test]
 fn the_frequency_is_reported_and_marked_if_uncertain() {
     let bench = Bench::new();
@@ -347,7 +348,7 @@ fn the_frequency_is_reported_and_marked_if_uncertain() {
     }
 }
 
-/// The virtual adapter turns its shaft once a second, and samples without errors of the signals.
+/// The shaft of the virtual adapter turns once per second, and the sampled signals have no errors.
 #[test]
 fn an_adapter_is_sampled_and_analysed() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Invalid input: each case with its exit status and one clear sentence.
+//! Invalid input. Each case results in its exit status and one clear sentence.
 
 use std::fs;
 use std::process::Stdio;
@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::support::{Bench, finish};
 
-/// Returns a profile of the virtual encoder with one field.
+/// Returns a profile of the virtual encoder with a single field.
 fn profile(bench: &Bench) -> String {
     let file = bench.file("good.ron");
     let ran = bench.run(&["save", "hiperface", "--link", "sim:?serial=HF0000001", "-o", &file]);
@@ -64,7 +64,7 @@ fn a_broken_profile_is_refused_with_its_name_and_error() {
     }
 }
 
-/// Issue 22.17: a profile of a newer schema is compared, and the message says that nothing else is possible.
+/// Issue 22.17: a profile with a newer schema is compared, and the message states that nothing else is possible.
 #[test]
 fn a_profile_of_a_newer_schema_is_read_only() {
     let bench = Bench::new();
@@ -106,15 +106,15 @@ fn a_profile_of_another_encoder_is_refused_before_writing() {
     }
     assert_eq!(encoder.writes(), [""; 0]);
     let arguments = ["restore", &file, "--yes", "--allow-other-device", "--link", &encoder.url, "--json"];
-    // The meaning of its bytes is not known (issue 22.8).
+    // The meaning of the bytes in this field is unknown (issue 22.8).
     let arguments = [&arguments[..], &["--copy", "field:0"]].concat();
     let told = bench.run(&arguments).json();
     assert_eq!(told["verified"], told["written"]);
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
 }
 
-/// Issue 22.30: a silent line is no proof that there is no drive on it, so that a search on a serial line needs a
-/// confirmation from the user. Other commands run without it, as scripts expect.
+/// Issue 22.30: a silent line does not prove that there is no drive on it, so a search on a serial line requires
+/// confirmation by the user. Other commands run without it, as scripts expect.
 #[test]
 fn a_search_in_a_script_needs_only_master() {
     let bench = Bench::new();
@@ -128,12 +128,12 @@ fn a_search_in_a_script_needs_only_master() {
     bench.run(&["identify", "biss", "--only-master", "--link", "sim:"]).fails(2, &["--only-master"]);
 }
 
-/// Returns a ready-made profile.
+/// Returns the path of a ready-made profile.
 fn ready_made(kind: &str, name: &str) -> String {
     format!("{}/profiles/{kind}/{name}.ron", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Issue 22.8: options about data fields are rejected for devices without them, before anything is opened.
+/// Issue 22.8: options for data fields are rejected for devices without such fields, before anything is opened.
 #[test]
 fn data_field_options_are_refused_for_other_devices() {
     let bench = Bench::new();
@@ -150,7 +150,7 @@ fn data_field_options_are_refused_for_other_devices() {
     }
 }
 
-/// Issue 22.9: another kind of BiSS encoder is named, and rejected without explicit permission.
+/// Issue 22.9: another kind of BiSS encoder is named and rejected without explicit permission.
 #[test]
 fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -164,7 +164,7 @@ fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
     assert!(allowed.status == Some(0) && allowed.err.contains("may have a different meaning"), "{allowed:?}");
 }
 
-/// Issue 22.9: another type is named, and rejected without explicit permission.
+/// Issue 22.9: another type is named and rejected without explicit permission.
 #[test]
 fn a_profile_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -310,7 +310,7 @@ fn a_closed_output_pipe_does_not_panic() {
     let ran = super::support::ended(child, std::time::Instant::now());
     assert!(ran.status.is_some() && !ran.err.contains("panicked"), "{ran:?}");
 
-    // A closed standard error is no failure either.
+    // A closed standard error is not a failure either.
     let mut command = bench.program(&["identify", "hiperface"]);
     command.stderr(Stdio::from(closed_pipe()));
     assert_eq!(finish(command).status, Some(2));
@@ -319,7 +319,7 @@ fn a_closed_output_pipe_does_not_panic() {
     assert_eq!(finish(command).status, Some(1));
 }
 
-/// Returns the writing end of a pipe without a reader.
+/// Returns the write end of a pipe that has no reader.
 fn closed_pipe() -> std::io::PipeWriter {
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);

@@ -1,4 +1,4 @@
-//! Access codes other than the factory's: requested by number, used if given, never shown.
+//! Access codes other than the factory setting: they are requested by number, used if given, and never shown.
 
 use serde_json::json;
 

@@ -1,4 +1,4 @@
-//! The command `log`: what was written, by whom and with which values.
+//! The `log` command: what was written, by whom, and with which values.
 
 use serde_json::{Value, json};
 
@@ -53,7 +53,7 @@ fn entries_are_selected_and_the_newest_is_first() {
         assert_eq!(ran.status, Some(0), "{ran:?}");
         lines(&ran.out).iter().map(|line| line["device"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
     };
-    // Each command connects, and then writes.
+    // Each command first connects and then writes.
     assert_eq!(devices(&[]), ["hiperdrive", "hiperdrive", "hiperface", "hiperface"]);
     assert_eq!(devices(&["--limit", "1"]), ["hiperdrive"]);
     assert_eq!(devices(&["--device", "hiperface"]), ["hiperface", "hiperface"]);
@@ -65,7 +65,7 @@ fn entries_are_selected_and_the_newest_is_first() {
     bench.run(&["log", "--device", "toaster"]).fails(2, &["toaster", "hiperface"]);
 }
 
-/// An access code is in no entry, neither the old nor the new one.
+/// No entry contains an access code, neither the old one nor the new one.
 #[test]
 fn access_codes_are_not_in_the_logbook() {
     let bench = Bench::new();
@@ -87,14 +87,14 @@ fn a_damaged_logbook_is_kept_and_a_new_one_is_begun() {
     let names = std::fs::read_dir(bench.path("data/encoder-studio")).unwrap().map(|entry| entry.unwrap().file_name());
     let kept = names.map(|name| name.into_string().unwrap()).find(|name| name.starts_with("logbook-damaged-")).unwrap();
     assert!(bench.read(&format!("data/encoder-studio/{kept}")).starts_with("no database"));
-    // Work goes on, but a write needs a permit, because the earlier write cycles are in the damaged file.
+    // Work continues, but a write requires a permit, because the earlier write cycles are in the damaged file.
     let store = ["write", "interbus", "preset", "7", "--yes", "--link", "sim:"];
     let write = ["write", "hiperface", "field:0@3+2", "C0FF", "--yes", "--link", "sim:"];
     for words in [&store, &write] {
         bench.run(words).fails(1, &["was damaged", "unknown", "--force-wear"]);
         assert_eq!(bench.run(&[&words[..], &["--force-wear"]].concat()).status, Some(0));
     }
-    // Without that file, the count is a minimum. What wears out quickly still needs a permit.
+    // Without that file, the count is only a minimum. Writes to memory that wears out quickly still require a permit.
     std::fs::remove_file(bench.path(&format!("data/encoder-studio/{kept}"))).unwrap();
     assert_eq!(bench.run(&write).status, Some(0));
     bench.run(&store).fails(1, &["at least 1 of", "the file was damaged", "--force-wear"]);
@@ -119,7 +119,7 @@ fn each_kind_of_event_is_logged() {
         }
         let found = kinds(&bench, &["--device", device]);
         let expected = ["connected", "connected", "backup", "connected", "check"];
-        // A check may read status codes, and reading cam programs may cost stores, which are counted.
+        // A check may read status codes, and reading cam programs may cost store operations, which are counted.
         let is_own = |kind: &&str| !["status", "procedure"].contains(kind);
         let found: Vec<&str> = found.iter().map(String::as_str).filter(is_own).collect();
         assert_eq!(found, expected, "{device}");
@@ -130,7 +130,7 @@ fn each_kind_of_event_is_logged() {
     }
 }
 
-/// A command that only reads works without a logbook, and says on stderr that nothing was recorded.
+/// A command that only reads works without a logbook and reports on stderr that nothing was recorded.
 #[test]
 fn reading_goes_on_without_a_logbook() {
     let bench = Bench::new();
@@ -167,7 +167,7 @@ fn an_asset_is_assigned_and_selects_entries() {
     }
 }
 
-/// A plant's rules may forbid names in the logbook.
+/// The rules of a plant may forbid names in the logbook.
 #[test]
 fn the_settings_choose_how_the_user_is_named() {
     let bench = Bench::new();
@@ -180,7 +180,7 @@ fn the_settings_choose_how_the_user_is_named() {
     let full = user_with("(theme: Dark)");
     let initials = user_with("(user_name: Initials)");
     assert_eq!(user_with("(user_name: Off)"), Value::Null);
-    // Other settings that this version cannot read do not matter.
+    // Other settings that this version cannot read are ignored.
     assert_eq!(user_with("(theme: Pink, user_name: Off)"), Value::Null);
     if let (Some(full), Some(initials)) = (full.as_str(), initials.as_str()) {
         assert!(!initials.is_empty() && initials.chars().count() <= full.chars().count(), "{full} {initials}");

@@ -71,7 +71,7 @@ fn golden_frames_are_explained() {
 #[test]
 fn the_access_code_of_a_captured_frame_is_not_printed() {
     let bench = Bench::new();
-    // The manual's example: 08 15 into field 1 at address 5; decoding repeats the input and adds nothing.
+    // The example of the manual writes 08 15 to field 1 at address 5. Decoding repeats the input and adds nothing.
     let told = bench.run(&["decode", "hiperface", "40 4B 01 05 02 66 08 15 76", "--json"]).json();
     let meaning = told["frames"][0]["meaning"].to_string();
     assert!(meaning.contains("08 15") || meaning.contains("0815"), "{told}");

@@ -1,4 +1,4 @@
-//! `position`: a table for scripts, and streams that Ctrl-C ends between two lines.
+//! The `position` command: a table for scripts, and streams that Ctrl-C ends between two lines.
 
 use std::io::{BufRead, BufReader, Read};
 use std::time::Instant;
@@ -10,7 +10,7 @@ const HEADER: &str = "t_s,raw,turns,steps,degrees,valid,codes";
 #[test]
 fn a_table_has_one_header_and_a_line_per_reading() {
     let bench = Bench::new();
-    // SKM36: 128 periods of 32 steps, 4096 turns; 0E0531h is turn 224 and step 1329, which is 116.806640625°.
+    // The SKM36 has 128 periods of 32 steps and 4096 turns. 0E0531h is turn 224 and step 1329, which is 116.806640625°.
     let link = "sim:?position=0xE0531";
     let ran = bench.run(&["position", "hiperface", "--link", link, "--csv", "--count", "3", "--interval", "0"]);
     assert_eq!((ran.status, ran.err.as_str()), (Some(0), ""), "{ran:?}");
@@ -29,14 +29,14 @@ fn a_table_has_one_header_and_a_line_per_reading() {
 #[test]
 fn millimetres_and_status_codes_have_columns() {
     let bench = Bench::new();
-    // Type 90h has periods of 1 mm: 0E0531h are 918833 steps of 1/32 mm.
+    // Type 90h has periods of 1 mm. 0E0531h is 918833 steps of 1/32 mm.
     let Some(encoder) = bench.encoder(&["--type", "90", "--status", "1C08"]).map(Foreign::waited_for) else { return };
     let arguments = ["position", "hiperface", "--link", &encoder.url, "--csv", "--count", "2", "--interval", "0"];
     let ran = bench.run(&arguments);
     let lines: Vec<&str> = ran.out.lines().collect();
     assert_eq!(lines[0], "t_s,raw,turns,steps,millimetres,valid,codes");
     let behind_the_time = |line: &str| line.split_once(',').unwrap().1.to_owned();
-    // Warnings leave the position valid, and are in the line in which they were reported.
+    // Warnings do not invalidate the position and are on the line in which they were reported.
     assert_eq!(behind_the_time(lines[1]), "918833,,,28713.53125,true,1C 08", "{ran:?}");
     assert_eq!(behind_the_time(lines[2]), "918833,,,28713.53125,true,", "{ran:?}");
 }
@@ -44,8 +44,8 @@ fn millimetres_and_status_codes_have_columns() {
 #[test]
 fn ctrl_c_ends_a_stream_between_two_lines() {
     let bench = Bench::new();
-    // Without a number of lines a table runs until Ctrl-C, which is then no failure; a stream with a number of lines is
-    // interrupted.
+    // Without a number of lines, a table runs until Ctrl-C, which is then not a failure. A stream with a number of
+    // lines is interrupted by it.
     let cases: [(&[&str], i32); 3] =
         [(&["--csv"], 0), (&["--csv", "--count", "100000"], 1), (&["--json", "--count", "100000"], 1)];
     for (options, status) in cases {
@@ -54,7 +54,7 @@ fn ctrl_c_ends_a_stream_between_two_lines() {
             let mut child = bench.program(&arguments).spawn().unwrap();
             let mut out = BufReader::new(child.stdout.take().unwrap());
             let mut text = String::new();
-            // Lines are printed when they are read, not when a buffer is full.
+            // Each line is printed when it is read, not when a buffer is full.
             (0..4).for_each(|_| assert!(out.read_line(&mut text).unwrap() > 0));
             signal(&child, "INT");
             let rest = std::thread::spawn(move || {

@@ -1,4 +1,4 @@
-//! `ssi`: frames without an encoder. Expected frames are those of the reference, section 8.
+//! The `ssi` command: frames without an encoder. The expected frames are those of section 8 of the reference.
 
 use serde_json::{Value, json};
 
@@ -30,7 +30,7 @@ fn frames_are_encoded_and_decoded() {
     let decoded = |layout: &str, frame: &str| bench.run(&["ssi", "decode", "--json", "--layout", layout, frame]).json();
     for frame in ["000100100011101010010110110", "0b000100100011101010010110110", "0x091D4B6"] {
         let told = decoded("ahm36", frame);
-        // 2A5Bh of 16384 steps: 238.0847… degrees.
+        // 2A5Bh of 16384 steps is 238.0847… degrees.
         assert_eq!(told["raw_bits"], "000100100011101010010110110");
         assert_eq!(
             (&told["position"], &told["turns"], &told["steps"]),
@@ -77,12 +77,12 @@ fn layouts_are_exported() {
         let asked = ["ssi", "export", "--layout", "ahs36", "--format", "timing"];
         bench.run(&[&asked[..], more].concat())
     };
-    // 15 clocks of 400 kHz: 37.5 µs.
+    // 15 clocks at 400 kHz take 37.5 µs.
     assert!(timing(&[]).out.contains("15 clocks, 37.50 µs"));
     assert_eq!(timing(&[]).err, "");
     assert!(timing(&["--cable", "150"]).err.contains("to 200 kHz or less"));
     assert!(timing(&["--pause", "20"]).err.contains("more than 25 µs"));
-    // Without a family the general times of SSI apply, which is said: 13 clocks of 500 kHz take 26 µs.
+    // If no family is given, the general SSI times apply, and the output says so: 13 clocks at 500 kHz take 26 µs.
     let any = ["ssi", "export", "--layout", "frame,st=13", "--format", "timing", "--clock", "500000", "--pause", "20"];
     let any = bench.run(&any);
     assert!(any.out.contains("13 clocks, 26.00 µs") && any.out.contains("tm up to 25 µs"), "{}", any.out);
@@ -94,7 +94,7 @@ fn layouts_are_exported() {
     assert_eq!(told["position"], 0x2A5B);
 }
 
-/// Returns a recording of `tests/vectors/ssi_find` (made in Python): its path, its frames as text and the intended
+/// Returns a recording from `tests/vectors/ssi_find` (made in Python): its path, its frames as text, and the intended
 /// positions.
 fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
     let path = format!("{}/tests/vectors/ssi_find/{name}.txt", env!("CARGO_MANIFEST_DIR"));
@@ -104,12 +104,12 @@ fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
     (path, rows)
 }
 
-/// Issue 22.22: `ssi find` as in the contract: the first layout of the list reads the frames as intended, and can be
+/// Issue 22.22: `ssi find` fulfils its contract: the first layout of the list decodes the frames as intended and can be
 /// used unchanged.
 #[test]
 fn layouts_of_recorded_frames_are_found() {
     let bench = Bench::new();
-    // Whether the frames can decide.
+    // Whether the frames are sufficient to decide.
     for (name, ambiguous) in
         [("excess_360_fast", false), ("start_bit", true), ("twice_with_gap", true), ("gray_even_parity", true)]
     {
@@ -128,7 +128,8 @@ fn layouts_of_recorded_frames_are_found() {
         let decoded = bench.run(&["ssi", "decode", "--json", "--layout", spec, frame]).json();
         assert_eq!(decoded["position"].as_u64(), *meant, "{name}: {spec}");
     }
-    // Further columns are ignored, hex takes its clocks from the option, and the text output has the same content.
+    // Further columns are ignored, hexadecimal frames take their clocks from the option, and the text output has the
+    // same content.
     let (_, rows) = recording("excess_360_fast");
     let hex = |(frame, _): &(String, Option<u64>)| format!("0x{:X},17\n", u64::from_str_radix(frame, 2).unwrap());
     let hex = bench.write("hex.csv", rows.iter().map(hex).collect::<String>());
@@ -136,7 +137,7 @@ fn layouts_of_recorded_frames_are_found() {
     assert!(found.out.contains("steps=360") && found.out.contains("accounts for every bit"), "{found:?}");
     let guessed = bench.run(&["ssi", "find", &hex]);
     assert!(guessed.err.contains("9 was assumed"), "{guessed:?}");
-    // Recordings without information.
+    // These recordings contain no information.
     let standing = bench.write("standing.txt", "101010101\n".repeat(300));
     bench.run(&["ssi", "find", &standing]).fails(1, &["the shaft is at rest"]);
     let low = bench.write("low.txt", "000000000\n".repeat(300));
@@ -147,12 +148,12 @@ fn layouts_of_recorded_frames_are_found() {
     bench.run(&["ssi", "find", &hex, "--clocks", "65"]).fails(2, &["65"]);
 }
 
-/// Issue 22.22: any frame can be written as one word, as `ssi find` prints it.
+/// Issue 22.22: any frame can be specified as a single word, in the form that `ssi find` prints.
 #[test]
 fn any_frame_has_a_one_word_specification() {
     let bench = Bench::new();
     let decoded = |layout: &str, frame: &str| bench.run(&["ssi", "decode", "--json", "--layout", layout, frame]).json();
-    // Reference section 8: AHM36 in Gray, and the same with exchanged wires.
+    // Section 8 of the reference: AHM36 in Gray code, and the same with swapped wires.
     let ahm36 = "frame,clocks=27,mt=12,st=14,code=gray,area=26,err=27";
     assert_eq!(decoded(ahm36, "0x0D93EEC")["position"], 4_778_587);
     assert_eq!(decoded(&format!("{ahm36},inverted=1"), "0x726C113")["position"], 4_778_587);

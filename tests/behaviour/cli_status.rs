@@ -15,7 +15,7 @@ fn position(bench: &Bench, codes: &str) -> Option<(Ran, Value)> {
     Some((ran, line))
 }
 
-/// Issue 22.10: the codes that `status` has removed in the encoder are in the logbook.
+/// Issue 22.10: codes that `status` has removed from the encoder are in the logbook.
 #[test]
 fn status_codes_are_kept_in_the_logbook() {
     let bench = Bench::new();
@@ -42,8 +42,8 @@ fn status_reads_the_entire_queue_and_always_exits_with_success() {
     assert_eq!(told, json!({"ok": true, "errors": [], "warnings": []}));
 }
 
-/// Issue 22.10: 50h removes a code in the encoder: a reply ten times as late as allowed (17.6 ms, reference 4) is still
-/// accepted, so that a repeated request loses no code.
+/// Issue 22.10: 50h removes a code from the encoder. A reply that is ten times as late as allowed (17.6 ms, reference
+/// 4) is still accepted, so no code is lost by repeating the request.
 #[test]
 fn codes_in_late_replies_are_not_lost() {
     let bench = Bench::new();
@@ -57,8 +57,8 @@ fn codes_in_late_replies_are_not_lost() {
     }
 }
 
-/// Issue 22.10: for any data instead of a reply to 50h, including a repeated old one, each code is printed or reported
-/// as lost, and none is printed twice.
+/// Issue 22.10: whatever arrives in place of a reply to 50h, even a repeated earlier reply, each code is either printed
+/// or reported as lost, and none is printed twice.
 #[test]
 fn each_code_is_reported_once_or_as_lost() {
     let bench = Bench::new();
@@ -86,7 +86,7 @@ fn each_code_is_reported_once_or_as_lost() {
     }
 }
 
-/// Issue 22.10: a reply that a device server sends twice is read with its codes.
+/// Issue 22.10: if a device server sends a reply twice, its codes are still read.
 #[test]
 fn a_duplicated_reply_loses_no_code() {
     let bench = Bench::new();
@@ -151,7 +151,7 @@ fn the_check_prints_a_verdict_per_line() {
         {"step": "data fields", "verdict": "good", "findings": ["0: 32 bytes, writable, code 0, code required"]},
     ]);
     assert_eq!((&good["ok"], &good["steps"]), (&json!(true), &steps));
-    // Issue 22.11: the keys that CLI.md names.
+    // Issue 22.11: the keys named in CLI.md.
     let lines = json!([
         {"name": "status", "verdict": "good", "text": ""},
         {"name": "identity", "verdict": "good", "text": "SKM36; GB0450179"},

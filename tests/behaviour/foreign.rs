@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::support::{Bench, Foreign, frame};
 
-/// 32 writable bytes under code 0 and 16 protected ones under code 2.
+/// A data field with 32 writable bytes that is protected by code 0, and one with 16 bytes that is protected by code 2.
 const FIELDS: &str = r#"[{"status":"C9","bytes":"0815"},{"status":"A8","bytes":"01"}]"#;
 
 fn save(bench: &Bench, encoder: &Foreign, file: &str) -> String {
@@ -51,7 +51,7 @@ fn the_position_has_turns_steps_and_degrees() {
     let lines: Vec<Value> = ran.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!(lines.len(), 3);
     for line in &lines {
-        // SKM36 at 000E0531h: turn E0h, step 1329 of 4096.
+        // The SKM36 is at 000E0531h, which is turn E0h, step 1329 of 4096.
         assert_eq!((&line["raw"], &line["turns"], &line["steps"]), (&json!(918_833), &json!(224), &json!(1329)));
         assert!((line["degrees"].as_f64().unwrap() - 116.806_641).abs() < 1e-5, "{line}");
         assert_eq!(line["valid"], json!(true));
@@ -89,7 +89,7 @@ fn write_stores_exactly_these_bytes() {
     assert_eq!((&told["written"], &told["write_cycles"]), (&json!(2), &json!(1)));
     assert_eq!(encoder.writes(), [frame("40 4B 00 03 02 55 AA BB")]);
     assert_eq!(encoder.host_address(&["40 4A 00 02 04 55"]), [frame("40 4A 00 02 04 FF AA BB FF")]);
-    // Repeated: nothing differs, nothing is sent.
+    // When the restore is repeated, nothing differs, and nothing is sent.
     encoder.requests();
     assert_eq!(bench.run(&arguments).json()["write_cycles"], json!(0));
     assert_eq!(encoder.writes(), [""; 0]);
@@ -121,7 +121,7 @@ fn changes_by_another_host_are_found_restored_and_verified() {
     assert_eq!(encoder.writes(), [frame("40 4B 00 03 02 55 FF FF"), frame("40 4B 00 1F 01 55 FF")]);
     assert_eq!(bench.run(&[&["verify", &file], &link[..]].concat()).json()["equal"], json!(true));
 
-    // The before-image is a profile, and restoring it restores the foreign bytes.
+    // The backup is a profile, and restoring it restores the foreign bytes.
     let backup = told["backup"].as_str().unwrap();
     let undone = bench.run(&[&["restore", backup, "--yes"], &link[..]].concat()).json();
     assert_eq!(undone["written"], json!(3));
@@ -162,7 +162,7 @@ fn a_dry_run_prints_the_later_plan_and_writes_nothing() {
     let file = bench.write("wanted.ron", text);
     let dry = bench.run(&["restore", &file, "--dry-run", "--link", &encoder.url, "--json"]).json();
     assert_eq!(encoder.writes(), [""; 0]);
-    // Unlocking, writing and locking of the protected field are shown with their cost.
+    // Unlocking, writing and locking of the protected field are listed with their cost.
     let expected = [
         ("field:0@1+2", "15FF", "1600"),
         ("status:1", "A8", "E8"),
@@ -236,8 +236,7 @@ fn an_echoing_converter_is_detected_or_configured() {
         let told = bench.run(&["read", "hiperface", "field:0@0+2", "--link", &url, "--json"]).json();
         assert_eq!(told["value"], json!("0815"), "{echo}");
     }
-    // The reply to 47h equals its request, which does not prove anything about an echo, so another request is made
-    // first.
+    // The reply to 47h equals its request, so it does not prove that there is an echo. Another request is made first.
     for action in [&["increment-counter", "--yes"][..], &["configure-for-now", "0xE4"][..]] {
         encoder.requests();
         let ran = bench.run(&[&["do", "hiperface", "--link", &encoder.url], action].concat());

@@ -1,4 +1,4 @@
-//! A program that runs until it is ended, with its output so far.
+//! Support for programs that run until they are ended, with their output so far.
 
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStdout, Command};
@@ -14,7 +14,7 @@ pub(crate) struct Going {
 }
 
 impl Going {
-    /// Starts the program, and waits until it has printed a number of lines.
+    /// Starts the program and waits until it has printed the given number of lines.
     #[track_caller]
     pub(crate) fn since(mut command: Command, lines: usize) -> Self {
         let mut child = command.spawn().unwrap();
@@ -28,7 +28,7 @@ impl Going {
         Going { child, out, text }
     }
 
-    /// Waits for the end of the program. The time is measured from now.
+    /// Waits for the program to end. The time is measured from this call.
     pub(crate) fn ended(self) -> Ran {
         let Going { child, mut out, mut text } = self;
         let rest = std::thread::spawn(move || {

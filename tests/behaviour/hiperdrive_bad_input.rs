@@ -1,4 +1,4 @@
-//! Invalid input and obstacles for HIPERDRIVE: one clear sentence each, and nothing is set.
+//! Invalid input and obstacles for HIPERDRIVE. Each case results in one clear sentence, and nothing is set.
 
 use super::hiperdrive_tap::Tapped;
 use super::support::Bench;
@@ -7,10 +7,10 @@ use super::support::Bench;
 fn unwritable_values_are_refused_with_a_reason() {
     let bench = Bench::new();
     let cases: [(&[&str], i32, &[&str]); 32] = [
-        // Both limits, in the program's and in the drive's rejection.
+        // Both limits are named, in the rejection by the program and in that by the drive.
         (&["166", "351"], 1, &["166", "351", "5 to 350"]),
         (&["166", "4"], 1, &["5 to 350"]),
-        // Issue 21.10: 512 turns of 65536 steps either way; for the steps of the keys 1024.
+        // Issue 21.10: 512 turns of 65536 steps in each direction, and 1024 for the steps of the keys.
         (&["158", "2147483648"], 1, &["158", "-33554432 to 33554432"]),
         (&["158", "-2147483648"], 1, &["-33554432 to 33554432"]),
         (&["158", "-33554433"], 1, &["-33554432 to 33554432"]),
@@ -24,25 +24,25 @@ fn unwritable_values_are_refused_with_a_reason() {
         (&["154", "0"], 1, &["1 to 65535"]),
         (&["47", "2"], 1, &["-4, -3, -2, -1, 1"]),
         (&["47", "0"], 1, &["47", "save"]),
-        // 158 above 160.
+        // The value of 158 would exceed that of 160.
         (&["158", "33488896"], 1, &["33488896"]),
-        // Parameters that can only be read.
+        // These parameters are read-only.
         (&["107", "0"], 1, &["107", "Actual position", "read-only"]),
         (&["17", "1"], 1, &["17", "read-only"]),
         (&["13", "1"], 1, &["13", "read-only"]),
-        // A parameter that moves the drive.
+        // This parameter moves the drive.
         (&["101", "1"], 1, &["101", "move hiperdrive"]),
         (&["102", "50"], 1, &["102", "move hiperdrive"]),
         (&["104", "1000"], 1, &["104", "move hiperdrive"]),
         (&["199", "1"], 1, &["199", "presence-test", "factory --all"]),
-        // Values that cannot be parsed.
+        // These values cannot be parsed.
         (&["155", "1"], 2, &["155"]),
         (&["limit", "1"], 2, &["limit", "158 drive 2"]),
         (&["158", "low"], 2, &["158", "low"]),
         (&["258", "1", "--drive", "3"], 2, &["258", "3"]),
         (&["47", "1", "--drive", "2"], 2, &["47"]),
         (&["158", "1", "--drive", "9"], 2, &["9"]),
-        // Parameters that do not exist.
+        // These parameters do not exist.
         (&["266", "100"], 1, &["2"]),
         (&["900", "1"], 2, &["900"]),
         (&["158 drive 2", "1"], 1, &["2"]),

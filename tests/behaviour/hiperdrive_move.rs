@@ -1,4 +1,4 @@
-//! `move hiperdrive`: the one command that causes motion.
+//! The `move hiperdrive` command, which is the only one that causes motion.
 
 use std::time::Duration;
 
@@ -6,31 +6,31 @@ use serde_json::json;
 
 use super::support::{Bench, Simulated};
 
-/// Reference 3 and 5: a turn is 65536 steps. The drive reaches its target, and is off afterwards.
+/// Reference 3 and 5: a turn has 65536 steps. The drive reaches its target and is switched off afterwards.
 #[test]
 fn a_drive_moves_to_a_position() {
     let bench = Bench::new();
     let simulated = Simulated::start(&bench, &["hiperdrive", "--listen", "127.0.0.1:0", "--hub", "4"]);
     let link = format!("enip:{}", simulated.place);
     let run = |arguments: &[&str]| bench.run(&[arguments, &["--link", &link]].concat());
-    // The drives of a hub are not requested in the factory settings.
+    // In the factory settings, the drives of a hub are not requested.
     assert_eq!(run(&["write", "hiperdrive", "152", "1", "--drive", "2", "--yes"]).status, Some(0));
     let ran = run(&["move", "hiperdrive", "65536", "--drive", "2", "--yes", "--json"]);
     assert_eq!(ran.json(), json!({"drive": 2, "target": 65_536, "position": 65_536, "reached": true}));
     let ran = run(&["move", "hiperdrive", "-1000", "--drive", "2", "--yes", "--speed", "50", "--torque", "25"]);
     assert_eq!((ran.status, ran.out.as_str()), (Some(0), "drive 2 is at -1000\n"));
-    // 511 turns either way; 1000 of 65536 steps are 0.015 of a turn.
+    // 511 turns in each direction. 1000 of 65536 steps are 0.015 of a turn.
     let range = "drive 2 moves to -1000 (-0.02 turns), within -33488896 (-511.00 turns) to 33488896 (511.00 turns)\n";
     assert_eq!(ran.err, range);
-    // 0E30 or 2E30: found, at standstill, not ready.
+    // 0E30 or 2E30: the reference is found, and the drive is at standstill and not ready.
     let word = run(&["read", "hiperdrive", "105", "--drive", "2", "--json"]).json()["value"].as_u64().unwrap();
     assert_eq!(word & 0x007F, 0x0030, "{word:04X}");
-    // The others have not moved.
+    // The other drives have not moved.
     assert_eq!(run(&["read", "hiperdrive", "107", "--json"]).json()["value"], 0);
     simulated.end("INT");
 }
 
-/// Status 2 for wrong usage: nothing is opened, because there is no device at this address.
+/// Status 2 means wrong usage. Nothing is opened, because there is no device at this address.
 #[test]
 fn without_consent_nothing_moves() {
     let bench = Bench::new();
@@ -50,7 +50,7 @@ fn without_consent_nothing_moves() {
     assert_eq!(bench.run(&["move", "interbus", "1", "--yes", "--link", "sim:"]).status, Some(2));
 }
 
-/// Status 1, one clear sentence, and the drive has not moved.
+/// Each case results in status 1 and one clear sentence, and the drive has not moved.
 #[test]
 fn invalid_moves_are_refused() {
     let bench = Bench::new();
@@ -67,7 +67,7 @@ fn invalid_moves_are_refused() {
     }
 }
 
-/// If a motion does not reach its target, the position is printed, also for scripts.
+/// If a motion does not reach its target, the position is printed, even for scripts.
 #[test]
 fn an_incomplete_move_reports_the_position() {
     let bench = Bench::new();
@@ -81,7 +81,7 @@ fn an_incomplete_move_reports_the_position() {
     late.assert_stderr(&["1 s", "--timeout", &position.to_string()]);
     assert!(late.took < Duration::from_secs(10), "{late:?}");
     run("sim:?s3=1", "5").assert_stderr(&["S3", "at 0"]);
-    // Reference 4: a following error is 8203h, 33283.
+    // Reference 4: a following error is 8203h, which is 33283.
     let blocked = run("sim:?load=120", "5");
     blocked.assert_stderr(&["fault", "at 0", "0x8203"]);
     assert_eq!(blocked.json_with(1)["error"]["code"], 33_283);

@@ -1,10 +1,10 @@
-//! HIPERDRIVE without a device: words, process data and packets are decoded.
+//! HIPERDRIVE without a device: decoding of words, process data and packets.
 
 use serde_json::json;
 
 use super::support::Bench;
 
-/// Reference: hiperdrive.md 3, 6, 9.
+/// Examples from hiperdrive.md 3, 6 and 9.
 #[test]
 fn golden_words_and_process_data_are_explained() {
     let bench = Bench::new();
@@ -26,7 +26,7 @@ fn golden_words_and_process_data_are_explained() {
         (&["2AB8", "2A70"], &["status word, fault", "switch-on lock"]),
         (&["047F"], &["OUT: not to be sent", "reserved bits set (1, 2)", "IN: status word", "no drive sends that"]),
         (&["0000"], &["leaves the drive alone", "no drive found"]),
-        // 163840 = 2.5 · 65536; −65536 is one turn backwards.
+        // 163840 is 2.5 · 65536, and −65536 is one turn backwards.
         (
             &["79 04 64 64 00 80 02 00"],
             &["OUT: drive 1: control word 0479", "speed 100 %", "target 163840 (turn 2, 180.000°"],
@@ -35,7 +35,7 @@ fn golden_words_and_process_data_are_explained() {
             &["39 04 32 4B 00 00 FF FF 00 00 00 00 00 00 00 00"],
             &["speed 50 %, torque 75 %, target -65536 (turn -1, 0.000°"],
         ),
-        // 32 % and 100 % may be taken for the class of a CIP request.
+        // 32 % and 100 % could be mistaken for the class of a CIP request.
         (&["39 04 20 64 00 80 02 00"], &["OUT: drive 1: control word 0439", "speed 32 %, torque 100 %"]),
         (&["0E 03 20 65 24 01 30 6B", "--direction", "in"], &["IN: drive 1: status word 030E"]),
         (&["04 79 64 64 00 02 80 00", "--order", "big"], &["control word 0479", "target 163840"]),
@@ -56,7 +56,8 @@ fn golden_words_and_process_data_are_explained() {
         (&["2F 20 00 00 FC FF 00 00"], &["write -4 (reset the drives) to parameter 47"]),
         (&["79 50 00 00 48 44 41 33"], &["parameter 121 (drive name of drive 1) is \"HDA3\""]),
         (&["A6 20 00 00 5F 01 00 00"], &["write 351 (35.1 rpm)", "warning: it may be 5 to 350"]),
-        // Issue 21.9: a word for a parameter with a double word, the opposite case, and data of another length.
+        // Issue 21.9: a single word for a parameter with a double word, the opposite case, and data of a different
+        // length.
         (
             &["6B 10 00 00 02 00 00 00", "--direction", "in"],
             &["parameter 107 (actual position of drive 1) is no value (2 bytes where its type has 4: 0x2)"],
@@ -77,7 +78,7 @@ fn golden_words_and_process_data_are_explained() {
             assert!(ran.out.contains(word), "{word}: {ran:?}");
         }
     }
-    // A hub of four, drive 3 at byte 16: 2A31 and −1.5 rpm; the others are missing.
+    // A hub with four drives: drive 3, at byte 16, reports 2A31 and −1.5 rpm, and the others are missing.
     let hub = format!("{} 31 2A F1 FF 00 00 00 00 {}", "00 ".repeat(16), "00 ".repeat(8));
     let told = bench.run(&["decode", "hiperdrive", "--direction", "in", "--json", &hub]).json();
     let drives = &told["frames"][0]["readings"][0]["drives"];
@@ -86,7 +87,7 @@ fn golden_words_and_process_data_are_explained() {
     assert_eq!(drives[2], third);
 }
 
-/// Reference: hiperdrive.md 7 and 9.
+/// Examples from hiperdrive.md 7 and 9.
 #[test]
 fn golden_packets_are_explained() {
     let bench = Bench::new();
@@ -145,7 +146,7 @@ fn golden_packets_are_explained() {
             assert!(ran.out.contains(word), "{word}: {ran:?}");
         }
     }
-    // For another device, an attribute is a number.
+    // For another device, an attribute is shown as a number.
     let other = bench.run(&["decode", "ethernet-ip", &request]);
     assert!(!other.out.contains("parameter"), "{other:?}");
     let told = bench.run(&["decode", "hiperdrive", "--json", out]).json();
@@ -179,7 +180,7 @@ fn illegal_and_invalid_words_are_refused() {
         (&["hiperdrive", "01 02 03"], &["8, 16, 32, 40, 64 or 72 bytes, not 3", "0439"]),
         (&["hiperdrive", "01"], &["not 1)"]),
         (&["ethernet-ip", "01 02 03"], &["no frame, no cyclic packet and no CIP message"]),
-        // A byte of the message is missing; a list of items is incomplete.
+        // A byte of the message is missing, or a list of items is incomplete.
         (&["ethernet-ip", &format!("65 00 04 00 {} 01 00 00", "00 ".repeat(20))], &["cut off", "27 bytes"]),
         (&["ethernet-ip", &format!("63 00 04 00 {} 01 00 0C 00", "00 ".repeat(20))], &["list of items is incomplete"]),
     ];

@@ -1,4 +1,4 @@
-//! Reading virtual HIPERDRIVE drives, in the process and over TCP; reading sets nothing.
+//! Reading virtual HIPERDRIVE drives in the same process and over TCP. Reading sets nothing.
 
 use serde_json::{Value, json};
 
@@ -30,7 +30,7 @@ fn identify_lists_the_device_and_its_drives() {
         .iter()
         .map(|drive| (&drive["number"], &drive["variant"], &drive["name"]))
         .collect();
-    // Variant 7 of the manual's table is HDA30A.
+    // Variant 7 in the manual's table is HDA30A.
     let expected = [(&json!(1), &json!(7), &json!("HDA30A")), (&json!(3), &json!(7), &json!("HDA30A"))];
     assert_eq!(drives, expected);
     assert!(told["drives"][0]["serial_number"].is_string(), "{told}");
@@ -43,14 +43,14 @@ fn a_healthy_device_reports_no_errors() {
     let bench = Bench::new();
     let told = ask(&bench, "sim:", &["status", "hiperdrive"]).json();
     assert_eq!((&told["ok"], &told["errors"], &told["warnings"]), (&json!(true), &json!([]), &json!([])), "{told}");
-    // 2A30: the status of a drive under no control (reference 3).
+    // 2A30 is the status of a drive that is not under control (reference 3).
     let drive = &told["drives"][0];
     assert_eq!((&drive["status_word"], &drive["state"]), (&json!(0x2A30), &json!("not-ready")));
     let text = bench.run(&["status", "hiperdrive", "--link", "sim:"]);
     assert!(text.out.contains("errors") && text.out.contains("Not ready (0x2A30)"), "{text:?}");
 }
 
-/// A limit above the other is rejected by the device, which keeps 8501 for it (reference 4) and answers 09.
+/// A limit above the other one is rejected by the device with 09. The device stores error 8501 for this (reference 4).
 #[test]
 fn current_errors_are_errors_and_past_ones_are_notes() {
     let bench = Bench::new();
@@ -65,14 +65,14 @@ fn current_errors_are_errors_and_past_ones_are_notes() {
     device.ask(&bench, &["do", "hiperdrive", "acknowledge", "--drive", "2", "--yes"]).json();
     let told = device.ask(&bench, &["status", "hiperdrive"]).json();
     assert_eq!((&told["ok"], &told["errors"]), (&json!(true), &json!([])), "{told}");
-    // The content of the buffer is no current warning.
+    // The content of the buffer does not count as a current warning.
     assert_eq!(told["warnings"], json!([]), "{told}");
     let text = bench.run(&["status", "hiperdrive", "--link", &device.url()]);
     let notes = text.out.lines().filter(|line| line.starts_with("note")).count();
     assert_eq!(notes, told["earlier"].as_array().unwrap().len(), "{text:?}");
 }
 
-/// Issue 26.7: the advice for an error is to write 0 to parameter 197, which does what an acknowledgement does.
+/// Issue 26.7: the advice for an error is to write 0 to parameter 197, which has the effect of an acknowledgement.
 #[test]
 fn writing_0_to_197_acknowledges_one_drive() {
     let bench = Bench::new();
@@ -88,14 +88,14 @@ fn writing_0_to_197_acknowledges_one_drive() {
     }
     device.ask(&bench, &["write", "hiperdrive", "197", "0", "--drive", "2", "--yes"]).json();
     assert_eq!(status("2")["ok"], json!(true));
-    // Nothing is left to acknowledge: nothing is sent.
+    // There is nothing left to acknowledge, so nothing is sent.
     device.sets();
     device.ask(&bench, &["write", "hiperdrive", "297", "0", "--yes"]).assert_stderr(&["Drive 2 has no fault"]);
     assert!(device.sets().is_empty());
 }
 
-/// Issue 22.9: restoring onto a device with the same serial number and another type, of the device or of its drive:
-/// named, and rejected without explicit permission.
+/// Issue 22.9: a restore to a device with the same serial number but another type of device or drive. The type is named
+/// and rejected without explicit permission.
 #[test]
 fn a_profile_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -123,8 +123,8 @@ fn a_check_reports_each_fact_once() {
     assert_eq!(line.matches("good").count(), 1, "{line}");
 }
 
-/// Issue 21.10: a speed is in tenths of rpm only with the factory's scale (manual 6.2); nominal data may be tenths. A
-/// drive at standstill has speed 0 in any scale.
+/// Issue 21.10: a speed is in tenths of rpm only with the factory scale (manual 6.2). Nominal data may also be in
+/// tenths. A drive at standstill has speed 0 in any scale.
 #[test]
 fn units_are_those_of_the_manual() {
     let bench = Bench::new();
@@ -139,7 +139,7 @@ fn units_are_those_of_the_manual() {
     assert_eq!((read("127")["value"].clone(), read("127").get("unit")), (json!("A25"), None));
 }
 
-/// 65536 steps per turn: −1 is turn −1, step 65535; 163840 are 2.5 turns (reference 2).
+/// At 65536 steps per turn, −1 is step 65535 of turn −1, and 163840 is 2.5 turns (reference 2).
 #[test]
 fn a_position_has_signed_turns() {
     let bench = Bench::new();
@@ -182,7 +182,7 @@ fn parameters_are_read_by_number() {
         let told = ask(&bench, HUB, &[&["read", "hiperdrive"], words].concat()).json();
         assert_eq!((&told["item"], &told["value"], &told["unit"]), (&json!(item), &value, &unit), "{told}");
     }
-    // 7 of the manual's table is HDA30A; 2A30 is the status of a drive under no control.
+    // 7 in the manual's table is HDA30A. 2A30 is the status of a drive that is not under control.
     for (item, text) in [
         ("166", "350 × 0.1 rpm = 35.0 rpm\n"),
         ("0x9E", "-33488896 steps\n"),
@@ -201,7 +201,7 @@ fn a_saved_profile_is_human_readable() {
     let bench = Bench::new();
     let file = bench.file("hub.ron");
     let told = ask(&bench, HUB, &["save", "hiperdrive", "-o", &file]).json();
-    // 10 registers, and 13 of each drive: 152 to 166, 186 to 192, 198.
+    // 10 registers, and 13 for each drive: 152 to 166, 186 to 192, and 198.
     assert_eq!((&told["parameters"], &told["drives"]), (&json!(36), &json!(2)), "{told}");
     let text = bench.read("hub.ron");
     for line in [
@@ -219,7 +219,7 @@ fn a_saved_profile_is_human_readable() {
         ask(&bench, HUB, &["verify", &file]).json(),
         json!({"equal": true, "differences": [], "compared": 36, "missing": []})
     );
-    // The position is another one, which is no difference.
+    // The position differs, which does not count as a difference.
     let moved = HUB.replace("requested=1", "requested=1&position=5000&supply=22");
     assert_eq!(ask(&bench, &moved, &["diff", &file]).json()["equal"], json!(true));
     let slower = HUB.replace("requested=1", "requested=1&speed=200");
@@ -229,13 +229,14 @@ fn a_saved_profile_is_human_readable() {
         {"item": "166 drive 3", "left": "350", "right": "200"},
     ]);
     assert_eq!(told["differences"], expected);
-    // A slot that has become empty.
+    // One of the slots is now empty.
     let fewer = HUB.replace("1,0,1", "1,0,0");
     let told = ask(&bench, &fewer, &["verify", &file]).json_with(3);
     assert_eq!((&told["compared"], &told["missing"][0]), (&json!(23), &json!("152 drive 3")), "{told}");
 }
 
-/// No set request, no cyclic connection: only get attribute, single (0E) or all (01), is sent.
+/// Neither a set request nor a cyclic connection is used: only single (0E) and all (01) get-attribute requests are
+/// sent.
 #[test]
 fn reading_writes_nothing() {
     let bench = Bench::new();
@@ -261,7 +262,7 @@ fn reading_writes_nothing() {
         let foreign: Vec<&String> =
             heard.iter().filter(|own| !own.starts_with("0E ") && !own.starts_with("01 ")).collect();
         assert!(foreign.is_empty(), "{words:?}: {foreign:?}");
-        // Without consent nothing is opened.
+        // Without consent, nothing is opened.
         let asks = !matches!(words, ["restore", _] | ["write", ..]);
         assert_eq!((ran.status, heard.is_empty()), (Some(if asks { 0 } else { 2 }), !asks), "{words:?}: {ran:?}");
     }
@@ -279,7 +280,7 @@ fn devices_are_found_by_address() {
     wrong.fails(2, &["enip:ADDRESS"]);
 }
 
-/// On a terminal there is a bar, and a note about the network; a script gets neither.
+/// On a terminal, a progress bar and a notice about the network are shown. A script receives neither.
 #[test]
 fn a_slow_device_causes_no_messages_in_a_script() {
     let bench = Bench::new();

@@ -1,6 +1,6 @@
-//! Drives stop and remain stopped after any failure of the host, its connections or its window during motion. The drive
-//! is a separate process, and it is observed over a separate connection. The limits are those of safety, plus a second
-//! for a busy computer.
+//! Drives must stop, and stay stopped, after any failure of the host, its connections or its window during a motion.
+//! The drive is a separate process and is observed over a separate connection. The limits are those required for
+//! safety, plus a second for a busy computer.
 
 mod watched;
 mod wires;
@@ -22,16 +22,16 @@ use wires::{Transport, Wires};
 
 /// Additional time allowed for a busy computer.
 const BUSY: Duration = Duration::from_secs(1);
-/// Time without a report from the user interface.
+/// Maximum time without a report from the user interface before the program stops the drive.
 const FROZEN: Duration = Duration::from_millis(300);
-/// Slow enough for a busy machine.
+/// Packet interval that is slow enough for a busy computer.
 const RPI: &str = "rpi=50";
-/// Eight intervals, and the braking distance.
+/// Time in which the watchdog must stop the drive: eight intervals and the braking time.
 const WATCHDOG: Duration = Duration::from_millis(500);
 const FAST: SpeedTorque = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
 const JOG: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FAST, outward: false };
 
-/// A drive with an observer.
+/// A drive that is observed over a separate connection.
 struct Drive {
     bench: Bench,
     simulated: Simulated,
@@ -68,7 +68,7 @@ impl Drive {
         }
     }
 
-    /// Checks that the drive stops within the limit and has the same position half a second later.
+    /// Checks that the drive stops within the limit and is still at the same position half a second later.
     #[track_caller]
     fn stops_within(&mut self, limit: Duration) {
         let until = Instant::now() + limit + BUSY;
@@ -82,7 +82,7 @@ impl Drive {
     }
 }
 
-/// A host in this process, in control of the drive.
+/// A host in this process that controls the drive.
 struct Host {
     worker: Worker<Hiperdrive>,
     motion: Motion,
@@ -109,7 +109,7 @@ impl Host {
         }
     }
 
-    /// Holds the button.
+    /// Holds the jog button for the given time.
     fn holds(&self, time: Duration) {
         let until = Instant::now() + time;
         while Instant::now() < until {
@@ -118,7 +118,7 @@ impl Host {
         }
     }
 
-    /// Jogs at full speed.
+    /// Jogs at full speed until the drive moves.
     fn jogs(&self, drive: &mut Drive) {
         let until = Instant::now() + Duration::from_secs(20);
         let mut act = 0;
@@ -145,10 +145,10 @@ fn a_frozen_window_stops_the_drive() {
     let mut drive = Drive::start();
     let host = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     host.jogs(&mut drive);
-    // No further report is sent.
+    // No further reports are sent.
     drive.stops_within(FROZEN + WATCHDOG);
     assert_eq!(host.ended(), Some(ActionEnd::Stale));
-    // A returned window with the same button still pressed causes no motion.
+    // When the window responds again with the same button still pressed, nothing moves.
     let stood = drive.actual().position;
     host.holds(Duration::from_millis(500));
     assert_eq!(drive.actual().position, stood);
@@ -159,7 +159,7 @@ fn a_frozen_window_stops_the_drive() {
     assert_eq!(host.ended(), Some(ActionEnd::Stopped));
 }
 
-/// The window is closed: the session is dropped.
+/// The window is closed, so the session is dropped.
 #[test]
 fn closing_the_session_stops_the_drive() {
     let mut drive = Drive::start();
@@ -168,7 +168,7 @@ fn closing_the_session_stops_the_drive() {
     assert!(host.worker.close(Duration::from_secs(5)));
     drive.stops_within(Duration::ZERO);
     assert_eq!(drive.actual().status.to_u16() & 0x000F, 0, "off, and no fault: it was told");
-    // The drive is free: the next host may take it.
+    // The drive is free, and another host may take control.
     let next = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     assert!(next.motion.is_open());
 }
@@ -180,7 +180,7 @@ fn a_cut_parameter_connection_stops_the_drive() {
     let host = Host::in_control(&drive.bench, &wires.place());
     host.jogs(&mut drive);
     wires.cut_stream();
-    // An idle session checks every half second.
+    // An idle session checks its state every half second.
     let holding = host.motion.clone();
     let held = std::thread::spawn(move || {
         for _ in 0..100 {
@@ -206,8 +206,8 @@ fn cut_packet_wires_stop_the_drive() {
         host.jogs(&mut drive);
         ways.iter().for_each(|way| wires.cut(*way));
         drive.stops_within(WATCHDOG);
-        // If only the return direction is cut, the drive receives the stop; otherwise its watchdog stops it, which is a
-        // fault.
+        // If only the return direction is cut, the drive receives the stop. Otherwise, its watchdog stops it, which is
+        // a fault.
         let faulty = drive.actual().status.state() == State::Fault;
         assert_eq!(faulty, !told, "{ways:?}");
         let until = Instant::now() + Duration::from_secs(5);
@@ -216,7 +216,7 @@ fn cut_packet_wires_stop_the_drive() {
             sleep(Duration::from_millis(10));
         }
         assert!(matches!(host.motion.snapshot().lost, Some(ConnectionLoss::Silent { .. })), "{ways:?}");
-        // Restored: it remains stopped, even if the button is held.
+        // After the connection is restored, the drive remains stopped even if the button is held.
         ways.iter().for_each(|way| wires.restore(*way));
         let stood = drive.actual().position;
         host.motion.request_motion(DriveNumber::FIRST, JOG);
@@ -225,7 +225,7 @@ fn cut_packet_wires_stop_the_drive() {
     }
 }
 
-/// Garbage in both directions at full speed: a release still stops the drive.
+/// While garbage is sent in both directions at full speed, a release still stops the drive.
 #[test]
 fn a_release_stops_the_drive_during_a_flood() {
     let mut drive = Drive::start();
@@ -241,7 +241,7 @@ fn a_release_stops_the_drive_during_a_flood() {
     assert!(figures.malformed > 0, "{figures:?}");
 }
 
-/// Starts `move` in a separate process.
+/// Starts the `move` command in a separate process.
 fn moving(drive: &mut Drive) -> Child {
     let link = format!("enip:{}?{RPI}", drive.simulated.place);
     let arguments = ["move", "hiperdrive", "30000000", "--yes", "--link", &link];
@@ -284,8 +284,8 @@ fn an_interrupt_stops_the_drive() {
     assert_eq!(drive.actual().status.to_u16() & 0x000F, 0, "off, and no fault");
 }
 
-/// Issue 21.1: after any signal that ends a command, also twice, the drive is at standstill and off, and its watchdog
-/// does not report a fault.
+/// Issue 21.1: after any signal that ends the command, even if it is sent twice, the drive is at standstill and
+/// switched off, and its watchdog reports no fault.
 #[test]
 fn terminating_signals_stop_the_drive() {
     for (name, times) in [("TERM", 1), ("HUP", 1), ("TERM", 2), ("INT", 2)] {

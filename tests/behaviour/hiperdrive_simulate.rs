@@ -1,4 +1,4 @@
-//! `simulate hiperdrive`, checked by foreign clients: one written from the reference, and pycomm3.
+//! The `simulate hiperdrive` command, checked by independent clients: one written from the reference, and pycomm3.
 
 use super::support::{Bench, Simulated, foreign_host, foreign_host_with, pycomm3, python};
 
@@ -10,7 +10,7 @@ fn drives(bench: &Bench, arguments: &[&str]) -> Simulated {
     Simulated::start(bench, &[&["hiperdrive", "--listen", "127.0.0.1:0"], arguments].concat())
 }
 
-/// Runs steps with the expected output of the client for each.
+/// Runs steps and compares the output of the client with the expected output of each step.
 #[track_caller]
 fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
     let (things, expected): (Vec<&str>, Vec<&str>) = walk.iter().copied().unzip();
@@ -19,7 +19,8 @@ fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
     assert_eq!(said, expected, "{pairs:?}");
 }
 
-/// Reference 4 and 7: limits are 511 turns of 65536 steps, 33488896; the category; rejections and their codes.
+/// Reference 4 and 7: limits of 511 turns of 65536 steps, which is 33488896, the category, and rejections with their
+/// codes.
 #[test]
 fn parameters_are_read_and_written() {
     let bench = Bench::new();
@@ -48,12 +49,12 @@ fn parameters_are_read_and_written() {
         ("end", "closed"),
     ];
     walk(&port.place, &[], &steps);
-    // The next client finds the drive as the first has left it.
+    // The next client finds the drive in the state left by the first one.
     walk(&port.place, &[], &[("get:166", "200")]);
     port.end("INT");
 }
 
-/// Reference 3 and 9: words and their states; a move and back; hold-to-run ends at release.
+/// Reference 3 and 9: words and their states, a move and back, and a hold-to-run motion that ends when it is released.
 #[test]
 fn a_drive_is_enabled_moved_and_jogged() {
     let bench = Bench::new();
@@ -81,7 +82,7 @@ fn a_drive_is_enabled_moved_and_jogged() {
     port.end("TERM");
 }
 
-/// The eighth drive of a hub that is requested by parameter 852, and without parameter words.
+/// The eighth drive of a hub, which is requested with parameter 852, and without parameter words.
 #[test]
 fn a_drive_of_a_hub_moves_alone() {
     let bench = Bench::new();
@@ -100,7 +101,7 @@ fn a_drive_of_a_hub_moves_alone() {
     port.end("INT");
 }
 
-/// Reference 7: a lost master ends the motion within its time-out; fault 8601 = 34305 reports it.
+/// Reference 7: if the master is lost, the motion ends within its time-out. Fault 8601, which is 34305, reports this.
 #[test]
 fn a_drive_stops_when_its_master_falls_silent() {
     let bench = Bench::new();
@@ -111,12 +112,12 @@ fn a_drive_stops_when_its_master_falls_silent() {
     let steps =
         [("open", "00020001"), ("begin:33000000", "done"), ("hush", "moved stands silent"), ("get:108", "34305")];
     walk(&port.place, &[], &steps);
-    // Another master takes control, and finds the fault: 2AB8, with the set-point acknowledged (bit 12).
+    // Another master takes control and finds the fault: 2AB8, with the acknowledged set-point (bit 12).
     walk(&port.place, &[], &[("open", "00020002"), ("until:8:8", "3AB8"), ("close", "done")]);
     port.end("INT");
 }
 
-/// Garbage in both directions disturbs neither the motion nor other requests.
+/// Garbage in both directions affects neither the motion nor other requests.
 #[test]
 fn garbage_is_ignored() {
     let bench = Bench::new();
@@ -138,7 +139,8 @@ fn garbage_is_ignored() {
     port.end("INT");
 }
 
-/// Saved values exist for the next client after a loss of power; of an interrupted save, half of the values do.
+/// Saved values are still present for the next client after a loss of power. After an interrupted save, half of them
+/// are.
 #[test]
 fn a_save_is_interrupted_where_configured() {
     let bench = Bench::new();
@@ -149,7 +151,7 @@ fn a_save_is_interrupted_where_configured() {
     walk(&port.place, &[], &[("set:166=200", "done"), ("set:47=1", "done"), ("get:47", "1")]);
     let second = [("set:152=0", "done"), ("set:186=10", "done"), ("get:47", "0"), ("set:47=1", "done")];
     walk(&port.place, &[], &second);
-    // The power is lost before the next client connects, and returns with it.
+    // The power is lost before the next client connects and returns when it does.
     std::thread::sleep(std::time::Duration::from_millis(500));
     let after = [("get:17", "7"), ("get:166", "200"), ("get:152", "0"), ("get:186", "20"), ("set:47=-3", "done")];
     walk(&port.place, &[], &after);
@@ -158,8 +160,8 @@ fn a_save_is_interrupted_where_configured() {
     port.end("INT");
 }
 
-/// A third-party client reads and writes unconnected, wrapped, and over an explicit connection, for which it tries the
-/// large ForwardOpen first.
+/// A third-party client reads and writes unconnected, wrapped, and over an explicit connection, for which it first
+/// tries the large ForwardOpen.
 #[test]
 fn pycomm3_reads_and_writes() {
     let bench = Bench::new();
@@ -196,7 +198,7 @@ fn impossible_simulations_are_refused() {
     bench.run(&["simulate", "hiperdrive", "--listen", "[::1]:0"]).fails(1, &["::1", "127.0.0.1:4001"]);
     let taken = drives(&bench, &[]);
     bench.run(&["simulate", "hiperdrive", "--listen", &taken.place]).fails(1, &["in use by another program"]);
-    // The port is free for TCP only.
+    // The port is free only for TCP.
     let datagrams = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     let place = datagrams.local_addr().unwrap().to_string();
     bench.run(&["simulate", "hiperdrive", "--listen", &place]).fails(1, &["in use by another program"]);

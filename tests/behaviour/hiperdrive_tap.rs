@@ -1,4 +1,4 @@
-//! The requests to a device over TCP, recorded in between: every CIP request in hex, as sent.
+//! A recorder for the requests to a device over TCP. Each CIP request is recorded in hexadecimal digits as sent.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -7,19 +7,20 @@ use std::thread;
 
 use super::support::{Bench, Ran, Simulated};
 
-/// A virtual device with a recording proxy in front of it.
+/// A virtual device behind a recording proxy.
 pub(crate) struct Tapped {
     device: Simulated,
     url: String,
     heard: Arc<Mutex<Vec<String>>>,
 }
 
-/// Length of the header of a frame (reference 7), and of the part before a request in SendRRData.
+/// Length of a frame header in bytes (reference 7).
 const HEADER: usize = 24;
+/// Length in bytes of the part before a request in SendRRData.
 const BEFORE_REQUEST: usize = 16;
 
 impl Tapped {
-    /// Starts the device. The `arguments` follow `simulate hiperdrive --listen …`.
+    /// Starts the device. `arguments` are appended to `simulate hiperdrive --listen …`.
     pub(crate) fn start(bench: &Bench, arguments: &[&str]) -> Self {
         let device = Simulated::start(bench, &[&["hiperdrive", "--listen", "127.0.0.1:0"], arguments].concat());
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -43,17 +44,17 @@ impl Tapped {
         std::mem::take(&mut self.heard.lock().unwrap())
     }
 
-    /// Returns the requests that set a value (service 10h).
+    /// Returns the requests since the last call that set a value (service 10h).
     pub(crate) fn sets(&self) -> Vec<String> {
         self.heard().into_iter().filter(|request| request.starts_with("10 ")).collect()
     }
 
-    /// Runs the program with the link to the device and JSON output.
+    /// Runs the program with a link to the device and JSON output.
     pub(crate) fn ask(&self, bench: &Bench, words: &[&str]) -> Ran {
         bench.run(&[words, &["--link", &self.url, "--json"]].concat())
     }
 
-    /// Sends a request as another host, bypassing the proxy, and returns the reply.
+    /// Sends a request as another host that bypasses the proxy, and returns the reply.
     pub(crate) fn request(&self, request: &[u8]) -> Vec<u8> {
         let mut device = TcpStream::connect(&self.device.place).unwrap();
         let mut send = |command: u16, session: [u8; 4], data: &[u8]| {

@@ -1,11 +1,11 @@
-//! Writing into virtual HIPERDRIVE drives: checked request by request at a proxy, and save by save.
+//! Writing to virtual HIPERDRIVE drives, checked request by request at a proxy, and save by save.
 
 use serde_json::{Value, json};
 
 use super::hiperdrive_tap::Tapped;
 use super::support::Bench;
 
-/// 47 = 1 (reference 9).
+/// The request that saves all parameters: 47 = 1 (reference 9).
 const SAVE: &str = "10 03 20 64 24 01 30 2F 01 00";
 
 #[test]
@@ -19,15 +19,15 @@ fn a_parameter_is_written_and_saved_once() {
     ]);
     assert_eq!((&told["item"], &told["operations"], &told["write_cycles"]), (&json!("158"), &operations, &json!(1)));
     assert_eq!((&told["written"], &told["verified"]), (&json!(1), &json!(1)), "{told}");
-    // −1000000 is FFF0BDC0h, its low byte first.
+    // −1000000 is FFF0BDC0h, sent with the low byte first.
     assert_eq!(device.sets(), ["10 03 20 65 24 01 30 9E C0 BD F0 FF", SAVE]);
     assert_eq!(device.ask(&bench, &["read", "hiperdrive", "158"]).json()["value"], json!(-1_000_000));
     device.heard();
-    // Repeated: the values are already equal.
+    // When the write is repeated, the values are already equal.
     let again = device.ask(&bench, &["write", "hiperdrive", "158", "-1000000", "--yes"]).json();
     assert_eq!((&again["written"], &again["write_cycles"], &again["backup"]), (&json!(0), &json!(0), &Value::Null));
     assert_eq!(device.sets(), Vec::<String>::new());
-    // The before-image restores it.
+    // Restoring the backup restores the value.
     let backup = told["backup"].as_str().unwrap();
     let undone = device.ask(&bench, &["restore", backup, "--yes"]).json();
     assert_eq!((&undone["written"], &undone["write_cycles"]), (&json!(1), &json!(1)), "{undone}");
@@ -41,12 +41,12 @@ fn volatile_parameters_are_not_saved() {
     let device = Tapped::start(&bench, &["--set", "hub=4", "--set", "drives=0,1", "--set", "requested=1"]);
     let told = device.ask(&bench, &["write", "hiperdrive", "170", "100", "--drive", "2", "--yes"]).json();
     assert_eq!((&told["item"], &told["write_cycles"]), (&json!("170 drive 2"), &json!(0)), "{told}");
-    // 270: class 66h.
+    // 270 is in class 66h.
     assert_eq!(device.sets(), ["10 03 20 66 24 01 30 AA 64 00 00 00"]);
 }
 
-/// A spindle of 4 mm in steps of 0.01 mm: 400 steps per turn are 400/256 (reference 5); at 2.5 turns the drive is at
-/// 1000.
+/// A spindle of 4 mm in steps of 0.01 mm has 400 steps per turn, which is 400/256 (reference 5). At 2.5 turns, the
+/// drive is at 1000.
 #[test]
 fn a_restore_writes_scale_then_limits_and_saves_once() {
     let bench = Bench::new();
@@ -80,12 +80,13 @@ fn a_restore_writes_scale_then_limits_and_saves_once() {
     assert_eq!(device.sets(), expected);
     let place = device.ask(&bench, &["position", "hiperdrive"]).json();
     assert_eq!((&place["raw"], &place["turns"], &place["steps"]), (&json!(1000), &json!(2), &json!(200)), "{place}");
-    // Only the reference differs, which is never restored: nothing is written, nothing is saved.
+    // Only the reference differs, which is never restored, so nothing is written or saved.
     device.heard();
     let again = device.ask(&bench, &["restore", &file, "--yes", "--with-mounting"]).json();
     assert_eq!((&again["written"], &again["unchanged"], &again["write_cycles"]), (&json!(0), &json!(7), &json!(0)));
     assert_eq!(device.sets(), Vec::<String>::new());
-    // Upwards past both: the upper limit goes first (1000 lies between 500 and 2000, and between 600 and 5000).
+    // Upwards past both limits, the upper one is written first (1000 lies between 500 and 2000, and between 600 and
+    // 5000).
     let up = bench.write("up.ron", r#"(schema: 1, device: "hiperdrive", parameters: {158: 1000, 160: 1001})"#);
     device.ask(&bench, &["restore", &up, "--yes"]).json();
     device.sets();
@@ -149,7 +150,7 @@ fn services_write_parameter_47() {
         assert_eq!(told["write_cycles"], json!(cost), "{words:?}: {told}");
         assert_eq!(device.sets(), [format!("10 03 20 64 24 01 30 2F {sent}")], "{words:?}");
         let speed = device.ask(&bench, &["read", "hiperdrive", "166"]).json();
-        // −1 and −2 are about the adapter's own parameters (manual, 47): the drive keeps its speed.
+        // −1 and −2 apply to the adapter's own parameters (manual, 47), so the drive keeps its speed.
         let expected = if words.contains(&"--all") { 350 } else { 200 };
         assert_eq!(speed["value"], json!(expected), "{words:?}");
     }

@@ -1,10 +1,10 @@
-//! INTERBUS without a device: words of the process data are decoded.
+//! INTERBUS without a device: decoding of process data words.
 
 use serde_json::{Value, json};
 
 use super::support::Bench;
 
-/// References: interbus.md 5, 6.3, 7.
+/// Examples from interbus.md 5, 6.3 and 7.
 #[test]
 fn golden_words_are_explained() {
     let bench = Bench::new();
@@ -60,7 +60,7 @@ fn json_has_every_reading() {
     assert_eq!(frames[0]["readings"][0], start);
     let position = json!(["position", "parameterisation", "read-out"]);
     assert_eq!((&frames[0]["readings"][1]["modes"], &frames[0]["readings"][1]["value"]), (&position, &json!(21)));
-    // Every mode is none in particular.
+    // No mode is given, so all modes are possible.
     assert_eq!(
         (&frames[1]["readings"][0]["direction"], &frames[1]["readings"][0]["modes"]),
         (&json!("in"), &json!([]))
@@ -80,12 +80,12 @@ fn illegal_and_invalid_words_are_refused() {
     ] {
         bench.run(&out(mode, word)).fails(1, words);
     }
-    // If the direction is not known, it may be the encoder's word as well.
+    // If the direction is not given, the word may also come from the encoder.
     let told = bench.run(&["decode", "interbus", "46000015", "--mode", "position", "--json"]).json();
     let readings = told["frames"][0]["readings"].as_array().unwrap();
     let legal: Vec<&Value> = readings.iter().map(|reading| &reading["legal"]).collect();
     assert_eq!(legal, [&json!(false), &json!(true)], "{told}");
-    // The valid words in the same command are printed.
+    // The valid words of the same command are printed.
     let mixed = bench.run(&["decode", "interbus", "--direction", "out", "80000000", "10000000", "--json"]).json_with(1);
     let valid: Vec<&Value> = mixed["frames"].as_array().unwrap().iter().map(|frame| &frame["valid"]).collect();
     assert_eq!(valid, [&json!(true), &json!(false)]);

@@ -1,4 +1,4 @@
-//! Writing into a foreign K3 encoder: checked word by word, store by store.
+//! Writing to a foreign K3 encoder, checked word by word and store by store.
 
 use std::fmt::Write as _;
 
@@ -11,19 +11,19 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// Returns the words that set a value, and their effects, since the last call.
+/// Returns the words since the last call that set a value, with their effects.
 fn written(encoder: &Foreign) -> Vec<String> {
     let reads = ["R", "W 2021", "W 2020", "W 2080", "W 80000000", "W 00000000"];
     encoder.requests().into_iter().filter(|line| !reads.iter().any(|begin| line.starts_with(begin))).collect()
 }
 
-/// Returns the cam c of program p, as start and stop, by arithmetic alone.
+/// Returns the default start and stop of a cam of a program.
 fn edges(program: u32, cam: u32) -> (u32, u32) {
     (100 * cam + program, 100 * cam + program + 49)
 }
 
-/// Returns all 64 cams, except for those that `other` moves, for the foreign encoder and as a profile; every mask is
-/// FFh.
+/// Returns all 64 cams with mask FFh, in the notations of the foreign encoder and of a profile. `other` changes
+/// individual cams.
 fn cams(other: impl Fn(u32, u32) -> Option<(u32, u32)>) -> (String, String) {
     let (mut json, mut ron) = (String::new(), String::new());
     for program in 1..=8 {
@@ -49,7 +49,7 @@ fn profile(serial_number: &str, parameters: &str, programs: &str) -> String {
 
 const PARAMETERS: &str = r#"steps: 3600, revolutions: 1, direction: "cw", preset: 0, zero_shift: 0"#;
 
-/// The issue: 64 cams and 8 masks into an encoder that already has 60 of the cams.
+/// The case of the issue: 64 cams and 8 masks are written to an encoder that already has 60 of the cams.
 #[test]
 fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
     let bench = Bench::new();
@@ -77,7 +77,7 @@ fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
         {"item": "cam:8:1 start", "old": "108", "new": "0", "write_cycles": 0},
         {"item": "cam program 8", "old": null, "new": "stored", "write_cycles": 1},
     ]);
-    // An edge that already exists is left out.
+    // An edge that already exists is omitted.
     let expected: Vec<&Value> = expected.as_array().unwrap().iter().filter(|own| own["old"] != own["new"]).collect();
     assert_eq!(dry["operations"].as_array().unwrap().iter().collect::<Vec<_>>(), expected);
     assert!(written(&encoder).is_empty());
@@ -87,7 +87,7 @@ fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
         (&json!(4), &json!(4), &json!(3)),
         "{told}"
     );
-    // Reference 5: 010 or 011, the cam in four bits, the position in 25.
+    // Reference 5: 010 or 011, four bits for the cam, and 25 bits for the position.
     let words = [
         "W 40000014",
         "W 4E000DAC",
@@ -100,17 +100,18 @@ fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
     ];
     assert_eq!(written(&encoder), words);
     assert_eq!(ask(&bench, &encoder, &["verify", &file]).json()["equal"], json!(true));
-    // Repeated: nothing differs, nothing is set, nothing is kept.
+    // When the restore is repeated, nothing differs, and nothing is set or saved.
     let again = ask(&bench, &encoder, &["restore", &file, "--yes"]).json();
     assert_eq!((&again["written"], &again["write_cycles"], &again["backup"]), (&json!(0), &json!(0), &Value::Null));
-    // The before-image is a profile of the changed values, and restores them.
+    // The backup is a profile of the changed values and restores them.
     let backup = told["backup"].as_str().unwrap();
     let undone = ask(&bench, &encoder, &["restore", backup, "--yes"]).json();
     assert_eq!((&undone["written"], &undone["write_cycles"]), (&json!(4), &json!(3)), "{undone}");
     assert_eq!(written(&encoder).len(), 8);
 }
 
-/// Reference 3: one parameterisation, in an order in which each number is legal; the preset is stored and not applied.
+/// Reference 3: a single parameterisation, in an order in which each number is valid. The preset is stored but not
+/// applied.
 #[test]
 fn parameters_need_one_store_and_a_restore_triggers_no_preset() {
     let bench = Bench::new();
@@ -144,7 +145,7 @@ fn each_item_is_written_by_name() {
         assert_eq!(written(&encoder), words, "{item}");
         assert_eq!(ask(&bench, &encoder, &["read", "interbus", item]).json()["value"], value, "{item}");
     }
-    // Cams that were not read may be outside a shorter range.
+    // Cams that were not read may lie outside a shorter range.
     let shorter = ask(&bench, &encoder, &["write", "interbus", "steps", "2048", "--yes"]);
     assert!(shorter.status == Some(0) && shorter.err.contains("may then be outside the range"), "{shorter:?}");
     assert_eq!(written(&encoder), ["W 02000800", "STORE parameters"]);
@@ -153,7 +154,7 @@ fn each_item_is_written_by_name() {
     assert!(written(&encoder).is_empty());
 }
 
-/// Reference 4: 00000000 → 40000000 → IN shows the preset → 00000000; once for each time that it was programmed.
+/// Reference 4: 00000000 → 40000000 → IN shows the preset → 00000000, once for each time that the preset is programmed.
 #[test]
 fn a_preset_is_programmed_and_triggered_at_standstill() {
     let bench = Bench::new();
@@ -183,7 +184,7 @@ fn the_default_is_experimental() {
     assert_eq!(written(&encoder)[..1], ["W 0E000000"]);
 }
 
-/// Issue 22.19: an encoder that sends an error word after the return to its mode has not recovered.
+/// Issue 22.19: an encoder that sends an error word after returning to its mode has not recovered.
 #[test]
 fn restoring_the_mode_fails_if_the_encoder_sends_an_error() {
     let bench = Bench::new();
@@ -195,8 +196,8 @@ fn restoring_the_mode_fails_if_the_encoder_sends_an_error() {
     assert_eq!(ask(&bench, &encoder, &["do", "interbus", "lead-back"]).json()["done"], json!("lead-back"));
 }
 
-/// Issue 22.9: a profile of a multiturn encoder for an encoder that counts no turns: named, and rejected without
-/// explicit permission.
+/// Issue 22.9: the profile of a multiturn encoder for an encoder that does not count turns. The type is named and
+/// rejected without explicit permission.
 #[test]
 fn an_encoder_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -212,10 +213,10 @@ fn an_encoder_of_another_type_needs_a_separate_permission() {
     let dry = ask(&bench, &encoder, &[&restore[..], &["--dry-run"]].concat());
     assert!(dry.err.contains("multiturn") && dry.err.contains("single turn"), "{dry:?}");
     assert_eq!((dry.status, written(&encoder)), (Some(0), vec![]));
-    // `verify` reports it, too.
+    // `verify` also reports this.
     let ran = ask(&bench, &encoder, &["verify", &file]);
     assert!(ran.err.contains("single turn"), "{ran:?}");
-    // It keeps its mounting.
+    // The mounting-specific values stay unchanged.
     assert_eq!(ask(&bench, &encoder, &[&restore[..], &["--yes"]].concat()).json()["written"], json!(1));
     assert_eq!(written(&encoder), ["W 06000004", "STORE parameters"]);
 }
@@ -253,7 +254,7 @@ fn nothing_is_written_without_consent_or_to_another_encoder() {
     assert_eq!(ask(&bench, &encoder, &["identify", "interbus"]).json()["mode"], json!("K3"));
 }
 
-/// The issue: warn from 150 stores, ask again beyond 200, reject from 450 unless forced.
+/// The case of the issue: warn from 150 stores, ask again above 200, and reject from 450 unless forced.
 #[test]
 fn the_stores_of_an_eeprom_are_counted() {
     let bench = Bench::new();
@@ -278,7 +279,7 @@ fn the_stores_of_an_eeprom_are_counted() {
     wear_to(200);
     let told = write(&[]);
     assert!(told.status == Some(0) && told.err.contains("201") && told.err.contains("specifies only 200"), "{told:?}");
-    // On a terminal the program asks about the plan, and beyond 200 again.
+    // On a terminal, the program asks about the plan, and above 200 stores a second time.
     encoder.requests();
     let typed = ["write", "interbus", "zero-shift", "5", "--link", &encoder.url];
     for no in ["n\n", "y\nn\n"] {
@@ -294,13 +295,13 @@ fn the_stores_of_an_eeprom_are_counted() {
     let refused = write(&[]);
     refused.fails(1, &["449", "(1)", "450", "--force-wear"]);
     assert!(written(&encoder).is_empty());
-    // The same value again, since it was not written.
+    // The same value again, because it was not written.
     let _ = write(&["--force-wear"]);
     assert_eq!(write(&["--force-wear"]).json()["write_cycles"], json!(1));
     assert_eq!(bench.logbook().write_cycles(&device).unwrap(), 450);
 }
 
-/// The written values are reported, with the backup, within the time-out of a lost gateway.
+/// If the gateway is lost, the written values and the backup are reported within the time-out.
 #[test]
 fn a_gateway_lost_during_a_write_is_reported_with_the_backup() {
     let bench = Bench::new();

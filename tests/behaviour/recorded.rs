@@ -1,8 +1,8 @@
-//! The interface that scripts rely on: exit status and JSON of every command as in the recordings under
-//! `tests/fixtures/cli`, one file per kind of device. A recording is its own list of commands: `$` begins one, `=`
-//! gives its status, JSON follows. Text for users is not in it.
+//! The interface on which scripts rely: exit status and JSON of every command must match the recordings under
+//! `tests/fixtures/cli`, one file per kind of device. A recording contains its own list of commands: `$` begins a
+//! command, `=` states its status, and JSON follows. Text for users is not included.
 //!
-//! With `ENCODER_STUDIO_RECORD=1` the files are written again: only if the contract is meant to grow.
+//! `ENCODER_STUDIO_RECORD=1` rewrites the files. Use it only if the contract is meant to grow.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ fn fixtures() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/cli")
 }
 
-/// Runs the commands of a recording in sequence in a separate folder.
+/// Runs the commands of a recording in order, in a separate folder.
 fn assert_recorded(kind: &str) {
     let path = fixtures().join(format!("{kind}.txt"));
     let recorded = std::fs::read_to_string(&path).unwrap();
@@ -49,18 +49,18 @@ fn assert_recorded(kind: &str) {
     assert_eq!(text, recorded, "{kind}");
 }
 
-/// Removes values that differ between runs, such as times and the names of backups.
+/// Removes values that differ between runs, such as times and names of backups.
 fn steady(value: Value) -> Value {
     match value {
         Value::Object(entries) => entries.into_iter().map(|(key, value)| steady_entry(key, value)).collect(),
         Value::Array(items) => items.into_iter().map(steady).collect(),
-        // A measured time in a sentence.
+        // A sentence with a measured time.
         Value::String(text) if text.contains(" ms") => without_numbers(&text).into(),
         other => other,
     }
 }
 
-/// Replaces each number with a placeholder, because the lengths depend on the load of the computer.
+/// Replaces each number with a placeholder, because the measured times depend on the load of the computer.
 fn without_numbers(text: &str) -> String {
     let mut signs = String::new();
     for sign in text.chars() {
@@ -113,7 +113,7 @@ fn common_commands_are_as_recorded() {
     assert_recorded("common");
 }
 
-/// Every type of connection to a device, as its kind and the beginning of a link.
+/// Every type of connection to a device, as the kind of device and the beginning of a link.
 const LINKS: [&str; 18] = [
     "hiperface sim:",
     "hiperface serial:none",
@@ -135,7 +135,7 @@ const LINKS: [&str; 18] = [
     "hiperdrive enip:none",
 ];
 
-/// The parameters of links and the settings of virtual devices, which are in users' scripts and settings.
+/// The parameters of links and the settings of virtual devices, which users have in their scripts and settings.
 #[test]
 fn links_accept_the_recorded_parameters() {
     let (path, bench) = (fixtures().join("links.txt"), Bench::new());

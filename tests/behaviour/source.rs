@@ -1,4 +1,4 @@
-//! The virtual sine/cosine source with the analysis: the settings of one are the results of the other.
+//! The virtual sine/cosine source and the analysis: the results of the analysis must match the settings of the source.
 
 use encoder_studio::analysis::SampleTime;
 use encoder_studio::analysis::diagnosis::{Diagnosis, FindingKind, Record, diagnose};
@@ -9,7 +9,7 @@ use encoder_studio::analysis::signal_analysis::{Analysis, AnalysisError};
 use encoder_studio::analysis::wiring::{Wire, Wires};
 use encoder_studio::sim::sine_cosine::{ReferenceLevel, Settings, Source};
 
-/// Returns a second and a half of one revolution per second, 512 periods each, 50 kHz.
+/// Returns one and a half seconds at one revolution per second with 512 periods each, sampled at 50 kHz.
 fn recorded(settings: Settings) -> (Vec<f64>, Wires) {
     let settings = Settings { periods: 512.0, rate_hz: 50_000.0, ..settings };
     let source = Source::new(settings.validate().unwrap(), SampleTime::ORIGIN);
@@ -45,7 +45,7 @@ fn the_parameters_are_recovered() {
         ..Settings::default()
     });
     let ellipse = analysis.unwrap().ellipse;
-    // 0.5 mV on 75 000 samples: σ·√(2/n) = 2.6 µV; the limit is five of them, and as parts of 0.5 V.
+    // 0.5 mV on 75 000 samples yields σ·√(2/n) = 2.6 µV. The limit is five times that, as a fraction of 0.5 V.
     near(ellipse.amplitude_v, 0.48, 1.3e-5);
     near(ellipse.offset_sine_v, 0.015, 1.3e-5);
     near(ellipse.offset_cosine_v, -0.01, 1.3e-5);
@@ -101,8 +101,8 @@ fn each_injected_fault_is_diagnosed() {
     }
 }
 
-/// An eccentricity of 100″ is an integral deviation of 100″; an offset of 1 % makes ±0.573 electrical degrees, in 512
-/// periods 4.03″.
+/// An eccentricity of 100″ yields an integral deviation of 100″. An offset of 1 % yields ±0.573 electrical degrees,
+/// which is 4.03″ with 512 periods.
 #[test]
 fn eccentricity_is_integral_and_an_offset_differential_nonlinearity() {
     let settings = Settings { eccentricity_arcsec: 100.0, offset_sine_v: 0.005, noise_v: 0.0, ..Settings::default() };

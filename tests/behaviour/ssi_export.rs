@@ -1,5 +1,5 @@
-//! Exported decoders against the program's own: C is compiled and run, structured text is compared with a reviewed
-//! file.
+//! Comparison of exported decoders with the program's own: C is compiled and run, and structured text is compared with
+//! a reviewed file.
 
 use std::io::Write;
 use std::process::{Command, Stdio};
@@ -31,8 +31,8 @@ fn family(text: &str) -> Layout {
     settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
 }
 
-/// Returns an unusual layout: Gray over everything, parity, both words of a repetition, exchanged wires, an error bit
-/// that is active at 0.
+/// Returns an unusual layout: Gray code that includes the error bits, parity, a repeated word, swapped wires, and an
+/// error bit that is active at 0.
 fn unusual_step_cost() -> Layout {
     Layout::new(FrameDescriptor {
         clocks: 51,
@@ -76,7 +76,7 @@ fn layouts() -> Vec<(String, Layout)> {
     all
 }
 
-/// Returns the positions of the layout, disturbed ones, and any bits.
+/// Returns frames with valid positions of the layout, damaged frames, and frames of random bits.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut rng = fastrand::Rng::with_seed(11);
     let mut frames = vec![0, u64::MAX, 0xFF_FFFE, 0x0F_FFFE];
@@ -133,7 +133,7 @@ fn the_exported_c_code_decodes_like_the_program() {
     }
 }
 
-/// `EXPECT=write` writes the file again, to be reviewed before it is committed.
+/// `EXPECT=write` rewrites the file, which must be reviewed before it is committed.
 #[test]
 fn the_exported_structured_text_matches_the_reviewed_file() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vectors/ssi_ahs36.st");
@@ -144,20 +144,20 @@ fn the_exported_structured_text_matches_the_reviewed_file() {
     assert_eq!(text, std::fs::read_to_string(path).unwrap());
 }
 
-/// Reference section 8: frames, and what they stand for as position, turns, steps and whether it may be used. The
-/// positions are the turns and steps of the table in one number.
+/// Frames of section 8 of the reference, with their position, turns, steps, and whether the position is valid. Each
+/// position combines the turns and steps of the table in one number.
 const REFERENCE: [(&str, u64, &str); 12] = [
     ("ahs36", 0x54B6, "10843 0 10843 1"),
     ("ahs36,code=gray", 0x7EEC, "10843 0 10843 1"),
     ("ahs36,st=12,err=following", 0x55E4, "2748 0 2748 0"),
     ("ahm36,code=gray", 0x0D9_3EEC, "4778587 291 10843 1"),
     ("afs60,st=13", 0x91A2, "4660 0 4660 0"),
-    // More than 32 clocks: 5A5h turns, 2ABCDh steps, twice; then a fault.
+    // More than 32 clocks: 5A5h turns and 2ABCDh steps, twice, followed by a fault.
     ("afm60", 0xB4B5_5E68, "378973133 1445 175053 1"),
     ("afm60s", 0xB4B5_5E68, "378973133 1445 175053 1"),
     ("afm60s", 0x1_FFFF_FFFF, "1073741823 4095 262143 0"),
     ("atm60,mt=8,st=8,code=gray", 0x1EF440, "42300 165 60 1"),
-    // The shift loses the lowest bit, which is 0 here.
+    // The shift discards the lowest bit, which is 0 here.
     ("atm60,shift=1", 0x05A_591A, "11842100 1445 4660 1"),
     ("atm60,steps=3600,code=gray-excess", 0xE5E, "1234 0 1234 1"),
     ("kh53", 0xFF_FFFE, "16777214 0 16777214 0"),
@@ -167,7 +167,8 @@ fn decoders_of_32_bits(layout: &Layout) -> [(&'static str, Result<String, TooWid
     [("st", structured_text_32(layout, "title")), ("scl", scl_source(layout, "title"))]
 }
 
-/// Returns the results of an exported 32-bit decoder for frames, run in Python, or `None` without Python.
+/// Runs an exported 32-bit decoder in Python and returns its results for the frames, or `None` if Python is not
+/// installed.
 fn run_32(text: &str, frames: &[u64]) -> Option<Vec<String>> {
     let folder = tempfile::tempdir().unwrap();
     let source = folder.path().join("decoder.txt");
@@ -176,7 +177,7 @@ fn run_32(text: &str, frames: &[u64]) -> Option<Vec<String>> {
     let mut child = player.arg(&source).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut input = child.stdin.take().unwrap();
     let lines: String = frames.iter().map(|frame| format!("{frame:x}\n")).collect();
-    // It answers while it reads: a pipe holds less than all of it.
+    // It answers while reading, because the pipe cannot hold all of the input.
     let writer = std::thread::spawn(move || input.write_all(lines.as_bytes()));
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap().unwrap();
@@ -222,8 +223,8 @@ fn layouts_too_wide_for_32_bits_are_refused() {
     }
 }
 
-/// Requirements of TIA Portal for an external source: a quoted name, a version, local variables with `#`, and named
-/// parameters.
+/// TIA Portal requires the following of an external source: a quoted name, a version, local variables with `#`, and
+/// named parameters.
 #[test]
 fn scl_has_the_form_of_an_external_source() {
     let text = scl_source(&family("afm60,code=gray"), "Zuführung\n(* 2 *)").unwrap();

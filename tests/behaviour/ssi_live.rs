@@ -1,4 +1,4 @@
-//! An SSI encoder at a foreign adapter: position and status, and invalid input about them.
+//! An SSI encoder at a foreign adapter: position, status, and invalid input for both.
 
 use std::io::{BufRead, BufReader, Read};
 use std::time::{Duration, Instant};
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::support::{Bench, Foreign, Ran, ended, signal};
 
-/// Starts a foreign adapter that supports only SSI, with an encoder of this format.
+/// Starts a foreign adapter that supports only SSI, with an encoder of the given format.
 fn adapter(bench: &Bench, format: &str, more: &[&str]) -> Option<Foreign> {
     bench.adapter(&[&["--capabilities", "1", "--ssi", format], more].concat())
 }
@@ -21,7 +21,7 @@ fn lines(ran: &Ran) -> Vec<Value> {
     ran.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// The shaft is at turn 1234h, 270°: for ATM60 that is turn 234h of 4096, step 1800h of 8192.
+/// The shaft is at turn 1234h, 270°. For the ATM60, this is turn 234h of 4096, step 1800h of 8192.
 #[test]
 fn the_position_has_turns_steps_and_degrees() {
     let bench = Bench::new();
@@ -47,7 +47,7 @@ fn the_position_has_turns_steps_and_degrees() {
     }
 }
 
-/// KH53 counts tenths of a millimetre: three quarters of 2^24.
+/// The KH53 counts tenths of a millimetre and is at three quarters of 2^24.
 #[test]
 fn a_linear_encoder_reports_millimetres() {
     let bench = Bench::new();
@@ -59,7 +59,7 @@ fn a_linear_encoder_reports_millimetres() {
     assert!(table.out.contains(",12582912,,12582912,,1258291.2,true"), "{table:?}");
 }
 
-/// AFS60 has ERRDIG, ERRSI and ERRSYNC on clocks 19 to 21; a transfer clears the last.
+/// The AFS60 has ERRDIG, ERRSI and ERRSYNC on clocks 19 to 21. A transfer clears the last one.
 #[test]
 fn error_bits_are_reported_on_appearance_and_counted() {
     let bench = Bench::new();
@@ -82,7 +82,8 @@ fn error_bits_are_reported_on_appearance_and_counted() {
     assert!(good.out.contains("errors    none") && good.out.contains("step 196608"), "{good:?}");
 }
 
-/// Reference 6.7: all ones are a fault of a safety encoder, and a broken wire for another; all zeros are a stuck line.
+/// Reference 6.7: all ones mean a fault for a safety encoder and a broken wire for any other. All zeros mean a stuck
+/// line.
 #[test]
 fn a_stuck_line_is_reported() {
     let bench = Bench::new();
@@ -104,8 +105,8 @@ fn a_stuck_line_is_reported() {
     assert!(said.contains("line stuck low: 1 time"), "{said}");
 }
 
-/// Words are read with the clock and pause of the link, otherwise of the profile, otherwise slowly. The times of the
-/// encoder are checked.
+/// Words are read with the clock and pause of the link, or else of the profile, or else slowly. They are checked
+/// against the times of the encoder.
 #[test]
 fn clock_and_pause_are_those_of_the_link_or_the_profile() {
     let bench = Bench::new();
@@ -136,7 +137,7 @@ fn an_unsuitable_adapter_is_reported() {
     position(&bench, "atm60", &gone.url, &[]).fails(1, &["Cannot reach"]);
 }
 
-/// The cable is unplugged, or the user cancels, during the measurement: the counts so far are printed.
+/// If the cable is unplugged or the user cancels during the measurement, the counts so far are printed.
 #[test]
 fn an_interrupted_stream_reports_its_counts() {
     let bench = Bench::new();

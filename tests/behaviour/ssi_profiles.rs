@@ -1,4 +1,5 @@
-//! Layouts of SSI encoders in files: kept, compared, used wherever a layout is named; families of the user's own.
+//! Layouts of SSI encoders in files: they are stored, compared, and used wherever a layout can be specified. Families
+//! can be defined by the user.
 
 use std::fs;
 
@@ -6,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::support::Bench;
 
-/// A layout as a user would write it: 4 + 8 bits in Gray, followed by an error bit.
+/// A layout as a user might write it: 4 + 8 bits in Gray code, followed by an error bit.
 const LAYOUT: &str = r#"(
     schema: 1,
     device: "ssi",
@@ -35,7 +36,7 @@ fn a_layout_is_saved_and_used_like_its_family() {
         };
         assert_eq!(run(&file), run(spec));
     }
-    // The exported and reimported text is the same, and so is that of another layout.
+    // Exporting and reimporting the layout yields the same text, as it does for another layout.
     let exported = bench.run(&["ssi", "export", "--layout", &file, "--format", "profile"]);
     assert_eq!(exported.out, text);
     let again = bench.file("again.ron");
@@ -45,7 +46,7 @@ fn a_layout_is_saved_and_used_like_its_family() {
     assert!(read.contains("        singleturn: 14,\n        code: \"gray\",") && !read.contains("family"), "{read}");
 }
 
-/// The ones of Gray 1011 0110 1101: binary 110110110110, turn 13, step 182 of 256.
+/// The Gray code 1011 0110 1101 is binary 110110110110, which is turn 13, step 182 of 256.
 #[test]
 fn a_layout_written_by_hand_is_used_from_anywhere() {
     let bench = Bench::new();
@@ -60,7 +61,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     }
     let source = bench.run(&["ssi", "export", "--layout", &file, "--format", "c"]).out;
     assert!(source.starts_with("/* SSI decoder: feeder\n"), "{source}");
-    // The profile defines how it is read; without a family, the general times of SSI apply.
+    // The profile defines how the encoder is read. Without a family, the general SSI times apply.
     let general = bench.run(&["ssi", "export", "--layout", &file, "--format", "timing"]);
     assert!(general.out.contains("13 clocks, 130.00 µs"), "{general:?}");
     assert!(general.err.starts_with("The general SSI timing applies"), "{general:?}");
@@ -77,7 +78,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     assert!(faster.out.contains("13 clocks, 13.00 µs"), "{faster:?}");
 }
 
-/// The help names the entries of a layout, each of which can be used in a file.
+/// The help lists the entries of a layout, each of which can be used in a file.
 #[test]
 fn the_help_names_valid_entries() {
     let bench = Bench::new();
@@ -85,7 +86,7 @@ fn the_help_names_valid_entries() {
     let entry = |name: &str| {
         let at = help.find(&format!("{name}: ")).unwrap_or_else(|| panic!("{name} is not in\n{help}"));
         let value = &help[at..];
-        // Up to two blanks, after which the entry is explained, or the end of its line.
+        // Up to two spaces, after which the entry is explained, or the end of the line.
         let end = value.find("  ").into_iter().chain(value.find('\n')).min().unwrap();
         value[..end].to_owned()
     };
@@ -132,7 +133,7 @@ fn ready_made_profiles_have_the_factory_settings_of_their_families() {
         let shipped = format!("{folder}/{key}.ron");
         assert_eq!(bench.run(&["diff", &shipped, &delivered]).status, Some(0), "{key}");
     }
-    // 12 bits of turns, 12 within one turn: 5A5h and 91Ah one after the other, and nothing else.
+    // 12 bits of turns followed by 12 bits within the turn: 5A5h and 91Ah, and nothing else.
     let short = format!("{folder}/atm60-tree-24-bit-controller.ron");
     let words = ["ssi", "encode", "--json", "--layout", &short, "--turns", "0x5A5", "--steps", "0x91A"];
     assert_eq!(bench.run(&words).json(), json!({ "bits": "010110100101100100011010", "hex": "5A591A" }));
@@ -150,7 +151,7 @@ fn user_families_are_loaded_and_broken_ones_reported() {
     )"#;
     fs::write(folder.join("feeder.ron"), family).unwrap();
     let encoded = bench.run(&["ssi", "encode", "--layout", "feeder", "--position", "1", "--json"]);
-    // 1 in Gray on clock 10 of 13.
+    // A 1 in Gray code, on clock 10 of 13.
     assert_eq!((encoded.json()["bits"].clone(), encoded.err), (json!("0000000001000"), String::new()));
     fs::write(folder.join("broken.ron"), family.replace("codes: [gray]", "codes: [grey]")).unwrap();
     let told = bench.run(&["ssi", "encode", "--layout", "feeder", "--position", "1"]);

@@ -1,5 +1,5 @@
-//! Recordings that become frames: the program's own table, and clock and data of logic analysers, which Python makes of
-//! the frames of `tests/vectors/ssi_find`.
+//! Recordings that are converted to frames: the program's own table, and the clock and data lines of logic analysers.
+//! Python generates them from the frames of `tests/vectors/ssi_find`.
 
 use std::io::Write;
 use std::process::Stdio;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::support::{Bench, Ran, finish, python};
 
-/// A recording of AHM36 in Gray, 27 clocks: its frames, and the positions that were meant.
+/// Returns a recording of an AHM36 in Gray code with 27 clocks: its frames and the intended positions.
 fn recording() -> Vec<(String, Option<u64>)> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vectors/ssi_find/ahm36_gray.txt");
     let text = std::fs::read_to_string(path).unwrap();
@@ -16,7 +16,7 @@ fn recording() -> Vec<(String, Option<u64>)> {
     lines.map(|(frame, meant)| (frame.to_owned(), meant.parse().ok())).collect()
 }
 
-/// The export of a logic analyser; `None` without Python.
+/// Returns the export of a logic analyser, or `None` if Python is not installed.
 fn capture(analyser: &str, frames: &[(String, Option<u64>)]) -> Option<String> {
     let mut child =
         python("ssi_capture.py")?.arg(analyser).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
@@ -32,7 +32,7 @@ fn positions(ran: &Ran) -> Vec<Option<u64>> {
     told.map(|told| told["position"].as_u64()).collect()
 }
 
-/// Runs the program with `input` on its standard input.
+/// Runs the program with `text` on its standard input.
 fn fed(bench: &Bench, arguments: &[&str], text: &str) -> Ran {
     let path = bench.write("input", text);
     let mut program = bench.program(arguments);
@@ -45,7 +45,7 @@ const LAYOUT: [&str; 5] = ["ssi", "decode", "--json", "--layout", "ahm36,code=gr
 #[test]
 fn edges_of_a_logic_analyser_are_decoded_and_searched() {
     let rows = recording();
-    // What Python meant; a disturbed frame has none.
+    // The positions that Python intended. A damaged frame has none.
     let meant: Vec<Option<u64>> = rows.iter().map(|(_, meant)| *meant).collect();
     for (analyser, count) in [("saleae", rows.len()), ("sigrok", 300)] {
         let Some(text) = capture(analyser, &rows[..count]) else { return };
@@ -60,7 +60,7 @@ fn edges_of_a_logic_analyser_are_decoded_and_searched() {
         }
         let input = fed(&bench, &[&LAYOUT[..], &["-"]].concat(), &text);
         assert_eq!(positions(&input), read, "{analyser}");
-        // The search finds the same as in the frames themselves.
+        // The search yields the same result as for the frames themselves.
         let frames: String = rows[..count].iter().map(|(frame, _)| format!("{frame}\n")).collect();
         let frames = bench.run(&["ssi", "find", "--json", &bench.write("frames.txt", frames)]).json();
         assert_eq!(bench.run(&["ssi", "find", "--json", &path]).json(), frames, "{analyser}");
@@ -85,10 +85,10 @@ fn the_table_of_positions_is_read_again() {
     let path = bench.write("table.csv", table.clone());
     let read = bench.run(&[&LAYOUT[..], &[&format!("@{path}")]].concat());
     assert_eq!((positions(&read).len(), positions(&read)), (20, meant));
-    // The frame of reference section 8 beside a file.
+    // The frame from section 8 of the reference together with a file.
     let both = bench.run(&[&LAYOUT[..], &["0x0D93EEC", &format!("@{path}")]].concat());
     assert_eq!((positions(&both)[0], positions(&both).len()), (Some(0x123 << 14 | 0x2A5B), 21));
-    // Twenty frames decide nothing.
+    // Twenty frames are not enough for a decision.
     let found = bench.run(&["ssi", "find", "--json", "--clocks", "27", &path]);
     assert_eq!(serde_json::from_str::<Value>(&found.out).unwrap()["frames"], 20, "{found:?}");
     assert!(bench.run(&["ssi", "find", &path]).err.contains("--clocks N"), "a number has no leading zeros");
@@ -119,7 +119,8 @@ fn invalid_recordings_are_refused_with_line_and_remedy() {
     bench.run(&["ssi", "find", &huge]).fails(1, &["huge.csv", "16 MB", "shorter section"]);
 }
 
-/// An export goes to other people: a profile is called by its file name, not by its folder on this computer.
+/// Exports are passed on to other people, so they name a profile by its file name and not by its folder on this
+/// computer.
 #[test]
 fn exports_have_no_path_of_this_computer() {
     let bench = Bench::new();

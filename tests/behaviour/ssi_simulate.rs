@@ -1,4 +1,4 @@
-//! `simulate ssi`, examined by a host that is not our program, and by ours.
+//! The `simulate ssi` command, examined by an independent host and by the program's own.
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,8 @@ fn host_replies(path: &str, actions: &[&str]) -> Vec<Value> {
     lines.iter().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// Bridge reference 2 to 4; the shaft is at turn 1234h, 270°: turn 234h of 4096, step 1800h of 8192, in Gray.
+/// Checks a session according to bridge reference 2 to 4. The shaft is at turn 1234h, 270°, which is turn 234h of 4096,
+/// step 1800h of 8192, in Gray code.
 fn examine(path: &str) {
     let actions =
         ["word", "hello", "ssi:25:1500000:30", "word", "ssi:27:400000:200", "word", "ssi:12:400000:200", "word"];
@@ -17,7 +18,7 @@ fn examine(path: &str) {
     assert_eq!((&said[0]["error"], &said[0]["op"]), (&json!(2), &json!(0x11)), "not configured");
     assert_eq!((&said[1]["version"], said[1]["capabilities"].as_u64().unwrap() & 1), (&json!(1), 1));
     assert_eq!((&said[2], &said[3]["raw"]), (&json!({"clock_hz": 1_500_000}), &json!("65D400")));
-    // Zeros after the frame; its first bits only.
+    // Zeros follow the frame, or only its first bits are sent.
     assert_eq!((&said[5]["raw"], &said[7]["raw"]), (&json!("1975000"), &json!("32E")));
     assert_eq!((&said[8]["error"], &said[9]["error"]), (&json!(2), &json!(2)));
     assert_eq!(said[10]["raw"], json!("32E"), "a setting that is refused changes nothing");
@@ -40,8 +41,8 @@ fn words_are_served_on_a_pseudoterminal_and_a_tcp_port() {
     assert!(!bench.path("adapter").is_symlink());
 }
 
-/// 20 000 words per second: none is missing, and each has its time, and its position on a shaft that turns ten times
-/// per second: 81 920 steps per second are 4.096 per word.
+/// 20 000 words per second, none of which is missing. Each has its time and its position on a shaft that turns ten
+/// times per second. 81 920 steps per second are 4.096 per word.
 #[test]
 fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
     let bench = Bench::new();
@@ -58,15 +59,15 @@ fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
     }
     assert_eq!((&stream["period_us"], &stream["ended"]), (&json!(50), &json!(true)), "{stream}");
     assert_eq!((&stream["least_move"], &stream["greatest_move"]), (&json!(4), &json!(5)), "{stream}");
-    // On a busy computer the host may start to count late; the counted words have no gap even then.
+    // On a busy computer, the host may start to count late. Even then, there is no gap in the counted words.
     assert!(stream["words"].as_u64() > Some(30_000), "{stream}");
     assert!(said[3]["raw"].is_string(), "single words again when the stream has ended");
-    // 25 clocks at 400 kHz are 62.5 µs, and 200 µs of pause: whole microseconds.
+    // 25 clocks at 400 kHz are 62.5 µs, with a pause of 200 µs, rounded to whole microseconds.
     let slower = host_replies(&path, &["hello", "ssi:25:400000:200", "words:50:0.2:12,13,gray,0"]);
     assert_eq!((&slower[2]["period_us"], &slower[2]["gaps"]), (&json!(263), &json!(0)), "{}", slower[2]);
 }
 
-/// Another family, its error bits, and a profile as the layout.
+/// Another family with its error bits, and a profile as the layout.
 #[test]
 fn the_encoder_follows_its_layout() {
     let bench = Bench::new();
@@ -77,7 +78,7 @@ fn the_encoder_follows_its_layout() {
         let port = Simulated::start(&bench, &[&["ssi", "--listen", "127.0.0.1:0"], arguments].concat());
         host_replies(&format!("tcp:{}", port.place), actions)
     };
-    // AFS60: 18 bits of step 30000h, ERRSI on clock 20 permanently, ERRSYNC on 21 only in the first transfer.
+    // AFS60: 18 bits at step 30000h, ERRSI on clock 20 permanently, and ERRSYNC on clock 21 only in the first transfer.
     let actions = ["ssi:21:1000000:30", "word", "word"];
     let said = with(&["--layout", "afs60", "--set", "ssi-error=ERRSI,ERRSYNC"], &actions);
     assert_eq!((&said[1]["raw"], &said[2]["raw"]), (&json!("180003"), &json!("180002")));
@@ -91,14 +92,14 @@ fn the_encoder_follows_its_layout() {
     }
     let profile = bench.file("counting.ron");
     bench.run(&["save", "ssi", "--layout", "ahs36,err=none,preset=5,direction=ccw", "-o", &profile]);
-    // A quarter of 16384 steps backwards, and 5.
+    // A quarter of 16384 steps backwards, and 5 more.
     let said = with(&["--layout", &profile], &["ssi:14:1000000:30", "word"]);
     assert_eq!(said[1]["raw"], json!("1005"));
     let silent = with(&["--fault", "silent-after:2", "--seed", "3"], &["hello", "ssi:25:1000000:30", "word"]);
     assert_eq!((&silent[1]["clock_hz"], &silent[2]["error"]), (&json!(1_000_000), &json!("no answer")));
 }
 
-/// The program's own host over both transports.
+/// The program's own host reads the encoder over both transports.
 #[test]
 fn the_programs_own_host_reads_the_encoder() {
     let bench = Bench::new();

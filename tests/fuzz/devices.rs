@@ -1,4 +1,4 @@
-//! Virtual devices that receive anything: they neither panic nor send without end.
+//! Virtual devices that receive random input. They must neither panic nor send without end.
 
 use std::time::Duration;
 
@@ -10,10 +10,12 @@ use encoder_studio::units::Moment;
 
 use crate::{fuzz, hex_lines};
 
-/// Maximum number of bytes that a device sends in a second and a half, as by an adapter that streams at full speed.
+/// Maximum number of bytes that a device may send in a second and a half. An adapter that streams at full speed sends
+/// the most.
 const MOST: usize = 1_500_000;
 
-/// Sends an input in parts, polls the device for another second, and returns the number of bytes that it sent.
+/// Passes an input to a device nine bytes at a time, polls it for another second, and returns the number of bytes that
+/// it sent.
 fn receive(device: &mut dyn ByteDevice, bytes: &[u8]) -> usize {
     let (mut now, mut sent) = (Moment::START, 0);
     device.connect(now);

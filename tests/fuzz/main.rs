@@ -1,9 +1,9 @@
-//! Damaged input for every parser of what comes from a device, a host or a file: no input panics, hangs, or is read
-//! differently after it was written again. `corpus` has examples, most of them from the golden vectors; each test reads
-//! them, and a thousand made from them by chance.
+//! Damaged input for every parser of data from a device, a host or a file. No input may cause a panic, hang, or be read
+//! differently after it has been written again. `corpus` contains examples, most of them from the golden vectors. Each
+//! test reads these and a thousand random mutations of them.
 //!
-//! `ENCODER_STUDIO_FUZZ_SECONDS=600 cargo test --release --test fuzz -- --nocapture` runs each parser for that time.
-//! What fails is printed; add it to the corpus.
+//! `ENCODER_STUDIO_FUZZ_SECONDS=600 cargo test --release --test fuzz -- --nocapture` runs each parser for that time. An
+//! input that fails is printed and should be added to the corpus.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod bytes;
@@ -20,10 +20,10 @@ use mutation::mutate;
 
 /// Number of random inputs if no time is given.
 const ROUNDS: u64 = 1_000;
-/// Maximum time for one input, many times the duration of the largest.
+/// Maximum time for one input, which is many times the longest usual duration.
 const LIMIT: Duration = Duration::from_secs(5);
 
-/// Returns the examples of a file with one example per line in hexadecimal digits; lines with `#` are comments.
+/// Returns the examples of a file that contains one example per line in hexadecimal digits. `#` begins a comment.
 fn hex_lines(text: &str) -> Vec<Vec<u8>> {
     let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default());
     let digits = |line: &str| line.chars().filter(|c| !c.is_whitespace()).collect::<String>();

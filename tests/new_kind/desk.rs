@@ -1,4 +1,4 @@
-//! The program with a kind more, on a desk of the test's own.
+//! The program with an additional kind of device, in the test environment.
 
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
@@ -14,7 +14,7 @@ use encoder_studio::store::Store;
 use super::novo::NOVO;
 use super::novo::state::{Action, Encoder};
 
-/// Returns the program with the kind added after its own.
+/// Returns the program with the kind appended to its own kinds.
 pub(crate) fn program() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| Program::new(&[KINDS, &[NOVO]].concat(), &[], &[], &[]))
@@ -35,7 +35,7 @@ impl Desk {
         Desk { studio: Studio::new(world, Arc::new(|| ())), folder }
     }
 
-    /// Creates a connected virtual encoder, which is read.
+    /// Creates a desk connected to the virtual encoder, which has been read.
     pub(crate) fn connected(query: &str) -> Self {
         let mut desk = Desk::new();
         desk.open(query);
@@ -106,7 +106,7 @@ impl Desk {
         found(self).unwrap()
     }
 
-    /// Writes the plan of the review.
+    /// Writes the plan in the review and returns the stage that the review has reached.
     #[track_caller]
     pub(crate) fn write(&mut self) -> Stage {
         let Stage::Ready(plan) = self.until_stage(|stage| matches!(stage, Stage::Ready(_))) else { panic!("no plan") };

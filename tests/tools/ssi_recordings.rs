@@ -1,18 +1,18 @@
-//! Recordings of SSI encoders with many kinds of frames, made from bits: nothing of the program's own decoding is used.
-//! The same seed gives the same recording. The intended position is next to each frame, so that a layout can be
-//! checked.
+//! Recordings of SSI encoders with many kinds of frames. They are built from bits without using the program's own
+//! decoding. The same seed yields the same recording. Each frame has its intended position, against which a layout can
+//! be checked.
 
 use fastrand::Rng;
 
-/// Frames of one encoder, and the intended positions.
+/// The frames of one encoder, and their intended positions.
 pub(crate) struct Recording {
-    /// Description of the parts, for a message.
+    /// Description of the frame's parts, for messages.
     pub(crate) what: String,
-    /// Bits of a frame.
+    /// Number of bits in a frame.
     pub(crate) clocks: u8,
-    /// Right-justified.
+    /// Frames, right-justified.
     pub(crate) frames: Vec<u64>,
-    /// The position of each frame; `None` if it was disturbed.
+    /// Intended position of each frame, or `None` if the frame is damaged.
     pub(crate) meant: Vec<Option<u64>>,
 }
 
@@ -22,7 +22,7 @@ enum Word {
     Gray,
     Excess,
     Decimal,
-    /// Turns and steps in Gray, each for itself.
+    /// Turns and steps in separate Gray codes.
     GrayTwice {
         singleturn: u32,
     },
@@ -34,15 +34,15 @@ enum Behind {
     Parity {
         even: bool,
     },
-    /// Rarely 1.
+    /// An error bit that is rarely 1.
     Error,
-    /// 1 for long periods.
+    /// An error bit that stays 1 for long periods.
     LongError,
-    /// A bit that changes with each frame.
+    /// A bit that toggles with each frame.
     Alive,
-    /// A number of bits that depend on the position, but are no position.
+    /// A number of bits that depend on the position but are not part of it.
     Check(u32),
-    /// One that follows from nothing.
+    /// A random bit.
     Noise,
 }
 
@@ -50,7 +50,7 @@ fn bits_of(number: u64, width: u32) -> Vec<bool> {
     (0..width).rev().map(|at| number >> at & 1 == 1).collect()
 }
 
-/// Encodes a number in Gray code, in which adjacent numbers differ in one bit.
+/// Encodes a number in Gray code, most significant bit first.
 fn gray(number: u64, width: u32) -> Vec<bool> {
     let bits = bits_of(number, width);
     let above = std::iter::once(&false).chain(&bits);
@@ -62,7 +62,7 @@ fn width_of(positions: u64) -> u32 {
 }
 
 impl Recording {
-    /// Creates the recording of this number.
+    /// Creates the recording for a seed.
     pub(crate) fn of(seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed ^ 0x5851_F42D_4C95_7F2D);
         let (word, positions) = word(&mut rng);
@@ -129,7 +129,7 @@ impl Recording {
     }
 }
 
-/// Returns a code and the number of positions.
+/// Returns a random encoding and the number of positions.
 fn word(rng: &mut Rng) -> (Word, u64) {
     let widths = [9, 10, 11, 12, 13, 14, 16, 17, 18, 20, 24, 25, 26, 30];
     let whole = 1 << widths[rng.usize(..widths.len())];

@@ -1,4 +1,4 @@
-//! A HIPERFACE encoder at the serial line of the virtual adapter.
+//! A HIPERFACE encoder on the serial line of the virtual adapter.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -28,8 +28,8 @@ fn session(settings: &[(&str, &str)]) -> (Session<Hiperface>, Arc<VirtualClock>,
     (session, clock, folder)
 }
 
-/// One revolution per second, 4096 steps each: the adapter measures the time of the reply's first start bit, so that
-/// the time of a reply over USB has no influence.
+/// One revolution of 4096 steps per second. The adapter measures the time of the reply's first start bit, so the delay
+/// of a reply over USB has no effect.
 #[test]
 fn a_position_has_the_time_that_the_adapter_measures() {
     let (mut session, clock, _folder) = session(&[("uart", "hiperface"), ("rpm", "60")]);

@@ -1,4 +1,4 @@
-//! Converters that echo our own bytes: detected where possible, and never mistaken for a value.
+//! Converters that echo the bytes sent by the host. Echoes are detected where possible and never mistaken for a value.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Value};
 use encoder_studio::devices::hiperface::procedures::{Echo, Station};
@@ -31,7 +31,7 @@ fn echo_is_detected_and_stripped() {
     }
 }
 
-/// With a wrong setting, every answer is rejected; no byte of it is shown as a value.
+/// If the echo setting is wrong, every answer is rejected, and none of its bytes is shown as a value.
 #[test]
 fn a_wrong_echo_setting_yields_errors_and_no_values() {
     for (echoes, setting) in [(true, Echo::Off), (false, Echo::On)] {
@@ -55,7 +55,7 @@ fn a_wrong_echo_setting_yields_errors_and_no_values() {
     }
 }
 
-/// The replies to 47h and 67h equal their requests: the echo cannot be detected from them.
+/// The replies to 47h and 67h equal their requests, so they do not show whether there is an echo.
 #[test]
 fn echo_is_not_detected_from_a_reply_equal_to_its_request() {
     for echoes in [true, false] {
@@ -64,14 +64,14 @@ fn echo_is_not_detected_from_a_reply_equal_to_its_request() {
         assert_eq!(desk.tap().sent[0][1], Command::ReadTypeLabel.byte(), "learned with a reading command first");
         assert_eq!(desk.session.station().line.echo, if echoes { Echo::On } else { Echo::Off });
     }
-    // Without an encoder, an echo alone is no reply to either.
+    // Without an encoder, an echo alone is not a reply to either request.
     let mut desk = desk(true, Echo::Unknown, "&fault=silent-after:0");
     desk.run(HiperfaceJob::ConfigureForNow(LineSettings::FACTORY)).unwrap_err();
     assert_eq!(desk.session.station().line.echo, Echo::Unknown);
     assert_eq!(desk.tap().count(Command::ConfigureLineTemporarily), 0);
 }
 
-/// A byte with the value of the access code makes a reply that equals its request.
+/// If a byte has the value of the access code, the reply equals its request.
 #[test]
 fn a_byte_equal_to_its_access_code_is_read() {
     for echoes in [true, false] {

@@ -1,4 +1,5 @@
-//! Searching encoders with unknown settings: all are found, with 52h only, and no byte is sent on a busy line.
+//! Searching for encoders with unknown settings. All of them are found, using only 52h, and no byte is sent on a busy
+//! line.
 
 use std::time::Duration;
 
@@ -29,7 +30,7 @@ fn searched(desk: &mut Desk, options: FindOptions) -> Vec<FoundEncoder> {
 
 #[test]
 fn one_encoder_with_unusual_settings_is_found() {
-    // 600 to 38400 baud, each parity, both time-outs, standard and bus
+    // 600 to 38400 baud, each parity, both time-outs, the standard address and a bus address.
     for (byte, address) in
         [(0xE0, 0x5F), (0xC1, 0x41), (0xF2, 0x50), (0x63, 0x40), (0x84, 0x4A), (0xB5, 0x5E), (0xA6, 0x40)]
     {
@@ -106,8 +107,8 @@ fn a_power_cycle_opens_the_factory_settings_window() {
     }
 }
 
-/// A device server has its own speed, which the program cannot change: other speeds would find the same encoder 21
-/// times.
+/// A device server has a fixed speed, which the program cannot change. Trying other speeds would find the same encoder
+/// 21 times.
 #[test]
 fn through_a_device_server_each_encoder_is_found_once() {
     let mut desk = Desk::new("address=0x43&encoders=2");
@@ -120,7 +121,7 @@ fn through_a_device_server_each_encoder_is_found_once() {
 /// A cancelled search returns the encoders found so far, and the line format of the computer is restored.
 #[test]
 fn an_interrupted_search_reports_its_findings() {
-    // 40h is requested first, at the encoders' own settings.
+    // 40h is tried first, at the settings of the encoders.
     let mut desk = Desk::new("encoders=2&address=0x4A");
     for (questions, expected) in [(0, vec![]), (10, vec![]), (11, vec![0x4A]), (12, vec![0x4A, 0x4B])] {
         desk.tap().sent.clear();
@@ -136,7 +137,7 @@ fn an_interrupted_search_reports_its_findings() {
     }
 }
 
-/// Each encoder is reported when it answers, before the end.
+/// Each encoder is reported as soon as it answers, before the search ends.
 #[test]
 fn encoders_are_reported_as_they_answer() {
     let mut desk = Desk::new("encoders=3&address=0x52");

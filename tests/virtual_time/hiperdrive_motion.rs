@@ -1,4 +1,4 @@
-//! The dead-man with virtual drives: user actions, faults, and the stop of the drive after each.
+//! The dead-man control with virtual drives: user actions, faults, and the stop of the drive after each of them.
 
 mod any;
 mod bench;
@@ -29,13 +29,13 @@ fn to(target: i32) -> MotionRequest {
     MotionRequest::Move { target, effort: FULL }
 }
 
-/// Returns the words that were sent, each once, in the order of their sending.
+/// Returns the words that were sent, in order, without repetitions.
 fn words(bench: &mut Bench) -> String {
     let words: Vec<String> = bench.take_words().iter().map(|word| format!("{word:04X}")).collect();
     words.join(" ")
 }
 
-/// Reference 3: 0000, 0400, 0401, 0409, 0439, 0479, and for the next job 0439. A drive at rest has bits 4 and 5 clear.
+/// Reference 3: 0000, 0400, 0401, 0409, 0439, 0479, and for the next job 0439. At rest, bits 4 and 5 are clear.
 #[test]
 fn the_published_words_move_to_a_target() {
     let mut bench = Bench::new();
@@ -55,7 +55,7 @@ fn the_published_words_move_to_a_target() {
     assert_eq!((words(&mut bench).as_str(), bench.status()), ("0409 0000", 0x2A30));
 }
 
-/// Reference 3: 1459 and 1419 clockwise, 1449 and 1409 the other way, and out of speed mode through 0400.
+/// Reference 3: 1459 and 1419 clockwise, 1449 and 1409 counterclockwise, and out of speed mode through 0400.
 #[test]
 fn a_jog_runs_while_it_is_held() {
     let mut bench = Bench::new();
@@ -73,7 +73,7 @@ fn a_jog_runs_while_it_is_held() {
             matches!(phase, Phase::Moving(MotionKind::Run { direction: way, .. }) if way == direction),
             "{phase:?}"
         );
-        // 10 % of 35 rpm, in tenths.
+        // 10 % of 35 rpm, in tenths of a rpm.
         assert_eq!(bench.actual().speed, sign * 35);
         assert_eq!((bench.man.last_setpoint().speed.get(), bench.man.last_setpoint().torque.get()), (10, 25));
         bench.act(MotionRequest::Stop);
@@ -91,7 +91,7 @@ fn a_jog_runs_while_it_is_held() {
     }
 }
 
-/// However a hand trembles, a jog never turns into a job.
+/// Even if the user's hand trembles, a jog never turns into a job.
 #[test]
 fn repeated_jogs_never_start_a_job() {
     let mut bench = Bench::new();
@@ -126,12 +126,12 @@ fn a_job_can_be_paused_and_resumed() {
     bench.act(MotionRequest::Resume);
     assert_eq!(bench.until_over(), ActionEnd::Arrived);
     assert_eq!(bench.position(), 3 * TURN);
-    // There is nothing to pause or resume now.
+    // There is now nothing to pause or resume.
     bench.act(MotionRequest::Pause);
     assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToPause));
     bench.act(MotionRequest::Resume);
     assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToResume));
-    // A waiting job that is stopped is discarded.
+    // A waiting job is discarded when it is stopped.
     bench.act(to(0));
     bench.run(1000);
     bench.act(MotionRequest::Pause);
@@ -140,7 +140,7 @@ fn a_job_can_be_paused_and_resumed() {
     bench.run(300);
     bench.act(MotionRequest::Resume);
     assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToResume));
-    // A jog is not paused but ended.
+    // A jog is ended rather than paused.
     bench.act(jog(Direction::Clockwise));
     bench.run(500);
     bench.act(MotionRequest::Pause);
@@ -148,7 +148,7 @@ fn a_job_can_be_paused_and_resumed() {
     assert_eq!(bench.man.phase(), Phase::Idle);
 }
 
-/// A request that is rejected here never reaches the drive.
+/// A request that is rejected by the program never reaches the drive.
 #[test]
 fn invalid_requests_are_refused() {
     let none = SpeedTorque { speed: Percent::NONE, ..FULL };
@@ -196,8 +196,8 @@ fn invalid_requests_are_refused() {
     assert_eq!(words(&mut bench), "0400 0401 0409 1439 1479");
 }
 
-/// A fault ends the motion. Nothing moves until the user has acknowledged it, and the acknowledgement alone moves
-/// nothing.
+/// A fault ends the motion. Nothing moves until the user has acknowledged the fault, and the acknowledgement itself
+/// does not move anything.
 #[test]
 fn a_fault_is_acknowledged_before_anything_moves() {
     let mut bench = Bench::new();
@@ -223,7 +223,7 @@ fn a_fault_is_acknowledged_before_anything_moves() {
     assert_eq!(bench.until_over(), ActionEnd::Arrived);
 }
 
-/// An obstacle blocks the drive.
+/// If an obstacle blocks the drive, the motion ends.
 #[test]
 fn a_blocked_drive_ends_the_motion() {
     let mut bench = Bench::new();
@@ -233,7 +233,7 @@ fn a_blocked_drive_ends_the_motion() {
     assert_eq!(bench.position(), TURN);
 }
 
-/// At the end of the range a run ends, and so does the act.
+/// A run and its action end at the end of the range.
 #[test]
 fn a_run_ends_at_the_end_of_the_range() {
     let mut bench = Bench::new();
@@ -242,12 +242,12 @@ fn a_run_ends_at_the_end_of_the_range() {
     assert_eq!(bench.until_over(), ActionEnd::RangeEnd);
     bench.run(500);
     assert_eq!((bench.position(), bench.status(), bench.man.phase()), (TURN, 0x2A31, Phase::Idle));
-    // Again, with no range left.
+    // Another run, with no range left.
     bench.act(MotionRequest::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
     assert_eq!(bench.until_over(), ActionEnd::RangeEnd);
 }
 
-/// Switch S3 points to a drive: the commands on the bus have no effect.
+/// The switch S3 selects a drive, so the commands on the bus have no effect.
 #[test]
 fn an_unresponsive_drive_is_reported() {
     let mut bench = Bench::new();
@@ -260,14 +260,14 @@ fn an_unresponsive_drive_is_reported() {
     assert_eq!((bench.status(), bench.position()), (0x2A30, 0));
 }
 
-/// A drive that loses its supply for a moment restarts while the old words are still being sent.
+/// A drive that loses its supply for a moment restarts while the earlier words are still being sent.
 #[test]
 fn a_restarted_drive_does_not_resume_its_job() {
     for after in [100, 110, 500, 1500] {
         let mut bench = Bench::new();
         bench.act(to(5 * TURN));
         bench.run(after);
-        // 47 = -4: the drives are reset, and the connection stays.
+        // 47 = −4 resets the drives without closing the connection.
         bench.write(47, -4);
         let ended = bench.until_over();
         assert!(matches!(ended, ActionEnd::Left(_) | ActionEnd::NoAnswer(_)), "{after} ms: {ended:?}");

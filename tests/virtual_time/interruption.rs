@@ -1,5 +1,5 @@
-//! A restore that is cancelled, cut off, or interrupted by a power loss at every single transaction: the report
-//! describes the content of the encoder, nothing else has changed, and a second run completes it.
+//! A restore that is cancelled, cut off or interrupted by a power loss at every single transaction. The report must
+//! describe the content of the encoder, nothing else may have changed, and a second run must complete the restore.
 
 use encoder_studio::devices::hiperface::jobs::{Change, Committed, JobError, Prepared};
 use encoder_studio::devices::hiperface::procedures::Error;
@@ -10,8 +10,8 @@ use encoder_studio::link::CancelToken;
 
 use crate::support::{Desk, Fields, backup, bytes, restore_of};
 
-/// Returns an encoder with a write-protected field guarded by its own code, and the target profile: several runs in
-/// field 0, the protected field, a plain one, and a new one that is to be protected.
+/// Returns an encoder with a write-protected field that has its own code, and the target profile. The profile has
+/// several runs in field 0, the protected field, a plain field, and a new field that will be protected.
 fn scene() -> (Desk, HiperfaceProfile) {
     let mut desk = Desk::new("codes=2:66");
     desk.remember_code(2, 0x66);
@@ -32,14 +32,14 @@ fn scene() -> (Desk, HiperfaceProfile) {
     (desk, wanted)
 }
 
-/// Returns a memory after the first operations of the plan.
+/// Returns the content of a memory after the first operations of the plan.
 fn applied(before: &Fields, ops: &[Op]) -> Fields {
     let mut fields = before.clone();
     for op in ops {
         match op {
             Op::Define { field, to, .. } => match fields.get_mut(usize::from(*field)) {
                 Some(entry) => entry.0 = to.byte(),
-                // The encoder has never written there.
+                // The encoder has never been written at these addresses.
                 None => fields.push((to.byte(), vec![0xFF; to.size().bytes()])),
             },
             Op::Store { field, address, new, .. } => {
@@ -53,7 +53,7 @@ fn applied(before: &Fields, ops: &[Op]) -> Fields {
 }
 
 fn locked_again(mut fields: Fields) -> Fields {
-    // Fields 1 and 4 are the protected ones; 4 may not exist yet.
+    // Fields 1 and 4 are protected. Field 4 may not exist yet.
     for (number, status) in [(1, 0xA8), (4, 0xA8)] {
         if let Some(field) = fields.get_mut(number) {
             field.0 = status;
@@ -89,7 +89,7 @@ fn the_plan_is_the_shortest_possible() {
     assert_eq!(prepared.plan.write_cycles(), 12);
 }
 
-/// The result of a commit, with the memory before and after it.
+/// The result of a commit, with the memory before and after.
 struct Ending<'a> {
     desk: &'a Desk,
     prepared: &'a Prepared,
@@ -99,7 +99,7 @@ struct Ending<'a> {
 }
 
 impl Ending<'_> {
-    /// Checks after a cancellation: exactly the counted operations were executed, and the protected fields are
+    /// Checks the result of a cancellation: exactly the counted operations were executed, and the protected fields are
     /// locked.
     fn assert_cancelled_cleanly(&self, interrupted: &InterruptedWrite) {
         let Ending { context, .. } = self;
@@ -110,8 +110,8 @@ impl Ending<'_> {
         assert_eq!(interrupted.done.write_cycles, self.desk.wear() - self.worn_before, "{context}");
     }
 
-    /// Checks after a lost connection: the counted operations were executed, the one in progress was or was not, and
-    /// a field that remains unlocked is named.
+    /// Checks the result of a lost connection: the counted operations were executed, the one in progress may have been,
+    /// and a field that remains unlocked is named.
     fn assert_cut_off_and_reported(&self, interrupted: &InterruptedWrite) {
         let Ending { context, .. } = self;
         let ops = &self.prepared.plan.ops;
@@ -139,7 +139,7 @@ impl Ending<'_> {
     }
 }
 
-/// Checks that from any state the profile can be restored, and that the backup restores the previous content.
+/// Checks that the profile can be restored from any state, and that the backup restores the previous content.
 fn assert_can_be_completed(desk: &Desk, wanted: &HiperfaceProfile, before: &Fields, kept: Option<&HiperfaceProfile>) {
     let mut forwards = desk.copied();
     forwards.remember_code(2, 0x66);
@@ -150,7 +150,7 @@ fn assert_can_be_completed(desk: &Desk, wanted: &HiperfaceProfile, before: &Fiel
     let mut backwards = desk.copied();
     backwards.remember_code(2, 0x66);
     backwards.restore(kept).unwrap();
-    // A field that was created remains; restoring never deletes.
+    // A field that was created remains, because a restore never deletes fields.
     assert_eq!(backwards.memory()[..before.len()], before[..]);
 }
 
@@ -168,7 +168,7 @@ fn disturbed(
     let prepared = desk.prepare(restore_of(wanted)).unwrap();
     disturb(&mut desk);
     let result = desk.commit(&prepared);
-    // The fault is over.
+    // The fault no longer exists.
     desk.bus().set_faults(&Default::default());
     let reconnected = desk.reconnected();
     match result {
@@ -209,7 +209,7 @@ fn cancelling_at_any_transaction_ends_cleanly() {
     assert!(steps > 12, "each operation is a transaction at least: {steps}");
 }
 
-/// If a code waits in the encoder's queue, the reply to a write announces it. The write is done nevertheless.
+/// If the encoder's queue contains a code, the reply to a write announces it. The write has taken place nevertheless.
 #[test]
 fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
     let scene = scene();
@@ -229,7 +229,7 @@ fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
     }
 }
 
-/// A warning during the restore: announced by the reply to a write, immediately followed by the cancellation.
+/// The reply to a write announces a warning during the restore, immediately followed by a cancellation.
 #[test]
 fn a_warning_during_a_write_hides_no_operation() {
     let (original, wanted) = scene();
@@ -268,7 +268,7 @@ fn a_cut_at_any_transaction_is_reported() {
         ("deaf", |desk, at| desk.tap().deaf_from = Some(at)),
         ("mute", |desk, at| desk.tap().mute_from = Some(at)),
         ("silent", |desk, at| {
-            // The setup has used some frames; the fault counts all of them.
+            // The setup has already used some frames, and the fault counts all of them.
             let already = frames_so_far(&desk.bus().clone());
             desk.bus().set_faults(&format!("silent-after:{}", already + at).parse().unwrap());
         }),
@@ -289,8 +289,8 @@ fn a_cut_at_any_transaction_is_reported() {
     }
 }
 
-/// Returns the number of frames that an encoder has received, which is the lowest number after which the fault "silent"
-/// has occurred.
+/// Returns the number of frames that an encoder has received. It is determined as the lowest number after which the
+/// fault "silent" has occurred.
 fn frames_so_far(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
     let is_silent = |frames: usize| {
         let mut probe = bus.clone();
@@ -316,7 +316,8 @@ fn power_lost_in_any_store_is_reported() {
         let error = desk.commit(&prepared).unwrap_err();
         let JobError::Interrupted { interrupted, backup: path, planned: 12, .. } = error else { panic!("{error:?}") };
         assert!(interrupted.cause.is_lost(), "store {store}: {interrupted:?}");
-        // Three stores into field 1, between unlocking and locking, and one into field 4, created and not yet locked.
+        // Three stores to field 1, between unlocking and locking, and one to field 4, which has been created but not
+        // locked yet.
         let expected = match store {
             4..=6 => vec![1],
             8 => vec![4],

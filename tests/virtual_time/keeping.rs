@@ -1,4 +1,4 @@
-//! Files of a write, and disks that reject them.
+//! The files of a write, and disks that reject them.
 
 use std::fs;
 
@@ -23,7 +23,7 @@ fn without_a_backup_nothing_is_written() {
         fs::write(&path, "a file").unwrap();
         let memory = desk.memory();
         let error = desk.change(store_byte(0xEE)).unwrap_err();
-        // Without a folder, the write cycles are not known either.
+        // Without a folder, the number of write cycles is unknown as well.
         let refused = match in_the_way {
             "data" => matches!(error, JobError::NotStarted(NotStarted::WearUnknown { cost: 1 })),
             _ => matches!(error, JobError::NotStarted(NotStarted::NotKept(_))),
@@ -33,7 +33,7 @@ fn without_a_backup_nothing_is_written() {
     }
 }
 
-/// Issue 22.4: then the previous write cycles are not known. Only a forced write begins, and the missing records are
+/// Issue 22.4: the number of previous write cycles is unknown. Only a forced write begins, and the missing records are
 /// reported.
 #[test]
 fn a_broken_logbook_stops_an_unforced_write() {
@@ -51,7 +51,7 @@ fn a_broken_logbook_stops_an_unforced_write() {
         assert!(matches!(error, JobError::NotStarted(NotStarted::WearUnknown { cost: 1 })), "{error:?}");
         assert_eq!(desk.wear(), 0);
         let done = desk.commit_by_force(&prepared).unwrap();
-        // Issue 30: a damaged file is kept under another name, and a new one is begun.
+        // Issue 30: a damaged file is renamed, and a new one is started.
         assert_eq!(done.logbook_warning.is_some(), !garbage);
         assert_eq!(desk.memory()[0].1[3], 0xEE);
         assert_eq!(done.written.verified, 1);
@@ -100,7 +100,7 @@ fn no_access_code_is_stored() {
             let content = fs::read(&path).unwrap();
             let text = String::from_utf8_lossy(&content);
             for word in ["9D", "0x66", "66h", "C3"] {
-                // The name plate has other bytes; none of them equals one of these.
+                // The name plate consists of other bytes, none of which equals one of these.
                 assert!(!text.split(|c: char| !c.is_ascii_alphanumeric()).any(|w| w == word), "{word} in {path:?}");
             }
         }

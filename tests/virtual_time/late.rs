@@ -1,4 +1,4 @@
-//! A connection slower than its margin: the reply to one request is never taken for the reply to the next.
+//! A connection that is slower than its margin. The reply to one request must never be taken for the reply to the next.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
@@ -14,7 +14,7 @@ use encoder_studio::worker::Session;
 
 use crate::support::bus;
 
-/// A link on which all replies of the encoder are delayed.
+/// A link that delays all replies of the encoder.
 struct Slow {
     line: SimLink,
     clock: Arc<VirtualClock>,
@@ -58,7 +58,8 @@ impl ByteLink for Slow {
 #[test]
 fn a_late_reply_is_never_mistaken_for_the_next() {
     for delay in [0, 60, 110, 150, 300, 700] {
-        // One turn per second: a position that is one request old is outside the range that the shaft has passed since.
+        // At one turn per second, a position that is one request old is outside the range that the shaft has passed
+        // since.
         let bus = Arc::new(Mutex::new(bus("rpm=60")));
         let clock = Arc::new(VirtualClock::default());
         let line = SimLink::connect(bus.clone(), clock.clone());

@@ -1,5 +1,5 @@
-//! Requests and replies that are lost, one after the other: requests that read are repeated, and those that change the
-//! encoder are never executed twice.
+//! Requests and replies that are lost one after another. Requests that only read are repeated, and those that change
+//! the encoder are never executed twice.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use encoder_studio::worker::{Event, JobId};
 
 use crate::support::Desk;
 
-/// Executes a change repeatedly, while each request and then each reply is lost in turn.
+/// Executes a change repeatedly. In each run, another request or reply is lost.
 fn robbed(query: &str, change: &Change, setup: impl Fn(&mut Desk), judge: impl Fn(&mut Desk, &str)) {
     let mut frames = 0;
     for at in 0.. {
@@ -68,7 +68,7 @@ fn a_changed_access_code_is_used_afterwards() {
         |desk| desk.remember_code(0, 0x9D),
         |desk, context| {
             assert_eq!(desk.bus().encoders()[0].memory().code(zero).byte(), 0xC3, "{context}");
-            // The session knows the code as well: it guards field 0.
+            // The session also knows the code that protects field 0.
             assert!(desk.save().unwrap().fields[0].bytes.is_some(), "{context}");
         },
     );
@@ -102,7 +102,8 @@ fn the_position_is_set_despite_lost_replies() {
     );
 }
 
-/// A position that equals the previous one does not prove that the tracks were aligned, so it must not be reported.
+/// A position that equals the previous one does not prove that the tracks were synchronised, so this must not be
+/// reported.
 #[test]
 fn synchronising_in_place_is_not_assumed_done() {
     let mut desk = Desk::new("model=sel37");
@@ -118,7 +119,7 @@ fn synchronising_in_place_is_not_assumed_done() {
     }
 }
 
-/// After a failed job, the next one has its own five tries.
+/// After a failed job, the next one has five tries again.
 #[test]
 fn each_job_has_its_full_number_of_tries() {
     let mut desk = Desk::new("");
@@ -149,8 +150,8 @@ fn a_silent_encoder_times_out_within_ten_seconds() {
     }
 }
 
-/// Issue 22.10: 50h removes a code in the encoder: whichever reply is lost, each code is returned or counted as
-/// possibly lost.
+/// Issue 22.10: 50h removes a code from the encoder. Whichever reply is lost, each code is either returned or counted
+/// as possibly lost.
 #[test]
 fn lost_status_codes_are_reported() {
     let queue = [StatusCode::TEMPERATURE, StatusCode::TOO_FAST, StatusCode::COUNTER_OVERFLOW];
@@ -177,7 +178,7 @@ fn lost_status_codes_are_reported() {
     assert!(counted > 0, "50h was among them");
 }
 
-/// Issue 22.10: a code may be lost only if 50h was sent.
+/// Issue 22.10: a code can only be lost if 50h was sent.
 #[test]
 fn unrequested_codes_are_not_reported_as_lost() {
     let mut desk = Desk::new("fault=silent-after:0");

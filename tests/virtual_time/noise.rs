@@ -1,5 +1,5 @@
-//! Noise on the line: a shown value is right, or there is an error. A wrong value may only result from a frame with
-//! undetectable damage, and then the trace contains it.
+//! Noise on the line. Any value shown is correct, or there is an error. A wrong value may only result from a frame with
+//! undetectable damage, which must then be in the trace.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, JobError, Value};
 use encoder_studio::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item};
@@ -9,7 +9,7 @@ use crate::support::{Desk, backup, bytes, exchanges, xor};
 
 const NOISE: [&str; 5] = ["drop:0.02", "flip:0.02", "drop:0.02,flip:0.02", "garbage:0.02", "flip:0.02,garbage:0.02"];
 
-/// Returns an encoder with three fields of varied content besides the name plate, on a noisy line.
+/// Returns an encoder with the name plate and three fields of varied content, on a noisy line.
 fn noisy_desk(seed: u8, noise: &str) -> Desk {
     let mut desk = Desk::new(&format!("seed={seed}&codes=2:66&position={}", u32::from(seed) * 64_123));
     desk.remember_code(2, 0x66);
@@ -67,7 +67,8 @@ fn a_position_is_correct_or_an_error_or_its_frame_was_valid() {
     }
     println!("positions: {read} read, {failed} errors, {wrong} wrong from undetectable frames");
     assert!(read > 3000, "{read} of 4000 read");
-    // Two flips in the same bit of nine bytes, one in the head not counted: 36 · 0.02² / 8 per frame, or 0.2 %.
+    // Two bits are flipped at the same place in nine bytes, and the head does not count: 36 · 0.02² / 8 per frame, or
+    // 0.2 %.
     assert!(wrong * 100 < read, "{wrong} of {read} wrong");
 }
 
@@ -121,7 +122,7 @@ fn a_field_is_correct_or_an_error_or_its_frames_were_valid() {
     assert!(wrong * 100 < read, "{wrong} of {read} wrong");
 }
 
-/// Compares the content of a save: identity, fields, counter.
+/// Checks that two saved profiles have the same content: identity, fields and counter.
 fn assert_same(got: &HiperfaceProfile, truth: &HiperfaceProfile, context: &str) {
     assert_eq!(got.identity, truth.identity, "{context}");
     assert_eq!(got.interface, truth.interface, "{context}");
@@ -132,7 +133,7 @@ fn assert_same(got: &HiperfaceProfile, truth: &HiperfaceProfile, context: &str) 
 #[test]
 fn a_save_is_correct_or_an_error() {
     let (mut saved, mut failed) = (0, 0);
-    // Little noise is the harder case: the first damage may be an undetectable one.
+    // Little noise is the harder case, because the first damage may be undetectable.
     for noise in ["drop:0.02", "flip:0.02", "drop:0.02,flip:0.02", "garbage:0.02", "flip:0.005", "drop:0.005"] {
         for seed in 0..60 {
             let mut desk = noisy_desk(seed, "");

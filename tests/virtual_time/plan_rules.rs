@@ -1,4 +1,5 @@
-//! The one way to write: nothing but the planned changes, nothing that did not differ, nothing on another base.
+//! The rules for writing: only the planned changes are written, only values that differ, and only to the base for which
+//! the plan was made.
 
 use encoder_studio::devices::hiperface::jobs::{Change, Commit, HiperfaceJob, JobError};
 use encoder_studio::devices::hiperface::procedures::Error;
@@ -43,7 +44,7 @@ fn a_changed_base_is_not_overwritten() {
     }
 }
 
-/// Two new encoders have the same memory: the serial number distinguishes them.
+/// Two new encoders have the same memory, and only the serial number distinguishes them.
 #[test]
 fn a_plan_applies_to_one_encoder() {
     let mut desk = Desk::new("serial=A1");
@@ -93,7 +94,7 @@ fn an_empty_plan_sends_nothing() {
     assert!(!desk.folder.path().join("data/backups").exists(), "no backup");
 }
 
-/// Every byte of every 4Bh differs from the previous one, and nothing but the plan's places is written.
+/// Every byte of every 4Bh differs from the previous one, and only the locations in the plan are written.
 #[test]
 fn only_differences_are_written_and_every_write_is_counted() {
     for seed in 0..20_u8 {
@@ -168,7 +169,8 @@ fn writes_to_protected_or_out_of_range_fields_are_refused() {
     assert!(matches!(ops[..], [Op::Define { field: 0, to, .. }] if !to.exists()));
 }
 
-/// Edits of several fields: one plan, one backup, each field read once, and no byte sent that is already stored.
+/// Edits of several fields result in one plan and one backup. Each field is read once, and no byte is sent that is
+/// already stored.
 #[test]
 fn several_edits_are_written_in_one_plan() {
     let mut desk = Desk::new("");

@@ -1,4 +1,5 @@
-//! Polling on a session's thread: samples while there is no job, jobs first, and an end that is reported once.
+//! Polling on the thread of a session: samples are taken while no job is running, jobs take precedence, and the end is
+//! reported once.
 
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -16,7 +17,7 @@ pub(crate) const BACK_TO_BACK: Option<Duration> = Some(Duration::ZERO);
 /// An interval longer than any test.
 pub(crate) const SELDOM: Option<Duration> = Some(Duration::from_secs(3600));
 
-/// Returns at least `count` samples.
+/// Waits for at least `count` samples and returns them.
 pub(crate) fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<PolledSample> {
     let started = Instant::now();
     let mut samples = Vec::new();
@@ -28,7 +29,7 @@ pub(crate) fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<PolledSam
     samples
 }
 
-/// Checks that no samples arrive after those in progress.
+/// Checks that no samples arrive after those that are already in progress.
 pub(crate) fn nothing_comes(bench: &Bench) {
     let started = Instant::now();
     loop {
@@ -132,7 +133,7 @@ fn a_job_interrupts_the_retries_of_a_sample() {
     assert!(matches!(told, Event::PollFailed(_)), "the sample that was due is tried again: {told:?}");
 }
 
-/// The report that there is no position is a sample too; another rejection is not.
+/// The report that there is no position also counts as a sample, unlike any other rejection.
 #[test]
 fn polling_continues_without_a_position() {
     let mut desk = Desk::new("rpm=9000");

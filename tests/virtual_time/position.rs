@@ -1,4 +1,4 @@
-//! Setting the position: at rest only, in phase unless requested otherwise, and reversible.
+//! Setting the position: only at standstill, in phase unless requested otherwise, and reversible.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, JobError};
 use encoder_studio::devices::hiperface::procedures::{Error, Station};
@@ -29,7 +29,7 @@ fn a_moving_shaft_is_refused_when_planning_and_when_writing() {
 
 #[test]
 fn the_five_lowest_bits_are_kept_by_default() {
-    // SKM36: 128 · 32 · 4096 positions; it is at 000E0531h, phase 17.
+    // The SKM36 has 128 · 32 · 4096 positions and is at 000E0531h, which is phase 17.
     for (wanted, expected) in [(0, 17), (1, 17), (32, 17), (34, 49), (0x1234, 0x1231), (0x00FF_FFFF, 0x00FF_FFF1)] {
         let mut desk = Desk::new("");
         let prepared = desk.prepare(set(wanted, false)).unwrap();
@@ -59,14 +59,15 @@ fn the_previous_position_is_recorded() {
     assert_eq!(entries[0].conclusion.as_ref().unwrap().cycles_spent, 1);
 }
 
-/// A shaft at rest varies by a step. At zero that is the complete range.
+/// A shaft at standstill may jitter by one step. At zero, this step spans the complete range.
 #[test]
 fn setting_zero_may_dither() {
     for tenths in 1..=600 {
         let mut desk = Desk::new("");
         let prepared = desk.prepare(set(0, true)).unwrap();
         let now = desk.clock.now();
-        // 4096 steps per turn: at 0.04/min a step takes 370 ms, about the time from the plan to the read-back.
+        // With 4096 steps per turn, a step at 0.04/min takes 370 ms, which is about the time from the plan to the
+        // read-back.
         desk.bus().encoder_mut(0).unwrap().set_rpm(now, -f64::from(tenths) / 10_000.0);
         let done = desk.commit(&prepared);
         let moved = matches!(done, Err(JobError::Device(Error::Moving { .. })));
@@ -81,7 +82,7 @@ fn only_a_kit_encoder_is_synchronised() {
         let error = Desk::new("").prepare(synchronise(kit)).unwrap_err();
         assert!(matches!(error, JobError::Device(Error::NotAKit { .. })), "{error:?}");
     }
-    // Its extended label does not contain that it is a kit: the user confirms it.
+    // The extended label does not say that this is a kit encoder, so the user has to confirm it.
     assert!(Desk::new("model=sel37").prepare(synchronise(false)).is_err());
     let mut desk = Desk::new("model=sel37");
     desk.change(synchronise(true)).unwrap();
@@ -89,7 +90,7 @@ fn only_a_kit_encoder_is_synchronised() {
     assert_eq!(desk.bus().encoders()[0].position(desk.clock.now()), 0x40);
 }
 
-/// The time of a position is that at which the encoder sampled it.
+/// The time of a position is the time at which the encoder sampled it.
 #[test]
 fn a_position_has_its_sampling_time() {
     for query in ["rpm=3000", "rpm=-1200&fault=delay:60", "rpm=500&fault=delay:33&echo=on", "rpm=3000&pace=worst"] {
@@ -97,7 +98,7 @@ fn a_position_has_its_sampling_time() {
         for _ in 0..50 {
             let reading = match desk.run(HiperfaceJob::Position(None)) {
                 Ok(HiperfaceOutput::Position(reading)) => reading,
-                // An encoder slower than the manual allows may cause an error.
+                // An encoder that is slower than the manual allows may cause an error.
                 Err(_) if query.contains("delay") => continue,
                 other => panic!("{query}: {other:?}"),
             };
@@ -107,7 +108,7 @@ fn a_position_has_its_sampling_time() {
     }
 }
 
-/// Request, time-out, processing, reply and dead time are the complete cycle: the goal is 95 % of that rate.
+/// Request, time-out, processing, reply and dead time form the complete cycle. The goal is 95 % of that rate.
 #[test]
 fn polling_is_as_fast_as_the_protocol_allows() {
     for byte in [0xE0, 0xE4, 0xE5, 0xE6, 0xA6] {
@@ -122,8 +123,8 @@ fn polling_is_as_fast_as_the_protocol_allows() {
             desk.run(HiperfaceJob::Position(None)).unwrap();
         }
         let cycle = desk.clock.now().duration_since(before).as_secs_f64() / 100.0;
-        // A request of three characters, a reply of seven, 11 bits each; silence before and after the reply; 10 ms of
-        // processing.
+        // A request of three characters and a reply of seven with 11 bits each, silence before and after the reply, and
+        // 10 ms of processing.
         let silence = if settings.has_long_timeout() { 44.0 } else { 11.0 };
         let least = (10.0 * 11.0 + 2.0 * silence) / f64::from(settings.baud().unwrap().bits_per_second()) + 0.010;
         assert!(least >= cycle * 0.95, "{settings}: {cycle} s a cycle, {least} s needed");
@@ -131,7 +132,7 @@ fn polling_is_as_fast_as_the_protocol_allows() {
     }
 }
 
-/// Bytes that arrived between requests are no part of the next reply: they neither count as a try nor lower the line's
+/// Bytes that arrive between requests are not part of the next reply. They neither count as a try nor lower the line
 /// quality.
 #[test]
 fn bytes_received_in_a_pause_are_not_part_of_a_reply() {

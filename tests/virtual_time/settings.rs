@@ -33,7 +33,7 @@ fn a_restart_with_any_stored_settings_is_followed() {
         assert_eq!(reset(&mut desk), []);
         assert_eq!(desk.session.station().format, settings.character_format().unwrap(), "{settings}");
         position(&mut desk);
-        // No request kept the encoder at factory settings.
+        // No request has kept the encoder at factory settings.
         let now = encoder_studio::link::Clock::now(&*desk.clock);
         let in_force = desk.bus().encoders()[0].active_settings_at(now).unwrap();
         assert_eq!(in_force.character_format(), settings.character_format(), "{settings}");
@@ -72,7 +72,8 @@ fn temporary_settings_apply_immediately_until_the_restart() {
     }
 }
 
-/// If a code waits, the replies to 55h and 67h announce it, and the encoder already has the new settings.
+/// If the encoder's queue contains a code, the replies to 55h and 67h announce it, and the encoder already uses the new
+/// settings.
 #[test]
 fn an_encoder_that_warns_while_changing_settings_is_followed() {
     let warn = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().queue_code(StatusCode::TEMPERATURE);
@@ -111,7 +112,7 @@ fn warn_at(desk: &mut Desk, frame: usize) {
 #[test]
 fn all_codes_of_the_start_are_read() {
     let mut desk = Desk::new("temperature=130");
-    // One from before the restart, one from the start itself: none is lost.
+    // One from before the restart and one from the restart itself. Neither is lost.
     assert_eq!(reset(&mut desk), [StatusCode::TEMPERATURE; 2]);
     for code in [0x01, 0x1C, 0x1D, 0x20] {
         desk.bus().encoder_mut(0).unwrap().queue_code(StatusCode::new(code));
@@ -122,7 +123,7 @@ fn all_codes_of_the_start_are_read() {
     assert_eq!(codes, []);
 }
 
-/// Two encoders at one address can never be distinguished again.
+/// Two encoders with the same address could never be told apart again.
 #[test]
 fn an_address_in_use_is_refused() {
     let mut desk = Desk::new("encoders=3");

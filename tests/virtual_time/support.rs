@@ -1,5 +1,5 @@
-//! Test support in virtual time: a session on a virtual line, a link in between with configurable faults, and a record
-//! of its data.
+//! Test support in virtual time: a session on a virtual line, a link between them with configurable faults, and a
+//! record of the data.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -22,35 +22,35 @@ use encoder_studio::store::{Store, read_text};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::Session;
 
-/// The margin of `sim:` links.
+/// The reply margin of `sim:` links.
 pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 
-/// The faults of the link, and a record of its bytes.
+/// The faults of a link, and a record of its bytes.
 #[derive(Default)]
 pub(crate) struct Tap {
-    /// Every frame that was handed to the link.
+    /// Every frame that was passed to the link.
     pub(crate) sent: Vec<Vec<u8>>,
-    /// From this frame on (0 is the first) the link is lost.
+    /// Number of the frame from which on the link is lost, counted from 0.
     pub(crate) lost_from: Option<usize>,
-    /// From this frame on nothing reaches the encoder.
+    /// Number of the frame from which on nothing reaches the encoder.
     pub(crate) deaf_from: Option<usize>,
-    /// From this frame on no reply arrives.
+    /// Number of the frame from which on no reply arrives.
     pub(crate) mute_from: Option<usize>,
-    /// This frame does not reach the encoder.
+    /// Number of a frame that does not reach the encoder.
     pub(crate) swallow_request: Option<usize>,
-    /// The reply to this frame is lost.
+    /// Number of a frame whose reply is lost.
     pub(crate) swallow_reply: Option<usize>,
-    /// Every reply to a request that begins like this is damaged.
+    /// Beginning of the requests whose replies are all damaged.
     pub(crate) broken_to: Option<Vec<u8>>,
-    /// No reply arrives to a request that begins like this.
+    /// Beginning of the requests to which no reply arrives.
     pub(crate) mute_to: Option<Vec<u8>>,
     /// Bytes from another sender.
     pub(crate) foreign: VecDeque<u8>,
-    /// Whether the link has no speed of its own, as with a device server.
+    /// Whether the link has a fixed speed, as with a device server.
     pub(crate) formatless: bool,
-    /// Whether the link reports on request that it is lost.
+    /// Whether the link reports that it is lost when it is checked.
     pub(crate) unplugged: bool,
-    /// The frame at which the job is cancelled.
+    /// Number of the frame at which the job is cancelled, and its token.
     pub(crate) cancel_at: Option<(usize, CancelToken)>,
 }
 
@@ -70,7 +70,7 @@ impl Tap {
         self.sent.last().is_some_and(|last| last.starts_with(request))
     }
 
-    /// Returns the number of times that a command was sent.
+    /// Returns how many times a command was sent.
     pub(crate) fn count(&self, command: Command) -> usize {
         self.sent.iter().filter(|frame| frame[1] == command.byte()).count()
     }
@@ -150,7 +150,7 @@ impl ByteLink for TestLink {
     }
 }
 
-/// A virtual line with a session.
+/// A session on a virtual line.
 pub(crate) struct Desk {
     pub(crate) bus: Arc<Mutex<Bus>>,
     pub(crate) clock: Arc<VirtualClock>,
@@ -160,7 +160,8 @@ pub(crate) struct Desk {
     pub(crate) session: Session<Hiperface>,
 }
 
-/// Returns a folder for backups and the logbook: in memory if there is room for files, because thousands are created.
+/// Returns a folder for backups and the logbook. It is in memory if there is room for files, because thousands of such
+/// folders are created.
 pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap()
 }
@@ -209,7 +210,7 @@ impl Desk {
         Desk { bus, clock, tap, trace, folder, session }
     }
 
-    /// Returns the same line at the same time in a new session, like a cable that is plugged in again.
+    /// Returns the same line at the same time with a new session, as after a cable was plugged in again.
     pub(crate) fn reconnected(&self) -> Desk {
         let mut desk =
             Self::plugged(self.bus.clone(), self.clock.clone(), self.folder.clone(), self.session.station().clone());
@@ -217,7 +218,7 @@ impl Desk {
         desk
     }
 
-    /// Returns a copy, including the line and the time, without files on disk.
+    /// Returns a copy, including the line and the time but not the files on disk.
     pub(crate) fn copied(&self) -> Desk {
         let bus = self.bus.lock().unwrap().clone();
         Self::at(bus, &self.clock, self.session.station().clone())
@@ -281,7 +282,7 @@ impl Desk {
         }
     }
 
-    /// Returns status byte and content of every data field, read directly in the encoder.
+    /// Returns the status byte and content of every data field, read directly from the encoder.
     pub(crate) fn memory(&self) -> Fields {
         let bus = self.bus();
         let memory = bus.encoders()[0].memory();
@@ -289,13 +290,13 @@ impl Desk {
         (0..memory.free_memory().fields).map(field).collect()
     }
 
-    /// Returns the number of writes of the encoder's EEPROM.
+    /// Returns the number of writes to the encoder's EEPROM.
     pub(crate) fn wear(&self) -> u64 {
         self.bus().encoders()[0].wear().total().into()
     }
 }
 
-/// Status byte and content of every data field.
+/// The status byte and content of every data field.
 pub(crate) type Fields = Vec<(u8, Vec<u8>)>;
 
 pub(crate) fn restore_of(profile: &HiperfaceProfile) -> Change {
@@ -317,7 +318,7 @@ pub(crate) fn xor(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)
 }
 
-/// Returns the positions of access codes in a request, according to the reference: after the two head bytes.
+/// Returns the positions of access codes in a request according to the reference, counted after the two head bytes.
 fn places_of_codes(command: u8) -> &'static [usize] {
     match command {
         0x43 | 0x63 => &[6],
@@ -330,8 +331,8 @@ fn places_of_codes(command: u8) -> &'static [usize] {
     }
 }
 
-/// Checks that a request with a code is shown without code and checksum, but otherwise completely, and that a shown
-/// answer is not the request itself.
+/// Checks that a request with a code is shown completely except for the code and the checksum, and that a shown answer
+/// is not the request itself.
 fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
     let shown = entry.bytes.to_string();
     let words: Vec<&str> = shown.split(' ').collect();
@@ -347,7 +348,7 @@ fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
             }
         }
         Direction::Received => {
-            // A byte that was read may have the value of the code: that is no secret.
+            // A byte that was read may have the value of the code, which is not a secret there.
             let can_leak = |sent: &&Vec<u8>| !(places_of_codes(sent[1]).is_empty() || sent[1] == 0x4A && sent[4] == 1);
             let Some(sent) = sent.filter(can_leak) else { return };
             let hex: Vec<String> = sent.iter().map(|byte| format!("{byte:02X}")).collect();
@@ -369,7 +370,7 @@ pub(crate) fn check_words(text: &str) {
     }
 }
 
-/// Returns the requests that are in a trace, with the replies that were shown after them.
+/// Returns the requests in a trace, each with the replies shown after it.
 pub(crate) fn exchanges(trace: &[TraceEntry]) -> Vec<(String, Vec<Vec<u8>>)> {
     let mut exchanges: Vec<(String, Vec<Vec<u8>>)> = Vec::new();
     for entry in trace {

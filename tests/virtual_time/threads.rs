@@ -1,4 +1,4 @@
-//! The worker on its thread, on a virtual encoder in real time.
+//! The worker on its thread, with a virtual encoder in real time.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -14,7 +14,7 @@ use encoder_studio::worker::{Event, JobId, Session, SubmitError, Worker};
 
 use crate::support::{MARGIN, Tap, TestLink, bus};
 
-/// Time limit longer than any test, to detect a hanging thread.
+/// A time limit longer than any test, to detect a thread that hangs.
 pub(crate) const LONG: Duration = Duration::from_secs(60);
 
 pub(crate) struct Bench {
@@ -55,7 +55,7 @@ fn is_end(event: &Event<Hiperface>) -> Option<JobId> {
     }
 }
 
-/// Returns all events up to the end of a job.
+/// Waits for a job to end and returns all events up to its end.
 pub(crate) fn until_end(worker: &Worker<Hiperface>) -> Vec<Event<Hiperface>> {
     let mut events = Vec::new();
     loop {
@@ -110,7 +110,8 @@ fn each_job_starts_once_and_ends_once() {
     assert!(bench.worker.events().recv_timeout(Duration::from_millis(50)).is_err(), "and nothing comes after the end");
 }
 
-/// 672 steps of progress without a reader: the job ends nevertheless, and its end is available when it is read.
+/// 672 progress events are not read. The job ends nevertheless, and its end is available as soon as the events are
+/// read.
 #[test]
 fn a_job_ends_without_a_reader() {
     let mut bench = in_virtual_time("settings=0xE0");
@@ -132,7 +133,7 @@ fn a_job_ends_without_a_reader() {
             done = Some(progress.done);
         }
     }
-    // Outdated events do not follow the end.
+    // No outdated events follow the end of the job.
     let late = bench.worker.events().recv_timeout(Duration::from_millis(100));
     assert!(late.is_err(), "{late:?}");
 }
@@ -148,7 +149,7 @@ fn a_dropped_worker_ends_its_thread_even_during_a_job() {
         let (clock, events) = (Arc::downgrade(&bench.clock), bench.worker.events().clone());
         drop(bench);
         let dropped = Instant::now();
-        // The session, and with it the thread's last reference to the clock, is dropped.
+        // The session is dropped, and with it the thread's last reference to the clock.
         while clock.upgrade().is_some() {
             assert!(dropped.elapsed() < Duration::from_secs(2), "the thread goes on");
             std::thread::sleep(Duration::from_millis(5));
@@ -180,7 +181,7 @@ fn an_ending_worker_still_reports_the_end_of_its_job() {
     assert_eq!(ending.events().iter().filter_map(|event| is_end(&event)).collect::<Vec<_>>(), [id]);
 }
 
-/// A stop from any thread reaches the running job, and none that is submitted later.
+/// A stop from any thread reaches the running job but no job that is submitted later.
 #[test]
 fn a_stop_applies_to_one_job() {
     let mut bench = in_virtual_time("");
@@ -197,7 +198,7 @@ fn a_stop_applies_to_one_job() {
     assert!(bench.tap.lock().unwrap().sent.len() < 32, "the search has ended early");
 }
 
-/// No job is accepted while events are unread.
+/// No job is accepted while there are unread events.
 #[test]
 fn unread_events_prevent_a_new_job() {
     let mut bench = in_virtual_time("");

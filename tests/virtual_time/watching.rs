@@ -1,5 +1,5 @@
-//! Watched values between the positions of a polled encoder: their order, rejections, jobs and ends in between. The
-//! times are tested with the scheduler itself (`worker/poll_scheduler.rs`).
+//! Watched values between the positions of a polled encoder: their order, rejections, jobs in between, and their end.
+//! Their timing is tested with the scheduler itself (`worker/poll_scheduler.rs`).
 
 use std::time::{Duration, Instant};
 
@@ -34,7 +34,7 @@ fn at(sample: &PolledSample) -> Moment {
     }
 }
 
-/// Returns the samples of a polled worker after a new list takes effect: `count` of them, beginning with a position.
+/// Returns `count` samples of a polled worker after a new list has taken effect, beginning with a position.
 fn course(
     worker: &Worker<Hiperface>,
     wished: &[WatchedQuantity],
@@ -42,7 +42,7 @@ fn course(
 ) -> Vec<Option<(WatchedQuantity, Option<i64>)>> {
     worker.poll(None);
     worker.watch_values(wished.iter().map(|what| (*what, ALWAYS)).collect());
-    // The requests in progress have ended.
+    // The requests in progress have been completed.
     std::thread::sleep(Duration::from_millis(100));
     worker.samples().drain();
     worker.poll(BACK_TO_BACK);
@@ -59,13 +59,13 @@ fn watched_values_alternate_with_positions() {
         [None, temperature, None, temperature, None, temperature],
         "no two in a row, the position first"
     );
-    // Three quarters of a period: 2.0 V are 409 counts (sincos.md: 10 bits for 5 V).
+    // Three quarters of a period: 2.0 V is 409 counts (sincos.md: 10 bits for 5 V).
     let (sine, counter) = (Some((SINE, Some(409))), Some((WatchedQuantity::Counter, Some(0))));
     assert_eq!(
         course(&bench.worker, &[TEMPERATURE, SINE, WatchedQuantity::Counter], 8),
         [None, temperature, None, sine, None, counter, None, temperature]
     );
-    // The reference's request for channel 48h.
+    // The request for channel 48h according to the reference.
     assert!(bench.tap.lock().unwrap().sent.iter().any(|frame| frame == &[0x40, 0x44, 0x48, 0x4C]));
     let times: Vec<Moment> = samples(&bench.worker, 50).iter().map(at).collect();
     assert!(times.is_sorted(), "{times:?}");
@@ -98,7 +98,7 @@ fn a_missing_channel_is_reported_once_and_polling_continues() {
     );
     assert_eq!(bench.worker.watched_values(), [(TEMPERATURE, ALWAYS)]);
     assert!(bench.worker.events().is_empty(), "it is told as a sample");
-    // With another value in the list it is not requested again; after it was removed and added it is.
+    // With another value in the list, it is not requested again. After it has been removed and added, it is.
     course(&bench.worker, &[SINE, MISSING], 1);
     assert_eq!(bench.worker.watched_values(), [(SINE, ALWAYS)]);
     course(&bench.worker, &[], 1);

@@ -1,4 +1,4 @@
-//! A BiSS encoder that is exchanged, and a connection that two sessions request.
+//! A BiSS encoder that is exchanged for another one, and a connection requested by two sessions.
 
 use crate::biss_support::command;
 use crate::tabs::Tabs as _;
@@ -36,7 +36,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
     assert!(encoder(&desk).session.review.is_none(), "no plan is left for a consent");
     assert!(!encoder(&desk).is_dirty());
     assert_eq!(desk.notice_ids(Severity::Warning), ["session.other_encoder"]);
-    // They are still those of the first.
+    // They are still those of the first encoder.
     served.exchange("serial=1");
     command(&mut desk, DeviceCommand::Read);
     desk.until("the first one is back", |studio| {

@@ -1,4 +1,4 @@
-//! Writing into a BiSS encoder from the window: edits with their review, and procedures with a user at the motor.
+//! Writing to a BiSS encoder from the window: edits with their review, and procedures with a user at the motor.
 
 use crate::biss_support::command;
 use crate::tabs::Tabs as _;
@@ -24,7 +24,7 @@ fn until_planned(desk: &mut Desk) {
     desk.until("the plan is there", |studio| is_read(studio) && studio.biss().is_some_and(planned));
 }
 
-/// Consents to the plan that is shown.
+/// Consents to the displayed plan.
 fn write(desk: &mut Desk) {
     let own = encoder(desk);
     let plan =
@@ -38,7 +38,7 @@ fn plan(desk: &mut Desk, change: Change) {
     until_planned(desk);
 }
 
-/// Polls until the procedure assigns the given task.
+/// Polls until the procedure asks the user for the given task.
 #[track_caller]
 fn until_asked(desk: &mut Desk, task: OperatorTask, ready: bool) {
     desk.until("it is asked", |studio| {
@@ -75,7 +75,7 @@ fn three_bytes_of_one_bank_need_three_writes_and_one_save() {
         );
         let writes = encoder(&desk).session.writes.as_ref().unwrap().as_ref().unwrap();
         assert_eq!(writes[0].conclusion.as_ref().unwrap().cycles_spent, 1, "{link}");
-        // Log and list of writes agree: place, area, old and new value.
+        // The log and the list of writes agree on location, area, old value and new value.
         let told = log(&desk.studio);
         for words in [&format!("The device at {link} replied."), "Started: Write 3 edited bytes", "read back: 3."] {
             assert!(told.contains(words), "{words}: {told}");
@@ -86,7 +86,7 @@ fn three_bytes_of_one_bank_need_three_writes_and_one_save() {
         ask(&mut desk, Biss::Check);
         desk.until("it is checked", |studio| studio.biss().unwrap().check.is_some());
         let lines = encoder(&desk).check.as_ref().unwrap();
-        // Issue 22.19: no Wiegand test is saved, so that there is no verdict about the sensor.
+        // Issue 22.19: no Wiegand test is saved, so there is no verdict about the sensor.
         let verdict = |step: &str| if step == "check.wiegand" { Verdict::Skipped } else { Verdict::Good };
         let as_expected = lines.iter().all(|line| line.verdict == verdict(line.step.id()));
         assert!(lines.len() == 8 && as_expected, "{lines:?}");
@@ -121,7 +121,7 @@ fn a_calibration_is_guided_step_by_step() {
     desk.until("it waits", |studio| turn_of(studio).is_some());
     let first = turn_of(&desk.studio).unwrap();
     until_asked(&mut desk, first, false);
-    // Too early: nothing starts.
+    // This is too early, so nothing starts.
     ask(&mut desk, Biss::Answer(first, OperatorAnswer::Go));
     ask(&mut desk, Biss::Turn(-500.0));
     until_asked(&mut desk, first, true);

@@ -1,4 +1,4 @@
-//! The window never waits: a link that hangs, a disk that does not answer or is full, events that are not read.
+//! The window never waits: for a link that hangs, a disk that does not answer or is full, or events that are not read.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
@@ -16,7 +16,7 @@ use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, Re
 
 use crate::support::{Desk, HANGING, PORT, SLOW, is_review};
 
-/// Creates a pipe that is neither read nor written: opening it waits forever.
+/// Creates a pipe that is neither read nor written, so opening it waits forever.
 fn pipe(path: &Path) {
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
@@ -75,7 +75,7 @@ fn a_search_on_a_hanging_link_can_be_cancelled() {
     desk.act(Action::Escape);
     assert!(!desk.studio.can_stop());
     assert!(crate::tabs::search(desk.studio.connect.as_ref().unwrap()).unwrap().end.is_some());
-    // It does not disturb the next search.
+    // It does not affect the next search.
     desk.connect(Connect::Use(format!("serial:{PORT}")));
     desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.until("it is found", |studio| {
@@ -104,7 +104,7 @@ fn a_hanging_disk_blocks_nothing() {
     assert_eq!(desk.notice_ids(Severity::Warning), ["file.no_file", "file.no_file"], "a pipe is no profile");
 }
 
-/// The settings cannot be saved and there is no error: closing waits for a limited time.
+/// The settings cannot be saved, but there is no error. Closing the window waits for a limited time.
 #[cfg(unix)]
 #[test]
 fn a_hanging_disk_does_not_keep_the_window_open() {
@@ -122,7 +122,7 @@ fn a_hanging_disk_does_not_keep_the_window_open() {
     assert!(desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst) > before, "the window is told to look");
 }
 
-/// The draft cannot even be searched for: closing waits for a limited time.
+/// Not even the search for the draft ends. Closing the window waits for a limited time.
 #[cfg(unix)]
 #[test]
 fn a_hanging_draft_does_not_keep_the_window_open() {
@@ -157,7 +157,7 @@ fn an_unwritable_folder_is_reported() {
     desk.until_ready();
 }
 
-/// Returns why an edit is not written.
+/// Returns the reason why an edit is not written.
 fn refused(desk: &mut Desk) -> &'static str {
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -179,8 +179,7 @@ fn without_a_backup_nothing_is_written() {
     assert_eq!((desk.wire().wear(), desk.edits()), (0, vec![(0, 0, b'X')]));
 }
 
-/// Issue 22.4: then the previous write cycles are not known. The review offers to write nevertheless, and nothing else
-/// does.
+/// Issue 22.4: the number of previous write cycles is unknown. Only the review offers to write nevertheless.
 #[test]
 fn without_a_logbook_a_write_needs_a_permission_and_warns() {
     let mut desk = Desk::new_form("");
@@ -220,15 +219,16 @@ fn unread_samples_and_frames_are_counted_and_the_newest_kept() {
     let (dropped, positions) = (desk.encoder().recording().dropped_count(), desk.encoder().record.position_count());
     assert!(dropped > 0 && positions >= 4_096, "{dropped} {positions}");
     assert!(desk.encoder().session.trace.dropped_count() > 0);
-    // In between, a job is accepted at once.
+    // In between, a job is accepted immediately.
     desk.ask(Hiperface::ReadCounter);
     desk.until_ready();
     desk.act(Action::Stop);
     assert!(desk.notice_ids(Severity::Warning).is_empty());
 }
 
-/// Issue 26: below 2,000 frames a second, every frame is in the trace. A drawn window takes the frames in at least eight
-/// times a second. Here a whole second of them, 1,000 readings of two frames each, waits ten times.
+/// Issue 26: below 2,000 frames per second, every frame is in the trace. A window that is drawn takes the frames at
+/// least eight times per second. Here, ten times the frames of a whole second, which are 1,000 readings of two frames
+/// each, wait for the window.
 #[test]
 fn two_thousand_frames_a_second_are_all_in_the_trace() {
     let mut desk = Desk::new_form("rpm=60");

@@ -1,4 +1,4 @@
-//! Escape stops first and closes then; closing with unsaved data asks once.
+//! Escape first stops a motion and then closes a dialog. Closing with unsaved data asks once.
 
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::connect::ConnectAction as Connect;

@@ -1,5 +1,5 @@
-//! The commutation assistant: requirements, readings, the offset, both ways to store it, and failures. Numbers are
-//! those of section 5 of the sine/cosine reference, or calculated separately.
+//! The commutation assistant: requirements, readings, the offset, both ways to store it, and failures. Numbers are from
+//! section 5 of the sine/cosine reference or were calculated separately.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::analysis::quality::Verdict;
@@ -15,7 +15,7 @@ use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, Re
 use crate::support::Desk;
 use crate::texts;
 
-/// The virtual SKM36 a hundred and three quarter periods from its zero: 128 periods, sine and cosine counts 409 and
+/// The virtual SKM36 is 100.75 periods from its zero. It has 128 periods, and the sine and cosine counts are 409 and
 /// 511.
 const AT_REST: &str = "position=3224";
 
@@ -104,12 +104,12 @@ fn nothing_is_read_before_the_checklist_is_complete() {
 fn a_complete_run_stores_the_offset_in_the_encoder() {
     let mut desk = Desk::new_form(AT_REST);
     desk.prepare();
-    // Polled meanwhile: the readings take place in between.
+    // The encoder is polled meanwhile, and the readings take place in between.
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::ZERO)));
     desk.read(VectorSlot::OneSide);
     let reading = *desk.encoder().commutation.reading_of(VectorSlot::OneSide).unwrap();
-    // (409 − 511.5) · 5/1023 V and (511 − 511.5) · 5/1023 V: φ = 0.749 223 64, and the middle of step 24 is 0.525 steps
-    // further.
+    // (409 − 511.5) · 5/1023 V and (511 − 511.5) · 5/1023 V yield φ = 0.749 223 64, and the middle of step 24 is 0.525
+    // steps further.
     assert!((reading.fine_periods - 100.749_223_64).abs() < 1e-8, "{reading:?}");
     let PositionKind::Fine { residual_periods, verdict: Verdict::Ok, .. } = reading.kind else { panic!("{reading:?}") };
     assert!((residual_periods * 32.0 - 0.524_844).abs() < 1e-6);
@@ -125,7 +125,7 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
 
     desk.edit(|form| form.address = "16".to_owned());
     desk.assist(Assistant::Store);
-    // The CRC by Python's `binascii.crc_hqx`.
+    // The CRC was calculated with Python's `binascii.crc_hqx`.
     let record = [0x43, 0x4F, 0x31, 0x01, 0x25, 0xFE, 0x68, 0xF7, 4, 0, 0, 0, 0, 0, 0x29, 0x44];
     assert_eq!(desk.encoder().staged.edited_fields()[0].bytes.as_ref().unwrap()[16..32], record);
     assert_eq!(desk.notice_count("commutation.staged"), 1);
@@ -138,7 +138,7 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
     assert_eq!(marks, [(16..32, "commutation offset".to_owned())], "it belongs to the mounting");
     let found = commutation::stored(&desk.encoder().staged);
     assert!(!found[0].edited && found[0].record.unwrap().confirmed);
-    // The readings are still there: the same value again is no edit.
+    // The readings are still there, so entering the same value again is not an edit.
     desk.assist(Assistant::Store);
     assert!(desk.edits().is_empty());
     assert_eq!(desk.notice_count("commutation.same"), 1);
@@ -149,7 +149,7 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
     assert!(english.iter().any(|line| line == "Offset: 53.4288° el. = 25FE68F7h"), "{english:?}");
 }
 
-/// Section 5: fine position 339.02 of 1024 periods, four pole pairs. Without an encoder.
+/// Section 5: fine position 339.02 of 1024 periods with four pole pairs, without an encoder.
 #[test]
 fn a_typed_position_yields_the_offset_of_the_reference() {
     let mut desk = Desk::fresh("");
@@ -160,7 +160,8 @@ fn a_typed_position_yields_the_offset_of_the_reference() {
     assert_eq!(desk.offset(), Err("commutation.no_reading"));
     desk.type_in(VectorSlot::OneSide, "339.02");
     assert_eq!(desk.offset(), Ok(0x5305_1EB8));
-    // Reversed: 0.675 703 125 turns, ACFA E148h. With the vector at −30°, 1/12 turn more: 0.407 630 21.
+    // Reversed, this is 0.675 703 125 turns, or ACFA E148h. With the vector at −30°, it is 1/12 turn more: 0.407 630
+    // 21.
     desk.edit(|form| form.reversed = true);
     assert_eq!(desk.offset(), Ok(0xACFA_E148));
     desk.edit(|form| (form.reversed, form.vector) = (false, EnergisedVector::UAgainstV));
@@ -185,7 +186,7 @@ fn a_typed_position_yields_the_offset_of_the_reference() {
 fn positions_too_far_apart_are_refused() {
     let mut desk = Desk::new_form("");
     desk.prepare();
-    // Half a period of 128 is 1.40625°, with four pole pairs 5.625°.
+    // Half a period of 128 is 1.40625°, which is 5.625° with four pole pairs.
     desk.type_in(VectorSlot::OneSide, "127.9");
     desk.type_in(VectorSlot::OtherSide, "0.4");
     assert_eq!(desk.offset(), Err("commutation.friction"));
@@ -208,16 +209,16 @@ fn the_second_vector_reveals_wiring_faults() {
     desk.type_in(VectorSlot::OneSide, "4");
     for (second, pairs, verdict, id) in [
         ("12", "4", Verdict::Ok, "commutation.fits"),
-        // Over the end of the revolution.
+        // Beyond the end of the revolution.
         ("124", "4", Verdict::Fault, "commutation.exchanged"),
-        // 22.5° of the shaft are a quarter turn of four pole pairs, whatever number was typed.
+        // 22.5° of the shaft are a quarter of a turn with four pole pairs, whatever number was typed.
         ("12", "5", Verdict::Fault, "commutation.other_pairs"),
         ("124", "2", Verdict::Fault, "commutation.exchanged_pairs"),
         ("4.1", "4", Verdict::Fault, "commutation.still"),
         ("4", "4", Verdict::Fault, "commutation.still"),
         // 3.4 of 8 periods would be 9.4 pole pairs.
         ("7.4", "4", Verdict::Fault, "commutation.unclear"),
-        // More than an electrical turn.
+        // More than one electrical turn.
         ("60", "4", Verdict::Fault, "commutation.unclear"),
     ] {
         desk.edit(|form| form.pole_pairs = pairs.to_owned());
@@ -229,7 +230,7 @@ fn the_second_vector_reveals_wiring_faults() {
         assert_eq!(desk.why_not(), (!stored).then_some("commutation.second_refuses"));
         desk.command(DeviceCommand::RevertAll);
     }
-    // With the other counting direction, exchanged is right.
+    // With the other counting direction, swapped is correct.
     desk.edit(|form| (form.pole_pairs, form.reversed) = ("4".to_owned(), true));
     desk.type_in(VectorSlot::Second, "124");
     assert_eq!(desk.second(), (Verdict::Ok, "commutation.fits"));
@@ -246,7 +247,7 @@ fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
     desk.read(VectorSlot::OtherSide);
     desk.edit(|form| form.period = "3".to_owned());
     let setting = desk.encoder().commutation.setting(desk.encoder().geometry()).unwrap();
-    // 3 · 32 + ⌊32 · 0.7492⌋; the rest is 4 · 3.749 224 / 128 of a turn: 42.178 766°.
+    // 3 · 32 + ⌊32 · 0.7492⌋. The rest is 4 · 3.749 224 / 128 of a turn, or 42.178 766°.
     assert_eq!((setting.value, setting.exact, setting.verdict), (119, false, Verdict::Ok));
     assert!((setting.remaining_deg - 42.178_766).abs() < 1e-5, "{setting:?}");
     desk.assist(Assistant::Set);
@@ -263,7 +264,8 @@ fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
     assert_eq!(desk.offset(), Err("commutation.no_reading"));
 }
 
-/// Section 5: with 16 periods and 5 pole pairs a step is 112.5° electrical; with 4 of 128 periods 14°.
+/// Section 5: with 16 periods and 5 pole pairs, a step is 112.5° electrical. With 128 periods and 4 pole pairs, it is
+/// 14°.
 #[test]
 fn method_2_is_refused_if_its_step_is_too_large() {
     let mut desk = Desk::new_form(AT_REST);
@@ -279,19 +281,19 @@ fn method_2_is_refused_if_its_step_is_too_large() {
         desk.edit(|form| (form.periods, form.pole_pairs) = (periods.to_owned(), pairs.to_owned()));
         let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
         assert_eq!(setting.as_ref().map(|own| own.verdict).map_err(|text| text.id()), result, "{periods} {pairs}");
-        // φ = 0.47: the last five bits are 15.
+        // φ = 0.47, so the last five bits are 15.
         assert!(setting.is_err() || setting.unwrap().value == 0x0F);
     }
     desk.edit(|form| (form.periods, form.pole_pairs) = ("16".to_owned(), "5".to_owned()));
     desk.assist(Assistant::Set);
     assert_eq!((desk.why_not(), desk.encoder().session.review.is_none()), (Some("commutation.unusable"), true));
-    // SKM36: 128 periods and 4096 turns are 524 288 periods.
+    // The SKM36 has 128 periods and 4096 turns, which are 524 288 periods.
     desk.edit(|form| {
         (form.periods, form.pole_pairs, form.period) = (String::new(), "4".to_owned(), "524288".to_owned())
     });
     let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
     assert_eq!(setting.unwrap_err().id(), "entry.whole");
-    // In the second vector the shaft is not at the position that was read.
+    // For the second vector, the shaft is not at the position that was read.
     desk.edit(|form| form.period = "0".to_owned());
     desk.type_in(VectorSlot::Second, "11.47");
     let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
@@ -312,7 +314,7 @@ fn a_moving_shaft_is_refused_at_its_entry() {
 
 #[test]
 fn a_position_out_of_phase_is_reported() {
-    // The word is shifted by exactly half a period against the signals.
+    // The word is shifted by exactly half a period relative to the signals.
     let mut desk = Desk::new_form("position=8");
     desk.prepare();
     for (shift, expected) in [(16, Some("commutation.far_apart")), (4, None), (-20, None)] {
@@ -325,7 +327,7 @@ fn a_position_out_of_phase_is_reported() {
         assert_eq!(desk.why_not(), expected, "{shift}");
         desk.assist(Assistant::Clear);
     }
-    // 12 steps of lag cause a warning (beyond 8/32); the position alone would not show them.
+    // A lag of 12 steps causes a warning (beyond 8/32), which the position alone would not show.
     desk.ask(Hiperface::Plan(Change::ShiftPosition { steps: 12 }));
     desk.until_planned();
     desk.write_as_shown();
@@ -402,7 +404,7 @@ fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
     desk.edit(|form| form.address = "128".to_owned());
     desk.assist(Assistant::Store);
     assert_eq!(desk.why_not(), Some("entry.whole"));
-    // The field has 32 bytes: the memory itself rejects, in the log.
+    // The field has 32 bytes, so the memory itself rejects this in the log.
     desk.edit(|form| form.address = "112".to_owned());
     desk.assist(Assistant::Store);
     assert!(desk.edits().is_empty());

@@ -1,5 +1,5 @@
-//! Edits survive a crash: they are on disk as they are made, and return with their device or profile. The invented kind
-//! represents all; cases that need a type, or a device without a serial number, use HIPERFACE.
+//! Edits survive a crash: they are written to disk as they are made, and return with their device or profile. The
+//! invented kind stands for all others. Cases that require a type or a device without a serial number use HIPERFACE.
 
 use std::fs;
 
@@ -13,14 +13,14 @@ use crate::tabs::Tabs as _;
 
 const DRAFT: &str = "data/drafts/novo-virtual/N1-1001.ron";
 
-/// Returns a studio with its virtual encoder, which is read.
+/// Returns a studio connected to the invented virtual encoder, which has been read.
 fn connected() -> Desk {
     let mut desk = Desk::with_novo();
     connect(&mut desk);
     desk
 }
 
-/// Drops the studio without closing it, and starts it again.
+/// Drops the studio without closing it and starts it again.
 fn crash(desk: Desk) -> Desk {
     let mut desk = desk.crash();
     connect(&mut desk);
@@ -85,7 +85,7 @@ fn an_unwritable_draft_is_reported_once() {
     assert_eq!(value(&desk), 4);
 }
 
-/// The notice of restored edits ends once they are written; the result is in the review and in the log.
+/// The notice about restored edits ends when they are written. The result is in the review and in the log.
 #[test]
 fn a_write_ends_the_notice_of_restored_edits() {
     let mut desk = connected();
@@ -132,7 +132,7 @@ fn saving_a_profile_removes_its_draft() {
     }
 }
 
-/// A second window with the same encoder neither takes nor overwrites the draft of the first one.
+/// A second window with the same encoder neither adopts nor overwrites the draft of the first one.
 #[test]
 fn a_draft_has_one_owner() {
     let mut desk = connected();
@@ -218,7 +218,7 @@ fn a_missing_serial_number_prevents_drafts_with_one_notice() {
     desk.write();
     desk.put(0, 0, b"Z");
     assert_eq!(desk.edits().len(), 1, "its own writes make it no other");
-    // With factory settings: its memory is not the one that was written.
+    // At factory settings, its memory is not the one that was written.
     replug(&mut desk, Some("serial= "));
     assert!(desk.edits().is_empty());
     assert_eq!(desk.notice_count("session.edits_gone"), 1);

@@ -1,5 +1,5 @@
-//! How often the window is drawn while nothing changes (issue 22.32): by the clock of the frames only, each at the time
-//! that the one before has requested.
+//! How often the window is drawn while nothing changes (issue 22.32). Only the clock of the frames is used: each frame
+//! is drawn at the time requested by the previous one.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -18,12 +18,12 @@ const SIZE: [f32; 2] = [1280.0, 900.0];
 const WATCHED: f64 = 10.0;
 /// Maximum delay in seconds of a repaint that counts as immediate.
 const AT_ONCE: f64 = 1.0 / 60.0;
-/// A cursor in a text entry is drawn and hidden twice per second at most.
+/// Maximum number of frames for a cursor in a text entry, which is drawn and hidden at most twice per second.
 const BLINKS: usize = 2 * WATCHED as usize + 2;
-/// Live values are drawn every 50 ms.
+/// Maximum number of frames for live values, which are drawn every 50 ms.
 const LIVE: usize = (WATCHED / 0.05) as usize + 2;
 
-/// The dialog or focus of a window, and how to get there.
+/// A situation in which the window is observed, such as an open dialog, and how to reach it.
 type Situation = (&'static str, fn(&mut Screen));
 
 const SITUATIONS: [Situation; 8] = [
@@ -44,7 +44,7 @@ const SITUATIONS: [Situation; 8] = [
     }),
 ];
 
-/// Returns the number of frames that the window requests.
+/// Returns the number of frames that the window requests during the observed time.
 fn pictures(screen: &mut Screen) -> usize {
     let (mut passed, mut count) = (0.0, 0);
     loop {
@@ -61,14 +61,14 @@ fn pictures(screen: &mut Screen) -> usize {
     }
 }
 
-/// Returns an encoder that is read and edited: with something to review, and to lose.
+/// Returns a window with an encoder that has been read and edited, so there is something to review and to lose.
 fn edited() -> Screen {
     let mut screen = Screen::new_form(SIZE);
     screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
     screen
 }
 
-/// Waits until all temporary changes have ended, such as notices, animations and results of threads.
+/// Waits until all temporary changes have ended, such as notices, animations and results from threads.
 fn settle(screen: &mut Screen) {
     for _ in 0..2 {
         screen.until("nothing runs", |studio| !studio.is_working());
@@ -81,7 +81,7 @@ fn settle(screen: &mut Screen) {
     }
 }
 
-/// Issue 22.32: releasing the keys requested another frame in every frame, outside of places where keys are held.
+/// Issue 22.32: after a release of keys, another frame was requested in every frame, even where no keys are held.
 #[test]
 fn nothing_is_drawn_while_nothing_changes() {
     for (what, begin) in SITUATIONS {
@@ -92,7 +92,7 @@ fn nothing_is_drawn_while_nothing_changes() {
         let count = pictures(&mut screen);
         let most = if ["connecting", "a path is typed"].contains(&what) { BLINKS } else { 0 };
         assert!(count <= most, "{what}: {count} pictures in {WATCHED} s");
-        // Nor does a frame cause the next one through a thread.
+        // A frame does not cause the next one through a thread either.
         for _ in 0..50 {
             screen.harness.step();
         }
@@ -126,7 +126,7 @@ fn a_window_without_a_device_is_drawn_when_something_changes() {
     }
 }
 
-/// Issue 22.32: for each device that is read and not polled.
+/// Issue 22.32: for each device that has been read and is not polled.
 #[test]
 fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
     type Ready = fn(&Studio) -> bool;
@@ -155,7 +155,7 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
     }
 }
 
-/// Issue 22.32: live values are drawn as often as they change, whatever dialog is open.
+/// Issue 22.32: live values are drawn as often as they change, whichever dialog is open.
 #[test]
 fn live_values_in_a_background_window_keep_the_frame_rate() {
     let mut screen = in_hand();

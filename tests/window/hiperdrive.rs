@@ -1,4 +1,5 @@
-//! The HIPERDRIVE tab by actions: reading, parameters with edits, a write with its review, and the locks after it.
+//! The HIPERDRIVE tab, operated through actions: reading, parameters with edits, a write with its review, and the locks
+//! after it.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::review::Stage;
@@ -70,13 +71,13 @@ pub(crate) fn edit(desk: &mut Desk, edit: Edit) {
     act(desk, Hiperdrive::Edit(Box::new(edit)));
 }
 
-/// Returns the requests that set a value.
+/// Returns the number of requests that set a value.
 fn sets(desk: &Desk) -> usize {
     let lines = unit(desk).session.trace.lines();
     lines.iter().filter(|line| line.meaning.iter().any(|text| text.id() == "hd_asked.set")).count()
 }
 
-/// Returns a device that answers when all in the network are asked.
+/// Returns a device that answers a search in the network.
 fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> DiscoveredDevice {
     let identity = Identity {
         vendor,
@@ -127,7 +128,7 @@ fn connecting_reads_everything_and_writes_nothing() {
     assert!(!unit.session.trace.lines().is_empty());
     assert_eq!(sets(&desk), 0);
     assert!(!unit.moves.is_open() && !desk.studio.is_moving() && desk.studio.has_drives());
-    // 16 numbers and texts of drive 1 at least, and none of the slot without a drive.
+    // At least 16 numbers and texts of drive 1, and none of the slot without a drive.
     assert!(unit.rows(Some(ONE)).len() > 40 && unit.rows(DriveNumber::new(2)).is_empty());
     let requested = unit.rows(Some(ONE)).into_iter().find(|row| row.number == number(152)).unwrap();
     assert_eq!((requested.factory.as_str(), requested.is_editable), ("0", true), "of a hub");
@@ -218,7 +219,7 @@ fn another_scaling_locks_motion_until_the_limits_are_confirmed() {
     let hundredths = PositionScale::new(400, 256).unwrap();
     edit(&mut desk, Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::InPlace });
     write(&mut desk);
-    // 511 turns of 400 steps.
+    // 511 turns of 400 steps each.
     assert_eq!(unit(&desk).limits_to_confirm(ONE), Some((-204_400, 204_400)));
     command(&mut desk, DeviceCommand::Reconnect);
     desk.until("it is read again", |studio| {
@@ -274,7 +275,7 @@ fn a_discovered_device_fills_the_form() {
     assert_eq!(desk.studio.connect.as_ref().unwrap().typed_link(), "enip:10.0.0.9:2222", "there is none");
 }
 
-/// Reference 5: an HDA30 has 512 turns either way, which are 33 554 432 steps, or 204 800 at 400 steps per turn.
+/// Reference 5: an HDA30 has 512 turns in each direction, which are 33 554 432 steps, or 204 800 at 400 steps per turn.
 #[test]
 fn limits_may_span_the_full_range_of_the_drive() {
     let mut desk = read("sim:");

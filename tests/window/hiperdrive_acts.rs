@@ -1,6 +1,6 @@
-//! Acts that move a drive, repeated as a user would if the computer has delayed them. A window that is not updated for
-//! 250 ms stops its motion on purpose, and so does a test whose thread is delayed by a busy computer. Any other end of
-//! an act fails the test.
+//! Actions that move a drive. They are repeated, as a user would, if the computer has delayed them. A window that is
+//! not updated for 250 ms stops its motion on purpose, and so does a test whose thread is delayed by a busy computer.
+//! Any other end of an action fails the test.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -13,21 +13,21 @@ use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive,
 use crate::hiperdrive::{act, drive, unit};
 use crate::support::{Desk, LONG};
 
-/// Returns the number of the last action of a drive and how it ended.
+/// Returns the number of the last action of a drive, and how it ended.
 pub(crate) fn last_end(studio: &Studio, drive: DriveNumber) -> Option<(u64, ActionEnd)> {
     studio.hiperdrive().and_then(|own| own.moves.drive(drive)?.ended)
 }
 
-/// Returns whether an action of a drive has ended since then because it was no longer refreshed.
+/// Returns whether an action of a drive has ended after `since` because it was no longer refreshed.
 pub(crate) fn has_lapsed(studio: &Studio, drive: DriveNumber, since: Option<(u64, ActionEnd)>) -> bool {
     let end = last_end(studio, drive);
     end != since && matches!(end, Some((_, ActionEnd::Stale)))
 }
 
-/// Number of repetitions of a lapsed action.
+/// Maximum number of attempts for an action that is no longer refreshed in time.
 pub(crate) const ATTEMPTS: usize = 20;
 
-/// Waits until a drive may move: its rules are read repeatedly on threads, and a press before that is rejected.
+/// Waits until a drive may move. Its limits are read repeatedly on threads, and a press before that is rejected.
 #[track_caller]
 pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
     let began = Instant::now();
@@ -44,7 +44,7 @@ pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
 }
 
 /// Repeats a request until a condition holds. A window that is not updated for 250 ms stops its motion, and so does a
-/// test on a busy computer: then the request is repeated, as a user would. After any other end it is not.
+/// test on a busy computer. In that case, the request is repeated, as a user would do. After any other end, it is not.
 #[track_caller]
 pub(crate) fn drive_until(
     desk: &mut Desk,
@@ -55,7 +55,7 @@ pub(crate) fn drive_until(
     act_until(desk, |own| Hiperdrive::Drive(motor(own)), what, condition);
 }
 
-/// Does the same for an action of the shown drive.
+/// Repeats a request like [`drive_until`] for an action of the displayed drive.
 #[track_caller]
 pub(crate) fn act_until(
     desk: &mut Desk,
@@ -77,7 +77,7 @@ pub(crate) fn act_until(
     panic!("never: {what}: it has lapsed {ATTEMPTS} times");
 }
 
-/// Starts a long move of the shown drive, and waits until the drive moves.
+/// Starts a long move of the displayed drive and waits until the drive moves.
 #[track_caller]
 pub(crate) fn set_off(desk: &mut Desk) {
     drive_until(
@@ -91,7 +91,7 @@ pub(crate) fn set_off(desk: &mut Desk) {
     );
 }
 
-/// Returns a value observed while the shown drive moves, if it has moved during the complete observation.
+/// Returns a value observed while the displayed drive moves, provided that it moved during the whole observation.
 #[track_caller]
 pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk) -> T) -> T {
     let shown = unit(desk).drive();
@@ -110,12 +110,12 @@ pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk)
     panic!("it has lapsed {ATTEMPTS} times");
 }
 
-/// Returns the warnings other than that of a lapsed motion.
+/// Returns the warnings, except that a motion was no longer refreshed.
 pub(crate) fn warned(desk: &Desk) -> Vec<&'static str> {
     desk.notice_ids(Severity::Warning).into_iter().filter(|id| *id != "hd_end.stale").collect()
 }
 
-/// Refreshes the jog with every poll, until a condition holds.
+/// Refreshes the jog with every poll until a condition holds.
 #[track_caller]
 pub(crate) fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) -> bool) {
     let began = Instant::now();
@@ -128,7 +128,7 @@ pub(crate) fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) 
 }
 
 /// Holds a pad until a condition holds. If a busy computer has delayed the refresh for 250 ms, which ends a jog, the
-/// pad is released and pressed again, after `prepare`; any other end is a failure.
+/// pad is released and pressed again after `prepare`. Any other end is a failure.
 #[track_caller]
 pub(crate) fn hold_pad_until(
     desk: &mut Desk,

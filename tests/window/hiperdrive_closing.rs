@@ -1,5 +1,5 @@
-//! The window closes, or the system ends the program, while a drive moves: the drive stops first and is switched off,
-//! and its connection is closed; questions come after that (issue 21.1). The state is read from the drive itself.
+//! The window closes, or the system ends the program, while a drive moves. The drive first stops and is switched off,
+//! and its connection is closed. Questions are asked afterwards (issue 21.1). The state is read from the drive itself.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use crate::hiperdrive_acts::{drive_until, set_off};
 use crate::hiperdrive_motion::in_control;
 use crate::support::{Desk, LONG};
 
-/// Returns the state of the drive, whether it is at standstill, and whether a host has the cyclic connection.
+/// Returns the state of the drive, whether it is at standstill, and whether a host holds the cyclic connection.
 fn drive_state(desk: &Desk) -> (State, bool, bool) {
     let target = unit(desk).target.clone().unwrap();
     target.with_station(|station| {
@@ -37,11 +37,11 @@ fn until_released(desk: &Desk) {
         assert!(began.elapsed() < LONG, "the connection is open");
         std::thread::sleep(Duration::from_millis(1));
     }
-    // A fault of the watchdog would be visible now.
+    // A fault reported by the watchdog would be visible now.
     assert_eq!((drive_state(desk).0, drive_state(desk).1), (State::NotReady, true));
 }
 
-/// Issue 21.1: without a question. The window waits for the drive, and nothing moves afterwards.
+/// Issue 21.1: no question is asked. The window waits for the drive, and nothing moves afterwards.
 #[test]
 fn a_closing_window_releases_the_drives_first() {
     for (closes, action) in [("closed", Action::Close), ("ended by the system", Action::Quit)] {
@@ -59,14 +59,14 @@ fn a_closing_window_releases_the_drives_first() {
     }
 }
 
-/// Issue 21.1: a question comes after the stop, and nothing resumes if it is answered with no.
+/// Issue 21.1: a question is asked after the stop, and nothing resumes if the answer is no.
 #[test]
 fn the_close_question_follows_the_stop_and_nothing_resumes() {
     let mut desk = moving();
     edit(&mut desk, Edit::Set(number(24), 7));
     desk.act(Action::Close);
     assert!(desk.studio.question.is_some() && !desk.studio.hiperdrive().unwrap().moves.is_motion_active());
-    // No frame is drawn: the stop was requested before the question.
+    // No frame is drawn. The stop was requested before the question.
     let began = Instant::now();
     while !drive_state(&desk).1 {
         assert!(began.elapsed() < LONG, "it moves under the question");
@@ -87,7 +87,7 @@ fn the_close_question_follows_the_stop_and_nothing_resumes() {
     until_released(&desk);
 }
 
-/// Issue 21.1: a signal from the system asks no question.
+/// Issue 21.1: a signal from the system does not cause a question.
 #[test]
 fn a_signal_closes_without_asking() {
     let mut desk = moving();
@@ -100,7 +100,7 @@ fn a_signal_closes_without_asking() {
     until_released(&desk);
 }
 
-/// Issue 21.1: it does not depend on a window that is not updated, as on a display that does not answer.
+/// Issue 21.1: this works even if the window is not updated, for example because the display does not respond.
 #[test]
 fn drives_are_released_without_the_window() {
     let desk = moving();
@@ -112,8 +112,8 @@ fn drives_are_released_without_the_window() {
     assert!(!brakes.wait_for_window(Duration::ZERO));
 }
 
-/// Issue 21.1: a closed session stops its own drive before it asks; an endless run of another one stops because its
-/// page is not shown, and closing the window waits for a closed session.
+/// Issue 21.1: closing a session stops its own drive before a question is asked. An endless run in another session
+/// stops because its page is not shown. Closing the window waits for a closed session.
 #[test]
 fn closing_a_session_stops_its_motion() {
     let mut desk = in_control("sim:");
@@ -139,7 +139,7 @@ fn closing_a_session_stops_its_motion() {
     assert_eq!((status.state(), open), (State::NotReady, false));
 }
 
-/// Issue 21.1: after control was given back there is nothing to wait for.
+/// Issue 21.1: after control has been released, there is nothing to wait for.
 #[test]
 fn a_window_without_control_closes_immediately() {
     let mut desk = in_control("sim:");

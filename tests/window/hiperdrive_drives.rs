@@ -1,4 +1,5 @@
-//! Separate drives of a hub: text typed for one, messages about it, and its motion while another one is shown.
+//! Separate drives of a hub: text typed for one drive, messages about it, and its motion while another one is
+//! displayed.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -30,7 +31,7 @@ fn moves(studio: &Studio, drive: DriveNumber) -> bool {
     studio.hiperdrive().unwrap().state(drive) == Some(State::Moving)
 }
 
-/// Issue 21.7: effort and *Endless* of one drive are not those of another.
+/// Issue 21.7: speed and torque and the *Endless* setting of one drive do not apply to another.
 #[test]
 fn settings_of_one_drive_do_not_apply_to_another() {
     let mut desk = in_control(HUB);
@@ -59,7 +60,7 @@ fn settings_of_one_drive_do_not_apply_to_another() {
     assert_eq!((unit(&desk).moves.move_speed_torque(ONE), unit(&desk).moves.jog_speed_torque(ONE)), (slow, slow));
 }
 
-/// Issue 21.7: a second motion is rejected with a message, and ends no running one, for any drive.
+/// Issue 21.7: a second motion is rejected with a message and does not end the running one, for any drive.
 #[test]
 fn a_second_motion_waits_for_the_end_of_the_first() {
     let mut desk = in_control(HUB);
@@ -109,7 +110,7 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
     });
 }
 
-/// Issue 21.7: a waiting job is not discarded by a request to another drive.
+/// Issue 21.7: a request to another drive does not discard a waiting job.
 #[test]
 fn a_paused_job_is_not_discarded_by_another_drive() {
     let mut desk = in_control(HUB);
@@ -137,7 +138,7 @@ fn a_paused_job_is_not_discarded_by_another_drive() {
     desk.until("it stands", |studio| !studio.is_moving());
 }
 
-/// Issue 21.7: messages name the drive of a hub; an adapter has one.
+/// Issue 21.7: messages name the drive of a hub. An adapter has only one.
 #[test]
 fn messages_name_the_drive() {
     for (link, own, named) in [(HUB, two(), Some("drive 2")), ("sim:", ONE, None)] {
@@ -159,7 +160,7 @@ fn messages_name_the_drive() {
     }
 }
 
-/// Issue 21.7: the values sent during a motion, and those set meanwhile.
+/// Issue 21.7: the values sent for a motion are displayed separately from those set in the meantime.
 #[test]
 fn the_pending_speed_is_shown_apart_from_the_sent_one() {
     let mut desk = in_control("sim:");
@@ -176,7 +177,7 @@ fn the_pending_speed_is_shown_apart_from_the_sent_one() {
         let moves = &unit(desk).moves;
         let seen =
             (moves.move_speed_torque(ONE), moves.running_move_speed_torque(ONE), moves.running_jog_speed_torque(ONE));
-        // For another attempt.
+        // Prepares for another attempt.
         drive(desk, MotorCommand::MoveEffort(before));
         seen
     });
@@ -190,7 +191,7 @@ fn the_pending_speed_is_shown_apart_from_the_sent_one() {
     desk.until("it stands", |studio| !studio.is_moving());
 }
 
-/// Returns a hub on the screen, with its drives under control.
+/// Returns a window with a hub whose drives are under control.
 fn on_screen() -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, HUB, [1280.0, 900.0]);
     screen.until("it is read", |studio| {
@@ -221,8 +222,8 @@ fn target(screen: &Screen) -> Node<'_> {
     screen.harness.query_all_by(is_it).last().unwrap()
 }
 
-/// Moves drive 1, runs `then`, and observes while it still moves: a delayed window stops its motion, so that a busy
-/// computer may need several attempts.
+/// Moves drive 1, runs `then`, and observes the window while the drive still moves. A delayed window stops its motion,
+/// so a busy computer may need several attempts.
 fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: impl Fn(&Screen) -> bool) -> bool {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     let own = |action| Action::device(id, action);
@@ -262,7 +263,7 @@ fn has_entry(screen: &Screen, text: &str) -> bool {
     screen.harness.query_all_by(|node| node.value().is_some_and(|own| own.contains(text))).next().is_some()
 }
 
-/// Issue 21.7: the buttons that select a drive show its state, whichever drive is shown.
+/// Issue 21.7: the buttons that select a drive show its state, whichever drive is displayed.
 #[test]
 fn drive_buttons_show_the_drive_states() {
     let mut screen = on_screen();

@@ -1,4 +1,4 @@
-//! The jog panel: what is seen without scrolling, what its speed buttons set, and what the travel bar says.
+//! The jog panel: what is visible without scrolling, what its speed buttons set, and what the travel bar shows.
 
 use egui::Rect;
 use egui::accesskit::Role;
@@ -14,11 +14,12 @@ use crate::hiperdrive_motion::in_control;
 use crate::screen::Screen;
 use crate::tabs::Tabs as _;
 
-/// Height of the open lower panel, and of everything above the page.
+/// Height of the open lower panel, in points.
 const BELOW: f32 = 170.0;
+/// Height of everything above the page, in points.
 const ABOVE: f32 = 155.0;
 
-/// In control of the drives of a virtual device, in a window of this size.
+/// Opens a window of the given size that controls the drives of a virtual device.
 pub(crate) fn in_control_on_screen(link: &str, size: [f32; 2]) -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, link, size);
     screen.until("it is read", |studio| {
@@ -46,7 +47,7 @@ fn preset<'s>(screen: &'s Screen, percent: &str) -> Node<'s> {
     screen.harness.query_all_by(move |node| node.label().as_ref() == Some(&label)).next().unwrap()
 }
 
-/// Returns the number typed as the jog speed, which is the first on its page.
+/// Returns the entry for the jog speed, which is the first one on its page.
 fn typed_speed(screen: &Screen) -> Node<'_> {
     let label = screen.say("hd_effort.speed");
     let is_it = move |node: &AccessKitNode<'_>| node.role() == Role::TextInput && node.label().as_ref() == Some(&label);
@@ -55,15 +56,15 @@ fn typed_speed(screen: &Screen) -> Node<'_> {
     entries.remove(0)
 }
 
-/// Returns the areas of the pads, the state and the travel.
+/// Returns the area that contains the pads, the state and the travel bar.
 fn what_is_needed(screen: &Screen) -> Rect {
     let pads = ["hd_jog.down", "hd_jog.up"].map(|id| screen.button(id).rect());
     let states = ["Moving", "Fault"].map(|name| screen.harness.get_by_role_and_label(Role::Button, name).rect());
     [pads, states].into_iter().flatten().fold(travel(screen).rect(), Rect::union)
 }
 
-/// Issue 26.2: pads, state and travel are seen at 1280 × 800 beside an open trace, and at 1024 × 640 behind one scroll
-/// at most.
+/// Issue 26.2: pads, state and travel bar are visible together at 1280 × 800 beside an open trace, and at 1024 × 640
+/// after scrolling once at most.
 #[test]
 fn pads_state_and_travel_are_seen_together() {
     let needed = what_is_needed(&in_control_on_screen("sim:", [1280.0, 800.0]));
@@ -73,7 +74,7 @@ fn pads_state_and_travel_are_seen_together() {
     assert!(needed.bottom() <= ABOVE + 2.0 * page, "{needed:?}");
 }
 
-/// Issue 26: the keyboard goes on from a speed that was chosen with the pointer.
+/// Issue 26: the Tab key continues from a speed that was selected with the pointer.
 #[test]
 fn tab_continues_after_a_clicked_preset() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 800.0]);
@@ -84,7 +85,7 @@ fn tab_continues_after_a_clicked_preset() {
     assert!(preset(&screen, "100").accesskit_node().is_focused());
 }
 
-/// Issue 26.2: a preset sets the speed and begins nothing; it also replaces what was typed, even where that is no
+/// Issue 26.2: a preset sets the speed and does not start anything. It also replaces typed text, even if that is not a
 /// percentage.
 #[test]
 fn a_preset_sets_the_speed_and_begins_nothing() {
@@ -111,7 +112,7 @@ fn a_preset_sets_the_speed_and_begins_nothing() {
     assert!(screen.is_enabled("hd_jog.up") && speed(&screen) == 10);
 }
 
-/// Issue 26.2: 10 % after every connect, not only at the start.
+/// Issue 26.2: the speed is 10 % after every connection, not only at the start.
 #[test]
 fn every_connection_begins_slowly() {
     let mut desk = in_control("sim:");
@@ -125,7 +126,7 @@ fn every_connection_begins_slowly() {
     assert_eq!(unit(&desk).moves.jog_speed_torque(ONE), SpeedTorque::DEFAULT_JOG);
 }
 
-/// Issue 26.2: limits, position and target in the user's unit; outside the limits the way back in.
+/// Issue 26.2: limits, position and target are in the user's unit. Outside the limits, the way back in is shown.
 #[test]
 fn the_travel_bar_names_the_way_back_in() {
     let inside = in_control_on_screen("sim:?position=65536", [1280.0, 800.0]);

@@ -1,5 +1,5 @@
-//! HIPERDRIVE drives moved by the user from the window: the start of a motion, its refresh, and all its ends. The
-//! standstill is read from the drive itself.
+//! HIPERDRIVE drives moved by the user from the window: the start of a motion, its refresh, and every way in which it
+//! ends. The standstill is read from the drive itself.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -20,7 +20,7 @@ use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit, write};
 use crate::hiperdrive_acts::{drive_until, hold_pad_until, hold_until, set_off, warned, while_it_moves};
 use crate::support::{Desk, LONG};
 
-/// Returns the status from the drive itself, independent of the window.
+/// Returns the status, read from the drive itself and independent of the window.
 fn status(desk: &Desk) -> StatusWord {
     let target = unit(desk).target.clone().unwrap();
     // Sending advances its time.
@@ -31,7 +31,7 @@ fn is_at_standstill(desk: &Desk) -> bool {
     status(desk).is_set(StatusBit::Standstill)
 }
 
-/// Returns a studio in control of the drives of a virtual device.
+/// Returns a studio that controls the drives of a virtual device.
 pub(crate) fn in_control(link: &str) -> Desk {
     let mut desk = read(link);
     act(&mut desk, Hiperdrive::Take);
@@ -57,7 +57,7 @@ fn jog(desk: &mut Desk) {
     hold_pad_until(desk, press, "it moves", |_| {}, moves);
 }
 
-/// Waits for the standstill without polling the window: the stop has been requested before.
+/// Waits for the standstill without polling the window, because the stop has already been requested.
 #[track_caller]
 fn until_standstill(desk: &Desk) {
     let began = Instant::now();
@@ -82,7 +82,7 @@ fn a_jog_turns_the_drive_while_it_is_held() {
     desk.until("the window knows it", |studio| !studio.is_moving());
     let where_it_stands = unit(&desk).actual_values(ONE).unwrap().position;
     assert!(where_it_stands != 0);
-    // A late hold, and a repeated key, begin nothing.
+    // A late refresh of the hold and a repeated key start nothing.
     drive(&mut desk, MotorCommand::JogHold);
     drive(&mut desk, MotorCommand::JogPress { direction: Direction::Clockwise, repeated: true });
     desk.settle();
@@ -119,7 +119,8 @@ fn hiding_the_jog_pad_ends_a_jog_immediately() {
         ("focus", |desk| desk.act(Action::LetGo)),
         ("tab", |desk| desk.act(Action::ShowTab(crate::tabs::BISS))),
         ("dialog", |desk| desk.connect(connect::ConnectAction::Open)),
-        // With the act that asks, not with the dialog's frame: the system may take half a second for that.
+        // The stop happens with the request for the dialog, not with its frame, because the system may take half a
+        // second for that.
         ("file dialog", |desk| desk.act(Action::AskOpen)),
         ("file dialog of the device", |desk| command(desk, DeviceCommand::AskSave)),
         ("question", |desk| {
@@ -224,7 +225,8 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     assert_eq!(warned(&desk).last(), Some(&"hd_refused.endless"));
 }
 
-/// The factory scale has 65,536 steps a turn. Moves begin with 25 % of 35 rpm (parameter 166): 35 turns take 4 minutes.
+/// The factory scale has 65,536 steps per turn. Moves initially use 25 % of 35 rpm (parameter 166), so 35 turns take 4
+/// minutes.
 #[test]
 fn distance_and_duration_of_a_move_are_estimated() {
     let desk = in_control("sim:");
@@ -312,7 +314,7 @@ fn limits_set_by_another_master_are_read_before_any_motion() {
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
 
-/// Issue 21.4: a drive outside its limits reports it, the pad that leads further out is blocked with its reason, and
+/// Issue 21.4: a drive outside its limits reports this. The pad that leads further out is blocked with the reason. It
 /// can be permitted for one press at a time, at 10 % speed and 25 % torque.
 #[test]
 fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
@@ -349,7 +351,7 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
         });
         assert!(unit(&desk).check_can_jog(ONE, up).is_err(), "freed for one press");
     }
-    // A permission ends with a stop, and with another page of the window.
+    // A permission ends with a stop, and when another page of the window is opened.
     drive(&mut desk, MotorCommand::AllowOutward(up));
     desk.act(Action::StopMotion);
     assert!(unit(&desk).check_can_jog(ONE, up).is_err());
@@ -359,8 +361,8 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     assert!(unit(&desk).check_can_jog(ONE, up).is_err());
 }
 
-/// Issue 21.4: with only status bit 15, and the position well inside, the inward direction is not known: nothing moves,
-/// and each pad can be permitted for one press.
+/// Issue 21.4: if only status bit 15 is set and the position is well inside, the inward direction is unknown. Nothing
+/// moves, and each pad can be permitted for one press.
 #[test]
 fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
     let mut desk = in_control("sim:?defect=says-outside");
@@ -400,13 +402,13 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
     assert!(is_at_standstill(&desk));
 }
 
-/// Issue 21.11: unreadable settings may contain a lock: nothing moves before they are read.
+/// Issue 21.11: unreadable settings may contain a lock, so nothing moves until they have been read.
 #[test]
 fn unreadable_settings_lock_motion() {
     let mut desk = in_control("sim:");
     let path = desk.outside.store().settings_path();
     let _ = std::fs::remove_file(&path);
-    // A link to itself cannot be read.
+    // A symbolic link to itself cannot be read.
     std::os::unix::fs::symlink(&path, &path).unwrap();
     desk.until("nothing may move", |studio| {
         studio.hiperdrive().unwrap().may_move(ONE).is_err_and(|why| why.id() == "hd_lock.settings")

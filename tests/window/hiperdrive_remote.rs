@@ -1,4 +1,4 @@
-//! A window that is operated over a remote desktop: motion that lasts until it is stopped ends and does not begin.
+//! A window that is operated over a remote desktop. Motion that lasts until it is stopped ends, and cannot be started.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

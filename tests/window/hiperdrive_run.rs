@@ -1,4 +1,4 @@
-//! Runs at a speed: their own speed and torque, and the condition of an endless run.
+//! Runs at a speed: their own speed and torque, and the conditions for an endless run.
 
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
@@ -20,7 +20,7 @@ fn effort(speed: u8, torque: u8) -> SpeedTorque {
     SpeedTorque { speed: Percent::new(speed).unwrap(), torque: Percent::new(torque).unwrap() }
 }
 
-/// Issue 26: a run used the values of moves, which begin at 25 % speed and 100 % torque, without a separate entry.
+/// Issue 26: runs used the values of moves, which initially are 25 % speed and 100 % torque, without separate entries.
 #[test]
 fn a_run_has_its_own_speed_and_torque() {
     let mut desk = in_control("sim:");
@@ -51,7 +51,7 @@ fn shows(screen: &Screen, words: &str) -> bool {
     screen.harness.query_all_by_label(words).next().is_some()
 }
 
-/// Issue 26: the condition is on the card also while it is met, and names the parameters that do not meet it.
+/// Issue 26: the condition is shown on the card even while it is met. It names the parameters that do not meet it.
 #[test]
 fn the_condition_of_an_endless_run_is_on_its_card() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 1400.0]);

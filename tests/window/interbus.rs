@@ -1,5 +1,5 @@
-//! The INTERBUS tab by actions: reading, parameters and cams with edits, a write with its review, tables of cams, and
-//! the question before a running machine is disturbed.
+//! The INTERBUS tab, operated through actions: reading, parameters and cams with edits, a write with its review, tables
+//! of cams, and the question before a running machine is disturbed.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;
@@ -14,7 +14,7 @@ use encoder_studio::devices::interbus::state::{Edit, Encoder, InterbusAction as 
 
 use crate::support::{Desk, GATE};
 
-/// An encoder that is read, with cams in it.
+/// Link to an encoder that contains cams.
 const CAMS: &str = "sim:?steps=3600&revolutions=1&cams=demo";
 
 fn connected(link: &str) -> Desk {
@@ -76,7 +76,7 @@ fn cam(number: u8) -> CamNumber {
     CamNumber::new(number).unwrap()
 }
 
-/// Reviews the edits and writes them; returns the cost of the plan.
+/// Reviews and writes the edits. Returns the cost of the plan.
 #[track_caller]
 fn write(desk: &mut Desk) -> String {
     wish(desk, DeviceCommand::Review);
@@ -126,16 +126,17 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     assert!(!own.is_dirty());
     let wanted = own.staged.device().unwrap().program(program(2)).unwrap().cams[5].unwrap();
     assert_eq!((wanted.start.get(), wanted.stop.get()), (7000, 40));
-    // Read for the window, the plan, the write and after it: 8 + 1 + 1 + 1; written: 2.
+    // Read for the window, for the plan, for the write and after it: 8 + 1 + 1 + 1. Written: 2.
     desk.until("stores are counted", |studio| {
         studio.interbus().unwrap().store_count() == Some(encoder_studio::worker::commit::CycleCount::complete(13))
     });
-    // Rejected in its entry, and nothing changes.
+    // The entry rejects the value, and nothing changes.
     edit(&mut desk, Edit::Cam { program: program(1), cam: cam(0), start: 7200, stop: 1, on: true });
     assert!(encoder(&desk).refusal.is_some() && !encoder(&desk).is_dirty());
 }
 
-/// Issue 26: the plot showed positions beyond the range beside rows within it. A turn of the shaft is the whole range.
+/// Issue 26: the plot showed positions beyond the range while the rows showed them within it. A turn of the shaft is
+/// the whole range.
 #[test]
 fn the_plot_shows_the_position_of_the_rows() {
     let mut desk = read("sim:?steps=3600&revolutions=1&rpm=60");
@@ -198,7 +199,7 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
     wish(&mut desk, DeviceCommand::Read);
     desk.settle();
     assert_eq!((desk.notice_count("ib_stop.first"), sent(&desk)), (1, 0));
-    // Issue 22.31: a profile of its content selects cam programs.
+    // Issue 22.31: saving a profile of its content selects cam programs.
     command(&mut desk, DeviceCommand::AskSave);
     act(&mut desk, Interbus::Save("k3.ron".into()));
     desk.settle();
@@ -212,7 +213,7 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
     act(&mut desk, Interbus::ReadPrograms(vec![program(3)]));
     desk.until("the program is read", |studio| studio.interbus().unwrap().known_program_count() == 1);
     until_ready(&mut desk);
-    // After a lost connection it is not known.
+    // After the connection was lost, this is unknown.
     desk.outside.wire(GATE).unplug();
     desk.until("it is lost", |studio| matches!(studio.interbus().unwrap().session.phase, Phase::Lost(_)));
     desk.outside.wire(GATE).plug();
@@ -224,7 +225,7 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
 #[test]
 fn a_pasted_table_is_previewed_with_the_rounding_of_each_edge() {
     let mut desk = read(CAMS);
-    // A machine of 360 degrees over 3600 steps: a tenth of a degree is a step.
+    // A machine of 360 degrees over 3600 steps, where a tenth of a degree is one step.
     act(&mut desk, Interbus::SetScale(Scale::in_degrees(3600.0, 0).unwrap()));
     let table = "program;cam;name;start;stop\n3;0;glue;10,05;20\n3;1;glue;30;40\n3;2;knife;350;400\n9;0;x;1;2\n";
     act(&mut desk, Interbus::PasteTable(program(1), table.to_owned()));
@@ -239,10 +240,10 @@ fn a_pasted_table_is_previewed_with_the_rounding_of_each_edge() {
     assert!(own.import.is_none() && own.has_cam_edits());
     let wanted = own.staged.edited_values().unwrap();
     let edges = |number| wanted.cam(program(3), cam(number)).map(|own| (own.start.get(), own.stop.get()));
-    // 350 to 400 degrees pass the end: 400 is 40.
+    // 350 to 400 degrees pass the end of the range, where 400 is 40.
     assert_eq!((edges(1), edges(2)), (Some((300, 400)), Some((3500, 400))));
     assert_eq!(wanted.name(program(3), cam(2)), Some("knife"));
-    // A file, exported and imported.
+    // A file is exported and imported.
     let path = desk.outside.path("cams.csv");
     act(&mut desk, Interbus::SaveTable { path: path.clone(), decimal_comma: true });
     desk.until("it is written", |_| path.exists());

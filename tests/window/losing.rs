@@ -1,4 +1,5 @@
-//! Stopping half-way, pulling the cable, exchanging the encoder: edits remain, and are never written into another one.
+//! Stopping half-way, unplugging the cable, exchanging the encoder. Edits remain and are never written to another
+//! encoder.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -24,7 +25,7 @@ pub(crate) fn lost(studio: &Studio) -> bool {
     studio.hiperface().is_some_and(|encoder| matches!(encoder.session.phase, Phase::Lost(_)))
 }
 
-/// Opens a profile of the virtual encoder in which four single bytes differ, beside the encoder.
+/// Opens a profile of the virtual encoder that differs in four single bytes, beside the encoder.
 fn with_a_profile(desk: &mut Desk) {
     let encoder = desk.encoder().session.id;
     let path = desk.outside.path("mine.ron");
@@ -58,10 +59,10 @@ fn a_stopped_restore_reports_progress_and_can_be_completed() {
     desk.wire().release();
     desk.until("it has ended", failed);
     let ReviewState::Failed { texts, begun: true, .. } = &desk.review().state else { panic!() };
-    // The exchange in progress is completed; nothing after it is begun.
+    // The exchange in progress is completed, and no other one begins.
     assert_eq!(texts[0], crate::texts::text("write.cancelled").with("done", 2).with("planned", 4));
     assert_eq!(texts[1].id(), "write.backup");
-    // Issue 22.14: the list of operations remains, with the completed ones.
+    // Issue 22.14: the list of operations remains visible and marks the completed ones.
     let sheet = desk.studio.selected_device().unwrap().review_sheet().unwrap();
     assert!(matches!(sheet.stage, Stage::Failed { begun: true, done: 2, .. }), "{:?}", sheet.stage);
     assert_eq!(sheet.lines.len(), 4);
@@ -132,7 +133,7 @@ fn a_cable_pulled_while_reading_is_reported_once() {
     assert_eq!(frames.back().unwrap().bytes, "40 46 06", "what passed at last is shown");
 }
 
-/// Another encoder on the same cable: the edits wait for the one they were made for.
+/// Another encoder is connected to the same cable. The edits wait for the encoder for which they were made.
 #[test]
 fn edits_return_only_with_their_own_encoder() {
     let mut desk = Desk::at_port("");
@@ -170,7 +171,7 @@ fn serial(studio: &Studio) -> Option<&str> {
     Some(&identity.serial.serial_number)
 }
 
-/// The adapter stays plugged in, its encoder does not: no link is lost, and the program is not told.
+/// The adapter stays plugged in, but its encoder is exchanged. No link is lost, and the program is not notified.
 #[test]
 fn an_encoder_swapped_behind_the_adapter_is_detected_before_planning() {
     let mut desk = Desk::at_port("");
@@ -198,7 +199,7 @@ fn a_plan_for_a_swapped_encoder_is_discarded_with_a_notice() {
     assert_eq!((desk.notice_count("session.plan_of_another"), desk.notice_count("session.other_encoder")), (1, 0));
 }
 
-/// The survey after the replug is stopped: the encoder is not identified, and the edits are not offered to it.
+/// The survey after reconnecting is stopped. The encoder is not identified, and the edits are not offered to it.
 #[test]
 fn a_stopped_reading_offers_no_edits_to_another_encoder() {
     let mut desk = Desk::at_port("");
@@ -243,7 +244,7 @@ fn a_new_address_is_used_by_this_and_the_next_session() {
     assert_eq!(desk.encoder().session.source, encoder_studio::app::session::Source::Link(link.parse().unwrap()));
 }
 
-/// The cable is pulled after the address was changed and before it is read back.
+/// The cable is unplugged after the address was changed and before it is read back.
 #[test]
 fn a_change_by_an_interrupted_write_is_followed() {
     let mut desk = Desk::at_port("");
@@ -306,7 +307,7 @@ fn changed_settings_are_followed_after_the_restart() {
     assert_eq!(*desk.phase(), Phase::Connected);
 }
 
-/// The link is open without an answer: that is neither connected nor lost.
+/// The link is open but there is no answer. The encoder is neither connected nor lost.
 #[test]
 fn a_silent_encoder_is_not_shown_as_connected() {
     let mut desk = Desk::at_port("");
@@ -416,7 +417,7 @@ fn live_values_continue_around_a_job_and_end_with_the_cable() {
     assert_eq!(desk.notice_ids(Severity::Error), ["link.lost"], "once");
 }
 
-/// The failure was in transit when the user made a new request: it belongs to the earlier request.
+/// The failure was in transit when the user made a new request. It belongs to the earlier request.
 #[test]
 fn a_late_failure_does_not_affect_newer_live_values() {
     let mut desk = Desk::at_port("");
@@ -428,7 +429,7 @@ fn a_late_failure_does_not_affect_newer_live_values() {
         assert!(began.elapsed() < crate::support::LONG, "what is shown is what the worker does");
         std::thread::sleep(Duration::from_millis(2));
     }
-    // The event follows at once.
+    // The event follows immediately.
     std::thread::sleep(Duration::from_millis(50));
     desk.wire().exchange("");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));

@@ -1,4 +1,4 @@
-//! Height of the pages in a small window: each is seen completely after one scroll.
+//! Height of the pages in a small window. Each page must be completely visible after scrolling once.
 
 use egui::Role;
 use egui_kittest::kittest::Queryable;
@@ -8,17 +8,18 @@ use crate::screen::Screen;
 use crate::tabs::{BISS, HIPERDRIVE, INTERBUS, SSI, Tabs as _};
 
 const SIZE: [f32; 2] = [1024.0, 640.0];
-/// Left and right edge of a page, between the navigation and the Live panel.
+/// Left and right edge of a page between the navigation and the Live panel.
 const PAGE: (f32, f32) = (160.0, 764.0);
-/// Height of the header, and of the status line below the page.
+/// Height of the header, in points.
 const HEADER: f32 = 48.0;
+/// Height of the status line below the page, in points.
 const STATUS: f32 = 36.0;
-/// Height of the bar of a drive.
+/// Height of the bar of a drive, in points.
 const BAR: f32 = 88.0;
-/// Pages on which a table, an editor or a text scrolls by itself.
+/// Pages on which a table, an editor or a text scrolls separately.
 const SCROLLED: [&str; 5] = ["page.registers", "page.memory", "page.data", "page.export", "page.parameters"];
 
-/// Returns the lower end of the page, also where it is not visible.
+/// Returns the position of the lower end of the page, which may not be visible.
 fn end_of_page(screen: &Screen) -> f32 {
     let counts = |role| {
         matches!(
@@ -28,7 +29,7 @@ fn end_of_page(screen: &Screen) -> f32 {
     };
     let nodes = screen.harness.query_all_by(|node| counts(node.role()));
     let rects = nodes.map(|node| node.rect()).filter(|rect| rect.left() > PAGE.0 && rect.right() < PAGE.1);
-    // The status line and the edit bar stay where they are.
+    // The status line and the edit bar stay in place.
     let below = SIZE[1] - STATUS;
     rects.filter(|rect| rect.top() < below - 44.0 || rect.top() > SIZE[1]).map(|rect| rect.bottom()).fold(0.0, f32::max)
 }

@@ -1,5 +1,6 @@
-//! A press and its release reach the same button, and the keyboard focus remains, whatever appears or disappears
-//! meanwhile elsewhere in the window (issue 21.7: clicks on a drive's button were lost while its limits were read).
+//! A press and its release must reach the same button, and the keyboard focus must remain, whatever appears or
+//! disappears elsewhere in the window (issue 21.7: clicks on the button of a drive were lost while its limits were
+//! read).
 
 use std::collections::BTreeMap;
 
@@ -15,17 +16,17 @@ use crate::support::{DRIVE, GATE, KIT, Outside, PORT, is_review};
 
 const SIZE: [f32; 2] = [1280.0, 900.0];
 
-/// Each kind of device on a cable: its tab, its link, its place in the test, and a command of its reading.
+/// Each kind of device on a cable: its tab, its link, its location in the test, and a command used to read it.
 const KINDS: [(Tab, &str, &str, u8); 4] = [
     (crate::tabs::HIPERFACE, "serial", PORT, 0x52),
     (crate::tabs::BISS, "serial", KIT, 0x01),
     // Function 4 reads a word.
     (crate::tabs::INTERBUS, "modbus", GATE, 4),
-    // The service that gets an attribute.
+    // The service that reads an attribute.
     (crate::tabs::HIPERDRIVE, "enip", DRIVE, 0x0E),
 ];
 
-/// Returns the widgets that can be pressed or typed into, by name, if the name is unique.
+/// Returns the widgets that can be pressed or typed into, by name. Only unique names are included.
 fn widgets(screen: &Screen) -> BTreeMap<String, String> {
     let (mut found, mut several) = (BTreeMap::new(), Vec::new());
     for node in screen.harness.query_all_by(|node| {
@@ -64,7 +65,7 @@ fn notices_and_progress_do_not_move_buttons() {
         ready(&mut screen);
         let id = screen.studio().selected_device().unwrap().id();
         if tab == crate::tabs::INTERBUS {
-            // Otherwise it is not read.
+            // Otherwise, it is not read.
             screen.act(Action::device(id, Interbus::Stopped(true)));
         }
         screen.act(Action::Dismiss);
@@ -91,7 +92,7 @@ fn notices_and_progress_do_not_move_buttons() {
     }
 }
 
-/// Issue 21.7: a click during which a notice disappears, or appears.
+/// Issue 21.7: a notice appears or disappears during a click.
 #[test]
 fn a_click_counts_despite_layout_changes_during_it() {
     for comes in [true, false] {
@@ -117,8 +118,8 @@ fn a_click_counts_despite_layout_changes_during_it() {
     }
 }
 
-/// Issue 22.29: keyboard focus on a button of a review that is still planned is not on any button of the completed
-/// plan.
+/// Issue 22.29: if a button of a review has the keyboard focus while the plan is still being made, no button has the
+/// focus once the plan is complete.
 #[test]
 fn a_review_becoming_ready_ignores_a_key_pressed_before() {
     let mut screen = Screen::opened(Outside::new(""), Some(&format!("serial:{PORT}")), SIZE);

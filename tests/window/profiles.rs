@@ -1,4 +1,4 @@
-//! Profiles: saved in the encoder, opened beside it, edited without one.
+//! Profiles: saved from the encoder, opened beside it, and edited without one.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -90,7 +90,7 @@ fn saving_suggests_a_file_named_after_the_encoder() {
     assert_eq!(desk.studio.take_path_question(), Some(FileQuestion::Open));
 }
 
-/// Two saves at once: the second is rejected, and the first goes to its own file.
+/// Two saves at once: the second one is rejected, and the first one is written to its own file.
 #[test]
 fn a_refused_save_does_not_redirect_another() {
     let mut desk = Desk::new_form("");
@@ -127,7 +127,7 @@ fn an_unreadable_profile_is_reported_and_not_changed() {
     assert_eq!(desk.studio.devices().len(), 1);
 }
 
-/// Issue 22.17: the unknown parts of a newer schema would be lost with a save.
+/// Issue 22.17: saving would lose the unknown parts of a newer schema.
 #[test]
 fn a_profile_of_a_newer_schema_is_neither_saved_nor_written() {
     let (mut desk, path) = saved();
@@ -158,12 +158,12 @@ fn a_reloaded_profile_keeps_its_edits() {
     desk.until("it is read again", |studio| studio.hiperface().unwrap().staged.device_byte(0, 1) == Some(0x4E));
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 
-    // A file that is invalid by now does not change anything.
+    // A file that has become invalid does not change anything.
     fs::write(&path, "(").unwrap();
     desk.command(DeviceCommand::Read);
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "profile.invalid"));
     assert_eq!((desk.encoder().staged.device_byte(0, 1), desk.edits()), (Some(0x4E), vec![(0, 0, b'X')]));
-    // Nor is it replaced without a question.
+    // It is not replaced without a question either.
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is asked", |studio| studio.diverged.is_some());
     assert_eq!(fs::read_to_string(&path).unwrap(), "(");
@@ -205,12 +205,12 @@ fn a_profile_is_restored_to_another_encoder_only_with_permission() {
     assert_eq!(desk.wire().wear(), 0);
 }
 
-/// Returns the sheet of the review that is shown.
+/// Returns the sheet of the displayed review.
 fn sheet(desk: &Desk) -> ReviewSheet {
     desk.studio.selected_device().unwrap().review_sheet().unwrap()
 }
 
-/// A profile with these edits, rejected by another encoder because that is of another serial number.
+/// Saves a profile with the given edits. Another encoder rejects it because of its serial number.
 fn refused_by_another(desk: &mut Desk, path: &std::path::Path, edits: &[(usize, &[u8])]) {
     desk.open(&format!("serial:{OTHER_PORT}"));
     desk.until_read();
@@ -229,21 +229,21 @@ fn until_refused(desk: &mut Desk) {
     desk.until_ready();
 }
 
-/// Opens a profile with a commutation offset beside the review for another encoder, with every permission given.
+/// Opens a profile with a commutation offset and the review for another encoder, with all permissions granted.
 fn onto_another(desk: &mut Desk, path: &std::path::Path) {
     refused_by_another(desk, path, &[(0, b"CO1"), (20, b"?")]);
     allow_another(desk);
     desk.until_planned();
 }
 
-/// Allows another serial number, then another type: it is an SKS36.
+/// Allows another serial number and then another type, because the encoder is an SKS36.
 fn allow_another(desk: &mut Desk) {
     desk.toggle(Permit::OtherDevice);
     until_refused(desk);
     desk.toggle(Permit::TypeMismatch);
 }
 
-/// Issue 22.7: with both permissions, the values to set up again are in the review, at its end, and after an
+/// Issue 22.7: with both permissions, the values that must be readjusted are in the review, at its end and after an
 /// interruption.
 #[test]
 fn values_of_another_mounting_are_named_until_the_end() {
@@ -278,7 +278,8 @@ fn values_of_another_mounting_are_named_until_the_end() {
     assert!(matches!(sheet(&desk).stage, Stage::Done { .. }) && sheet(&desk).redo.is_some());
 }
 
-/// Issue 22.8: a field with bytes of unknown meaning is a question, and left unchanged unless it is answered otherwise.
+/// Issue 22.8: the user is asked about a field with bytes of unknown meaning. It is left unchanged unless the user
+/// decides otherwise.
 #[test]
 fn the_review_asks_about_bytes_of_unknown_meaning() {
     let (mut desk, path) = saved();
@@ -299,7 +300,7 @@ fn the_review_asks_about_bytes_of_unknown_meaning() {
     assert!(sheet(&desk).lines.is_empty() && sheet(&desk).redo.is_none());
 }
 
-/// Issue 22.9: another type of encoder is named, and needs an explicit permission.
+/// Issue 22.9: another type of encoder is named and requires an explicit permission.
 #[test]
 fn another_type_of_encoder_needs_a_separate_permission() {
     let (mut desk, path) = saved();
@@ -313,7 +314,8 @@ fn another_type_of_encoder_needs_a_separate_permission() {
     assert!(sheet(&desk).warnings.iter().any(|text| text.id() == "review.other_type"));
 }
 
-/// Issue 22.14: data that were read can be saved although the connection is lost; the file says that it is not current.
+/// Issue 22.14: data that have been read can be saved even after the connection is lost. The file states that they are
+/// not current.
 #[test]
 fn read_values_can_be_saved_after_the_line_is_lost() {
     let mut desk = Desk::at_port("");
@@ -334,14 +336,14 @@ fn read_values_can_be_saved_after_the_line_is_lost() {
     let told = |studio: &Studio| studio.services.log.notices().last().map(|own| own.texts.clone()).unwrap_or_default();
     desk.until("it is told", |studio| told(studio).iter().any(|text| text.id() == "session.saved_as_read"));
     assert!(told(&desk.studio).iter().any(|text| text.id() == "session.saved_without"));
-    // If nothing was read, there is nothing to save.
+    // If nothing has been read, there is nothing to save.
     let mut desk = Desk::fresh("");
     desk.open("serial:/dev/nothing");
     desk.until("it cannot be opened", crate::losing::lost);
     assert!(!desk.studio.selected_device().unwrap().is_savable());
 }
 
-/// A typed path replaces nothing without a question.
+/// If a path is typed, no existing file is replaced without a question.
 #[test]
 fn an_existing_file_is_replaced_only_after_confirmation() {
     let mut desk = Desk::new_form("");
@@ -360,7 +362,7 @@ fn an_existing_file_is_replaced_only_after_confirmation() {
     desk.until("the question again", |studio| studio.question.is_some());
     desk.act(Action::Confirm);
     desk.until("it is saved", |_| std::fs::read_to_string(&path).unwrap() != "dear");
-    // The file exists before the window knows that it was written.
+    // The file exists before the window knows that it has been written.
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "session.saved"));
     let new = folder.path().join("new.ron");
     desk.act(typed(&new));
@@ -368,7 +370,7 @@ fn an_existing_file_is_replaced_only_after_confirmation() {
     assert!(desk.studio.question.is_none());
 }
 
-/// Issue 22.24: a relative path is the same file for as long as the window is open, whichever way it was entered.
+/// Issue 22.24: a relative path refers to the same file as long as the window is open, however it was entered.
 #[test]
 fn a_relative_path_is_saved_to_the_same_file() {
     let (mut desk, path) = saved();
@@ -392,7 +394,8 @@ fn a_relative_path_is_saved_to_the_same_file() {
     assert_ne!(read_text(&rel).unwrap(), read_text(&path).unwrap());
     assert_eq!(read_text(&home.join("rel.ron")).unwrap(), read_text(&path).unwrap());
 
-    // Dropped and typed, it is the existing session; the home folder's has its own.
+    // Whether dropped or typed, the file belongs to the existing session. The file in the home folder has a session of
+    // its own.
     desk.act(Action::Open("./rel.ron".into()));
     desk.act(Action::Typed(FileQuestion::Open, "rel.ron".into()));
     desk.until("both were read", |studio| studio.files_being_opened().is_empty());
@@ -402,7 +405,7 @@ fn a_relative_path_is_saved_to_the_same_file() {
     assert_eq!(desk.encoder().session.data_source(), home.join("rel.ron").display().to_string());
 }
 
-/// Issue 22.24: a link to a recording leads to the same file at the next start, from any folder.
+/// Issue 22.24: a link to a recording leads to the same file at the next start, whatever the current folder.
 #[test]
 fn a_link_to_a_recording_is_remembered_with_its_full_path() {
     let mut desk = Desk::fresh("");

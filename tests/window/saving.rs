@@ -1,4 +1,5 @@
-//! Saving into an open file: changes by others cause a question, and comments of the user between the entries remain.
+//! Saving to an open file. If others have changed it, the user is asked, and the user's comments between the entries
+//! remain.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -30,7 +31,7 @@ fn opened(text: &str) -> (Desk, PathBuf) {
     (desk, path)
 }
 
-/// Returns whether the profile of a file is shown.
+/// Returns whether the profile of a file is displayed.
 fn is_open(studio: &Studio) -> bool {
     studio.selected_device().is_some_and(|own| *own.phase() == Phase::Offline)
 }
@@ -44,7 +45,7 @@ fn save(desk: &mut Desk) {
     desk.act(Action::Save(id));
 }
 
-/// Waits until the edits of the shown document are on disk.
+/// Waits until the edits of the displayed document are on disk.
 fn until_kept(desk: &mut Desk) {
     desk.until("the draft is kept", |studio| studio.selected_device().is_some_and(AnyDevice::is_draft_kept));
     desk.settle();
@@ -58,7 +59,7 @@ fn is_asked(studio: &Studio) -> bool {
     studio.diverged.is_some()
 }
 
-/// Issue 22.25: the open file is written without a question, another one needs an answer.
+/// Issue 22.25: the open file is written without a question, but another file requires an answer.
 #[test]
 fn saving_writes_the_open_file_and_save_as_asks_for_another() {
     let (mut desk, path) = opened(OWN);
@@ -67,7 +68,7 @@ fn saving_writes_the_open_file_and_save_as_asks_for_another() {
     desk.until("it is saved", is_saved);
     assert!(desk.studio.question.is_none() && desk.studio.diverged.is_none());
     assert_eq!(desk.studio.take_file_question(), None);
-    // Issue 22.26: one byte is one place.
+    // Issue 22.26: one byte changes in only one place.
     assert_eq!(file_text(&path), OWN.replace("\"00 01", "\"58 01"));
     desk.command(DeviceCommand::AskSave);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
@@ -78,7 +79,7 @@ fn saving_writes_the_open_file_and_save_as_asks_for_another() {
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
 }
 
-/// Issue 22.25: changes by an editor are not replaced without a question, and each answer to it has the stated effect.
+/// Issue 22.25: changes made by an editor are not replaced without a question, and each answer has the stated effect.
 #[test]
 fn saving_over_a_changed_file_asks_first() {
     let theirs = OWN.replace("as wired", "as rewired").replace("01 02", "AA 02").replace("// end", "// theirs");
@@ -125,7 +126,7 @@ fn saving_over_a_changed_file_asks_first() {
     desk.act(Action::Resolve(ConflictResolution::Merge));
     desk.until("it is saved", is_saved);
     assert_eq!(file_text(&path), theirs.replace("\"00 AA", "\"58 01"));
-    // The saved content is the open one: the next save finds no difference.
+    // The saved content is the open one, so the next save finds no difference.
     desk.put(0, 2, b"Z");
     save(&mut desk);
     desk.until("it is saved", is_saved);
@@ -138,8 +139,8 @@ fn saving_over_a_changed_file_asks_first() {
     assert_eq!(file_text(&path), theirs);
 }
 
-/// Issue 22.25: comments alone are no difference, and remain; a deleted file is written again; an invalid one is
-/// reported.
+/// Issue 22.25: comments alone do not count as a difference and remain. A deleted file is written again, and an invalid
+/// one is reported.
 #[test]
 fn only_changed_values_count_as_a_difference() {
     let (mut desk, path) = opened(OWN);
@@ -167,7 +168,7 @@ fn only_changed_values_count_as_a_difference() {
     desk.until("it is saved", is_saved);
     assert!(file_text(&path).contains("58 59 5A"));
 
-    // A file of a newer version of the program is never replaced by an older form.
+    // A file from a newer version of the program is never replaced with an older form.
     let newer = file_text(&path).replace("schema: 1", "schema: 2");
     fs::write(&path, &newer).unwrap();
     desk.put(0, 3, b"W");
@@ -179,7 +180,7 @@ fn only_changed_values_count_as_a_difference() {
     assert_eq!(file_text(&path), newer);
 }
 
-/// Issue 22.26: comments that have no place in the saved text are named before it is saved.
+/// Issue 22.26: comments that have no place in the new text are named before it is saved.
 #[test]
 fn saving_asks_before_losing_comments() {
     let rows = "\"00 01 02 03 04 05 06 07\", // name plate\r\n\"08 09 0A 0B 0C 0D 0E 0F\"";
@@ -202,7 +203,7 @@ fn saving_asks_before_losing_comments() {
     assert!(file_text(&path).starts_with("// bench 3\r\n") && file_text(&path).contains("// the motor\r\n"));
 }
 
-/// Issue 22.26: the byte order mark of a file remains.
+/// Issue 22.26: the byte order mark of a file is preserved.
 #[test]
 fn a_byte_order_mark_is_kept() {
     let (mut desk, path) = opened(&format!("\u{FEFF}{OWN}"));
@@ -212,7 +213,7 @@ fn a_byte_order_mark_is_kept() {
     assert_eq!(file_text(&path), format!("\u{FEFF}{}", OWN.replace("\"00 01", "\"58 01")));
 }
 
-/// Issue 22.28: a save ends the earlier notices about its document, and not those about another one.
+/// Issue 22.28: a save removes the earlier notices about its document but not those about another one.
 #[test]
 fn a_save_dismisses_the_notices_of_its_document() {
     let (mut desk, path) = opened(OWN);
@@ -248,7 +249,8 @@ fn a_save_dismisses_the_notices_of_its_document() {
     assert_eq!(*desk.phase(), Phase::Offline);
 }
 
-/// Issue 22.28: a measuring range below the cams of a profile is reported on every page, and again with a save.
+/// Issue 22.28: a measuring range that does not include all cams of a profile is reported on every page, and again when
+/// the profile is saved.
 #[test]
 fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
     let mut desk = Desk::fresh("");
@@ -277,8 +279,8 @@ fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
     assert_eq!(file_text(&path), text.replace("steps: 3600", "steps: 1800"));
 }
 
-/// Issue 22.27: changes of a colleague in a closed file remain, and so do earlier edits, for a layout, parameters and
-/// cams alike; also if the file is only read again.
+/// Issue 22.27: a colleague's changes to a closed file remain, and so do earlier edits, for a layout, parameters and
+/// cams alike. This also applies if the file is only read again.
 #[test]
 fn restored_edits_keep_changes_by_others() {
     let ssi = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
@@ -329,8 +331,8 @@ fn restored_edits_keep_changes_by_others() {
     }
 }
 
-/// Issue 22.27: earlier edits that result in no valid layout together with the changes of a colleague are left out,
-/// with a message.
+/// Issue 22.27: earlier edits that do not form a valid layout together with a colleague's changes are dropped with a
+/// message.
 #[test]
 fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
@@ -356,7 +358,7 @@ fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
     assert_eq!(file_text(&path), theirs);
 }
 
-/// Issue 22.27: a draft of an earlier version, which contained the complete layout, still opens.
+/// Issue 22.27: a draft of an earlier program version, which contains the complete layout, can still be opened.
 #[test]
 fn a_draft_of_a_complete_layout_still_opens() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";

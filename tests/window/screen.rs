@@ -1,4 +1,5 @@
-//! The real window of a test's studio, used by its accessible labels, which are read from the table of texts.
+//! The real window of a test's studio. It is operated through its accessible labels, which are taken from the
+//! catalogues of texts.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -17,7 +18,7 @@ use encoder_studio::ui::{Window, install_fonts};
 use crate::support::{LONG, Outside, asks_for_drive, log, only_master};
 use crate::texts;
 
-/// The window as the program shows it.
+/// The window as displayed by the program.
 pub(crate) struct Shown(Window);
 
 impl eframe::App for Shown {
@@ -32,7 +33,7 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
-    /// Opens a window that begins with this link, or else with the virtual encoder.
+    /// Opens a window that initially shows the given link, or the virtual encoder if there is none.
     pub(crate) fn opened(outside: Outside, link: Option<&str>, size: [f32; 2]) -> Self {
         let mut studio = outside.studio();
         studio.start_with(link.map(|link| link.parse::<LinkUrl>().unwrap()), None);
@@ -40,7 +41,7 @@ impl Screen {
         Self::of(outside, studio, size)
     }
 
-    /// Creates a window on a studio of that world.
+    /// Creates a window for a studio of the given environment.
     pub(crate) fn of(outside: Outside, studio: Studio, size: [f32; 2]) -> Self {
         let harness = Harness::builder().with_size(Vec2::from(size)).build_eframe(|cc| {
             install_fonts(&cc.egui_ctx);
@@ -49,7 +50,7 @@ impl Screen {
         Screen { harness, outside }
     }
 
-    /// Creates a window that begins with this link in this tab.
+    /// Creates a window that initially shows the given link in the given tab.
     pub(crate) fn opened_in(tab: Tab, link: &str, size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), Some("serial:/dev/nothing"), size);
         screen.act(Action::ShowTab(tab));
@@ -59,7 +60,7 @@ impl Screen {
         screen
     }
 
-    /// Creates a window in which the virtual encoder is connected and read.
+    /// Creates a window in which the virtual encoder is connected and has been read.
     pub(crate) fn new_form(size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), None, size);
         screen.until("the encoder is read", |studio| {
@@ -101,14 +102,14 @@ impl Screen {
         }
     }
 
-    /// Runs an action without a widget.
+    /// Executes an action without a widget.
     pub(crate) fn act(&mut self, action: Action) {
         self.studio().mailbox().send(action);
         self.steps();
         self.only_master();
     }
 
-    /// Sends a command to the shown encoder.
+    /// Sends a command to the displayed encoder.
     pub(crate) fn ask(&mut self, action: Hiperface) {
         self.act(Action::device(self.encoder().session.id, action));
     }
@@ -125,7 +126,7 @@ impl Screen {
         text.to_string_in(self.language())
     }
 
-    /// Returns the button of that name; if there are several, the last drawn one is on top.
+    /// Returns the button with the given name. If there are several, returns the last one, which is on top.
     #[track_caller]
     pub(crate) fn button(&self, id: &'static str) -> Node<'_> {
         self.buttons(id).last().unwrap_or_else(|| panic!("there is no button {:?}", self.say(id)))
@@ -140,7 +141,7 @@ impl Screen {
         self.buttons(id).next().is_some()
     }
 
-    /// Checks that no visible text is in the other language, is a text ID, or has an unfilled argument.
+    /// Checks that no visible text is in the other language, is a text id, or has an argument that was not filled in.
     #[track_caller]
     pub(crate) fn check_language(&self) {
         let foreign = texts::foreign_to(self.language());
@@ -174,7 +175,7 @@ impl Screen {
         self.only_master();
     }
 
-    /// Answers the question about a drive on the line, if there is one: these tests have no drive.
+    /// Answers the question about a drive on the line, if it is asked. These tests have no drive.
     fn only_master(&mut self) {
         if asks_for_drive(self.studio()) {
             self.studio().mailbox().send(Action::Confirm);

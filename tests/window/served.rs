@@ -1,4 +1,4 @@
-//! An adapter that is reached over a network, as a real one would be.
+//! An adapter that is accessed over a network, like a real one.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -11,14 +11,14 @@ use encoder_studio::kinds::attachable_kinds;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::Moment;
 
-/// An adapter on a TCP port, for one connection after the other.
+/// An adapter on a TCP port that serves one connection after another.
 pub(crate) struct ServedDevice {
     port: u16,
     /// Received requests.
     heard: Arc<Mutex<Vec<Request>>>,
-    /// The connection is to be closed.
+    /// Whether to close the connection.
     cut: Arc<Mutex<bool>>,
-    /// The adapter that replaces it.
+    /// The adapter that replaces this one.
     other: Arc<Mutex<Option<Adapter>>>,
 }
 

@@ -1,4 +1,4 @@
-//! Setting the position of a HIPERFACE encoder: units of the entry, the review, and what restores a position.
+//! Setting the position of a HIPERFACE encoder: the units of the entry, the review, and how a position can be restored.
 
 use egui::Role;
 use egui_kittest::Node;
@@ -40,7 +40,7 @@ fn choose(screen: &mut Screen, unit: &'static str) {
     screen.steps();
 }
 
-/// The virtual SKM36 has 4096 steps a turn: 10,240 steps are two turns and 180°, or 900°.
+/// The virtual SKM36 has 4096 steps per turn, so 10,240 steps are two turns and 180°, or 900°.
 #[test]
 fn a_position_can_be_entered_in_every_unit() {
     let mut screen = setup();
@@ -58,14 +58,15 @@ fn a_position_can_be_entered_in_every_unit() {
     assert_eq!(value(&screen, "position_card.wanted"), "900,000");
 }
 
-/// The review names the place in turns and degrees, the access code, and nothing is said to restore the position.
+/// The review states the position in turns and degrees and names the access code. It does not claim that the position
+/// can be restored.
 #[test]
 fn the_review_of_a_position_names_turns_and_the_access_code() {
     let mut screen = setup();
     assert!(screen.shows(&screen.say("position_card.not_restored")));
     type_into(&mut screen, "position_card.wanted", "10240");
     let label = screen.say("position_card.plan");
-    // Other cards have a button of that name. This one is below the entry.
+    // Other cards also have a button with this name. This one is below the entry.
     let below = field(&screen, "position_card.wanted").rect();
     let plans =
         screen.harness.query_all_by(move |node| node.role() == Role::Button && node.label().as_ref() == Some(&label));

@@ -1,5 +1,5 @@
-//! The shell of the window: the lower panel and the line below it, what stays in its place while messages come and go,
-//! and live values that start by themselves.
+//! The shell of the window: the lower panel and the line below it, what stays in place while messages appear and
+//! disappear, and live values that start automatically.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use crate::tabs::Tabs as _;
 const LARGE: [f32; 2] = [1280.0, 800.0];
 const SMALL: [f32; 2] = [1024.0, 640.0];
 
-/// A desk with the program's own settings, at a link.
+/// Creates a desk that uses the program's default settings and the given link.
 fn usual(query: &str, link: Option<&str>) -> Desk {
     let outside = Outside::new(query);
     let mut desk = Desk { studio: outside.usual_studio(), outside };
@@ -28,7 +28,7 @@ fn is_live(studio: &Studio) -> bool {
     studio.selected_device().is_some_and(|device| device.is_polling())
 }
 
-/// The places of these buttons on the page that is open.
+/// Returns the areas of the given buttons on the open page.
 fn places(screen: &Screen, ids: &[&'static str]) -> Vec<Rect> {
     ids.iter().map(|id| screen.button(id).rect()).collect()
 }
@@ -73,7 +73,7 @@ fn clickable_widgets_do_not_move_when_a_message_or_a_job_appears() {
         screen.until("it is told", |studio| studio.services.log.current().is_some());
         assert!(screen.has_button("shell.dismiss"));
         assert_eq!(places(&screen, &ids), before, "a notice");
-        // A job, beside the notice and without it.
+        // A job, with and without a notice beside it.
         let wire = screen.outside.wire(PORT).clone();
         wire.hold_at(0x56, 1);
         screen.command(DeviceCommand::Read);
@@ -93,7 +93,7 @@ fn clickable_widgets_do_not_move_when_a_message_or_a_job_appears() {
         assert_eq!(places(&screen, &ids), before, "a job");
         wire.release();
         screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
-        // The encoder falls silent, and its ways back come.
+        // The encoder falls silent, and the buttons for reconnecting appear.
         screen.outside.wire(PORT).unplug();
         screen.command(DeviceCommand::Read);
         screen.until("it is lost", |studio| {
@@ -132,7 +132,7 @@ fn live_values_start_by_themselves_on_virtual_devices_and_confirmed_lines() {
 fn live_values_that_were_stopped_stay_so_at_the_next_start() {
     let mut desk = usual("", None);
     desk.until("it starts", is_live);
-    // STOP is for now; the button in the panel is the choice.
+    // STOP applies only once, while the button in the panel is a lasting choice.
     desk.act(Action::Stop);
     assert!(!is_live(&desk.studio) && !desk.studio.settings.live_stopped);
     desk.command(DeviceCommand::Reconnect);
@@ -153,7 +153,7 @@ fn live_values_that_were_stopped_stay_so_at_the_next_start() {
     desk.until("it starts again", is_live);
 }
 
-/// Reading the position by itself does not change anything: nothing but reading passes over the line.
+/// Reading the position automatically does not change anything. Only reading takes place on the line.
 #[test]
 fn live_values_that_start_by_themselves_only_read() {
     let mut desk = usual("", None);
@@ -216,7 +216,7 @@ fn the_last_frames_stay_visible_while_new_ones_arrive() {
     let row = screen.harness.query_all_by_label(&time).last().expect("the last frame is drawn").rect();
     let line = screen.button("status_line.close").rect();
     assert!(row.bottom() <= line.top(), "{row:?} above {line:?}");
-    // Scrolled away, nothing follows until it is asked for.
+    // Scrolled up, the list does not follow until this is requested.
     screen.harness.event(egui::Event::PointerMoved(row.center()));
     screen.harness.event(egui::Event::MouseWheel {
         unit: egui::MouseWheelUnit::Point,
@@ -264,11 +264,11 @@ fn the_trace_is_searched_and_paused() {
     });
     search(&mut screen, read_position);
     assert!(count(&screen, read_position) > 0);
-    // Each of the virtual encoder's replies is valid.
+    // Each reply of the virtual encoder is valid.
     screen.click("trace.faults");
     assert!(screen.shows(&no_match));
     screen.click("trace.faults");
-    // Paused, the list stays as it is.
+    // While it is paused, the list does not change.
     let before = count(&screen, read_position);
     screen.click("trace.follow");
     let frames = screen.encoder().session.trace.next_number();
@@ -281,7 +281,7 @@ fn the_trace_is_searched_and_paused() {
     assert!(count(&screen, read_position) > before);
 }
 
-/// A frame that is clicked shows all of its bytes beside the list, and the arrow keys go to the frames around it.
+/// If a frame is clicked, all of its bytes are shown beside the list, and the arrow keys select the adjacent frames.
 #[test]
 fn a_selected_frame_is_shown_with_its_bytes() {
     use egui_kittest::kittest::Queryable;
@@ -316,7 +316,7 @@ fn a_selected_frame_is_shown_with_its_bytes() {
     assert!(!screen.shows("0000  "));
 }
 
-/// A trace that the window saves has the frames of the list, in the format that `replay:` reads.
+/// A trace saved by the window contains the frames of the list in the format that `replay:` reads.
 #[test]
 fn the_trace_is_saved_as_a_recording() {
     let mut desk = usual("", Some("sim:"));
@@ -334,7 +334,7 @@ fn the_trace_is_saved_as_a_recording() {
     assert!(text.starts_with("# encoder-studio trace 1\n"));
 }
 
-/// A file that is asked for by its path stands over the window: the keys of the lower panel wait.
+/// While the window asks for the path of a file, the keys of the lower panel have no effect.
 #[test]
 fn the_key_of_the_lower_panel_waits_for_dialogs() {
     let mut screen = Screen::new_form(SMALL);

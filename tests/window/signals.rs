@@ -1,4 +1,5 @@
-//! The Signals tab without drawing: captures are read, corrected, rejected and cancelled, and the shown one remains.
+//! The Signals tab without drawing: captures are read, corrected, rejected and cancelled, and the displayed one
+//! remains.
 
 use crate::tabs::Tabs as _;
 use std::fmt::Write as _;
@@ -33,7 +34,7 @@ impl Desk {
         path
     }
 
-    /// Opens a capture like the window, and waits.
+    /// Opens a capture like the window does, and waits until it has been read.
     #[track_caller]
     fn open_capture(&mut self, path: &std::path::Path) {
         self.act(Action::Open(path.to_owned()));
@@ -46,7 +47,7 @@ impl Desk {
     }
 }
 
-/// Returns a circle of half a volt: a hundred samples per period, `periods` of them, 10 µs apart.
+/// Returns `periods` periods of a circle with a radius of half a volt, with a hundred samples per period, 10 µs apart.
 pub(crate) fn circle(periods: usize) -> String {
     let mut text = "time [ms];SIN;COS\n".to_owned();
     for at in 0..=100 * periods {
@@ -73,7 +74,7 @@ fn a_capture_can_be_opened_without_a_session() {
     let measurement = desk.studio.signals().measurement().unwrap().clone();
     let analysis = measurement.analysis.as_ref().unwrap();
     assert!((analysis.ellipse.amplitude_v - 0.5).abs() < 1e-9);
-    // 100 steps of 10 µs are a period.
+    // 100 steps of 10 µs are one period.
     assert!((analysis.frequency_hz().unwrap() - 1000.0).abs() < 1e-6);
     assert_eq!(desk.studio.signals().findings(), []);
     desk.act(Action::AskOpen);
@@ -230,7 +231,7 @@ fn reading_can_be_cancelled_and_a_stale_capture_is_dropped() {
     assert_eq!(desk.studio.signals().table().unwrap().place, TableSource::Example(ExampleCapture::Healthy));
     assert_eq!(desk.notice_ids(Severity::Note), ["signal.cancelled"]);
     assert!(!desk.studio.can_stop());
-    // The later one counts, whichever is read sooner.
+    // The later one counts, whichever is read first.
     desk.act(Action::Open(large));
     desk.signals(Signals::Example(ExampleCapture::WithErrors));
     desk.until_measured();
@@ -273,7 +274,7 @@ impl Desk {
         self.signals(Signals::Source(action));
     }
 
-    /// Polls until the virtual signal is shown and meets the condition.
+    /// Polls until the virtual signal is displayed and meets the condition.
     #[track_caller]
     fn until_live(
         &mut self,
@@ -294,7 +295,7 @@ fn the_virtual_encoder_is_measured_repeatedly_with_its_settings() {
     desk.source(SourceAction::Start);
     assert_eq!(desk.studio.signals().signal_periods(), Some(512));
     assert!(desk.studio.can_stop());
-    // 512 periods per revolution at one revolution per second, in 0.2 s at 100 kHz.
+    // 512 periods per revolution at one revolution per second, during 0.2 s at 100 kHz.
     desk.until_live("it is measured", |own| own.samples == 20_000 && (own.frequency_hz().unwrap() - 512.0).abs() < 0.1);
     assert!(is_good(desk.studio.signals().findings()), "{:?}", desk.studio.signals().findings());
     desk.source(SourceAction::Set(Quantity::OffsetSine, 0.05));
@@ -304,7 +305,7 @@ fn the_virtual_encoder_is_measured_repeatedly_with_its_settings() {
     });
     desk.source(SourceAction::SetWindow(50));
     desk.until_live("less is measured", |own| own.samples == 5_000);
-    // With an open wire the receiver gets no valid signal in that channel.
+    // With an open wire, the receiver gets no valid signal in that channel.
     desk.source(SourceAction::SetOpenWire(Some(Wire::Sin)));
     desk.until("the open wire is refused", |studio| {
         studio.signals().measurement().is_some_and(|own| own.analysis.is_err())
@@ -336,7 +337,7 @@ fn holding_freezes_the_measurement_and_stopping_ends_it() {
     assert!(!desk.studio.signals().source().is_running() && !desk.studio.can_stop());
     let last = desk.studio.signals().measurement().unwrap().clone();
     let wakes = || desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst);
-    // A running task may still return.
+    // A task that is still running may return later.
     let began = std::time::Instant::now();
     let is_quiet = || {
         let before = wakes();
@@ -371,13 +372,13 @@ fn a_window_that_is_not_drawn_counts_lost_samples() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Set(Quantity::Rate, 1_000_000.0));
     desk.source(SourceAction::Start);
-    // At most 200 000 samples wait: a fifth of a second at 1 MHz.
+    // At most 200 000 samples wait, which is a fifth of a second at 1 MHz.
     let began = std::time::Instant::now();
     while desk.studio.signals().source().lost_samples() == 0 && began.elapsed() < crate::support::LONG {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     assert!(desk.studio.signals().source().lost_samples() > 0);
-    // A build for tests is too slow for that.
+    // A test build is too slow for that.
     desk.source(SourceAction::Set(Quantity::Rate, 50_000.0));
     desk.until_live("it goes on", |own| own.samples == 10_000);
 }
@@ -406,7 +407,7 @@ fn the_scope_shows_captures_and_live_signals_and_exports_a_readable_table() {
         studio.recorder_of(encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS)).unwrap().recorded_span()
     };
     let (from, to) = recorder(&desk.studio).unwrap();
-    // 401 rows with a header: 400 samples 5 µs apart.
+    // 401 rows including a header are 400 samples, 5 µs apart.
     assert_eq!(to.nanoseconds_since(from), 399 * 5_000);
     let path = desk.outside.path("scope.csv");
     let question = FileQuestion::Table {

@@ -1,5 +1,5 @@
-//! Sine and cosine through an adapter: the virtual one and one on a network, the shown values, and the message if there
-//! is none.
+//! Sine and cosine from an adapter, either the virtual one or one on a network: the displayed values, and the message
+//! if there is no adapter.
 
 use crate::tabs::Tabs as _;
 use std::time::Instant;
@@ -20,7 +20,7 @@ fn begin(desk: &mut Desk, link: &str, sample_hz: u32) {
     desk.signals(Signals::Source(SourceAction::StartAdapter));
 }
 
-/// Returns the number of samples in the scope, and the number of gaps between them; the first of all counts as one.
+/// Returns the number of samples in the scope, and the number of gaps between them. The first sample counts as a gap.
 fn recorded(studio: &Studio) -> (u64, usize) {
     let recorder = studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap();
     let history = recorder.history(&recorder.series()[0]).unwrap();
@@ -28,7 +28,7 @@ fn recorded(studio: &Studio) -> (u64, usize) {
     (history.indices().end, history.indices().filter(is_break).count())
 }
 
-/// The virtual adapter samples an encoder with 0.5 V and 1024 periods; a revolution takes ten seconds.
+/// The virtual adapter samples an encoder with 0.5 V and 1024 periods. One revolution takes ten seconds.
 #[test]
 fn the_virtual_adapter_is_measured_like_a_capture() {
     let mut desk = Desk::fresh("");
@@ -134,7 +134,7 @@ fn a_valid_adapter_link_is_remembered_and_an_invalid_one_is_not() {
     assert!(!desk.studio.signals().source().is_running());
 }
 
-/// The virtual adapter with `supply=switched` supplies its encoder only on command; 0.3 W at 8 V are 37 mA.
+/// With `supply=switched`, the virtual adapter supplies its encoder only on command. 0.3 W at 8 V are 37 mA.
 #[test]
 fn the_encoder_is_supplied_only_as_chosen() {
     let mut desk = Desk::fresh("");

@@ -1,4 +1,4 @@
-//! The calculators of the Signals tab as used by a user: typed and read.
+//! The calculators of the Signals tab as operated by a user.
 
 use crate::tabs::Tabs as _;
 use egui::Key;
@@ -9,7 +9,7 @@ use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use crate::screen::Screen;
 use crate::support::{Desk, HANGING, Outside};
 
-/// Height at which a complete page is drawn.
+/// Window size at which a complete page is drawn.
 const TALL: [f32; 2] = [1400.0, 1600.0];
 
 impl Screen {
@@ -32,7 +32,7 @@ impl Screen {
     }
 }
 
-/// Section 1: 512 periods at 12 000/min are 102.4 kHz; after 10 kΩ and 47 pF they lag by 16.825°.
+/// Section 1: 512 periods at 12 000/min are 102.4 kHz. After 10 kΩ and 47 pF, they lag by 16.825°.
 #[test]
 fn the_input_circuit_is_computed_while_typing() {
     let mut screen = Screen::calculator("page.input_circuit");
@@ -55,7 +55,7 @@ fn the_input_circuit_is_computed_while_typing() {
     assert!(screen.shows("338,6 kHz"));
 }
 
-/// Issue 26: the entries have the decimal sign of the language, from the start and after a change of the language.
+/// Issue 26: entries use the decimal sign of the language, both initially and after a change of the language.
 #[test]
 fn entries_are_shown_with_the_decimal_sign_of_the_language() {
     let mut screen = Screen::calculator("page.synchronise");
@@ -72,7 +72,8 @@ fn entries_are_shown_with_the_decimal_sign_of_the_language() {
     assert_eq!(phase(&screen), "0,25");
 }
 
-/// Section 4: A = 2A5Fh and φ = 0.02 are 339.02 of 1024 periods; a fifth of a period further φ is half a period off.
+/// Section 4: A = 2A5Fh and φ = 0.02 are 339.02 of 1024 periods. If φ is a fifth of a period further, it is off by half
+/// a period.
 #[test]
 fn absolute_and_analog_positions_are_synchronised_while_typing() {
     let mut screen = Screen::calculator("page.synchronise");
@@ -103,7 +104,7 @@ fn absolute_and_analog_positions_are_synchronised_while_typing() {
     assert!(screen.shows(&screen.say("help.synchronise")));
 }
 
-/// The virtual SKM36 at step 24: counts 409 and 511, according to its own signals.
+/// The virtual SKM36 at step 24: counts 409 and 511 according to its own signals.
 #[test]
 fn both_positions_are_read_from_the_selected_encoder() {
     let mut screen = Screen::opened(Outside::new("position=3224"), None, TALL);

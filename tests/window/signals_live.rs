@@ -1,4 +1,4 @@
-//! The virtual encoder without drawing: held, stopped, changed and started during other work.
+//! The virtual encoder without drawing: held, stopped, changed, and started during other work.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::analysis::history::Flags;
@@ -34,8 +34,8 @@ fn time_on_hold_is_a_gap_in_the_scope() {
     assert!(after.contains(&count) && !breaks.contains(&count), "{count}: {after:?}");
 }
 
-/// Issue 22.13: the number of periods per turn is requested, not assumed: until then there is no speed and no second of
-/// arc. The periods of the virtual encoder do not apply to a capture.
+/// Issue 22.13: the number of periods per turn is entered by the user rather than assumed. Until then, neither speed
+/// nor seconds of arc are shown. The periods of the virtual encoder do not apply to a capture.
 #[test]
 fn periods_are_not_assumed() {
     let mut desk = Desk::fresh("");
@@ -132,7 +132,7 @@ fn a_kept_capture_keeps_no_samples() {
 #[test]
 fn a_kept_capture_is_judged_by_the_selected_limits() {
     let mut desk = Desk::fresh("");
-    // 0.84 V: too little for HIPERFACE, good for AFS/AFM60.
+    // 0.84 V is too low for HIPERFACE but good for AFS/AFM60.
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 0.42)));
     desk.signals(Signals::SetFamily(Family::AfsAfm60));
     desk.signals(Signals::Source(SourceAction::Start));

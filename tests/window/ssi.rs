@@ -1,4 +1,5 @@
-//! The SSI tab by actions: a layout that is being designed, an encoder at the virtual adapter, the search for a layout.
+//! The SSI tab, operated through actions: designing a layout, an encoder at the virtual adapter, and the search for a
+//! layout.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;
@@ -14,7 +15,7 @@ use encoder_studio::devices::ssi::state::{
 
 use crate::support::Desk;
 
-/// Returns the tab of a desk on which nothing was connected.
+/// Returns a desk with the SSI tab, to which nothing has been connected.
 fn layout() -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::SSI));
@@ -67,7 +68,7 @@ fn a_layout_needs_no_device() {
     assert!(matches!(own.session.source, Source::New { .. }));
     assert_eq!((own.session.phase.clone(), own.is_dirty()), (Phase::Offline, false));
     assert_eq!(own.designer.family().unwrap().key, "ahm36");
-    // Reference section 8: AHM36, MT 123h, ST 2A5Bh, binary and Gray.
+    // Section 8 of the reference: AHM36, MT 123h, ST 2A5Bh, binary and Gray code.
     act(&mut desk, Ssi::Try(TrialInput::Place(0x123, 0x2A5B)));
     assert_eq!(encoder(&desk).displayed_frame().frame, 0x091_D4B6);
     act(&mut desk, Ssi::Enter(Field::Code, FieldInput::Choice(1)));
@@ -113,7 +114,7 @@ fn impossible_layouts_are_refused_and_change_nothing() {
     act(&mut desk, Ssi::Try(TrialInput::Bits("10102".to_owned())));
     assert_eq!(encoder(&desk).trial.problem().unwrap().id(), "ssi_trial.form");
     assert_eq!(*encoder(&desk).design(), before);
-    // In both languages, with both sides named.
+    // In both languages, and both sides are named.
     edit(&mut desk, Edit::Family("ahs36".to_owned()));
     act(&mut desk, Ssi::Enter(Field::Clocks, FieldInput::Number(14)));
     let words = encoder(&desk).designer.problem().unwrap().terminal_text();
@@ -125,7 +126,7 @@ fn a_frame_edited_by_hand_can_return_to_its_family() {
     let mut desk = layout();
     edit(&mut desk, Edit::Family("atm60".to_owned()));
     assert!(encoder(&desk).design().settings.is_some());
-    // A bit before the position: the ATM60 has no such frame.
+    // A bit before the position, which no frame of the ATM60 has.
     let mut frame = encoder(&desk).design().profile.descriptor.clone();
     (frame.clocks, frame.area, frame.lead) = (26, 26, 1);
     edit(&mut desk, Edit::Frame(Box::new(frame)));
@@ -135,7 +136,7 @@ fn a_frame_edited_by_hand_can_return_to_its_family() {
     let own = encoder(&desk).design();
     assert_eq!((own.profile.descriptor.clocks, own.settings.is_some()), (25, true));
     assert!(field(&desk, Field::Align).is_some() && field(&desk, Field::Lead).is_none());
-    // Without a family it can be anything.
+    // Without a family, it can have any value.
     edit(&mut desk, Edit::Free);
     act(&mut desk, Ssi::AddErrorBit);
     act(&mut desk, Ssi::Enter(Field::Parity, FieldInput::Choice(1)));
@@ -175,8 +176,8 @@ fn a_layout_is_saved_opened_and_survives_a_crash() {
     assert_eq!((own.range, own.code), (Range::Bits { multiturn: 12, singleturn: 12 }, Code::Gray));
 }
 
-/// The sheet and the table are in the language of the window; C and structured text are programs. Terms of TM PosInput
-/// as in its German manual.
+/// The sheet and the table are in the language of the window, while C and structured text are programs. The terms of TM
+/// PosInput are those of its German manual.
 #[test]
 fn exports_are_in_the_language_of_the_window() {
     let mut desk = layout();
@@ -219,7 +220,7 @@ fn every_export_is_written() {
             encoder(&desk).designer.export(format, Language::German).unwrap()
         );
     }
-    // The timing of a frame needs no family: 27 clocks at 400 kHz take 67.5 µs.
+    // The timing of a frame does not depend on a family: 27 clocks at 400 kHz take 67.5 µs.
     edit(&mut desk, Edit::Free);
     let picture = encoder(&desk).designer.export(ExportFormat::Timing, Language::English).unwrap();
     assert!(picture.contains("67.50 µs"), "{picture}");
@@ -243,7 +244,7 @@ fn words_of_an_adapter_are_plotted_live() {
     assert!(own.current_stream().is_some() && own.is_showing_live());
     let decoded = own.last().unwrap().decoded.as_ref().unwrap();
     assert!(decoded.is_valid && decoded.findings.is_empty());
-    // Another layout reads the same words again.
+    // Another layout decodes the same words again.
     let before = own.record.position_count();
     act(&mut desk, Ssi::Enter(Field::Singleturn, FieldInput::Number(12)));
     assert!(encoder(&desk).record.position_count() >= before);
@@ -281,8 +282,8 @@ fn a_layout_found_live_can_be_adopted() {
     act(&mut desk, Ssi::Find);
     desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
     let SearchState::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
-    // The end of 4096 turns was not passed, so the result is not certain. How many classes are left depends on the angle
-    // that the shaft turned meanwhile.
+    // The end of 4096 turns was not passed, so the result is uncertain. The number of remaining classes depends on the
+    // angle by which the shaft turned in the meantime.
     assert!(matches!(search.doubt, Some(SearchUncertainty::Open | SearchUncertainty::Close)), "{:?}", search.doubt);
     let is_afm60 = |member: &LayoutProposal| member.family.as_ref().is_some_and(|(key, _)| key == "afm60");
     let (class, member) = search
@@ -295,7 +296,7 @@ fn a_layout_found_live_can_be_adopted() {
     let own = encoder(&desk);
     assert_eq!(own.designer.family().unwrap().key, "afm60");
     assert_eq!(own.design().profile.descriptor.code, Code::Gray);
-    // The frames can be saved, and analysed again.
+    // The frames can be saved and analysed again.
     let path = desk.outside.path("frames.txt");
     act(&mut desk, Ssi::SaveFrames(path.clone()));
     desk.until("they are written", |_| path.exists());
@@ -318,7 +319,7 @@ fn a_layout_of_a_profile_is_used_for_an_encoder() {
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ttk70");
     wish(&mut desk, DeviceCommand::Undo);
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36");
-    // No data is written, with a message.
+    // No data is written, and a message says so.
     wish(&mut desk, DeviceCommand::Review);
     assert!(!desk.studio.selected_device().unwrap().is_reviewing());
 }
@@ -331,7 +332,7 @@ fn each_new_layout_has_a_separate_name_and_draft() {
     edit(&mut desk, Edit::Family("kh53".to_owned()));
     desk.settle();
     assert_eq!(desk.studio.devices().iter().map(|own| own.name()).collect::<Vec<_>>(), ["layout.ron", "layout-2.ron"]);
-    // After closing, the first name is free again; the edits under that name return with it.
+    // After closing, the first name is free again, and the edits under that name return with it.
     for id in desk.studio.devices().iter().map(|own| own.id()).collect::<Vec<_>>() {
         desk.act(Action::CloseSession(id));
         desk.act(Action::Confirm);
@@ -417,7 +418,7 @@ fn the_virtual_encoder_sends_the_edited_layout() {
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36", "the layout stays");
 }
 
-/// Reference section 8: AHS36 with 12 bits, its error bit fixed on clock 15 or following on 13.
+/// Section 8 of the reference: AHS36 with 12 bits, with its error bit fixed on clock 15 or following on clock 13.
 #[test]
 fn dragging_a_boundary_changes_the_family_settings() {
     let mut desk = layout();

@@ -21,7 +21,7 @@ fn the_studio_starts_with_the_virtual_encoder_and_no_polling() {
     let identity = encoder.identity.as_ref().unwrap();
     assert_eq!(identity.name, "SKM36");
     assert_eq!(identity.serial.serial_number, "GB0450179");
-    // Of 112 blocks the name plate takes two.
+    // The name plate occupies two of 112 blocks.
     assert_eq!(identity.memory, Some(FreeMemory { blocks: 110, fields: 1 }));
     assert_eq!(encoder.field(0).unwrap().bytes.as_ref().unwrap()[..6], *b"EMD71K");
     assert_eq!(encoder.counter, Some(0));
@@ -125,7 +125,7 @@ fn two_encoders_are_shown_one_at_a_time() {
     assert_eq!(desk.encoder().session.id, first);
     desk.act(Action::CloseSession(first));
     assert_eq!((desk.encoder().session.id, desk.studio.devices().len()), (second, 1));
-    // The same connection again is the same session.
+    // Opening the same connection again leads to the same session.
     desk.open(&format!("serial:{OTHER_PORT}?address=0x40"));
     desk.until_read();
     assert_eq!((desk.encoder().session.id, desk.studio.devices().len()), (second, 1));

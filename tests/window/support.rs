@@ -1,4 +1,4 @@
-//! Test support for the window's state: a studio in a separate environment, with two cables and a link that hangs
+//! Test support for the state of the window: a studio in a separate environment, with two cables and a link that hangs
 //! forever.
 
 use crate::tabs::Tabs as _;
@@ -32,50 +32,50 @@ use crate::novo::jobs::Novo;
 use crate::texts;
 use crate::wire::{TestLink, Wire};
 
-/// Time limit longer than any test, to detect a hanging thread.
+/// A time limit longer than any test, to detect a thread that hangs.
 pub(crate) const LONG: Duration = Duration::from_secs(60);
-/// The margin of `sim:` links.
+/// The reply margin of `sim:` links.
 pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 
-/// The environment of one test: a folder, and the devices of its links.
+/// The environment of a test: a folder, and the devices to which its links lead.
 pub(crate) struct Outside {
     pub(crate) folder: tempfile::TempDir,
     wires: BTreeMap<String, Arc<Wire>>,
     pub(crate) wakes: Arc<AtomicUsize>,
-    /// [`SLOW`] opens from now on.
+    /// Whether [`SLOW`] opens.
     pub(crate) opens: Arc<AtomicBool>,
     pub(crate) patience: GracePeriods,
     /// Answers to a search in the network.
     pub(crate) found: Vec<DiscoveredDevice>,
-    /// The existing kinds of devices.
+    /// The kinds of devices in the environment.
     pub(crate) program: Program,
 }
 
-/// The port of the encoder that `begin` finds; `sim:` leads to it too.
+/// The port of the encoder that `begin` finds. `sim:` leads to it as well.
 pub(crate) const PORT: &str = "/dev/enc0";
 /// A port with another encoder.
 pub(crate) const OTHER_PORT: &str = "/dev/enc1";
 /// A link that never opens.
 pub(crate) const HANGING: &str = "tcp:hanging:1";
-/// A link to the encoder at [`PORT`] that opens only on command; with another address at once.
+/// A link to the encoder at [`PORT`] that opens only on command. With another address, it opens immediately.
 pub(crate) const SLOW: &str = "tcp:slow:1";
 
-/// The port at which a BiSS encoder's configuration pin is.
+/// The port of a BiSS encoder's configuration pin.
 pub(crate) const KIT: &str = "/dev/kit0";
-/// The port of an adapter on another BiSS encoder's bus.
+/// The port of an adapter on the bus of another BiSS encoder.
 pub(crate) const ADAPTER: &str = "/dev/adapter0";
-/// The gateway before an INTERBUS encoder.
+/// The gateway of an INTERBUS encoder.
 pub(crate) const GATE: &str = "gate:502";
 /// An adapter with a HIPERDRIVE.
 pub(crate) const DRIVE: &str = "drive:44818";
-/// A port with an encoder of the kind that the tests bring along.
+/// A port with an encoder of the kind defined in the tests.
 pub(crate) const NOVO_PORT: &str = "/dev/novo0";
-/// Device servers in front of [`PORT`], [`KIT`] and [`ADAPTER`], as links name them.
+/// Device servers in front of [`PORT`], [`KIT`] and [`ADAPTER`], as named in links.
 pub(crate) const SERVERS: [(&str, &str); 3] = [("moxa:4001", PORT), ("moxa:4002", KIT), ("tcp:adapter:5000", ADAPTER)];
 
 impl Outside {
-    /// Creates encoders at [`PORT`] as `query` describes them, an SKS36 at [`OTHER_PORT`], kit encoders at [`KIT`] and
-    /// behind [`ADAPTER`].
+    /// Creates encoders at [`PORT`] as described by `query`, an SKS36 at [`OTHER_PORT`], and kit encoders at [`KIT`]
+    /// and behind [`ADAPTER`].
     pub(crate) fn new(query: &str) -> Self {
         let wires = [
             Wire::new(PORT, query),
@@ -176,14 +176,14 @@ impl Outside {
         }
     }
 
-    /// A studio whose live values start only when they are asked for, so that a test knows what passes over the line.
+    /// Creates a studio whose live values start only on request, so that a test knows what is sent on the line.
     pub(crate) fn studio(&self) -> Studio {
         let mut studio = self.usual_studio();
         studio.settings.live_stopped = true;
         studio
     }
 
-    /// A studio as the program starts it.
+    /// Creates a studio as started by the program.
     pub(crate) fn usual_studio(&self) -> Studio {
         let wakes = self.wakes.clone();
         let wake = move || {
@@ -200,26 +200,26 @@ pub(crate) struct Desk {
 }
 
 impl Desk {
-    /// Returns the samples of the position that are recorded without a value to believe.
+    /// Returns the number of recorded positions that have no valid value.
     pub(crate) fn bad_positions(&self) -> u64 {
         let recorder = &self.encoder().recording().recorder();
         let history = recorder.history(&recorder.series()[0]).unwrap();
         history.statistics(0, history.indices()).map_or(0, |statistics| statistics.bad)
     }
 
-    /// Creates a studio that has not begun.
+    /// Creates a studio that has not been started.
     pub(crate) fn fresh(query: &str) -> Self {
         let outside = Outside::new(query);
         Desk { studio: outside.studio(), outside }
     }
 
-    /// Creates the same, with the kind that the tests bring along.
+    /// Creates the same studio with the kind defined in the tests.
     pub(crate) fn with_novo() -> Self {
         let outside = Outside { program: crate::tabs::with_novo(), ..Outside::new("") };
         Desk { studio: outside.studio(), outside }
     }
 
-    /// Creates one that is connected to [`PORT`], which is read, in an environment with short time-outs.
+    /// Creates a desk connected to [`PORT`], which has been read, in an environment with short time-outs.
     pub(crate) fn impatient(query: &str) -> Self {
         let mut outside = Outside::new(query);
         let milliseconds = Duration::from_millis;
@@ -235,7 +235,7 @@ impl Desk {
         desk
     }
 
-    /// Creates one that is connected to the virtual encoder, which is read.
+    /// Creates a desk connected to the virtual encoder, which has been read.
     pub(crate) fn new_form(query: &str) -> Self {
         let mut desk = Self::fresh(query);
         desk.studio.start_with(None, None);
@@ -243,7 +243,7 @@ impl Desk {
         desk
     }
 
-    /// Creates one that is connected to [`PORT`], which is read.
+    /// Creates a desk connected to [`PORT`], which has been read.
     pub(crate) fn at_port(query: &str) -> Self {
         let mut desk = Self::fresh(query);
         desk.open(&format!("serial:{PORT}"));
@@ -251,7 +251,7 @@ impl Desk {
         desk
     }
 
-    /// Drops the studio without closing it, and starts it again in the same environment.
+    /// Drops the studio without closing it and starts it again in the same environment.
     pub(crate) fn crash(self) -> Self {
         let Desk { studio, outside } = self;
         drop(studio);
@@ -309,7 +309,7 @@ impl Desk {
         }
     }
 
-    /// Polls until the shown encoder is read and nothing runs.
+    /// Polls until the displayed encoder has been read and nothing is running.
     #[track_caller]
     pub(crate) fn until_read(&mut self) {
         self.until("the encoder is read", |studio| {
@@ -318,13 +318,13 @@ impl Desk {
         self.settle();
     }
 
-    /// Polls until the shown encoder is ready for the next job.
+    /// Polls until the displayed encoder is ready for the next job.
     #[track_caller]
     pub(crate) fn until_ready(&mut self) {
         self.until("ready", |studio| studio.hiperface().is_some_and(|own| own.session.is_ready()));
     }
 
-    /// Waits for the results of tasks on threads: drafts, lists, settings.
+    /// Waits for the results of tasks on threads, such as drafts, lists and settings.
     pub(crate) fn settle(&mut self) {
         for _ in 0..30 {
             self.studio.poll();
@@ -333,7 +333,7 @@ impl Desk {
         texts::check_all(&self.studio);
     }
 
-    /// Polls until the edits that are shown are on disk.
+    /// Polls until the displayed edits are on disk.
     #[track_caller]
     pub(crate) fn until_kept(&mut self) {
         let folder = self.outside.path("data/drafts");
@@ -365,19 +365,19 @@ impl Desk {
         self.ask(Hiperface::Put { field, address, bytes: bytes.to_vec() });
     }
 
-    /// Returns the edits, as field, address and byte.
+    /// Returns the edits, each as field, address and byte.
     pub(crate) fn edits(&self) -> Vec<(u8, usize, u8)> {
         self.encoder().staged.edited_bytes().collect()
     }
 
-    /// Polls until the plan is there.
+    /// Polls until the plan is ready.
     #[track_caller]
     pub(crate) fn until_planned(&mut self) {
         self.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
         self.until_ready();
     }
 
-    /// Polls until it is written and read again.
+    /// Polls until the plan has been written and read back.
     #[track_caller]
     pub(crate) fn until_written(&mut self) {
         self.until("it is written", |studio| is_review(studio, |state| matches!(state, ReviewState::Done(..))));
@@ -385,7 +385,7 @@ impl Desk {
         self.settle();
     }
 
-    /// Consents to the plan that is shown.
+    /// Consents to the displayed plan.
     pub(crate) fn write_as_shown(&mut self) {
         let nothing = HiperfacePlan { base: Base::default(), ops: Vec::new() };
         let shown = self.encoder().session.review.as_ref().and_then(Review::prepared_plan);
@@ -393,7 +393,7 @@ impl Desk {
         self.ask(Hiperface::Write(id));
     }
 
-    /// Gives a permit in the review, or takes it back.
+    /// Grants a permission in the review, or revokes it.
     pub(crate) fn toggle(&mut self, permit: Permit) {
         let session = self.encoder().session.id;
         self.act(Action::Review(session, ReviewAction::Toggle(permit)));
@@ -408,19 +408,19 @@ impl Desk {
         self.until_written();
     }
 
-    /// Returns the names of the texts in all notices of at least this severity.
+    /// Returns the ids of the texts in all notices of at least the given severity.
     pub(crate) fn notice_ids(&self, least: Severity) -> Vec<&'static str> {
         let notices = self.studio.services.log.notices().filter(|notice| notice.severity >= least);
         notices.flat_map(|notice| notice.texts.iter().map(encoder_studio::app::Text::id)).collect()
     }
 
-    /// Returns the number of times that a text was reported.
+    /// Returns how many times a text was reported.
     pub(crate) fn notice_count(&self, id: &str) -> usize {
         self.notice_ids(Severity::Note).iter().filter(|own| **own == id).count()
     }
 }
 
-/// Answers the question about a drive on the line, if there is one: these tests have no drive. The effect of the
+/// Answers the question about a drive on the line, if it is asked. These tests have no drive. The effect of the
 /// question is tested in `connecting`.
 pub(crate) fn only_master(studio: &mut Studio) {
     if asks_for_drive(studio) {
@@ -428,7 +428,7 @@ pub(crate) fn only_master(studio: &mut Studio) {
     }
 }
 
-/// Returns whether the program asks about a drive on the line.
+/// Returns whether the program is asking about a drive on the line.
 pub(crate) fn asks_for_drive(studio: &Studio) -> bool {
     studio.question.as_ref().is_some_and(|question| question.text.id() == "question.drive")
 }
@@ -437,7 +437,7 @@ pub(crate) fn is_review(studio: &Studio, wanted: impl Fn(&ReviewState) -> bool) 
     studio.hiperface().and_then(|encoder| encoder.session.review.as_ref()).is_some_and(|review| wanted(&review.state))
 }
 
-/// Returns all messages, for a test that fails.
+/// Returns all messages, to print them if a test fails.
 pub(crate) fn log(studio: &Studio) -> String {
     let words = |notice: &encoder_studio::app::Notice| {
         let words: Vec<String> = notice.texts.iter().map(encoder_studio::app::Text::terminal_text).collect();

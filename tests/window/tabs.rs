@@ -1,4 +1,4 @@
-//! The tabs of the program, and the content of each.
+//! The tabs of the program, and their content.
 
 use std::sync::OnceLock;
 
@@ -23,13 +23,13 @@ pub(crate) const SIGNALS: Tab = Tab::named("Signals");
 /// The tab of the kind defined in the tests.
 pub(crate) const NOVEL: Tab = Tab::named("Novo");
 
-/// Returns the program with a kind from outside after its own.
+/// Returns the program with an external kind of device appended to its own kinds.
 pub(crate) fn with_novo() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| Program::new(&[KINDS, &[NOVO]].concat(), &[signals::TAB], &[], &[]))
 }
 
-/// The content of the tabs of a studio.
+/// Access to the content of a studio's tabs.
 pub(crate) trait Tabs {
     fn hiperface(&self) -> Option<&hiperface::state::Encoder>;
     fn biss(&self) -> Option<&biss::state::Encoder>;
@@ -65,32 +65,32 @@ impl Tabs for Studio {
     }
 }
 
-/// Searches encoders on the line of the form.
+/// Returns the action that searches for encoders on the line of the form.
 pub(crate) fn search_for(options: FindOptions) -> ConnectAction {
     ConnectAction::find::<EncoderSearchForm>(SearchAction::Search(options))
 }
 
-/// Connects to an encoder that was found.
+/// Returns the action that connects to an encoder that was found.
 pub(crate) fn choose(at: usize) -> ConnectAction {
     ConnectAction::find::<EncoderSearchForm>(SearchAction::Choose(at))
 }
 
-/// Searches devices in the network.
+/// Returns the action that searches for devices in the network.
 pub(crate) fn discover() -> ConnectAction {
     ConnectAction::find::<DiscoveryFinder>(DiscoveryAction::Discover)
 }
 
-/// Selects a device that has answered.
+/// Returns the action that selects a device that has answered.
 pub(crate) fn choose_answer(at: usize) -> ConnectAction {
     ConnectAction::find::<DiscoveryFinder>(DiscoveryAction::Choose(at))
 }
 
-/// Returns the search of a dialog.
+/// Returns the encoder search of a dialog.
 pub(crate) fn search(dialog: &ConnectDialog) -> Option<&Search> {
     dialog.finder_as::<EncoderSearchForm>()?.search.as_ref()
 }
 
-/// Returns the question to the network of a dialog.
+/// Returns the network search of a dialog.
 pub(crate) fn discovery(dialog: &ConnectDialog) -> Option<&Discovery> {
     dialog.finder_as::<DiscoveryFinder>()?.discovery.as_ref()
 }

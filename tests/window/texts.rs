@@ -1,5 +1,5 @@
-//! Every text in these tests is complete in both languages: it is in the table, each place of it is filled in, and no
-//! name of the table occurs twice.
+//! Checks of every text in these tests. Each text must be in a catalogue, be complete in both languages, and have all
+//! its arguments filled in. No id may occur twice.
 
 use crate::tabs::Tabs as _;
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,7 +23,7 @@ struct Row {
     terminal: String,
 }
 
-/// All catalogues of texts.
+/// The common catalogue and those of all devices, buses and tools.
 const CATALOGUES: [&Catalogue; 9] = [
     &COMMON,
     &hiperface::state::TEXTS,
@@ -36,13 +36,13 @@ const CATALOGUES: [&Catalogue; 9] = [
     &crate::novo::state::TEXTS,
 ];
 
-/// The rows of all of them.
+/// The rows of all catalogues, by id.
 static TABLE: LazyLock<BTreeMap<String, Row>> = LazyLock::new(|| {
     let rows = CATALOGUES.map(|own| ron::from_str::<BTreeMap<String, Row>>(own.source()).unwrap());
     rows.into_iter().flatten().collect()
 });
 
-/// Returns the text with an ID, from any catalogue.
+/// Returns the text with an id, from any catalogue.
 #[track_caller]
 pub(crate) fn text(id: &'static str) -> Text {
     let own = CATALOGUES.into_iter().find(|own| own.ids().any(|known| known == id));
@@ -53,7 +53,7 @@ fn places(template: &str) -> impl Iterator<Item = &str> {
     template.split('{').skip(1).filter_map(|part| part.split_once('}')).map(|(name, _)| name)
 }
 
-/// Checks that the text is in the catalogue, has all its arguments, and is not empty in either language.
+/// Checks that the text is in its catalogue, has all its arguments, and is not empty in either language.
 #[track_caller]
 pub(crate) fn check(text: &Text) {
     let row = TABLE.get(text.id()).unwrap_or_else(|| panic!("{} is not in the table", text.id()));
@@ -73,7 +73,7 @@ fn check_notice(notice: &Notice) {
     notice.texts.iter().for_each(check);
 }
 
-/// Checks every text that the window could show now.
+/// Checks every text that the window could currently show.
 #[track_caller]
 pub(crate) fn check_all(studio: &Studio) {
     studio.services.log.notices().for_each(check_notice);
@@ -127,7 +127,7 @@ fn check_encoder(encoder: &Encoder) {
     sheet.needs.iter().chain(&sheet.warnings).chain(&sheet.cost).for_each(check);
 }
 
-/// Returns whether the words are a text ID, which is displayed if the catalogue has no such text.
+/// Returns whether a string is a text id, which is displayed if the catalogue has no such text.
 pub(crate) fn is_name(words: &str) -> bool {
     let part = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_lowercase() || c == '_');
     words.split_once('.').is_some_and(|(area, name)| {

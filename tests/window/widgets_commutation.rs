@@ -1,4 +1,4 @@
-//! The commutation page as used by a user: ticked, typed and clicked.
+//! The commutation page as operated by a user: ticked, typed and clicked.
 
 use crate::tabs::Tabs as _;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -8,7 +8,7 @@ use encoder_studio::devices::hiperface::state::commutation::{CommutationAction a
 
 use crate::screen::Screen;
 
-/// Tall enough to draw the complete page.
+/// Window size that is tall enough for the complete page.
 const TALL: [f32; 2] = [1400.0, 1800.0];
 
 impl Screen {

@@ -1,4 +1,4 @@
-//! Indicators, network and the set-up of an axis as used by a user: clicked, typed, and checked in both languages.
+//! Indicators, network and the set-up of an axis as operated by a user: clicked, typed, and checked in both languages.
 
 use crate::tabs::Tabs as _;
 use egui::Key;
@@ -17,7 +17,7 @@ use encoder_studio::units::Moment;
 
 use crate::screen::Screen;
 
-/// Height at which a complete page is drawn.
+/// Window size at which a complete page is drawn.
 const TALL: [f32; 2] = [1280.0, 2400.0];
 
 fn page(link: &str, page: &'static str) -> Screen {
@@ -88,7 +88,7 @@ fn an_address_is_typed_checked_and_written() {
         studio.selected_device().unwrap().review_sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
             && studio.hiperdrive().unwrap().session.is_ready()
     });
-    // The dialog shows it too, above the form.
+    // The dialog also shows it, above the form.
     let sheet = screen.studio().selected_device().unwrap().review_sheet().unwrap();
     let warned = |text: &Text| {
         text.terminal_text().contains("At the next power-up") && text.terminal_text().contains("192.168.5.20")
@@ -125,8 +125,8 @@ fn axis_setup_names_missing_steps_in_the_language() {
     assert!(screen.shows("Nothing was written."));
 }
 
-/// Reference 5: a spindle of 4 mm in steps of 0.01 mm has 400 steps per turn; 511 turns either way are 2044 mm, 204400
-/// steps.
+/// Reference 5: a spindle of 4 mm in steps of 0.01 mm has 400 steps per turn. 511 turns in each direction are 2044 mm,
+/// or 204400 steps.
 #[test]
 fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     let mut screen = page("sim:", "page.parameters");
@@ -150,14 +150,14 @@ fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     assert_eq!(wanted.scale(own.drive()).unwrap().steps_per_turn(), 400.0);
     assert_eq!(wanted.limits(own.drive()), Some((-204_400, 204_400)));
     let id = own.session.id;
-    // The review shows it in millimetres, each with its own scale, old and new on one line.
+    // The review shows each value in millimetres with its own scale, the old and the new one on one line.
     screen.act(Action::Command(id, DeviceCommand::Review));
     screen.until("there is a plan", |studio| {
         studio.selected_device().unwrap().review_sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     assert!(screen.shows("256  →  400") && screen.shows("-33488896 · -2044.0000 mm  →  -204400 · -2044.00 mm"));
     screen.act(Action::Review(id, ReviewAction::Close));
-    // As numbers they are 164 times further.
+    // As numbers, they are 164 times larger.
     screen.act(Action::Command(id, DeviceCommand::Undo));
     screen.press(Role::RadioButton, "Limits: keep their values");
     screen.click("hd_scale.set");
@@ -170,8 +170,8 @@ fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     }
 }
 
-/// A number is typed in the table. An invalid one remains there with its reason, and with its parameter when other
-/// lines are shown.
+/// A number is typed in the table. An invalid number stays in the entry with its reason, and with its parameter if
+/// other rows are displayed.
 #[test]
 fn parameters_can_be_typed_into_their_table() {
     let mut screen = page("sim:?hub=4&drives=1,0,1", "page.parameters");
@@ -189,7 +189,7 @@ fn parameters_can_be_typed_into_their_table() {
     screen.put("166 Maximum speed", "9999");
     screen.key(Key::Enter);
     assert!(screen.shows("Allowed values: 5 to 350"));
-    // Other lines: the invalid text moves with its own line.
+    // Other rows are displayed, and the invalid text moves with its own row.
     screen.press(Role::RadioButton, "Show: All");
     assert!(row(&screen, "105 Status word").is_some());
     screen.put("166 Maximum speed", "300");
@@ -200,10 +200,10 @@ fn parameters_can_be_typed_into_their_table() {
     };
     assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
     assert!(!screen.shows("Allowed values: 5 to 350"));
-    // A read-only value cannot be typed over, with a message.
+    // A read-only value cannot be overwritten, and a message says so.
     begin(&mut screen, "105 Status word");
     assert!(screen.shows("105 (Status word) is read-only"));
-    // The typed text counts before other lines are shown, and before there are none.
+    // The typed text takes effect before other rows, or none at all, are displayed.
     begin(&mut screen, "172 Jog 1 speed");
     screen.put("172 Jog 1 speed", "50");
     screen.press(Role::RadioButton, "Show: Changed");
@@ -214,7 +214,7 @@ fn parameters_can_be_typed_into_their_table() {
     assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
     assert!(screen.shows("Spindle pitch"));
     screen.press(Role::RadioButton, "Show: All");
-    // Another drive has other lines; nothing is typed into them.
+    // Another drive has other rows, and nothing is typed into them.
     begin(&mut screen, "158 Lower limit");
     screen.put("158 Lower limit", "17");
     let id = screen.studio().hiperdrive().unwrap().session.id;
@@ -275,7 +275,7 @@ fn the_layout_of_a_step_does_not_shift() {
     screen.steps();
     assert!(!screen.is_enabled("hd_axis.recall"), "nothing is known to differ");
     advance(&mut screen, AxisStep::Scale);
-    // 655.36 mm in steps of 0.01 mm are the factory's 65536 steps per turn: there is nothing to write.
+    // 655.36 mm in steps of 0.01 mm equals the factory setting of 65536 steps per turn, so there is nothing to write.
     screen.put("Pitch (mm per turn)", "655.36");
     assert!(!screen.is_enabled("hd_axis.write"));
     advance(&mut screen, AxisStep::Confirm);

@@ -1,4 +1,4 @@
-//! The cam page as used by a user: by pointer, by key, typed and pasted; chart and table agree.
+//! The cam page as operated by a user, by pointer, by key, typed and pasted. Chart and table must agree.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -11,7 +11,7 @@ use encoder_studio::devices::interbus::state::{Edit, InterbusAction as Interbus}
 
 use crate::screen::Screen;
 
-/// Tall enough to draw chart and table.
+/// Window size that is tall enough for the chart and the table.
 const TALL: [f32; 2] = [1280.0, 1600.0];
 
 fn program() -> ProgramNumber {
@@ -53,7 +53,7 @@ impl Screen {
         self.harness.get_by_role_and_label(role, label)
     }
 
-    /// Returns the texts of chart and table for an edge.
+    /// Returns the texts of an edge in the chart and in the table.
     fn edge_values(&self, label: &str) -> (String, String) {
         let value = |role| self.of_role(role, label).accesskit_node().value().unwrap_or_default();
         (value(Role::Slider), value(Role::TextInput))
@@ -141,7 +141,7 @@ fn conflicts_and_out_of_range_cams_are_marked_in_their_lanes() {
     );
     screen.edit_cams(Edit::Steps(3200));
     assert!(screen.shows("Program 1: cam 7 is outside the measuring range, which ends at 3199."));
-    // Issue 22.28: the cams of a program that are beyond it in one line, so that the chart stays visible.
+    // Issue 22.28: the cams of a program that are beyond the range share one line, so that the chart stays visible.
     screen.edit_cams(Edit::Steps(3000));
     assert!(screen.shows("Program 1: cams 6, 7 are outside the measuring range, which ends at 2999."));
     assert!(!screen.shows("Program 1: cam 7"));

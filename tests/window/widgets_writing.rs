@@ -1,4 +1,4 @@
-//! The write of a byte with the real widgets: edited, reviewed, written, read back; STOP and the questions.
+//! Writing of a byte with the real widgets: edited, reviewed, written and read back, including STOP and the questions.
 
 use crate::tabs::Tabs as _;
 use egui::{Key, Modifiers};
@@ -13,7 +13,7 @@ use crate::support::{Outside, PORT, is_review};
 
 const SIZE: [f32; 2] = [1280.0, 800.0];
 
-/// Types into the hex editor of data field 0.
+/// Types digits into the hex editor of data field 0.
 fn type_bytes(screen: &mut Screen, digits: &str) {
     screen.click("page.memory");
     let editor = screen.words(&crate::texts::text("memory.bytes").with("number", 0));
@@ -80,8 +80,8 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
     assert!(!screen.encoder().staged.is_dirty());
 }
 
-/// Issue 26: Ctrl is a separate key, and a key right before Enter made its press doubtful: in the hex editor, which is
-/// no text entry, Ctrl+Enter did nothing if both were pressed together.
+/// Issue 26: Ctrl is a separate key, and a key pressed immediately before Enter made that press suspect. In the hex
+/// editor, which is not a text entry, Ctrl+Enter had no effect if both keys were pressed together.
 #[test]
 fn ctrl_and_enter_pressed_together_open_the_review() {
     let mut screen = Screen::new_form(SIZE);
@@ -98,7 +98,7 @@ fn ctrl_and_enter_pressed_together_open_the_review() {
     assert_eq!(screen.outside.wire(PORT).wear(), 0, "nothing is written yet");
 }
 
-/// Issue 22.4: a write that needs a permission cannot be started without it.
+/// Issue 22.4: a write that requires a permission cannot be started without it.
 #[test]
 fn without_a_logbook_the_write_button_needs_a_permission() {
     let mut screen = Screen::new_form(SIZE);

@@ -1,4 +1,5 @@
-//! A cable to virtual encoders, or an adapter: they remain when it is pulled, and it can be held at a request.
+//! A cable to virtual encoders or to an adapter. The devices keep their state when it is unplugged, and the cable can
+//! be held at a request.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
@@ -19,7 +20,7 @@ use encoder_studio::units::{CharacterFormat, Moment};
 use crate::novo::sim::Virtual;
 use crate::support::LONG;
 
-/// A cable to virtual encoders.
+/// A cable to virtual devices.
 pub(crate) struct Wire {
     target: String,
     end: End,
@@ -28,7 +29,7 @@ pub(crate) struct Wire {
     changed: Condvar,
 }
 
-/// The devices of a cable.
+/// The devices at the end of a cable.
 enum End {
     /// HIPERFACE encoders.
     Hiperface(Arc<Mutex<Bus>>),
@@ -36,11 +37,11 @@ enum End {
     Pin(Arc<Mutex<UbicomPort>>),
     /// An adapter on a BiSS encoder's bus.
     Adapter(Arc<Mutex<Adapter>>),
-    /// A gateway before an INTERBUS encoder.
+    /// A gateway with an INTERBUS encoder.
     Gateway(Arc<Mutex<Gateway>>),
     /// An adapter with its drive.
     Target(Arc<Mutex<Target>>),
-    /// An encoder of the kind from outside.
+    /// An encoder of the external kind.
     Novo(Arc<Mutex<Virtual>>),
 }
 
@@ -56,16 +57,17 @@ impl End {
         }
     }
 
-    /// Returns the command of a request; that of a packet to an adapter is not searched for.
+    /// Returns the command in a request. For a packet to an adapter, it is not determined.
     fn command(&self, frame: &[u8]) -> Option<u8> {
         match self {
             End::Hiperface(_) => frame.get(1).copied(),
             End::Pin(_) => frame.get(2).copied(),
             End::Adapter(_) => None,
             End::Novo(_) => frame.first().copied(),
-            // The service, after the header of the frame and those of its items.
+            // The service, after the headers of the frame and of its items.
             End::Target(_) => frame.get(40).copied(),
-            // The function, after number, protocol, length and unit; for one that writes, the first byte of its OUT word.
+            // The function code, after number, protocol, length and unit. If the function writes, the first byte of its
+            // OUT word instead.
             End::Gateway(_) => frame.get(if frame.get(7) == Some(&16) { 13 } else { 7 }).copied(),
         }
     }
@@ -74,17 +76,17 @@ impl End {
 #[derive(Default)]
 struct State {
     unplugged: bool,
-    /// Whether sending panics.
+    /// Whether sending causes a panic.
     deadly: bool,
-    /// Every frame that was handed to the line.
+    /// Every frame that was passed to the line.
     sent: Vec<Vec<u8>>,
-    /// The request at which it holds: a command, and the number of such requests before it.
+    /// The request at which the line is held, given by its command and the number of such requests before it.
     hold: Option<(u8, usize)>,
     held: bool,
 }
 
 impl Wire {
-    /// Creates a cable to HIPERFACE encoders as `sim:?…` describes them.
+    /// Creates a cable to HIPERFACE encoders as described by `sim:?…`.
     pub(crate) fn new(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Hiperface(Arc::new(Mutex::new(bus(query)))))
     }
@@ -104,7 +106,7 @@ impl Wire {
         Self::to(target, End::Target(Arc::new(Mutex::new(drive(query)))))
     }
 
-    /// Creates a cable to an encoder of the kind from outside.
+    /// Creates a cable to an encoder of the external kind.
     pub(crate) fn to_novo(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Novo(Arc::new(Mutex::new(novo(query)))))
     }
@@ -143,7 +145,7 @@ impl Wire {
         bus.lock().unwrap()
     }
 
-    /// Writes registers of a BiSS encoder without the window.
+    /// Writes registers of a BiSS encoder without using the window.
     pub(crate) fn enter(&self, entries: &[(&str, u8)]) {
         let End::Pin(port) = &self.end else { panic!("{} leads to no configuration pin", self.target) };
         let (now, mut port) = (self.clock.now(), port.lock().unwrap());
@@ -172,12 +174,12 @@ impl Wire {
         self.state().unplugged = false;
     }
 
-    /// Lets the next thread that sends panic.
+    /// Makes the next thread that sends panic.
     pub(crate) fn kill(&self) {
         self.state().deadly = true;
     }
 
-    /// Holds the line before the `number`th request of a command from now on, 1 first.
+    /// Holds the line before the `number`th request with the given command from now on, counted from 1.
     pub(crate) fn hold_at(&self, command: u8, number: usize) {
         self.state().hold = Some((command, number - 1));
     }
@@ -204,22 +206,22 @@ impl Wire {
         self.state().sent.len()
     }
 
-    /// Returns the number of times that a command was sent.
+    /// Returns how many times a command was sent.
     pub(crate) fn count(&self, command: u8) -> usize {
         self.state().sent.iter().filter(|frame| self.end.command(frame) == Some(command)).count()
     }
 
-    /// Returns the number of times that an OUT word was written to the gateway.
+    /// Returns how many times an OUT word was written to the gateway.
     pub(crate) fn outs(&self) -> usize {
         self.state().sent.iter().filter(|frame| frame.get(7) == Some(&16)).count()
     }
 
-    /// Returns the bytes of a data field, read directly in the encoder.
+    /// Returns the bytes of a data field, read directly from the encoder.
     pub(crate) fn field(&self, number: u8) -> Vec<u8> {
         self.bus().encoders()[0].memory().field_bytes(number).unwrap().to_vec()
     }
 
-    /// Returns the number of writes of the encoder's EEPROM.
+    /// Returns the number of writes to the encoder's EEPROM.
     pub(crate) fn wear(&self) -> u64 {
         self.bus().encoders()[0].wear().total().into()
     }
@@ -252,14 +254,14 @@ impl Wire {
     }
 }
 
-/// Our end of a cable.
+/// The host's end of a cable.
 pub(crate) struct TestLink {
     wire: Arc<Wire>,
     line: SimLink,
 }
 
 impl TestLink {
-    /// Connects to the cable; a pulled cable cannot be connected to.
+    /// Connects to the cable, or returns an error if it is unplugged.
     pub(crate) fn plug_into(wire: &Arc<Wire>) -> Result<Self, LinkError> {
         let missing = |_| LinkError::new(&wire.target, LinkErrorKind::NotFound);
         wire.check_plug().map_err(missing)?;

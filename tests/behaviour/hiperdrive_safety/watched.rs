@@ -1,5 +1,5 @@
-//! Drives of a hub that disobey over the connection: they ignore their limits, a target or a pause, or turn the wrong
-//! way. The device is in Python, and its record shows the commands; the other drive is never moved.
+//! Drives of a hub that do not obey: they ignore their limits, a target or a pause, or turn the wrong way. The device
+//! is written in Python, and its record shows the commands. The other drive must never move.
 
 use std::fs;
 use std::path::PathBuf;
@@ -12,10 +12,11 @@ use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, State};
 use super::super::support::{Bench, Foreign};
 use super::{FAST, Host, JOG};
 
-/// A turn, and 1° rounded up.
+/// Steps per turn.
 const TURN: i32 = 65_536;
+/// Steps per degree, rounded up.
 const DEGREE: i32 = 183;
-/// Number of packets in transit at the same time as the first report of the defect.
+/// Number of packets that may be in transit when the first report shows the defect.
 const UNDER_WAY: usize = 2;
 
 fn third() -> DriveNumber {
@@ -51,7 +52,7 @@ impl Hub {
         self.host.motion.snapshot().drives.iter().find(|own| own.number == third()).unwrap().phase
     }
 
-    /// Waits for the end of an action, and returns how it ended.
+    /// Waits for an action to end and returns how it ended.
     #[track_caller]
     fn until_over(&self, act: u64) -> ActionEnd {
         let until = Instant::now() + Duration::from_secs(20);
@@ -66,7 +67,7 @@ impl Hub {
         }
     }
 
-    /// Returns the record, once the drive is at standstill.
+    /// Returns the record once the drive is at standstill.
     fn record(&mut self) -> (Vec<Packet>, usize) {
         let until = Instant::now() + Duration::from_secs(20);
         while self.host.motion.snapshot().drives.iter().any(|own| own.actual.status.state() == State::Moving) {
@@ -90,7 +91,7 @@ impl Hub {
         }
         assert!(packets.iter().all(|packet| packet.drive == 3 || !packet.moves), "the drive beside it was commanded");
         packets.retain(|packet| packet.drive == 3);
-        // Both drives have a line per packet.
+        // Each packet has a line for each of the two drives.
         (packets, told.expect("it did what it was told") / 2)
     }
 }
@@ -99,7 +100,7 @@ fn moving(packets: &[Packet]) -> Vec<&Packet> {
     packets.iter().filter(|packet| packet.moves).collect()
 }
 
-/// Issue 21.4: a drive of a hub that ignores its limits is not commanded further after the report that shows it.
+/// Issue 21.4: a hub drive that ignores its limits receives no further motion command after the report that shows this.
 #[test]
 fn a_hub_drive_ignoring_its_limits_is_stopped() {
     let bench = Bench::new();
@@ -116,7 +117,7 @@ fn a_hub_drive_ignoring_its_limits_is_stopped() {
     assert!(after.len() <= UNDER_WAY, "{after:?}");
 }
 
-/// Issues 21.4 and 21.5: it turns the wrong way.
+/// Issues 21.4 and 21.5: the drive turns the wrong way.
 #[test]
 fn a_hub_drive_turning_the_wrong_way_is_stopped() {
     for wish in [JOG, MotionRequest::Move { target: 3 * TURN, effort: FAST }] {
@@ -131,7 +132,7 @@ fn a_hub_drive_turning_the_wrong_way_is_stopped() {
     }
 }
 
-/// Issue 21.5: it does not stop at its target.
+/// Issue 21.5: the drive does not stop at its target.
 #[test]
 fn a_hub_drive_passing_its_target_is_stopped() {
     let bench = Bench::new();
@@ -140,12 +141,12 @@ fn a_hub_drive_passing_its_target_is_stopped() {
     let ended = hub.until_over(act);
     assert!(matches!(ended, ActionEnd::WrongWay { position } if position > TURN), "{ended:?}");
     let (packets, _) = hub.record();
-    // Its accuracy is ±2.5°: three whole degrees are allowed at its target.
+    // The accuracy of the drive is ±2.5°, so three whole degrees are allowed at its target.
     let past: Vec<&Packet> = moving(&packets).into_iter().filter(|own| own.position > TURN + 3 * DEGREE).collect();
     assert!(past.len() <= UNDER_WAY + 1, "{past:?}");
 }
 
-/// Issue 21.4: it does not obey a pause: it is stopped once it has moved on for longer than it takes to brake.
+/// Issue 21.4: a drive that ignores a pause is stopped once it has moved on for longer than it takes to brake.
 #[test]
 fn a_hub_drive_ignoring_a_pause_is_stopped() {
     let bench = Bench::new();

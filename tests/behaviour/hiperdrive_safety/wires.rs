@@ -1,5 +1,5 @@
-//! Connections between a host and a target that can be cut: this proxy passes on the stream and the packets, whose
-//! ports are replaced when the connection is opened.
+//! Connections between a host and a target that can be cut. This proxy forwards the stream and the packets. It replaces
+//! the packet ports when the connection is opened.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream, UdpSocket};
@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{JoinHandle, spawn};
 use std::time::Duration;
 
-/// A direction of packets.
+/// A direction in which packets are sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Transport {
     ToTarget,
@@ -23,7 +23,7 @@ pub(super) struct Wires {
 struct Shared {
     /// Both ends of the stream.
     streams: Mutex<Vec<TcpStream>>,
-    /// Receive the packets of the host, and those of the target.
+    /// Sockets that receive the packets of the host and of the target.
     sockets: [UdpSocket; 2],
     cut: [AtomicBool; 2],
     /// Port of the host's packets.
@@ -32,7 +32,7 @@ struct Shared {
     end: AtomicBool,
 }
 
-/// Garbage sent in both directions.
+/// A guard for garbage that is sent in both directions.
 pub(super) struct Flood {
     end: Arc<AtomicBool>,
     sent: Arc<AtomicU64>,
@@ -80,7 +80,7 @@ impl Wires {
 
     pub(super) fn cut_stream(&self) {
         for stream in self.shared.streams.lock().unwrap().iter() {
-            // One of them may have ended already.
+            // One of the streams may already have ended.
             let _ = stream.shutdown(Shutdown::Both);
         }
     }
@@ -104,7 +104,7 @@ impl Wires {
             while !ends.load(Ordering::SeqCst) {
                 let packet: Vec<u8> = (0..dice.usize(0..80)).map(|_| dice.u8(..)).collect();
                 for port in ports {
-                    // A full buffer drops it.
+                    // If the buffer is full, the packet is dropped.
                     let _ = socket.send_to(&packet, ("127.0.0.1", port));
                 }
                 // Yields the processor to other threads.
@@ -134,8 +134,8 @@ impl Drop for Wires {
 }
 
 impl Shared {
-    /// Passes on a stream, in which a frame arrives in one piece. The port in an address item of this type becomes that
-    /// of a socket of the proxy.
+    /// Forwards a stream in which each frame arrives in one piece. The port in an address item of the given type is
+    /// replaced with that of a socket of the proxy.
     fn pass_stream(&self, mut from: TcpStream, mut to: TcpStream, item: u16, ours: usize) {
         let mut buffer = [0; 4096];
         while let Ok(count) = from.read(&mut buffer) {
@@ -143,7 +143,7 @@ impl Shared {
                 break;
             }
             let bytes = &mut buffer[..count];
-            // Type and length of the item, and the family, whose high byte comes first.
+            // Type and length of the item, and the address family, with the high byte first.
             let [low, high] = item.to_le_bytes();
             let head = [low, high, 16, 0, 0, 2];
             if let Some(at) = bytes.windows(6).position(|window| window == head) {

@@ -1,4 +1,4 @@
-//! The static data about Novo encoders.
+//! The static data of Novo encoders.
 
 use encoder_studio::app::connect::form::{FormModel, NoFinder};
 use encoder_studio::app::report::{ReportContent, ReportContext};
@@ -94,7 +94,7 @@ impl DeviceType for Encoder {
     }
 }
 
-/// The form of a link: to the virtual encoder, or to one at a device server.
+/// A connection form for the virtual encoder or for an encoder at a device server.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NovoForm {
     pub(crate) link: String,

@@ -1,4 +1,4 @@
-//! The profile of a Novo encoder, compared and planned.
+//! The profile of a Novo encoder, and its comparison and plan.
 
 use encoder_studio::expected::AllowedValues;
 use encoder_studio::profile::{Comparison, Entries, Operation, Plan, Profile, ProfileError, Writer};
@@ -7,7 +7,7 @@ use super::protocol::{ITEMS, KIND, Values, name_of};
 
 const WORD: AllowedValues = AllowedValues::whole_range(0, 65_535);
 
-/// The identity and the values.
+/// The identity and values of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NovoProfile {
     pub(crate) serial: u16,
@@ -40,7 +40,7 @@ impl Profile for NovoProfile {
     }
 }
 
-/// An item changes to another value.
+/// A change of one item to another value.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Op {
     pub(crate) item: usize,
@@ -60,7 +60,7 @@ impl Operation for Op {
     }
 }
 
-/// Serial number and values as read, and their changes.
+/// A plan based on the serial number and the values that were read.
 pub(crate) type NovoPlan = Plan<(u16, Values), Op>;
 
 pub(crate) fn plan(now: &NovoProfile, wanted: &Values) -> NovoPlan {

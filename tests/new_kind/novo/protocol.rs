@@ -1,17 +1,17 @@
-//! The bytes of a Novo encoder: `R` and an address request a word, `W`, an address and a word set one. The reply is the
-//! word at that address, and the exclusive or of request and word.
+//! The bytes of a Novo encoder. `R` and an address request a word; `W`, an address and a word set one. The reply
+//! contains the word at that address, and the exclusive or of request and word.
 
-/// The kind in profiles and on the command line.
+/// The name of the kind in profiles and on the command line.
 pub(crate) const KIND: &str = "novo";
 /// Address of the serial number.
 pub(crate) const SERIAL: u8 = 0x01;
-/// Address of the position: a turn has [`TURN`] steps, and the counter overflows after sixteen.
+/// Address of the position. A turn has [`TURN`] steps, and the counter overflows after sixteen turns.
 pub(crate) const POSITION: u8 = 0x03;
 /// Address of the first of the [`ITEMS`].
 pub(crate) const FIRST: u8 = 0x10;
-/// Steps of a turn.
+/// Steps per turn.
 pub(crate) const TURN: u16 = 4096;
-/// The stored values: each a word, at consecutive addresses.
+/// Names of the stored values. Each is a word, and the addresses are consecutive.
 pub(crate) const ITEMS: [&str; 4] = ["zero", "filter", "least", "greatest"];
 /// Length of a reply in bytes.
 pub(crate) const REPLY: usize = 3;
@@ -34,7 +34,7 @@ impl Request {
         }
     }
 
-    /// Parses a complete request; `None` for anything else.
+    /// Parses a complete request. Returns `None` if it is invalid.
     pub(crate) fn parse(bytes: &[u8]) -> Option<Self> {
         match *bytes {
             [b'R', address] => Some(Request::Read(address)),
@@ -50,7 +50,7 @@ pub(crate) fn reply(request: Request, word: u16) -> [u8; REPLY] {
     [high, low, request.emit().iter().fold(high ^ low, |check, byte| check ^ byte)]
 }
 
-/// Returns the word of a reply; `None` if it is damaged, or belongs to another request.
+/// Returns the word in a reply, or `None` if the reply is damaged or belongs to another request.
 pub(crate) fn parse_reply(request: Request, bytes: &[u8]) -> Option<u16> {
     let word = u16::from_be_bytes([*bytes.first()?, *bytes.get(1)?]);
     (reply(request, word) == bytes).then_some(word)

@@ -16,7 +16,7 @@ parameters! {
         rpm: f64 = 0.0, "rpm" => RPM;
         /// The address of a value that no longer changes.
         stuck: Option<u8> = None, "stuck" => OptionalValue(WholeNumbers(Quantity::Address, 0..=255));
-        /// The number that it is locked with: no value changes.
+        /// The PIN of a locked encoder, whose values cannot be changed.
         pin: Option<u16> = None, secret "pin" => OptionalValue(WholeNumbers(Quantity::Number, 0..=9999));
     }
 }
@@ -30,7 +30,7 @@ pub(crate) struct Virtual {
 }
 
 impl Virtual {
-    /// The settings whose values are neither shown nor kept.
+    /// Settings whose values are neither shown nor stored.
     pub(crate) const SECRETS: &'static [&'static str] = Settings::SECRETS;
 
     /// Parses the query of a link.

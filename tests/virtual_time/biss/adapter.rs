@@ -11,7 +11,7 @@ use encoder_studio::units::Moment;
 
 use super::support::{Bus, at};
 
-/// BiSS reference 2: 1234h turns and 18000h steps are the frame 024698000CF.
+/// BiSS reference 2: 1234h turns and 18000h steps form the frame 024698000CF.
 #[test]
 fn registers_and_position_are_read() {
     let mut bus = Bus::new("temperature=25");
@@ -30,7 +30,7 @@ fn registers_and_position_are_read() {
     assert_eq!(bus.station.to_string(), "BiSS at 1000000 Hz");
 }
 
-/// The clock is the nearest below the requested one that the adapter can divide from its 60 MHz: 60/9 MHz.
+/// The adapter uses the nearest clock below the requested one that it can divide from its 60 MHz: 60/9 MHz.
 #[test]
 fn the_clock_is_the_nearest_the_adapter_can_divide() {
     let mut bus = Bus::new("");
@@ -46,14 +46,14 @@ fn error_and_warning_are_read_with_the_position() {
     assert_eq!((reading.error, reading.warning, reading.is_valid()), (Some(true), Some(true), false));
 }
 
-/// Half a turn per second: 65536 steps.
+/// Half a turn per second is 65536 steps.
 #[test]
 fn a_position_has_the_time_of_its_sampling() {
     let mut bus = Bus::new("rpm=30&position=0");
     for _ in 0..20 {
         let reading = bus.master().position().unwrap();
         let expected = reading.at.since_start().as_secs_f64() * 65_536.0;
-        // The frame and its transmission take 0.4 ms, in which the shaft turns 26 steps.
+        // The frame and its transmission take 0.4 ms, during which the shaft turns by 26 steps.
         assert!((f64::from(reading.steps) - expected).abs() < 20.0, "{reading:?}, not {expected}");
     }
 }
@@ -80,7 +80,7 @@ fn a_bank_is_selected_again_only_if_it_may_have_changed() {
     assert_eq!(bus.count(Operation::BissRegisterWrite), 5);
 }
 
-/// The encoder has lost its power for a moment: its bank is 0 again.
+/// The encoder has briefly lost its power, so its bank is 0 again.
 #[test]
 fn a_restart_is_detected_by_its_silence() {
     let mut bus = Bus::new("");
@@ -117,7 +117,7 @@ fn a_write_with_a_lost_reply_is_read_back_and_a_command_is_unclear() {
     }
     assert_eq!(bus.count(Operation::BissRegisterWrite), 2);
     let next = bus.tap().sent.len();
-    // The bank, then the command.
+    // The bank is selected, then the command is sent.
     bus.tap().swallow_reply = Some(next + 1);
     let error = bus.master().write(at("0x00:0x06"), 0x01).unwrap_err();
     assert!(matches!(error, Error::Unclear { value: 0x01, .. }), "{error}");
@@ -152,7 +152,7 @@ fn frames_with_wrong_checksums_are_counted_and_retried() {
     let mut bus = Bus::new("noise=0.15&seed=3");
     let (mut right, mut wrong) = (0, 0);
     for _ in 0..200 {
-        // A CRC of six bits detects every single flipped bit, and one is flipped.
+        // A CRC of six bits detects any single flipped bit, and exactly one is flipped.
         let reading = bus.master().position().unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(reading.position(), 0x2469_8000);
         right += 1;
@@ -194,7 +194,7 @@ fn a_silent_adapter_is_asked_twice() {
     assert_eq!(error, Error::Adapter(AdapterError::Silent));
     assert_eq!(error.to_string(), "the adapter does not answer");
     assert_eq!(bus.tap().sent.len(), 2);
-    // 200 ms each, and the margin.
+    // 200 ms for each, and the margin.
     assert_eq!(bus.now(), Duration::from_millis(2 * 220));
     assert!(bus.tap().sent.iter().all(|bytes| bytes[0] == 0), "an empty packet goes before each");
 }
@@ -215,7 +215,7 @@ fn the_supply_is_switched_on_if_requested() {
     assert_eq!(error.to_string(), "the adapter virtual adapter cannot supply an encoder");
 }
 
-/// The line of the adapter, not that of the encoder: packets have a CRC of 16 bits.
+/// Noise on the line to the adapter, not to the encoder. Packets have a CRC of 16 bits.
 #[test]
 fn a_noisy_wire_to_the_adapter_yields_correct_values_or_errors() {
     let (mut right, mut failed) = (0, 0);

@@ -1,6 +1,6 @@
-//! Every procedure with its link cut, its encoder without power, or cancelled at every single exchange: the reported
-//! state of the encoder is the real one, the return leads to operation with the password cleared, and the procedure can
-//! then be executed.
+//! Every procedure, interrupted at every single exchange by a cut link, a power loss or a cancellation. The reported
+//! state of the encoder must be the actual one, the encoder must return to operation with the password cleared, and the
+//! procedure must then be executable.
 
 use encoder_studio::devices::biss::jobs::{Change, JobError, Prepared};
 use encoder_studio::devices::biss::procedures::Error;
@@ -19,7 +19,7 @@ use super::support::{Bench, Transport};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// A procedure, and the check of its result.
+/// A procedure and the check whether it has been completed.
 struct Scene {
     name: &'static str,
     change: fn() -> Change,
@@ -50,7 +50,7 @@ const SCENES: [Scene; 5] = [
     Scene { name: "Wiegand test", change: || wiegand_test(true), is_done: |bench| bench.flash_cycles() > 0 },
 ];
 
-/// Returns all procedures in one change.
+/// Returns a change that contains all procedures.
 fn mounting() -> Change {
     let bytes = [7; 64];
     let mut profile = Bench::new(Transport::ConfigPin, "").save();
@@ -66,13 +66,13 @@ fn mounting() -> Change {
     Change::Guided { run, motor: MotorSource::Other }
 }
 
-/// The result of a disturbed commit.
+/// The result of a commit that was disturbed.
 enum Ended {
-    /// Complete.
+    /// The change was completed.
     Done,
-    /// Before the first operation; nothing was written.
+    /// The commit ended before the first operation, and nothing was written.
     Refused(Error),
-    /// After the first operation.
+    /// The commit ended after the first operation had begun.
     Interrupted(Box<InterruptedWrite>),
 }
 
@@ -81,7 +81,7 @@ fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Be
     let mut bench = original.copied();
     disturb(&mut bench);
     let mut hands = TestOperator::on(&bench);
-    // The shortest test: the fewest exchanges.
+    // The shortest test has the fewest exchanges.
     hands.rpm = (500.0, 2000.0);
     let ended = match bench.commit(prepared, &mut hands).map_err(|error| *error) {
         Ok(_) => Ended::Done,
@@ -92,8 +92,8 @@ fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Be
     (bench, ended)
 }
 
-/// Checks that the reconnected encoder can be returned to operation, and that, once for each step, the change can be
-/// repeated.
+/// Checks that the reconnected encoder can be returned to operation. Once for each step, also checks that the change
+/// can be repeated.
 fn assert_can_return_to_operation(
     bench: &Bench,
     scene: &Scene,
@@ -118,7 +118,8 @@ fn assert_can_return_to_operation(
     assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
 }
 
-/// Checks that the reported flash cycles are the real ones, or one more if the last is not known.
+/// Checks that the reported flash cycles are the actual ones, or one more if it is unknown whether the last one took
+/// place.
 fn assert_cycles(told: &InterruptedWrite, spent: u32, context: &str) {
     let told = told.done.write_cycles;
     assert!(told == u64::from(spent) || told == u64::from(spent) + 1, "{context}: {told} told, {spent} spent");
@@ -162,11 +163,12 @@ fn cut_at_every_exchange(scene: &Scene, way: Transport) {
     }
 }
 
-/// Checks that the cuts have hit every step in which anything is sent.
+/// Checks that every step in which anything is sent has been interrupted.
 fn assert_all_steps(prepared: &Prepared, hit: &[ProcedureStep], name: &str, context: &str) {
     let mut missed: Vec<ProcedureStep> = prepared.plan.ops.iter().flat_map(operation_steps).collect();
     if missed.contains(&ProcedureStep::Restart) && name != "lost" {
-        // An encoder that restarts owes no answer: a missed command is detected when the encoder is searched for.
+        // An encoder that restarts does not have to answer. A missed command is detected when the encoder is searched
+        // for.
         missed.retain(|step| !matches!(step, ProcedureStep::Save | ProcedureStep::Fire));
     }
     missed.retain(|step| !hit.contains(step));
@@ -198,7 +200,7 @@ fn a_wiegand_test_cut_at_any_exchange_can_return_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[4], *way));
 }
 
-/// The encoder loses its power before an exchange: it starts in operation, and nothing is stored partially.
+/// The encoder loses its power before an exchange. It starts in operation, and nothing is stored partially.
 #[test]
 fn power_lost_before_any_exchange_leaves_operation_mode() {
     for scene in &SCENES {
@@ -231,7 +233,7 @@ fn power_lost_before_any_exchange_leaves_operation_mode() {
                     let running = Activity::Running(MotorRun::CalibrationClockwise);
                     let warned = told.end_state.standing.as_ref().is_some_and(|own| own.activity == running);
                     assert!(!lost || warned, "{context}: {told:?}");
-                    // Power is back, and the encoder is in operation.
+                    // The power is back, and the encoder is in operation.
                     let mut again = bench.reconnected_knowing();
                     assert_eq!(again.return_to_operation().unwrap(), DeviceMode::OPERATION, "{context}");
                     assert_can_return_to_operation(&bench, scene, &told, &mut steps, &context);
@@ -241,7 +243,7 @@ fn power_lost_before_any_exchange_leaves_operation_mode() {
     }
 }
 
-/// Power is lost in the middle of the flash being written.
+/// The power is lost while the flash is being written.
 #[test]
 fn power_lost_in_any_store_is_reported_and_recovered() {
     for scene in &SCENES {
@@ -262,7 +264,8 @@ fn power_lost_in_any_store_is_reported_and_recovered() {
     }
 }
 
-/// A cancellation at every exchange: the encoder is in operation, and the written values are the reported ones.
+/// A cancellation at every exchange leaves the encoder in operation, and the reported values are those that were
+/// written.
 #[test]
 fn cancelling_at_any_exchange_returns_to_operation() {
     for scene in &SCENES {
@@ -294,8 +297,8 @@ fn cancelling_at_any_exchange_returns_to_operation() {
     }
 }
 
-/// The complete mounting, cut at some exchanges of each of its operations: operations completed before are reported as
-/// done.
+/// The complete mounting is interrupted at some exchanges of each operation. Operations completed before are reported
+/// as done.
 #[test]
 fn an_interrupted_mounting_reports_the_finished_operations() {
     let mut original = Bench::new(Transport::ConfigPin, "");

@@ -1,4 +1,4 @@
-//! Surveys on a bad line, on either connection: the result is right or there is an error, and the job ends.
+//! Surveys on a bad line over either connection. The result is correct or there is an error, and the job ends.
 
 use std::fs;
 use std::sync::{Arc, Mutex};
@@ -39,7 +39,7 @@ fn a_survey_over_a_bad_line_is_correct_or_an_error() {
     let (mut right, mut failed) = (0, 0);
     for way in WAYS {
         let truth = timeless(survey(&mut Bench::new(way, "")).unwrap());
-        // The line to an adapter is a cable of a metre: a packet that is lost twice ends a job.
+        // The line to an adapter is a cable of one metre, so a packet that is lost twice ends a job.
         let noises = match way {
             Transport::ConfigPin => ["drop:0.005", "flip:0.005", "garbage:0.005", "drop:0.02,flip:0.02,garbage:0.02"],
             Transport::Adapter => ["drop:0.0005", "flip:0.0005", "garbage:0.0005", "drop:0.005"],
@@ -82,7 +82,7 @@ fn echo_and_byte_order_do_not_change_read_values() {
     }
 }
 
-/// Cut at every hundredth exchange: the error is that of silence, within ten seconds.
+/// The link is cut at every hundredth exchange. The error is that of a silent device and appears within ten seconds.
 #[test]
 fn silence_ends_a_survey_within_ten_seconds() {
     for way in WAYS {
@@ -91,7 +91,7 @@ fn silence_ends_a_survey_within_ten_seconds() {
             bench.tap().mute_from = Some(frames);
             let error = survey(&mut bench).unwrap_err();
             assert!(error.is_lost(), "{way:?} from {frames} on: {error}");
-            // An undisturbed survey takes half a second.
+            // A survey without faults takes half a second.
             assert!(bench.now() < Duration::from_secs(11), "{way:?} from {frames} on: {:?}", bench.now());
         }
     }
@@ -117,7 +117,7 @@ fn cancelling_takes_effect_between_two_exchanges() {
     }
 }
 
-/// A recording answers as the encoder did.
+/// A recording answers like the encoder.
 #[test]
 fn a_recording_of_either_interface_can_be_replayed() {
     for way in WAYS {

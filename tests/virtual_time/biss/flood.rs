@@ -1,4 +1,4 @@
-//! Noise at a high rate: memory and time remain limited.
+//! Noise at a high rate, during which memory and time must remain limited.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -13,7 +13,7 @@ use encoder_studio::worker::{Event, JobId, Session};
 use super::support::Transport;
 use crate::support::{MARGIN, folder};
 
-/// A link that receives 512,000 bytes per second for a time after each request.
+/// A link that receives 512,000 bytes per second for some time after each request.
 struct Flood {
     clock: Arc<VirtualClock>,
     lasts: Duration,
@@ -46,7 +46,7 @@ impl ByteLink for Flood {
     }
 }
 
-/// Issue 22.11: of noise on either connection the trace keeps a limited number of bytes, and a job ends even if the
+/// Issue 22.11: with noise on either connection, the trace keeps a limited number of bytes, and a job ends even if the
 /// noise does not.
 #[test]
 fn a_flood_of_noise_takes_bounded_memory_and_time() {
@@ -58,7 +58,7 @@ fn a_flood_of_noise_takes_bounded_memory_and_time() {
     ] {
         for lasts in [300, 900, 3_600_000] {
             let (clock, folder) = (Arc::<VirtualClock>::default(), folder());
-            // Invalid packets, each with an end.
+            // Invalid packets, each with an end byte.
             let mut portion = [noise; 512];
             portion[511] = 0;
             let lasts = Duration::from_millis(lasts);

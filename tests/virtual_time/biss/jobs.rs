@@ -1,4 +1,4 @@
-//! The jobs of a session with a BiSS encoder, over both ways to it.
+//! The jobs of a session with a BiSS encoder over both types of connection.
 
 use std::fs;
 use std::time::Duration;
@@ -56,7 +56,7 @@ fn device_error(error: JobError) -> Error {
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// Manual, appendix 9.1; the serial number is the simulator's.
+/// Values from the manual, appendix 9.1. The serial number is that of the simulator.
 #[test]
 fn a_survey_over_both_interfaces_is_complete() {
     for way in WAYS {
@@ -93,7 +93,7 @@ fn a_survey_over_both_interfaces_is_complete() {
         let expected: Vec<_> = ErrorRegister::new(0x12).set_bits().collect();
         assert_eq!((errors.raw, names), (0x12, expected));
         assert_eq!(survey.status.warnings.map(|bits| bits.raw), Some(0));
-        // The frame has an error bit, the word over the configuration pin has none.
+        // The frame has an error bit, but the word over the configuration pin does not.
         assert_eq!(survey.status.position.unwrap().error, (way == Transport::Adapter).then_some(true));
 
         assert_eq!(survey.wiegand_last, Some(WiegandResult::parse([0; 4])));
@@ -105,7 +105,7 @@ fn a_survey_over_both_interfaces_is_complete() {
     }
 }
 
-/// Manual: errors and warnings since 1.6.0, filter since 1.1.0, preset since 1.2.0.
+/// Manual: errors and warnings exist since version 1.6.0, the filter since 1.1.0, and the preset since 1.2.0.
 #[test]
 fn features_missing_in_older_firmware_are_absent() {
     let mut bench = Bench::new(Transport::Adapter, "firmware=1.0.9&errors=0x10");
@@ -130,7 +130,7 @@ fn status_and_position_identify_the_encoder_themselves() {
         let sent = bench.tap().sent.len();
         let reading = position(&mut bench);
         assert_eq!((reading.turns, reading.steps), (1, 1));
-        // Over the configuration pin with its registers of errors and warnings.
+        // Over the configuration pin, the error and warning registers are requested as well.
         let asked = if way == Transport::Adapter { 1 } else { 3 };
         assert_eq!(bench.tap().sent.len(), sent + asked, "{way:?}: known by now");
         assert_eq!((reading.error, reading.warning), (Some(false), Some(true)), "{way:?}");
@@ -157,7 +157,7 @@ fn registers_and_banks_are_read() {
     }
 }
 
-/// Manual 6.5: data are not accessed while the motor runs.
+/// Manual 6.5: data must not be accessed while the motor runs.
 #[test]
 fn data_is_not_read_while_the_shaft_turns() {
     for way in WAYS {
@@ -196,8 +196,8 @@ fn everything_restorable_is_saved_over_both_interfaces() {
     }
 }
 
-/// Issue 22.15, reference 5.3: in mode 04 the data registers show written and unsaved values. They are reported and
-/// marked, and not compared; reading leaves them unchanged, since returning to operation discards them.
+/// Issue 22.15, reference 5.3: in mode 04, the data registers contain values that were written but not saved. They are
+/// reported, marked and not compared. Reading does not discard them, unlike the return to operation.
 #[test]
 fn unsaved_registers_are_marked_and_not_compared() {
     for way in WAYS {
@@ -244,7 +244,7 @@ fn a_save_reports_progress_and_can_be_cancelled() {
     assert_eq!(stopped.tap().sent.len(), 1000);
 }
 
-/// A save is right, with any fault of the line, or there is an error.
+/// With any fault of the line, a saved profile is correct or there is an error.
 #[test]
 fn a_save_over_a_noisy_line_is_correct_or_an_error() {
     let (mut saved, mut failed) = (0, 0);
@@ -266,8 +266,8 @@ fn a_save_over_a_noisy_line_is_correct_or_an_error() {
     assert!(saved > 9);
 }
 
-/// A description of another device of the same manufacturer: it is reported, and the data common to every encoder are
-/// shown.
+/// The description of another device from the same manufacturer does not apply. This is reported, and the data common
+/// to all encoders are shown.
 #[test]
 fn a_device_id_without_a_description_is_reported() {
     let [(_, kit), (_, unknown)] = Descriptions::BUILT_IN;
@@ -306,7 +306,7 @@ fn samples_and_watched_registers_are_read_one_by_one() {
         assert_eq!((reading.range.to_string().as_str(), reading.value), ("0x66", Ok(vec![75])));
         let refused = bench.session.watch_value(&"0x44:0x00".parse().unwrap()).unwrap();
         assert!(matches!(refused, WatchReply::Refused(PolledSample::Watched(_))), "{refused:?}");
-        // Manual 6.5: data are not accessed while the shaft turns.
+        // Manual 6.5: data must not be accessed while the shaft turns.
         let sent = bench.tap().sent.len();
         let refused = bench.session.watch_value(&"0x24:0x10".parse().unwrap()).unwrap();
         let WatchReply::Refused(PolledSample::Watched(reading)) = refused else { panic!("{refused:?}") };
@@ -318,8 +318,8 @@ fn samples_and_watched_registers_are_read_one_by_one() {
     }
 }
 
-/// UBICOM reference 4: the word has no error and no warning bit, so that the registers are read, each once per second;
-/// a frame has both. Every position includes them.
+/// UBICOM reference 4: the word has no error and warning bits, so the registers are read once per second. A frame has
+/// both. Every position includes the errors and warnings.
 #[test]
 fn an_error_during_polling_marks_the_positions() {
     for way in WAYS {
@@ -345,14 +345,15 @@ fn an_error_during_polling_marks_the_positions() {
             last = sample(&mut bench);
         }
         assert_eq!(last, (Some(true), Some(false)), "{way:?}");
-        // A single request reports it at once.
+        // A single reading reports it immediately.
         bench.encoder(|encoder, _| encoder.set_errors(ErrorRegister::default()));
         let BissOutput::Position(reading) = bench.run(BissJob::Position).unwrap() else { panic!() };
         assert_eq!((reading.error, reading.warning), (Some(false), Some(false)), "{way:?}");
     }
 }
 
-/// Some valid frames between damaged ones: the damaged ones are counted with the next valid one, or are a sample.
+/// Some valid frames arrive between damaged ones. Damaged frames are counted with the next valid one or form a sample
+/// of their own.
 #[test]
 fn polling_survives_damaged_frames() {
     let mut bench = Bench::new(Transport::Adapter, "noise=0.6&seed=2");

@@ -9,7 +9,7 @@ use encoder_studio::link::{CancelToken, Clock, Direction};
 
 use super::support::{Pin, at};
 
-/// UBICOM reference 6: temperature 75 is 25 °C, 1234h turns and 18000h steps.
+/// UBICOM reference 6: temperature 75 is 25 °C, with 1234h turns and 18000h steps.
 #[test]
 fn registers_and_position_are_read_with_the_published_frames() {
     let mut pin = Pin::new("temperature=25");
@@ -29,7 +29,8 @@ fn registers_and_position_are_read_with_the_published_frames() {
     assert_eq!(pin.station.line.damaged, 0);
 }
 
-/// Half a turn per second, sampled when the encoder begins to answer: a millisecond after the request's seven bytes.
+/// Half a turn per second, sampled when the encoder begins to answer, which is one millisecond after the seven bytes of
+/// the request.
 #[test]
 fn a_position_has_the_time_of_its_first_bit() {
     let mut pin = Pin::new("rpm=30&position=0");
@@ -46,7 +47,7 @@ fn the_byte_order_is_probed_once_or_given() {
             let mut pin = Pin::new(&format!("order={word}&temperature=30"));
             pin.station.order = given;
             assert_eq!(pin.master().read(at("0x66")), Ok(80), "{word}");
-            // 02:05h, the minimum time-out: 1Ch.
+            // Register 05h of bank 02h, the minimum time-out, contains 1Ch.
             assert_eq!(pin.master().read(at("0x02:0x05")), Ok(0x1C), "{word}");
             assert_eq!(pin.station.order, Some(order));
             assert_eq!(pin.tap().sent.len(), if given.is_none() { 3 } else { 2 });
@@ -87,7 +88,8 @@ fn silence_is_reported_after_five_tries_in_time() {
     assert!(matches!(error, Error::NoReply { echo_heard: true, .. }), "{error}");
 }
 
-/// An encoder that otherwise answers is silent for a register that it does not have: bank 44h of the kit encoder.
+/// An encoder that answers otherwise is silent for a register that it does not have, such as those in bank 44h of the
+/// kit encoder.
 #[test]
 fn a_missing_register_is_distinguished_from_a_missing_encoder() {
     let mut pin = Pin::new("");
@@ -111,7 +113,7 @@ fn a_refused_write_is_reported_and_not_retried() {
     assert_eq!(pin.master().read(at("0x6A")), Ok(7));
 }
 
-/// The request, or its answer, is lost: a stored value is read back, and sent again only if necessary.
+/// The request or its answer is lost. A stored value is read back and sent again only if necessary.
 #[test]
 fn a_write_with_a_lost_reply_is_read_back() {
     for request_lost in [false, true] {
@@ -126,7 +128,7 @@ fn a_write_with_a_lost_reply_is_read_back() {
     }
 }
 
-/// The start of a Wiegand test: the encoder cannot report whether it received the command.
+/// The answer to the start of a Wiegand test is lost. The encoder cannot report whether it received the command.
 #[test]
 fn a_command_with_a_lost_reply_is_unclear_and_never_repeated() {
     for request_lost in [false, true] {
@@ -176,7 +178,8 @@ fn cancelling_takes_effect_between_exchanges_and_not_in_a_shield() {
     assert_eq!(master.read(at("0x41")), Err(Error::Cancelled), "the shield ends");
 }
 
-/// A calibrating encoder is silent for five seconds: without patience that is an error, with it the status arrives.
+/// An encoder is silent for five seconds during calibration. Without patience, this is an error. With patience, its
+/// status arrives.
 #[test]
 fn a_long_silence_is_tolerated_with_patience() {
     let mut pin = Pin::new("rpm=-500&calibration=7");
@@ -196,7 +199,8 @@ fn a_long_silence_is_tolerated_with_patience() {
     assert!((9.0..10.5).contains(&(dead.now() - from).as_secs_f64()), "patience has an end");
 }
 
-/// A value is wrong only after two damaged frames whose sums match; with confirmation none is in these runs.
+/// A value can only be wrong after two damaged frames with matching checksums. With confirmation, none is wrong in
+/// these runs.
 #[test]
 fn a_noisy_line_yields_correct_values_or_errors() {
     let (mut right, mut failed) = (0, 0);
@@ -238,7 +242,7 @@ fn writes_over_a_noisy_line_report_their_true_result() {
     }
 }
 
-/// A false beginning of a frame hides the following bytes until it ends; 20 ms of silence end it on both sides.
+/// A false start of a frame hides the following bytes until the frame ends. 20 ms of silence end it on both sides.
 #[test]
 fn replies_are_read_again_after_garbage() {
     let mut pin = Pin::new("temperature=25");
@@ -254,13 +258,13 @@ fn replies_are_read_again_after_garbage() {
 #[test]
 fn damaged_replies_are_counted_and_reported() {
     let mut pin = Pin::new("");
-    // The temperature is 0026h over the pin (reference UBICOM 6).
+    // Over the pin, the temperature is 0026h (UBICOM reference 6).
     pin.tap().broken_to = Some(vec![0x80, 1, 1, 2, 0, 0x26]);
     let error = pin.master().read(at("0x66")).unwrap_err();
     assert!(matches!(error, Error::Damaged { .. }), "{error}");
     let quality = pin.station.line.quality.clone();
     assert_eq!((quality.damaged, quality.retries), (5, 4));
-    // The byte order of numbers was requested before them.
+    // The byte order of numbers was requested first.
     let shown = pin.shown(Direction::Received);
     assert!(shown.len() == 6 && shown.iter().all(|own| !own.contains('*')), "{shown:?}");
 }

@@ -1,5 +1,5 @@
-//! The five procedures and the mounting run on the virtual encoder: their steps, measurements, rejections and failures,
-//! and the return to operation with the password cleared at every end.
+//! The five procedures and the mounting on the virtual encoder: their steps, measurements, rejections and failures, and
+//! the return to operation with the password cleared in every case.
 
 use std::time::Duration;
 
@@ -21,8 +21,8 @@ use super::support::{Bench, Transport, at};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// Checks that the reported steps match the previously listed ones in order, including the return to operation if there
-/// is one.
+/// Checks that the reported steps match those listed before, in order, including the return to operation if there is
+/// one.
 #[track_caller]
 fn assert_steps(bench: &mut Bench, change: Change) -> TestOperator {
     let prepared = bench.prepare(change).unwrap();
@@ -40,7 +40,7 @@ fn assert_steps(bench: &mut Bench, change: Change) -> TestOperator {
     hands
 }
 
-/// Manual 6.4: counterclockwise first, about five seconds each, saved automatically.
+/// Manual 6.4: counterclockwise first, about five seconds in each direction, saved automatically.
 #[test]
 fn a_calibration_runs_both_ways_and_costs_one_flash_cycle() {
     for way in WAYS {
@@ -74,7 +74,7 @@ fn a_calibration_runs_both_ways_and_costs_one_flash_cycle() {
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), calibration());
 }
 
-/// Manual 6.3: 515 revolutions at 1000 rpm are 30.9 s.
+/// Manual 6.3: 515 revolutions at 1000 rpm take 30.9 s.
 #[test]
 fn a_wiegand_test_returns_results_and_saves_them_on_request() {
     for way in WAYS {
@@ -107,7 +107,7 @@ fn a_wiegand_test_returns_results_and_saves_them_on_request() {
     assert!(!report.result.is_passed(), "5.3 V is not above 5.3 V");
 }
 
-/// Manual 6.5.
+/// Manual 6.5: data are written register by register and saved once.
 #[test]
 fn data_is_written_register_by_register_and_saved_once() {
     for way in WAYS {
@@ -126,7 +126,7 @@ fn data_is_written_register_by_register_and_saved_once() {
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), data());
 }
 
-/// Manual 6.6: the encoder restarts with it.
+/// Manual 6.6: a new filter restarts the encoder.
 #[test]
 fn a_filter_is_selected_with_a_restart() {
     for way in WAYS {
@@ -142,7 +142,7 @@ fn a_filter_is_selected_with_a_restart() {
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), filter());
 }
 
-/// Manual 6.7: 270° are 18000h, its registers 00 80 01.
+/// Manual 6.7: 270° is 18000h, and its registers are 00 80 01.
 #[test]
 fn a_preset_is_stored_and_executed_with_two_restarts() {
     for way in WAYS {
@@ -170,7 +170,7 @@ fn a_preset_is_stored_and_executed_with_two_restarts() {
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), preset(1, 1));
 }
 
-/// Temperature, calibration, Wiegand test, preset and OEM data, with the motor turned and stopped in between.
+/// Temperature, calibration, Wiegand test, preset and OEM data. The motor is turned and stopped in between.
 #[test]
 fn a_mounting_is_one_run_with_a_report() {
     let mut bench = Bench::new(Transport::ConfigPin, "temperature=33");
@@ -259,7 +259,7 @@ fn cancelling_at_the_motor_leaves_the_encoder_in_operation() {
     }
 }
 
-/// Without a user: unsuitable values are reported after the patience, and nothing was begun.
+/// No user is present. Unsuitable values are reported after a waiting time, and nothing has begun.
 #[test]
 fn an_unattended_start_happens_when_ready_or_not_at_all() {
     let cases = [
@@ -279,18 +279,18 @@ fn an_unattended_start_happens_when_ready_or_not_at_all() {
         assert_eq!((bench.flash_cycles(), bench.mode_and_password()), (before, IN_OPERATION));
         assert!(bench.now() - from < Duration::from_secs(7), "{query}");
     }
-    // A motor that reverses when the encoder waits for it.
+    // This motor reverses when the encoder waits for it.
     let mut bench = Bench::new(Transport::ConfigPin, "rpm=-500&motor=reverse");
     let prepared = bench.prepare(calibration()).unwrap();
     let written = bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap().written;
     assert!(matches!(written.outcomes.as_slice(), [Outcome::Calibrated(_)]));
-    // A motor that does not: the second direction never begins.
+    // This motor does not reverse, so the second direction never begins.
     let mut bench = Bench::new(Transport::ConfigPin, "rpm=1000");
     let prepared = bench.prepare(wiegand_test(true)).unwrap();
     let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
     assert_eq!(told.end_state.at, ProcedureStep::Await(OperatorTask::Turn(MotorRun::WiegandCounterclockwise)));
     assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, IN_OPERATION));
-    // Outside the speeds: too slow for the test, too fast for the calibration.
+    // These speeds are outside the limits: too slow for the test, and too fast for the calibration.
     for (query, change) in [("rpm=400", wiegand_test(false)), ("rpm=-900", calibration())] {
         let mut bench = Bench::new(Transport::ConfigPin, query);
         let prepared = bench.prepare(change).unwrap();
@@ -303,10 +303,10 @@ fn an_unattended_start_happens_when_ready_or_not_at_all() {
     }
 }
 
-/// Manual 6.4: the possible errors of the calibration's status. The second run loses the table.
+/// Manual 6.4: the possible errors in the status of the calibration. In the second run, the table is lost.
 #[test]
 fn a_failed_calibration_reports_the_reason() {
-    // Speed and direction change after the start of the run; waver and temperature are set from the beginning.
+    // Speed and direction change after the start of the run. Variation and temperature are set from the beginning.
     let cases = [
         (MotorRun::CalibrationCounterclockwise, "waver=5", None, CalibrationStatus::Failed),
         (MotorRun::CalibrationCounterclockwise, "", Some(-600.0), CalibrationStatus::Failed),
@@ -336,7 +336,7 @@ fn a_failed_calibration_reports_the_reason() {
         assert_eq!(told.cause, Failure::Calibration { run, status });
         assert_eq!((told.end_state.at, told.end_state.standing), (ProcedureStep::Run(run), None));
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
-        // The state of the encoder's flash is not known: a lost table counts as a write.
+        // The state of the encoder's flash is unknown, so a lost table counts as a write.
         let lost = run == MotorRun::CalibrationClockwise;
         assert_eq!((bench.flash_cycles(), told.done.write_cycles), (before, u64::from(lost)));
         assert_eq!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()), !lost);
@@ -351,7 +351,7 @@ fn a_failed_calibration_reports_the_reason() {
     }
 }
 
-/// Errors that the encoder itself detects although the measured values were valid just before.
+/// Errors that the encoder itself detects although the measured values were valid immediately before.
 #[test]
 fn the_encoder_decides_on_direction_speed_and_temperature() {
     type Spoil = fn(&mut encoder_studio::devices::biss::sim::Encoder, encoder_studio::units::Moment);
@@ -405,7 +405,7 @@ fn the_encoder_decides_on_direction_speed_and_temperature() {
 
 #[test]
 fn a_run_that_never_ends_times_out() {
-    // The motor stops, and the revolutions are never complete.
+    // The motor stops, so the revolutions are never completed.
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(wiegand_test(false)).unwrap();
     let mut hands = TestOperator::on(&bench);
@@ -423,7 +423,7 @@ fn a_run_that_never_ends_times_out() {
     assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, IN_OPERATION));
 }
 
-/// Obstacles known before a procedure begins are rejected before anything is written.
+/// Obstacles that are known before a procedure begins are reported before anything is written.
 #[test]
 fn impossible_procedures_are_refused_beforehand() {
     let run = |calibrate, wiegand| MountingSteps { calibrate, wiegand, ..MountingSteps::default() };
@@ -443,7 +443,7 @@ fn impossible_procedures_are_refused_beforehand() {
         let error = Bench::new(Transport::ConfigPin, query).prepare(data()).unwrap_err();
         assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error}");
     }
-    // The shaft begins to turn between the plan and its execution.
+    // The shaft starts to turn between the plan and its execution.
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(data()).unwrap();
     bench.motor().set_rpm(100.0);
@@ -452,7 +452,7 @@ fn impossible_procedures_are_refused_beforehand() {
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
 }
 
-/// An old firmware has one filter, and its register has no meaning.
+/// An old firmware version has a single filter, and its register has no meaning.
 #[test]
 fn an_encoder_without_a_choice_of_filter_is_calibrated() {
     let mut bench = Bench::new(Transport::ConfigPin, "firmware=1.0.0");
@@ -460,7 +460,7 @@ fn an_encoder_without_a_choice_of_filter_is_calibrated() {
     assert!(matches!(written.outcomes.as_slice(), [Outcome::Calibrated(_)]));
 }
 
-/// Another host has left the encoder in a device mode, with the password set.
+/// Another host has left the encoder in a device mode with the password set.
 #[test]
 fn an_encoder_left_in_a_mode_is_first_returned_to_operation() {
     for mode in [1, 2, 4, 5, 7] {
@@ -478,7 +478,7 @@ fn an_encoder_left_in_a_mode_is_first_returned_to_operation() {
             bench.change(data()).unwrap();
         }
     }
-    // Only the password: the next write clears it.
+    // Only the password is set, and the next write clears it.
     let mut bench = Bench::new(Transport::ConfigPin, "");
     bench.encoder(|encoder, now| assert!(encoder.write(now, at("0x6B"), 0x2A)));
     bench.change(data()).unwrap();
@@ -486,7 +486,7 @@ fn an_encoder_left_in_a_mode_is_first_returned_to_operation() {
     assert_eq!(bench.return_to_operation().unwrap(), DeviceMode::OPERATION);
 }
 
-/// A clockwise run of another host is allowed to finish: leaving it would lose the table.
+/// A clockwise run started by another host is allowed to finish, because leaving it would lose the table.
 #[test]
 fn the_return_to_operation_waits_for_a_calibration() {
     for silent in ["on", "off"] {
@@ -507,7 +507,7 @@ fn the_return_to_operation_waits_for_a_calibration() {
     }
 }
 
-/// Start was pressed twice for the motor data: the second press does not answer the same question for the OEM data.
+/// Start was pressed twice for the motor data. The second press does not answer the same question for the OEM data.
 #[test]
 fn a_duplicated_answer_does_not_start_the_next_operation() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -539,16 +539,16 @@ fn a_duplicated_answer_does_not_start_the_next_operation() {
     assert_eq!((bench.flash_bank(0x04)[0x10], bench.flash_bank(0x24)[0x10]), (0x5A, 0));
 }
 
-/// The status of an earlier run is neither the end nor the failure of this one.
+/// The status of an earlier run is neither the end nor the failure of the current one.
 #[test]
 fn the_status_of_an_earlier_run_is_ignored() {
     for silent in ["on", "off"] {
         let mut bench =
             Bench::new(Transport::ConfigPin, &format!("calibration-silent={silent}&calibration-status=kept"));
         let before = bench.flash_cycles();
-        // It leaves "clockwise done".
+        // This leaves the status "clockwise done".
         bench.change(calibration()).unwrap();
-        // It leaves "counterclockwise done", which is also the end of the first run.
+        // This leaves the status "counterclockwise done", which is also the end of the first run.
         let prepared = bench.prepare(calibration()).unwrap();
         let mut hands = TestOperator::on(&bench);
         hands.instead.push((OperatorTask::Turn(MotorRun::CalibrationClockwise), OperatorAnswer::Skip));

@@ -1,4 +1,4 @@
-//! Issue 22.16: the supply that an adapter provides for the encoder, at the end of a session.
+//! Issue 22.16: the supply that an adapter provides for the encoder, and its state after a session.
 
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ fn has_power(bench: &Bench) -> bool {
 #[test]
 fn the_supply_is_switched_off_unless_found_on_or_kept() {
     let mut bench = Bench::supplied(AsFound);
-    // The supply before a session, the setting for its end, and whether it is on then.
+    // The supply before a session, the setting for its end, and whether the supply is on afterwards.
     for (found, after, left) in
         [(false, AsFound, false), (false, On, true), (true, AsFound, true), (true, Off, false), (false, Off, false)]
     {
@@ -29,8 +29,8 @@ fn the_supply_is_switched_off_unless_found_on_or_kept() {
     }
 }
 
-/// Issue 22.16: the same for streamed signals: a supply switched on for them is switched off, and one that was on
-/// before stays on.
+/// Issue 22.16: the same for streamed signals. A supply that was switched on for them is switched off, and one that was
+/// already on stays on.
 #[test]
 fn streaming_signals_restores_the_supply() {
     let volts = SupplyVoltage { least: 4_750, given: 5_000, greatest: 12_500 };
@@ -44,7 +44,7 @@ fn streaming_signals_restores_the_supply() {
     assert!(bench.stream_signals(None) && has_power(&bench));
 }
 
-/// A session without requests, or whose link does not control the supply, switches nothing.
+/// A session that makes no requests, or whose link does not control the supply, switches nothing.
 #[test]
 fn a_session_switches_off_only_its_own_supply() {
     let mut bench = Bench::supplied(On);
@@ -57,7 +57,7 @@ fn a_session_switches_off_only_its_own_supply() {
     assert!(has_power(&bench));
 }
 
-/// A store gets its time before the power is switched off; an encoder in a mode of another host keeps its power.
+/// A store is completed before the power is switched off. An encoder in a mode set by another host keeps its power.
 #[test]
 fn power_is_not_cut_during_a_store_or_a_mode() {
     let mut bench = Bench::supplied(AsFound);
@@ -74,7 +74,7 @@ fn power_is_not_cut_during_a_store_or_a_mode() {
     assert!(has_power(&bench), "it may calibrate");
 }
 
-/// Issue 22.16: the encoder is silent from the beginning, so that it may be calibrating since an earlier session.
+/// Issue 22.16: the encoder is silent from the beginning, so it may be calibrating since an earlier session.
 #[test]
 fn an_encoder_that_never_answers_keeps_its_power() {
     let mut bench = Bench::supplied_at("line=open", AsFound);
@@ -87,7 +87,7 @@ fn an_encoder_that_never_answers_keeps_its_power() {
     assert!(has_power(&bench), "that it may be cut off is not said by a link");
 }
 
-/// At any interruption of a write: an encoder that could not be returned to operation keeps its power until it is.
+/// At any interruption of a write, an encoder that could not be returned to operation keeps its power until it is.
 #[test]
 fn an_encoder_that_could_not_be_returned_to_operation_keeps_its_power() {
     let mut whole = Bench::supplied(AsFound);

@@ -1,4 +1,4 @@
-//! Test support: a virtual kit encoder in virtual time, a link to it with configurable faults, and a record of its
+//! Test support: a virtual kit encoder in virtual time, a link to it with configurable faults, and a record of the
 //! data.
 
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -24,12 +24,12 @@ use encoder_studio::worker::{Event, JobId, Progress, Session};
 use crate::faults::{FaultyLink, Schedule};
 use crate::support::{MARGIN, Tap, TestLink, folder};
 
-/// The configuration pin of an encoder with its host.
+/// The configuration pin of an encoder, and its host.
 pub(crate) type Pin = Rig<UbicomPort>;
-/// An encoder at an adapter with its host.
+/// An encoder at an adapter, and its host.
 pub(crate) type Bus = Rig<Adapter>;
 
-/// A virtual device with the host side of its line.
+/// A virtual device and the host side of its line.
 pub(crate) struct Rig<D> {
     pub(crate) device: Arc<Mutex<D>>,
     pub(crate) clock: Arc<VirtualClock>,
@@ -63,7 +63,7 @@ impl Bus {
         Self::with(Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap(), Transport::Adapter)
     }
 
-    /// Returns the number of sent requests of an operation.
+    /// Returns the number of requests of an operation that were sent.
     pub(crate) fn count(&self, operation: Operation) -> usize {
         let mut receiver = Receiver::default();
         self.tap().sent.iter().for_each(|bytes| receiver.push(bytes));
@@ -92,7 +92,7 @@ impl<D: ByteDevice + 'static> Rig<D> {
         Master::new(ctx, &mut self.station)
     }
 
-    /// Adds bytes of another sender to the line.
+    /// Adds bytes from another sender to the line.
     pub(crate) fn link_send(&mut self, bytes: &[u8]) {
         self.link.send(bytes).unwrap();
     }
@@ -109,14 +109,14 @@ impl<D: ByteDevice + 'static> Rig<D> {
         self.clock.now().since_start()
     }
 
-    /// Returns the data on the line in hexadecimal.
+    /// Returns the frames on the line in hexadecimal digits.
     pub(crate) fn shown(&self, direction: Direction) -> Vec<String> {
         let entries = self.entries.lock().unwrap();
         entries.iter().filter(|entry| entry.direction == direction).map(|entry| entry.bytes.to_string()).collect()
     }
 }
 
-/// The encoder of a bench.
+/// A handle to the encoder of a bench.
 pub(crate) struct Handle {
     end: End,
     clock: Arc<VirtualClock>,
@@ -132,7 +132,7 @@ impl Handle {
     }
 }
 
-/// A virtual encoder with a session.
+/// A session with a virtual encoder.
 pub(crate) struct Bench {
     pub(crate) clock: Arc<VirtualClock>,
     pub(crate) session: Session<Biss>,
@@ -155,7 +155,7 @@ impl Bench {
         Self::made(way, query, store, folder)
     }
 
-    /// Creates a bench with the given store.
+    /// Creates a bench that uses the given store.
     pub(crate) fn in_store(way: Transport, query: &str, store: Store) -> Self {
         Self::made(way, query, store, folder())
     }
@@ -204,7 +204,7 @@ impl Bench {
         Bench { clock, session, tap, end, folder }
     }
 
-    /// Returns the same device at the same time in a new session, like a cable that is plugged in again.
+    /// Returns the same device at the same time with a new session, as after a cable was plugged in again.
     pub(crate) fn reconnected(&self) -> Bench {
         let (store, folder) = (Store::at_root(self.folder.path()), self.folder.clone());
         Self::plugged(self.end.clone(), self.session.station().transport, self.clock.clone(), store, folder)
@@ -215,7 +215,7 @@ impl Bench {
         Self::supplied_at("", after)
     }
 
-    /// Creates the same bench with additional settings of the adapter.
+    /// Creates a bench like [`supplied`](Self::supplied), with additional settings of the adapter.
     pub(crate) fn supplied_at(query: &str, after: SupplyAfterSession) -> Self {
         let query = format!("supply=switched&{query}");
         let adapter = Adapter::from_pairs(&pairs(&query), attachable_kinds()).unwrap();
@@ -223,8 +223,8 @@ impl Bench {
         Self::with_supply(End::Bus(Arc::new(Mutex::new(adapter))), after, Arc::default(), folder)
     }
 
-    /// Streams sine and cosine over the adapter, as the Signals tab does; returns whether the encoder had power
-    /// meanwhile.
+    /// Streams sine and cosine over the adapter, like the Signals tab. Returns whether the encoder had power during
+    /// this time.
     pub(crate) fn stream_signals(&self, supply: Option<SupplyVoltage>) -> bool {
         let End::Bus(adapter) = &self.end else { panic!("no adapter") };
         let mut link = TestLink::new(adapter.clone(), self.clock.clone(), Arc::default());
@@ -238,7 +238,7 @@ impl Bench {
         has_power
     }
 
-    /// Returns the same as [`reconnected`](Self::reconnected), with the supply switched on again and this setting for
+    /// Reconnects like [`reconnected`](Self::reconnected), with the supply switched on again and the given setting for
     /// its end.
     pub(crate) fn supplied_again(&self, after: SupplyAfterSession) -> Self {
         Self::with_supply(self.end.clone(), after, self.clock.clone(), self.folder.clone())
@@ -257,7 +257,7 @@ impl Bench {
         Self::with_station(end, station, clock, store, folder)
     }
 
-    /// Returns the same as [`reconnected`](Self::reconnected), with the identity already known.
+    /// Reconnects like [`reconnected`](Self::reconnected), with the identity already known.
     pub(crate) fn reconnected_knowing(&self) -> Bench {
         let known = self.session.station();
         let mut station = Station::new(known.transport, MARGIN);
@@ -267,7 +267,7 @@ impl Bench {
         Self::with_station(self.end.clone(), station, self.clock.clone(), self.store(), self.folder.clone())
     }
 
-    /// Returns a copy, including the device and its time, without files on disk.
+    /// Returns a copy, including the device and its time but not the files on disk.
     pub(crate) fn copied(&self) -> Bench {
         let clock = Arc::new(VirtualClock::default());
         clock.sleep_until(self.clock.now());
@@ -298,28 +298,28 @@ impl Bench {
         self.handle().with(look)
     }
 
-    /// Returns the tap, to change it while a job runs.
+    /// Returns a handle to the tap, to change it while a job runs.
     pub(crate) fn tap_handle(&self) -> Arc<Mutex<Tap>> {
         self.tap.clone()
     }
 
-    /// Returns a counter of sent frames, to use while a job runs.
+    /// Returns a counter of the frames sent, for use while a job runs.
     pub(crate) fn counter(&self) -> impl Fn() -> usize + use<> {
         let tap = self.tap.clone();
         move || tap.lock().unwrap().sent.len()
     }
 
-    /// Returns the encoder, to inspect it while a job runs.
+    /// Returns a handle to the encoder, to inspect it while a job runs.
     pub(crate) fn handle(&self) -> Handle {
         Handle { end: self.end.clone(), clock: self.clock.clone() }
     }
 
-    /// Waits until the given time since the start.
+    /// Waits until the given time after the start.
     pub(crate) fn clock_to(&self, elapsed: Duration) {
         self.clock.sleep_until(Moment::from_elapsed(elapsed));
     }
 
-    /// Runs a job, and returns the reported operations of a plan.
+    /// Runs a job. Also returns the reported operations of a plan.
     pub(crate) fn run_watched(
         &mut self,
         job: BissJob,
@@ -357,7 +357,7 @@ impl Bench {
         self.session.motor().unwrap()
     }
 
-    /// Returns a register, read directly in the encoder.
+    /// Returns a register, read directly from the encoder.
     pub(crate) fn encoder_reads(&self, address: RegisterAddress) -> Option<u8> {
         self.encoder(|encoder, now| encoder.read(now, address))
     }

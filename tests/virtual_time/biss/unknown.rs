@@ -1,4 +1,5 @@
-//! An encoder without a description in the program, at an adapter: no data sheet, frames of other widths.
+//! An encoder without a description in the program, at an adapter. It has no data sheet, and its frames have other
+//! widths.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +14,7 @@ use encoder_studio::units::{CharacterFormat, Moment};
 use super::support::{Bus, Rig, Transport};
 use crate::support::MARGIN;
 
-/// A 14-bit singleturn encoder with its adapter, which replies immediately.
+/// An adapter with a 14-bit singleturn encoder, which replies immediately.
 struct Stranger {
     layout: Layout,
     /// Steps from one frame to the next.
@@ -57,7 +58,7 @@ impl Stranger {
             Request::BissRead => {
                 self.place = (self.place + self.step) % (1 << 14);
                 let reading = PositionData { singleturn: self.place, ..PositionData::default() };
-                // After its end the line is low.
+                // After the end of the frame, the line is low.
                 let bits = self.layout.bits();
                 let frame = u128::from(self.layout.emit(&reading)) << 64 >> bits >> (64 - self.clocked);
                 Reply::BissRead { t_us: 0, status: BissStatus::OK, raw: frame as u64 }
@@ -127,7 +128,7 @@ fn at_rest_no_frame_is_found_and_the_survey_still_works() {
     assert!(matches!(error, Error::WrongWidths { data_bits: 35, crc_bits: 6, .. }), "{error}");
 }
 
-/// Issue 22.20: turns and steps are given by the user, also at rest; 14 bits of steps are 16384 per turn.
+/// Issue 22.20: the user specifies turns and steps, even at standstill. 14 bits of steps are 16384 per turn.
 #[test]
 fn a_given_frame_converts_positions_to_angles() {
     let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
@@ -137,7 +138,7 @@ fn a_given_frame_converts_positions_to_angles() {
     assert_eq!((identity.multiturn_bits(), identity.singleturn_bits()), (Some(0), Some(14)));
     let reading = rig.master().position().unwrap();
     assert_eq!((reading.steps, reading.angle_degrees()), (100, Some(100.0 * 360.0 / 16384.0)));
-    // A kit encoder reports its frame itself.
+    // A kit encoder itself reports its frame.
     let mut kit = Bus::new("");
     kit.station.given = Layout::new(0, 14, true, true, None).ok();
     let identity = device::identify(&mut kit.master(), &Descriptions::built_in()).unwrap();

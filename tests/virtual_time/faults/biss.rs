@@ -34,13 +34,13 @@ struct Case {
     prepared: Prepared,
     requests: usize,
     course: Vec<State>,
-    /// Whether the calibration table is lost if the change is cut off.
+    /// Whether the calibration table is lost if the change is interrupted.
     loses_table: bool,
 }
 
 fn hands(bench: &Bench) -> TestOperator {
     let mut hands = TestOperator::on(bench);
-    // The shortest test: the fewest exchanges.
+    // The shortest test has the fewest exchanges.
     hands.rpm = (500.0, 2000.0);
     hands
 }
@@ -77,7 +77,7 @@ fn case(name: &str, way: Transport, change: fn() -> Change) -> Case {
     }
 }
 
-/// Returns whether each byte of a preset is the old or the new one.
+/// Returns whether each byte of a preset is from the old or the new preset.
 fn consists_of(preset: PresetValue, old: PresetValue, new: PresetValue) -> bool {
     let bytes = |own: PresetValue| [own.singleturn().to_le_bytes(), own.multiturn().to_le_bytes()].concat();
     bytes(preset).iter().zip(bytes(old).iter().zip(bytes(new))).all(|(own, (old, new))| own == old || *own == new)
@@ -102,13 +102,13 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
             let told = interrupted.to_string();
             let mut course = case.course.clone();
             if case.loses_table {
-                // A calibration that is cut off has no valid table.
+                // A calibration that is interrupted has no valid table.
                 course.extend(
                     case.course.iter().map(|(data, preset, filter, _)| (data.clone(), *preset, *filter, false)),
                 );
             }
             if told.contains(" was read back") {
-                // A byte did not arrive, and the others were saved: the error names it.
+                // One byte did not arrive, and the others were saved. The error names it.
                 let mut mixed = left.clone();
                 mixed.1 = after.1;
                 assert!(consists_of(left.1, case.course[0].1, after.1), "{context}: {told}: {left:?}");
@@ -126,7 +126,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
             End::NotStarted
         }
     };
-    // The line is intact again: the encoder is returned to operation, then the change is completed.
+    // The line is intact again. The encoder is returned to operation, and the change is completed.
     let mut again = bench.reconnected();
     again.motor().set_rpm(0.0);
     again.return_to_operation().unwrap_or_else(|error| panic!("{context}: {error}"));

@@ -1,5 +1,5 @@
-//! HIPERDRIVE: parameters with and without a save, a scale with its limits, the position, and services, over
-//! EtherNet/IP. TCP neither damages nor inserts bytes.
+//! HIPERDRIVE over EtherNet/IP: parameters with and without a save, a scale with its limits, the position, and
+//! services. TCP neither damages nor inserts bytes.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -36,7 +36,7 @@ fn state(stand: &Stand) -> State {
     WRITTEN.iter().map(|own| stand.target.with_station(|station| station.read(now, number(*own))).unwrap()).collect()
 }
 
-/// Returns a session over a link that is intact so far, and the schedule of its faults.
+/// Returns a session over a link that is initially intact, and the schedule of its faults.
 fn session() -> (Stand, Arc<Mutex<Schedule>>) {
     let (target, clock) = device();
     let schedule = Arc::<Mutex<Schedule>>::default();
@@ -66,7 +66,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
     stand.clock.sleep_until(stand.clock.now() + Duration::from_secs(10));
     let left = state(&stand);
     let end = match ended {
-        // After a loss of power there is only what was saved.
+        // After a loss of power, only the saved values remain.
         Ok(_) => {
             assert!(left == case.after || loses_power, "{context}: {left:?}");
             End::Done
@@ -84,7 +84,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
             End::NotStarted
         }
     };
-    // The cable is back: a second run completes the change.
+    // The cable is plugged in again, and a second run completes the change.
     let mut again = Stand::at(stand.target.clone(), stand.clock.clone());
     let prepared = again.prepare((case.change)()).unwrap_or_else(|error| panic!("{context}: a second plan: {error}"));
     again.commit(prepared).unwrap_or_else(|error| panic!("{context}: a second run: {error}"));

@@ -23,7 +23,7 @@ use fastrand::Rng;
 use super::{End, FaultyLink, Schedule, any_faults, assert_one_of, campaign};
 use crate::support::{Desk, bytes, folder, restore_of};
 
-/// The stored values and the position of an encoder.
+/// The stored values and position of an encoder.
 #[derive(Clone, PartialEq)]
 struct State {
     memory: Memory,
@@ -133,7 +133,7 @@ impl Rig {
     }
 }
 
-/// Returns an encoder with a plain field, a protected one and an empty tail.
+/// Returns an encoder with a plain field, a protected field and an empty field at the end.
 fn encoder() -> Desk {
     let mut desk = Desk::new("codes=2:66&position=123456");
     desk.remember_code(2, 0x66);
@@ -171,7 +171,7 @@ fn changes(desk: &mut Desk) -> Vec<(&'static str, Change)> {
     ]
 }
 
-/// Plans a change and follows it without faults.
+/// Plans a change and executes it without faults to determine its intermediate states.
 fn case(desk: &mut Desk, name: &'static str, change: Change) -> Case {
     let prepared = desk.prepare(change.clone()).unwrap();
     let (bus, station) = (desk.bus().clone(), desk.session.station().clone());
@@ -180,7 +180,7 @@ fn case(desk: &mut Desk, name: &'static str, change: Change) -> Case {
     rig.commit(prepared.clone()).unwrap_or_else(|error| panic!("{name}: {error}"));
     let requests = rig.schedule.lock().unwrap().sent;
     let after = rig.state();
-    // Lost from each request on: the states in between.
+    // The connection is lost from each request on, to determine the states in between.
     for at in 0..requests {
         let faults = [(at, super::Fault::Lost)].into();
         let mut cut = Rig::new(bus.clone(), &desk.clock, station.clone(), Schedule::with(faults));
@@ -196,7 +196,7 @@ fn case(desk: &mut Desk, name: &'static str, change: Change) -> Case {
     Case { name, bus, clock: desk.clock.clone(), station, change, prepared, requests, course }
 }
 
-/// Saves a profile of the encoder, and checks that it matches the encoder.
+/// Saves a profile of the encoder and checks that it matches the encoder.
 fn save(case: &Case, truth: &HiperfaceProfile, rng: &mut Rng) -> End {
     let faults = any_faults(rng, 60, Duration::from_millis(20), false);
     let context = format!("save with {faults:?}");
@@ -246,11 +246,11 @@ fn run(cases: &[Case], truth: &HiperfaceProfile, rng: &mut Rng) -> End {
             End::NotStarted
         }
     };
-    // The line is intact again: the same session or a new one completes the change, or says why it cannot.
+    // The line is intact again. The same session or a new one completes the change or reports why it cannot.
     let mut again = rig.reconnected(case.station.clone());
     match again.prepare(case.change.clone()) {
         Ok(prepared) => {
-            // A code that has been changed is no longer the one that was entered.
+            // A code that has been changed is no longer the one that the user entered.
             if let Err(error) = again.commit(prepared) {
                 assert_eq!(state, *after, "{context}: a second run: {error}");
             }

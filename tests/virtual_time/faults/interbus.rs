@@ -1,5 +1,5 @@
-//! INTERBUS: parameters, cams and masks, start-up mode and preset, over a gateway. Modbus/TCP neither damages nor
-//! inserts bytes, so replies are lost or late, the link falls silent or ends, and the encoder loses its power.
+//! INTERBUS over a gateway: parameters, cams and masks, start-up mode and preset. Modbus/TCP neither damages nor
+//! inserts bytes, so replies are lost or late, the link falls silent or ends, or the encoder loses its power.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -122,8 +122,8 @@ fn changes() -> Vec<(&'static str, Change)> {
     ]
 }
 
-/// Follows a change without faults. At each request the encoder may be cut off, or lose its power and with it what has
-/// not been stored.
+/// Executes a change without faults to determine its intermediate states. At each request, the encoder may be cut off,
+/// or lose its power together with all values that have not been stored.
 fn case(name: &'static str, change: Change) -> Case {
     let mut rig = Rig::new();
     let job = rig.commit_job(change.clone()).unwrap();
@@ -149,9 +149,9 @@ fn case(name: &'static str, change: Change) -> Case {
     Case { name, change, requests, course }
 }
 
-/// Asserts that the encoder stored a state of the plan. With the power, it may also have lost some of the values that
-/// were set but not stored, and stored the others; then each value is an old or a new one, and the error names a value
-/// that is not the wanted one.
+/// Asserts that the encoder has stored a state of the plan. If it lost its power, it may also have lost some of the
+/// values that were set but not stored, and stored the others. In this case, each value is either an old or a new one,
+/// and the error names a value that is not the wanted one.
 fn assert_partly_stored(stored: &Memory, case: &Case, interrupted: &InterruptedWrite, context: &str) {
     if case.course.iter().any(|(state, ..)| state == stored) {
         return;
@@ -210,7 +210,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
             End::NotStarted
         }
     };
-    // The cable is back: the encoder is returned to operation, then the change is completed.
+    // The cable is plugged in again. The encoder is returned to operation, and the change is completed.
     rig.reconnect();
     rig.session.run_inline(InterbusJob::RestoreMode).unwrap_or_else(|error| panic!("{context}: {error}"));
     let job = rig.commit_job(case.change.clone()).unwrap_or_else(|error| panic!("{context}: a second plan: {error}"));

@@ -1,4 +1,4 @@
-//! A link with faults at chosen requests, between a session and a virtual line.
+//! A link with faults at selected requests, between a session and a virtual line.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex};
@@ -8,7 +8,7 @@ use encoder_studio::link::{ByteLink, Clock, LinkError, LinkErrorKind, SimLink};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::{CharacterFormat, Moment};
 
-/// A fault at one request.
+/// A fault that affects one request.
 #[derive(Clone, Debug)]
 pub(crate) enum Fault {
     /// The request does not arrive.
@@ -27,17 +27,17 @@ pub(crate) enum Fault {
     CutReply(usize),
     /// These bytes arrive before the reply.
     Garbage(Vec<u8>),
-    /// The reply to the preceding request arrives again, before the reply.
+    /// The reply to the preceding request arrives again before the actual reply.
     StaleReply,
     /// The request itself arrives before the reply.
     Echo,
     /// The reply is late by this time.
     LateReply(Duration),
-    /// Nothing arrives from now on, in either direction.
+    /// From this request on, nothing arrives in either direction.
     Silence,
-    /// The link is lost from now on.
+    /// From this request on, the link is lost.
     Lost,
-    /// The device loses its power for a moment before the request arrives.
+    /// The device briefly loses its power before the request arrives.
     PowerLoss,
 }
 
@@ -45,9 +45,9 @@ pub(crate) enum Fault {
 #[derive(Default)]
 pub(crate) struct Schedule {
     pub(crate) faults: BTreeMap<usize, Fault>,
-    /// Number of requests handed to the link.
+    /// Number of requests passed to the link.
     pub(crate) sent: usize,
-    /// Called before each request is sent.
+    /// Callback before each request is sent.
     on_request: Option<Box<dyn FnMut() + Send>>,
     is_silent: bool,
     is_lost: bool,
@@ -76,7 +76,7 @@ pub(crate) struct FaultyLink {
 }
 
 impl FaultyLink {
-    /// Connects to a device; `cut_power` interrupts its supply.
+    /// Connects to a device. `cut_power` interrupts its supply.
     pub(crate) fn new(
         device: Arc<Mutex<dyn ByteDevice>>,
         clock: Arc<dyn Clock>,
@@ -114,7 +114,7 @@ impl ByteLink for FaultyLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         let now = self.clock.now();
         let last = std::mem::take(&mut self.reply);
-        // The rest of a repeated reply arrives with the next request.
+        // The remaining bytes of a repeated reply arrive with the next request.
         if matches!(self.fault, Some(Fault::RepeatReply)) {
             self.arrive(now, &last);
         }

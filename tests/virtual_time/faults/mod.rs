@@ -1,8 +1,9 @@
-//! Fault campaign: seeded faults on the line at any request of any operation that writes, one or two in a run. After
-//! each run, no value is wrong, the device equals a state of the plan, and a second run completes the change.
+//! Fault campaign: random faults on the line at any request of any operation that writes, one or two per run. After
+//! each run, no value may be wrong, the device must be in a state of the plan, and a second run must complete the
+//! change.
 //!
-//! `ENCODER_STUDIO_FAULT_RUNS` sets the number of runs of all kinds together, `ENCODER_STUDIO_FAULT_SEED` repeats a
-//! single run of each kind.
+//! `ENCODER_STUDIO_FAULT_RUNS` sets the total number of runs of all kinds. `ENCODER_STUDIO_FAULT_SEED` repeats a single
+//! run of each kind.
 
 mod biss;
 mod hiperdrive;
@@ -23,19 +24,19 @@ pub(crate) use self::link::{Fault, FaultyLink, Schedule};
 /// Total number of runs of all kinds if no number is given.
 const RUNS: u64 = 4_000;
 
-/// The end of a run.
+/// The result of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The operation was executed in spite of the faults.
+    /// The operation was executed despite the faults.
     Done,
-    /// It was interrupted, described, and completed by a second run.
+    /// The operation was interrupted, and a second run completed it.
     Interrupted,
     /// Nothing had been written.
     NotStarted,
 }
 
-/// Executes seeded runs in all threads and prints how they ended; `share` is the part of all runs in thousandths. A
-/// panic names the seed that repeats it.
+/// Executes seeded runs in all threads and prints how they ended. `share` is the fraction of all runs, in thousandths.
+/// If a run panics, the seed that repeats it is printed.
 pub(crate) fn campaign(kind: &str, share: u64, run: impl Fn(&mut Rng) -> End + Sync) {
     let setting = |name| std::env::var(name).ok().map(|text: String| text.parse::<u64>().expect(name));
     let (first, runs) = match setting("ENCODER_STUDIO_FAULT_SEED") {
@@ -79,8 +80,8 @@ impl Drop for Named<'_> {
     }
 }
 
-/// Returns one or two faults at any of this number of requests. `usual` is the usual time of a reply; a late one takes
-/// about ten times as long. On a stream, bytes are neither damaged nor inserted.
+/// Returns one or two random faults among the given number of requests. `usual` is the usual reply time; a late reply
+/// takes about ten times as long. On a stream, bytes are neither damaged nor inserted.
 pub(crate) fn any_faults(rng: &mut Rng, requests: usize, usual: Duration, is_stream: bool) -> BTreeMap<usize, Fault> {
     let count = rng.usize(1..=2);
     (0..count).map(|_| (rng.usize(0..requests.max(1)), any_fault(rng, usual, is_stream))).collect()
@@ -106,7 +107,7 @@ fn any_fault(rng: &mut Rng, usual: Duration, is_stream: bool) -> Fault {
     }
 }
 
-/// Asserts that the state occurs in an undisturbed run.
+/// Asserts that the state also occurs in a run without faults.
 pub(crate) fn assert_one_of<S: PartialEq + Debug>(state: &S, course: &[S], context: &str) {
     if !course.contains(state) {
         panic!("{context}: {state:?} is not a state of the plan: {course:?}");

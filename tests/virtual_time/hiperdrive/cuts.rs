@@ -1,4 +1,5 @@
-//! The connection is cut at every request: the report and the written values are checked, and everything ends in time.
+//! The connection is cut at every request. The report and the written values are checked, and everything must end in
+//! time.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -24,12 +25,12 @@ const DEAF: Cut = |tap, at| tap.deaf_from = Some(at);
 const REQUEST: Cut = |tap, at| tap.swallow_request = Some(at);
 const REPLY: Cut = |tap, at| tap.swallow_reply = Some(at);
 
-/// Returns three parameters and a save.
+/// Returns a change that writes three parameters and saves them.
 fn write() -> Change {
     Change::Write(image(&[(24, 7), (166, 200), (186, 30)]))
 }
 
-/// Returns the requests of an undisturbed write.
+/// Returns the number of requests in a write without faults.
 fn requests() -> usize {
     let mut stand = Stand::new("");
     let prepared = stand.prepare(write()).unwrap();
@@ -55,7 +56,7 @@ fn a_single_loss_is_retried_and_nothing_is_set_twice() {
                     assert_eq!((done.written.verified, done.written.write_cycles), (3, 1), "{at}");
                     assert_eq!((stand.value(24), stand.value(166), stand.value(186)), (7, 200, 30), "{at}");
                 }
-                // A save is never sent twice: whether it was done is not known.
+                // A save is never sent twice, so whether it was executed is unknown.
                 Err(JobError::Interrupted { interrupted, backup, .. }) => {
                     assert_eq!(interrupted.uncertain_write().as_deref(), Some("47"), "{at}: {interrupted}");
                     assert!(backup.exists() && interrupted.done.write_cycles == 1, "{at}");
@@ -64,7 +65,7 @@ fn a_single_loss_is_retried_and_nothing_is_set_twice() {
                 Err(error) => panic!("{at}: {error}"),
             }
             for own in [24, 166, 186] {
-                // Set again only if reading back has shown that it was not accepted.
+                // A value is set again only if reading back has shown that it was not accepted.
                 assert!(times(own) <= most, "{at}: {sets:?}");
             }
         }
@@ -82,7 +83,7 @@ fn an_interrupted_write_ends_in_time_and_reports_progress() {
             let ended = stand.commit(prepared);
             assert!(stand.elapsed() - begun < LIMIT, "{label} {at}: {:?}", stand.elapsed() - begun);
             let locks = stand.session.motion().motion_permit(drive(1)).locks;
-            // Whether the device still owes an answer depends on the cut.
+            // Whether the device still owes an answer depends on where the connection was cut.
             let not_known = locks.split_first().is_some_and(|(first, rest)| {
                 *first == MotionLock::Unread && rest.iter().all(|own| *own == MotionLock::NoAnswer)
             });
@@ -104,7 +105,7 @@ fn an_interrupted_write_ends_in_time_and_reports_progress() {
     }
 }
 
-/// Executes a change with a cancellation at each of its requests in turn, and passes each result to `look`.
+/// Executes a change once for each of its requests and cancels it at that request. Passes each result to `look`.
 fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &str, &InterruptedWrite)) {
     for at in 0.. {
         let mut stand = Stand::new("");
@@ -119,7 +120,7 @@ fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &
                 assert_eq!((&interrupted.cause, interrupted.uncertain_write()), (&Error::Cancelled, None), "{at}");
                 look(&stand, &format!("request {at}"), &interrupted);
             }
-            // After the last operation there is nothing to cancel.
+            // After the last operation, there is nothing to cancel.
             Ok(done) => {
                 assert_eq!(stand.value(47), 0, "{at}");
                 if stand.tap().sent.len() <= number {
@@ -139,12 +140,12 @@ fn cancelling_takes_effect_between_two_operations() {
         assert_eq!(interrupted.done.ops, taken, "{label}");
         seen.insert(taken);
     });
-    // Before the first, nothing has begun; after the third the save remains.
+    // Before the first operation, nothing has begun. After the third, only the save remains.
     assert_eq!(seen.into_iter().collect::<Vec<_>>(), [1, 2, 3]);
 }
 
-/// 400 steps per turn instead of 65536 (reference 5), and limits of ten turns: half of the change would be another
-/// position than either. The maximum speed is written between them.
+/// 400 steps per turn instead of 65536 (reference 5), and limits of ten turns. With half of the change, positions would
+/// match neither scale. The maximum speed is written in between.
 #[test]
 fn cancelling_never_separates_a_scale_from_its_limits() {
     const PLACE: [(u16, i64); 4] = [(154, 400), (156, 256), (158, -4_000), (160, 4_000)];

@@ -1,4 +1,4 @@
-//! The data that can be read of a device. Nothing is set, and no cyclic connection is opened.
+//! Reading all data of a device. Nothing is set, and no cyclic connection is opened.
 
 use encoder_studio::devices::hiperdrive::procedures::check::{CheckFinding, CheckStep, Verdict};
 use encoder_studio::devices::hiperdrive::procedures::{Error, LateReplyError, PolledSample, Temperature};
@@ -53,9 +53,9 @@ fn a_hub_is_surveyed_with_its_connected_drives() {
         "152 of a hub is 0 from the factory"
     );
     let value = |own: u16| survey.values.get(&number(own));
-    // Parameters of the device, of drives 1 and 3, and none of an empty slot.
+    // Parameters of the device and of drives 1 and 3, and none of an empty slot.
     assert_eq!((value(166), value(366)), (Some(&Value::Number(350)), Some(&Value::Number(350))));
-    // An HDA70 turns 16000 times each way, of 65536 steps.
+    // An HDA70 turns 16000 times in each direction, with 65536 steps per turn.
     assert_eq!(value(360), Some(&Value::Number(1_048_576_000)));
     assert_eq!((value(258), value(199), value(299)), (None, None, None));
     assert_eq!(survey.network.address_switch(), AddressSwitch::parse(17));
@@ -99,7 +99,7 @@ fn status_reports_states_errors_and_temperatures_of_all_drives() {
     assert!(first.requested && second.faults == 1);
 }
 
-/// A recording is played back by the same jobs, with any numbers of sessions and requests.
+/// A recording is played back by the same jobs, even with different session and request numbers.
 #[test]
 fn a_recorded_trace_replays_the_devices_replies() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&serial=4711");
@@ -140,7 +140,8 @@ fn positions_of_the_watched_drive_are_read() {
     assert_eq!(position(&mut stand).drive, drive(2));
 }
 
-/// Parameters 11 and 119 (reference 4), each by one request; a drive that is not there has none.
+/// Parameters 11 and 119 (reference 4) are each read with one request. They do not exist for a drive that is not
+/// present.
 #[test]
 fn temperatures_are_watched_by_one_request_each() {
     let mut stand = Stand::new("hub=4&drives=1,1");
@@ -192,8 +193,8 @@ fn the_check_has_a_line_for_each_possible_fault() {
     assert!(of(CheckStep::Range(drive(1))).findings.contains(&CheckFinding::Within(65536)));
 }
 
-/// Reading one parameter after the other takes seconds if replies are slow: each is reported, and empty slots count as
-/// done.
+/// Reading the parameters one after another takes seconds if replies are slow. Each one is reported, and empty slots
+/// count as done.
 #[test]
 fn progress_is_reported_for_each_request() {
     let mut stand = Stand::new("hub=4&drives=1,0,1");

@@ -1,4 +1,5 @@
-//! Drives at an adapter or a hub over EtherNet/IP: sessions and requests, reading and writing, and all kinds of ends.
+//! Drives at an adapter or a hub over EtherNet/IP: sessions and requests, reading and writing, and every way in which
+//! they can end.
 
 mod cuts;
 mod jobs;

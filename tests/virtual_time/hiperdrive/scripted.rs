@@ -12,21 +12,21 @@ use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::support::{drive, number};
 
-/// The reaction to a request.
+/// The reaction of the target to a request.
 enum Act {
-    /// A CIP reply in a frame with the request's context.
+    /// A CIP reply in a frame with the context of the request.
     Reply(&'static str),
     /// An empty frame with this status.
     Status(u32),
-    /// A reply with another number than the request's, as to an earlier one.
+    /// A reply whose number differs from that of the request, like a reply to an earlier one.
     Stale(&'static str),
     /// No answer.
     Silence,
-    /// These bytes come.
+    /// These bytes are sent.
     Bytes(&'static str),
 }
 
-/// A target that follows a list.
+/// A target that sends the answers of a list.
 #[derive(Default)]
 struct Script {
     acts: VecDeque<Act>,
@@ -44,7 +44,7 @@ fn bytes(text: &str) -> Vec<u8> {
     text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
 }
 
-/// The reply of the reference, with session 12345678.
+/// The reply of the reference to RegisterSession, with session 12345678.
 const REGISTERED: &str = "65 00 04 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 01 00 00 00";
 
 fn frame(context: &[u8], status: u32, cip: &[u8]) -> Vec<u8> {
@@ -146,7 +146,7 @@ impl Desk {
     }
 }
 
-/// Returns a frame with its context as 0.
+/// Returns a frame with its context set to 0.
 fn without_context(frame: &[u8]) -> Vec<u8> {
     let mut frame = frame.to_vec();
     frame[12..20].fill(0);
@@ -219,12 +219,13 @@ fn values_have_their_type_and_sign() {
     }
 }
 
-/// Issue 21.9: a number with another length than that of its type is rejected with both lengths, for every request.
+/// Issue 21.9: if the length of a number differs from that of its type, it is rejected with both lengths, for every
+/// request.
 #[test]
 fn a_number_of_another_length_is_refused_with_both_lengths() {
     const REPLIES: [&str; 5] =
         ["8E 00 00 00", "8E 00 00 00 01", "8E 00 00 00 01 00", "8E 00 00 00 01 00 00", "8E 00 00 00 01 00 00 00"];
-    // Bits of the manual's table (6.2).
+    // Number of bits according to the manual's table (6.2).
     for (own, length) in
         [(11, 2), (47, 2), (107, 4), (108, 2), (119, 1), (152, 1), (158, 4), (182, 2), (186, 2), (188, 1), (190, 4)]
     {
@@ -246,11 +247,12 @@ fn a_number_of_another_length_is_refused_with_both_lengths() {
         error.to_string(),
         "parameter 107 (actual position) has the wrong length (bytes received: 2, expected: 4)"
     );
-    // The rules of a drive must not be read from a partial number.
+    // The limits of a drive must not be read from a partial number.
     let replies = ["8E 00 00 00 01", "8E 00 00 00 00 01", "8E 00 00 00 01 00", "8E 00 00 00 00 FF"].map(Act::Reply);
     let error = Desk::with(replies).ask(|master| read_rules(master, drive(1))).unwrap_err();
     assert_eq!(error.to_string(), "parameter 158 (lower limit) has the wrong length (bytes received: 2, expected: 4)");
-    // Nor is it used as the reason of a rejection: 120 with one byte does not prove an empty slot.
+    // A partial number is not used as the reason for a rejection either: 120 with one byte does not prove that the slot
+    // is empty.
     let refused =
         Desk::with(["8E 00 0C 00", "8E 00 00 00 00", "8E 00 00 00 01"].map(Act::Reply)).read(258).unwrap_err();
     assert!(matches!(refused, Error::Refused { .. }), "{refused}");
@@ -263,10 +265,10 @@ fn a_refusal_is_reported_with_its_parameter_name() {
     let refusal = error.as_refusal().unwrap();
     assert_eq!(refusal.status, GeneralStatus::new(5));
     assert_eq!(error.to_string(), "reading parameter 13 (category): 0x05 path unknown");
-    // For a drive its existence is read as well: 0 in parameter 120 means that it does not exist.
+    // For a drive, its existence is read as well. 0 in parameter 120 means that it does not exist.
     let mut desk = Desk::with([Act::Reply("8E 00 0C 00"), Act::Reply("8E 00 00 00 00 00")]);
     assert_eq!(desk.read(258), Err(Error::NoDrive { drive: drive(2) }));
-    // Or whether it is requested: parameter 152.
+    // Parameter 152 states whether the drive is requested.
     for (requested, is_refused) in [("8E 00 00 00 00", false), ("8E 00 00 00 01", true)] {
         let replies = ["8E 00 0C 00", "8E 00 00 00 07 00", requested];
         let error = Desk::with(replies.map(Act::Reply)).read(258).unwrap_err();
@@ -286,7 +288,7 @@ fn unknown_and_write_only_parameters_are_not_read() {
 #[test]
 fn damaged_frames_are_retried_and_silence_times_out() {
     for broken in [
-        // A length that no frame has; a frame without its end; an invalid message.
+        // A length that no frame has, a frame without its end, and an invalid message.
         "6F 00 FF FF 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",
         "6F 00 18 00 78 56",
         "55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA",
@@ -310,18 +312,18 @@ fn reading_the_limits_of_a_drive_can_be_cancelled() {
     cancel.request();
     assert_eq!(desk.ask_until(cancel.clone(), |master| read_rules(master, drive(1))), Err(Error::Cancelled));
     assert_eq!(desk.clock.now(), Moment::START, "nothing was waited for");
-    // After a write the current state is known.
+    // After a write, the current state is known.
     let ended = desk.ask_until(cancel, |master| master.run_uncancellable(|master| read_rules(master, drive(1))));
     assert!(matches!(ended, Err(Error::NoReply { .. })), "{ended:?}");
 }
 
-/// ForwardOpen as in the reference, except for the parts that differ between connections: numbers of both directions,
-/// of the connection and of its originator.
+/// ForwardOpen as in the reference, except for the parts that differ between connections: the numbers of both
+/// directions, of the connection and of its originator.
 const OPEN: &str = "54 02 20 06 24 01 03 FA 00 00 00 00 .. .. .. .. .. .. 34 12 .. .. .. .. 01 00 00 00 \
     10 27 00 00 16 48 10 27 00 00 12 48 01 04 20 04 24 68 2C 64 2C 65";
 const OPENED: &str = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 10 27 00 00 10 27 00 00 00 00";
 
-/// Returns the CIP part of a frame and the part after it, with two dots for ignored bytes.
+/// Returns the CIP part of a frame and the part after it. Two dots in `pattern` stand for ignored bytes.
 fn cip(frame: &[u8], pattern: &str) -> (String, Vec<u8>) {
     let pattern: Vec<&str> = pattern.split_whitespace().collect();
     let (own, beside) = frame[40..].split_at(pattern.len());
@@ -342,7 +344,7 @@ fn a_cyclic_connection_is_opened_as_in_the_reference() {
     let opened = desk.ask(|master| master.forward_open(Topology::Adapter, 0x1234)).unwrap();
     let (own, beside) = cip(&desk.sent()[1], OPEN);
     assert_eq!(own, flat(OPEN));
-    // The target address of packets to the host: item 8001 with its port, in network order.
+    // The target address of packets to the host: item 8001 with its port, in network byte order.
     assert_eq!(beside, bytes("01 80 10 00 00 02 12 34 00 00 00 00 00 00 00 00 00 00 00 00"));
     assert_eq!((opened.to_target_id, opened.to_originator_id), (0x0002_0001, 0x0001_0001));
     assert_eq!((opened.to_target_interval, opened.timeout), (Duration::from_millis(10), Duration::from_millis(80)));
@@ -378,7 +380,7 @@ fn a_refused_connection_is_requested_with_other_parameters() {
         assert_eq!(words(&desk), asked, "{label}");
         assert_eq!(opened.layout.pkw, asked.last().unwrap().0 == 0x4816, "{label}");
     }
-    // Five drives of eight bytes and parameter words of a hub for four: 40 bytes.
+    // Five drives with eight bytes each, and parameter words: a hub for four, with 40 bytes.
     let mut desk = Desk::with([Act::Reply(OPENED)]);
     desk.ask(|master| master.forward_open(Topology::Hub4, 1)).unwrap();
     assert_eq!(words(&desk), [(0x482E, 0x482A)]);
@@ -398,7 +400,7 @@ fn another_master_is_reported_and_nothing_is_retried() {
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
     let remedy = error.as_refusal().unwrap().remedy();
     assert_eq!(remedy, Some("request a longer interval"));
-    // A lost reply may belong to a connection that is open: it is not opened twice.
+    // A lost reply may belong to a connection that is open, so it is not opened twice.
     let mut desk = Desk::with([]);
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
     assert_eq!(error, Error::NoReply { requested: RequestedItem::Open, tries: 1, late: None });
@@ -408,13 +410,13 @@ fn another_master_is_reported_and_nothing_is_retried() {
 
 #[test]
 fn a_connection_with_a_slow_interval_is_closed() {
-    // 50 ms each way although 10 were requested: C350h.
+    // 50 ms in each direction although 10 ms were requested: C350h.
     let slow = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 50 C3 00 00 10 27 00 00 00 00";
     let mut desk = Desk::with([Act::Reply(slow), Act::Reply("CE 00 00 00 01 00 34 12 CD AB 00 00 00 00")]);
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
     assert_eq!(error, Error::TooSlow { asked_ms: 10, got_ms: 50 });
     assert_eq!(desk.sent()[2][40], 0x4E);
-    // From 35 ms on a target gives up after four intervals, below that after eight.
+    // From 35 ms on, a target gives up after four intervals, and below that after eight.
     for (ms, multiplier) in [(34, 1), (35, 0)] {
         let mut desk = Desk::with([]);
         desk.station.link.interval = Duration::from_millis(ms);

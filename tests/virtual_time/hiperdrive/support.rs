@@ -1,4 +1,4 @@
-//! Test support: a virtual adapter or hub in virtual time, with a session and a record of its data.
+//! Test support: a virtual adapter or hub in virtual time, with a session and a record of the data.
 
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -20,12 +20,12 @@ use encoder_studio::worker::Session;
 use crate::faults::{FaultyLink, Schedule};
 use crate::support::{MARGIN, Tap, TestLink, folder};
 
-/// A virtual device with a session.
+/// A session with a virtual device.
 pub(crate) struct Stand {
     pub(crate) target: Target,
     pub(crate) clock: Arc<VirtualClock>,
     pub(crate) tap: Arc<Mutex<Tap>>,
-    /// Folder of backups and the logbook.
+    /// Folder for backups and the logbook.
     folder: tempfile::TempDir,
     pub(crate) session: Session<Hiperdrive>,
 }
@@ -58,7 +58,7 @@ impl Stand {
         Self::over(wire, tap, target, clock)
     }
 
-    /// Creates another session with a device, over a link with these faults.
+    /// Creates another session with a device over a link with the given faults.
     pub(crate) fn with_faults(target: Target, clock: Arc<VirtualClock>, schedule: Arc<Mutex<Schedule>>) -> Self {
         let connection = Arc::new(Mutex::new(target.connect_from(Ipv4Addr::UNSPECIFIED)));
         let supplied = target.clone();
@@ -117,7 +117,7 @@ impl Stand {
         self.commit(prepared)
     }
 
-    /// Blocks the path of the logbook.
+    /// Makes the path of the logbook unusable.
     pub(crate) fn block_logbook(&self) {
         let path = Store::at_root(self.folder.path()).logbook_path();
         // A connection may already be recorded.
@@ -125,7 +125,7 @@ impl Stand {
         std::fs::create_dir_all(path).unwrap();
     }
 
-    /// Returns the value of a parameter in the device.
+    /// Returns the value of a parameter, read directly from the device.
     pub(crate) fn value(&self, own: u16) -> i64 {
         let now = self.clock.now();
         match self.target.with_station(|station| station.read(now, number(own))).unwrap() {
@@ -146,7 +146,7 @@ impl Stand {
         .collect()
     }
 
-    /// Returns the set values, as parameter and data.
+    /// Returns the values that were set, each as parameter number and data.
     pub(crate) fn sets(&self) -> Vec<(u16, Vec<u8>)> {
         use encoder_studio::buses::ethernet_ip::protocol::{LogicalKind, Service};
         let of_parameter = |request: &Request| {

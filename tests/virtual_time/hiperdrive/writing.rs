@@ -1,4 +1,5 @@
-//! Writing: exactly the planned values, each read back, then one save; and rejections with their reasons.
+//! Writing: exactly the planned values are written, each is read back, and all are saved once. Rejections are reported
+//! with their reasons.
 
 use encoder_studio::devices::hiperdrive::jobs::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
@@ -27,7 +28,7 @@ fn differences_are_written_read_back_and_saved_once() {
     let done = stand.change(Change::Write(image(&[(24, 7), (166, 200), (188, 1)]))).unwrap();
     assert_eq!((done.written.ops, done.written.written, done.written.verified), (3, 2, 2));
     assert_eq!(done.written.write_cycles, 1);
-    // 188 is 1 already.
+    // 188 is already 1.
     let sets = stand.sets();
     assert_eq!(sets, [(24, vec![7, 0, 0, 0]), (166, vec![200, 0]), (47, vec![1, 0])]);
     assert_eq!((stand.value(24), stand.value(166), stand.value(47)), (7, 200, 0), "it waits until it is saved");
@@ -46,7 +47,8 @@ fn differences_are_written_read_back_and_saved_once() {
     );
 }
 
-/// Issue 22.4: no limit of saves is known, but they are counted: if they cannot be, only a forced write is executed.
+/// Issue 22.4: there is no known limit of saves, but they are counted. If they cannot be counted, only a forced write
+/// is executed.
 #[test]
 fn a_device_with_uncountable_saves_is_written_only_by_force() {
     let mut stand = Stand::new("serial=42");
@@ -64,7 +66,7 @@ fn trial_values_are_not_saved() {
     let mut stand = Stand::new("");
     let done = stand.change(Change::Try(image(&[(166, 100), (170, 640)]))).unwrap();
     assert_eq!((done.written.write_cycles, stand.value(166), stand.value(170)), (0, 100, 640));
-    // Issue 21.6 (d): a recall is about the adapter's own parameters.
+    // Issue 21.6 (d): a recall applies to the adapter's own parameters.
     stand.change(Change::Do(Service::Recall)).unwrap();
     assert_eq!(stand.value(166), 100);
     let now = stand.clock.now();
@@ -74,7 +76,7 @@ fn trial_values_are_not_saved() {
 
 #[test]
 fn limits_are_written_in_the_order_the_drive_accepts() {
-    // From ±511 turns to a range far above, then back below: the other limit first.
+    // From ±511 turns to a range far above, then back below. In the second case, the other limit is written first.
     let mut stand = Stand::new("position=655360");
     stand.change(Change::Write(image(&[(158, 600_000), (160, 700_000)]))).unwrap();
     assert_eq!((stand.value(158), stand.value(160)), (600_000, 700_000));
@@ -99,7 +101,7 @@ fn a_profile_is_restored_after_a_factory_reset() {
     assert_eq!((stand.value(24), stand.value(154), stand.value(358)), (0, 400, -131_072), "the hub's own alone");
     stand.change(Change::Do(Service::FactoryAll)).unwrap();
     assert_eq!((stand.value(24), stand.value(154), stand.value(358)), (0, 256, -33_488_896));
-    // In the factory settings a hub requests no drive: the request must be restored, too.
+    // In the factory settings, a hub requests no drive, so the request must be restored as well.
     let change = || Change::Restore { profile: profile.clone(), options: RestoreOptions::default() };
     let done = stand.change(change()).unwrap();
     assert_eq!(done.written.write_cycles, 1);
@@ -128,7 +130,7 @@ fn out_of_range_values_name_both_limits_of_host_and_device() {
     let mut stand = Stand::new("position=65536");
     let refused = stand.prepare(Change::Write(image(&[(166, 400)]))).unwrap_err();
     assert_eq!(refused.to_string(), "parameter 166 (maximum speed) cannot be 400 (allowed: 5 to 350)");
-    // The drive has turned meanwhile: the plan does not include it, and the device rejects the request.
+    // The drive has turned in the meantime. The plan does not include its position, and the device rejects the request.
     let prepared = stand.prepare(Change::Write(image(&[(158, 60_000)]))).unwrap();
     let now = stand.clock.now();
     stand.target.with_station(|station| station.write(now, number(198), &Value::Number(640))).unwrap();
@@ -157,7 +159,7 @@ fn read_only_and_motion_parameters_are_refused_without_a_request() {
 fn a_position_is_set_to_the_nearest_possible_value() {
     let mut stand = Stand::new("position=655360");
     let done = stand.change(Change::SetPosition { drive: drive(1), position: 1000, save: true }).unwrap();
-    // 64 · 16 = 1024 is nearer than 64 · 15 = 960.
+    // 64 · 16 = 1024 is closer than 64 · 15 = 960.
     assert_eq!((done.written.verified, stand.value(198), stand.value(107)), (1, 1024, 1024));
     assert_eq!(stand.sets(), [(198, vec![0, 4, 0, 0]), (47, vec![1, 0])]);
 }
@@ -175,8 +177,8 @@ fn services_wait_for_completion() {
     assert_eq!((prepared.kind, prepared.plan.write_cycles()), (ChangeKind::Service(Service::FactoryAll), 1));
 }
 
-/// Issue 21.8: the manual allows 2 s with an adapter and 8 s with a hub until 47 = −4 is answered (6.2). The program
-/// waits for that time, sends it once, and does not use it to measure the speed of the network.
+/// Issue 21.8: the manual allows 2 s for an adapter and 8 s for a hub to answer 47 = −4 (6.2). The program waits for
+/// that time, sends the request once, and does not use it to measure the speed of the network.
 #[test]
 fn a_presence_test_may_take_the_time_of_the_manual() {
     for (query, ms) in [("reset=2000", 2000), ("hub=4&reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
@@ -191,8 +193,8 @@ fn a_presence_test_may_take_the_time_of_the_manual() {
     }
 }
 
-/// Issue 21.8: a reply slower than the manual allows, or a connection that falls silent meanwhile, ends in time
-/// (CLI.md: within 10 s), the request is sent once, and the report says that the result is not known.
+/// Issue 21.8: if a reply is slower than the manual allows, or a connection falls silent, the command ends in time
+/// (CLI.md: within 10 s). The request is sent once, and the report states that the result is unknown.
 #[test]
 fn an_unanswered_presence_test_times_out() {
     // The number of frames before it.

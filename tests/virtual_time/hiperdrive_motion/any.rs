@@ -1,8 +1,8 @@
-//! Random sessions of a user with a drive, thousands of steps long, with all faults in between: the drive fails,
-//! ignores its limits, turns the wrong way, is turned by hand; another master writes limits; lines are cut.
+//! Random sessions of a user with a drive, thousands of steps long, with all kinds of faults: the drive fails, ignores
+//! its limits, turns the wrong way or is turned by hand, another master writes limits, or lines are cut.
 //!
-//! A word that commands motion is sent only with a fresh act of the user, in its direction and within the limits: a
-//! model separate from the dead-man checks this ([`Model`]).
+//! A word that commands motion may be sent only after a fresh action of the user, in its direction and within the
+//! limits. A model that is independent of the dead-man control checks this ([`Model`]).
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Permit;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{MotionLock, MotionRequest, SpeedTorque, TargetState};
@@ -75,7 +75,7 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
 }
 
 /// Issue 21.14: bench and model check each word. This test checks that after the last request for motion the drive
-/// stops within the time of the ladder and of braking, and remains stopped.
+/// stops within the time needed for escalation and braking, and remains stopped.
 #[test]
 fn any_session_ends_at_a_standstill() {
     let mut moved = 0u64;
@@ -112,7 +112,7 @@ fn any_session_ends_at_a_standstill() {
             unwanted = if wanted { 0 } else { unwanted + 1 };
             let moves = bench.actual().status.state() == State::Moving || bench.actual().speed != 0;
             moved += u64::from(moves);
-            // Losses make it longer: a stop word may need some tries.
+            // Losses make this longer, because a stop word may need several tries.
             assert!(!moves || unwanted < 40, "{seed}/{step}: {unwanted} intervals unwanted, {:?}", bench.man.phase());
             if bench.man.has_exhausted_stop_levels() {
                 bench.reconnect();

@@ -1,4 +1,4 @@
-//! A virtual drive, its dead-man and the connection between them, cycle by cycle.
+//! A virtual drive, its dead-man control and the connection between them, cycle by cycle.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -13,10 +13,10 @@ use encoder_studio::devices::hiperdrive::sim::{SpindleLoad, Station, StationConf
 use encoder_studio::units::Moment;
 
 pub(super) const INTERVAL: Duration = Duration::from_millis(10);
-/// Eight intervals.
+/// Time-out of the connection: eight intervals.
 const TIMEOUT: Duration = Duration::from_millis(80);
 
-/// A drive with its dead-man. The intent is refreshed unless `absent` is set.
+/// A drive with its dead-man control. The intent is refreshed unless `absent` is set.
 pub(super) struct Bench {
     pub(super) station: Station,
     pub(super) man: DeadMan,
@@ -25,11 +25,11 @@ pub(super) struct Bench {
     pub(super) permit: Permit,
     /// Whether the intent is no longer refreshed.
     pub(super) absent: bool,
-    /// Nothing reaches the drive.
+    /// Whether nothing reaches the drive.
     pub(super) cut_out: bool,
     /// Whether no reports arrive.
     pub(super) cut_back: bool,
-    /// Delay of the reports in cycles.
+    /// Delay of reports in cycles.
     pub(super) late: usize,
     /// Reports of a drive that moves independently of its commands, as if a jog were running.
     pub(super) heard: Option<ActualValues>,
@@ -60,14 +60,14 @@ impl Bench {
         }
     }
 
-    /// Makes a request of the user and returns the number of the action.
+    /// Makes a request as the user and returns the number of the action.
     pub(super) fn act(&mut self, wish: MotionRequest) -> u64 {
         let number = self.intent.number + 1;
         self.intent = MotionIntent { drive: DriveNumber::FIRST, request: wish, number, refreshed: self.now };
         number
     }
 
-    /// Runs one interval, and checks and returns the setpoint that is sent.
+    /// Runs one interval, then checks and returns the set-point that is sent.
     pub(super) fn cycle(&mut self) -> Setpoint {
         if !self.absent {
             self.intent.refreshed = self.now;
@@ -104,7 +104,7 @@ impl Bench {
         });
     }
 
-    /// Runs until the last action has ended, and returns how it ended.
+    /// Runs until the last action has ended and returns how it ended.
     pub(super) fn until_over(&mut self) -> ActionEnd {
         for _ in 0..6000 {
             self.cycle();
@@ -117,7 +117,7 @@ impl Bench {
         panic!("it never ends: {:?} {:?}", self.man.phase(), self.actual());
     }
 
-    /// Returns the actual state of the drive.
+    /// Returns the actual values of the drive.
     pub(super) fn actual(&mut self) -> ActualValues {
         self.station.image(self.now).drives[0]
     }
@@ -135,7 +135,7 @@ impl Bench {
         actual.speed != 0 || actual.status.state() == State::Moving
     }
 
-    /// Returns the words sent since the last time, each once, beginning with the one that was on the wire.
+    /// Returns the words sent since the last call without repetitions, beginning with the one that was on the wire.
     pub(super) fn take_words(&mut self) -> Vec<u16> {
         let last = self.words.last().copied();
         std::mem::replace(&mut self.words, last.into_iter().collect())
@@ -156,7 +156,7 @@ impl Bench {
         self.station.write(self.now, number, &Value::Number(value)).unwrap();
     }
 
-    /// Restarts the drives, while the connection stays: 47 = −4. Rejected while they restart.
+    /// Restarts the drives (47 = −4) while the connection stays open. Requests are rejected during the restart.
     pub(super) fn reset(&mut self) {
         let _ = self.station.write(self.now, ParameterNumber::SAVE, &Value::Number(-4));
     }

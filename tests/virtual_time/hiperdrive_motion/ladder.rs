@@ -1,4 +1,5 @@
-//! All ends of a motion: the stop word is sent with the same call, and escalates on the ladder while the drive moves.
+//! All ways in which a motion can end. The stop word is sent in the same call, and the stop escalates while the drive
+//! continues to move.
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
     ActionEnd, MotionLock, MotionRequest, Phase, StopLevel, TargetState,
@@ -72,7 +73,7 @@ fn each_cause_stops_in_the_same_way() {
     }
 }
 
-/// The intent is not refreshed: 250 ms, and an interval. When the refreshes return, the drive remains stopped.
+/// The intent is not refreshed for 250 ms and one interval. When refreshes resume, the drive remains stopped.
 #[test]
 fn a_stale_intent_stops_the_drive() {
     for wish in [to(9 * TURN), jog(Direction::Clockwise)] {
@@ -80,7 +81,7 @@ fn a_stale_intent_stops_the_drive() {
         bench.act(wish);
         bench.run(1000);
         bench.absent = true;
-        // The last refresh was an interval ago.
+        // The last refresh was one interval ago.
         bench.run(240);
         assert!(!bench.cycle().control.is_at_rest());
         assert!(bench.cycle().control.is_at_rest());
@@ -91,7 +92,7 @@ fn a_stale_intent_stops_the_drive() {
         let stood = bench.position();
         bench.run(2000);
         assert_eq!(bench.position(), stood, "the same act begins again");
-        // Also an act that froze before it could begin.
+        // Also an action that froze before it could begin.
         bench.act(MotionRequest::Lead(TargetState::Off));
         bench.until_over();
         bench.act(wish);
@@ -106,7 +107,7 @@ fn a_stale_intent_stops_the_drive() {
     }
 }
 
-/// The drive continues to report motion: 200 ms per rung.
+/// The drive continues to report motion, so the stop escalates every 200 ms.
 #[test]
 fn a_drive_that_does_not_stop_escalates_the_stop() {
     for (wish, stop) in [(to(9 * TURN), "0469"), (jog(Direction::Clockwise), "1419")] {
@@ -136,7 +137,7 @@ fn a_drive_that_does_not_stop_escalates_the_stop() {
     }
 }
 
-/// No further reports arrive: the drive is treated as moving.
+/// No further reports arrive, so the drive is treated as moving.
 #[test]
 fn a_drive_without_reports_is_stopped() {
     let mut bench = Bench::new();
@@ -150,7 +151,7 @@ fn a_drive_without_reports_is_stopped() {
     assert!(bench.man.has_exhausted_stop_levels() && !bench.moves());
 }
 
-/// A drive that turns although it should be at rest is disabled, then switched off.
+/// A drive that turns although it should be at rest is disabled and then switched off.
 #[test]
 fn an_uncommanded_motion_is_stopped() {
     let mut bench = Bench::new();
@@ -167,7 +168,7 @@ fn an_uncommanded_motion_is_stopped() {
     assert!(bench.man.has_exhausted_stop_levels());
 }
 
-/// Nothing moves after a connection was opened until the user acts, whatever was requested before.
+/// After a connection is opened, nothing moves until the user acts, whatever was requested before.
 #[test]
 fn a_new_connection_moves_nothing() {
     let mut bench = Bench::new();
@@ -179,7 +180,7 @@ fn a_new_connection_moves_nothing() {
     bench.run(3000);
     assert_eq!((bench.position(), super::words(&mut bench).ends_with("0000")), (stood, true));
     assert_eq!(bench.man.last_setpoint().target, stood);
-    // The master was lost: a fault, to be acknowledged.
+    // The master was lost, which is a fault that must be acknowledged.
     bench.act(MotionRequest::Acknowledge);
     assert_eq!(bench.until_over(), ActionEnd::Done);
     bench.act(to(0));

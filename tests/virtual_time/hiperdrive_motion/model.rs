@@ -1,4 +1,4 @@
-//! A separate record of the user's requests: a word that commands motion needs an act in it.
+//! An independent record of the user's requests. A word that commands motion must correspond to an action in it.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use encoder_studio::devices::hiperdrive::procedures::dead_man::{ActionEnd, Motio
 use encoder_studio::devices::hiperdrive::protocol::{ActualValues, Direction, RunEnd, Setpoint, StatusBit};
 use encoder_studio::units::Moment;
 
-/// Issue 21.14: acts as they were made, without the dead-man's own bookkeeping.
+/// Issue 21.14: the actions as the user made them, without the bookkeeping of the dead-man control.
 pub(super) struct Model {
     live: Option<Live>,
     limits: (i32, i32),
@@ -17,22 +17,22 @@ struct Live {
     number: u64,
     wish: MotionRequest,
     said: Moment,
-    /// Target of a job, from the first word that commanded it.
+    /// Target of a job, set by the first word that commanded it.
     target: Option<i32>,
-    /// Whether the drive has been inside its limits since the act.
+    /// Whether the drive has been within its limits since the action.
     was_inside: bool,
 }
 
-/// The command of a word, by the bits of the reference (3): bit 3 enables, bit 12 is speed mode.
+/// The command in a word, according to the bits of the reference (3): bit 3 enables, and bit 12 selects speed mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Commands {
     Nothing,
-    /// Bits 12 and 6; bit 4: clockwise, bit 5: without an end.
+    /// Bits 12 and 6 are set. Bit 4 means clockwise, and bit 5 an endless run.
     Run {
         clockwise: bool,
         endless: bool,
     },
-    /// Bits 4 and 5, and bit 6 different from its acknowledgement, or a job in progress.
+    /// Bits 4 and 5 are set, and bit 6 differs from its acknowledgement, or a job is in progress.
     Job,
 }
 
@@ -64,7 +64,7 @@ impl Model {
     pub(super) fn act(&mut self, number: u64, wish: MotionRequest, now: Moment) {
         let is_job = |live: &Live| matches!(live.wish, MotionRequest::Move { .. } | MotionRequest::Step { .. });
         match wish {
-            // They continue a job, and begin nothing.
+            // These continue a job and begin nothing.
             MotionRequest::Pause | MotionRequest::Resume => {
                 self.live = self.live.take().filter(is_job).map(|live| Live { number, said: now, ..live });
             }
@@ -94,14 +94,14 @@ impl Model {
         self.limits = limits;
     }
 
-    /// Returns the distance outside the limits, positive on the upper side, negative on the lower one.
+    /// Returns the distance outside the limits, positive beyond the upper limit and negative beyond the lower one.
     fn outside(&self, position: i32) -> i64 {
         let (low, high) = self.limits;
         let (position, low, high) = (i64::from(position), i64::from(low), i64::from(high));
         if position > high { position - high } else { (position - low).min(0) }
     }
 
-    /// Checks a sent set-point against the record. `heard`: the report before it.
+    /// Checks a set-point that was sent against the record. `heard` is the report before it.
     pub(super) fn look(&mut self, now: Moment, sent: Setpoint, heard: ActualValues, ended: Option<(u64, ActionEnd)>) {
         let out = self.outside(heard.position);
         let live = self.live.take().filter(|live| {

@@ -1,8 +1,8 @@
-//! Drives that ignore their limits or turn the wrong way: the dead-man detects it in their positions (issues 21.4 and
-//! 21.5).
+//! Drives that ignore their limits or turn the wrong way. The dead-man control detects this from their positions
+//! (issues 21.4 and 21.5).
 //!
-//! A turn has 65536 steps, a degree 182.04. At 35 rpm a drive makes 38.2 steps per millisecond, 382 in an interval of
-//! 10 ms.
+//! A turn has 65536 steps, and a degree 182.04. At 35 rpm, a drive makes 38.2 steps per millisecond, or 382 in an
+//! interval of 10 ms.
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
     ActionEnd, MotionRefusal, MotionRequest, Permit, Phase, SpeedTorque,
@@ -14,7 +14,7 @@ use super::bench::Bench;
 use super::{FULL, TURN, to};
 
 const DEGREE: i32 = 183;
-/// 35 rpm · 65536 steps / 60 s / 100 intervals per second.
+/// Steps per interval at full speed: 35 rpm · 65536 steps / 60 s / 100 intervals per second, rounded up.
 const INTERVAL_AT_FULL_SPEED: i32 = 383;
 const LIMITS: (i32, i32) = (-TURN, TURN);
 
@@ -26,7 +26,7 @@ fn run(direction: Direction, end: RunEnd) -> MotionRequest {
     MotionRequest::Run { direction, end, effort: FULL }
 }
 
-/// Returns a drive with a defect between ±1 turn.
+/// Returns a drive with a defect and limits of ±1 turn.
 fn bench(defect: Option<DriveDefect>) -> Bench {
     let mut bench = Bench::new();
     bench.write(158, LIMITS.0.into());
@@ -36,21 +36,22 @@ fn bench(defect: Option<DriveDefect>) -> Bench {
     bench
 }
 
-/// Returns a drive at rest outside its limits, by this number of steps above the upper limit (or below the lower one).
+/// Returns a drive at rest that is outside its limits by a number of steps: above the upper limit, or below the lower
+/// one if the number is negative.
 fn bench_outside(beyond: i32, defect: Option<DriveDefect>) -> Bench {
     let mut bench = bench(None);
     bench.act(to(if beyond > 0 { TURN } else { -TURN }));
     assert_eq!(bench.until_over(), ActionEnd::Arrived);
     bench.run(100);
-    // The values of the limits change, as with a limit that another master writes.
+    // The limits change, as if another master had written them.
     let (low, high) = if beyond > 0 { (-TURN, TURN - beyond) } else { (-TURN - beyond, TURN) };
     bench.permit = Permit::for_range(low, high);
     bench.load(SpindleLoad { defect, ..SpindleLoad::default() });
     bench
 }
 
-/// Runs until the word commands no motion: returns the number of intervals after the report that first showed a
-/// position beyond `limit`, and the position then.
+/// Runs until the word commands no motion. Returns the number of intervals after the report that first showed a
+/// position beyond `limit`, and the position at that time.
 fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
     let mut past = None;
     for _ in 0..6000 {
@@ -67,8 +68,8 @@ fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
     panic!("it is never stopped: {:?}", bench.man.phase());
 }
 
-/// Issue 21.4: the packet after the report that shows a position beyond a limit commands no motion, though the drive
-/// continues.
+/// Issue 21.4: the packet after a report that shows a position beyond a limit does not command motion, even though the
+/// drive continues to move.
 #[test]
 fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
     for effort in [SpeedTorque::DEFAULT_JOG, FULL] {
@@ -92,7 +93,7 @@ fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
     }
 }
 
-/// Issue 21.4: status bit 15 ends a run as well, even if the position is within the limits that were read.
+/// Issue 21.4: status bit 15 also ends a run, even if the position is within the limits that were read.
 #[test]
 fn bit_15_ends_a_run() {
     let mut bench = bench(Some(DriveDefect::RunsOn));
@@ -123,8 +124,8 @@ fn a_run_ends_when_its_limits_become_unknown() {
     assert!(matches!(bench.man.last_end(), Some((_, ActionEnd::Locked(_)))), "{:?}", bench.man.last_end());
 }
 
-/// Issue 21.4, case *already outside*: the inward direction is allowed, further outward is rejected before anything is
-/// sent.
+/// Issue 21.4, case *already outside*: motion inward is allowed, and motion further outward is rejected before anything
+/// is sent.
 #[test]
 fn from_outside_only_inward_motion_is_allowed() {
     for (beyond, inward, outward) in [
@@ -152,15 +153,15 @@ fn from_outside_only_inward_motion_is_allowed() {
             let (low, high) = bench.permit.limits.unwrap();
             assert!((low..=high).contains(&bench.position()), "{wish:?}: it is back in");
         }
-        // A move to a target within the limits leads in as well.
+        // A move to a target within the limits also leads inward.
         let mut bench = bench_outside(beyond, None);
         bench.act(to(0));
         assert_eq!(bench.until_over(), ActionEnd::Arrived);
     }
 }
 
-/// Issue 21.4: if a drive reports by status bit 15 that it is outside, while its position is well inside, the inward
-/// direction is not known: nothing moves except what was permitted for one press.
+/// Issue 21.4: if a drive reports with status bit 15 that it is outside although its position is well inside, the
+/// inward direction is unknown. Nothing moves unless it was permitted for one press.
 #[test]
 fn outside_by_bit_15_alone_only_permitted_motion_starts() {
     let ways = [Direction::Clockwise, Direction::Counterclockwise];
@@ -182,12 +183,12 @@ fn outside_by_bit_15_alone_only_permitted_motion_starts() {
         bench.run(1500);
         assert!(bench.position().abs() > 1000 && matches!(bench.man.phase(), Phase::Moving(_)), "{way:?}");
         assert_eq!((bench.man.last_setpoint().speed.get(), bench.man.last_setpoint().torque.get()), (10, 25));
-        // If its position is beyond the limits, it is stopped like any other.
+        // If its position is beyond the limits, it is stopped like any other drive.
         bench.permit = Permit::for_range(-bench.position().abs(), bench.position().abs());
         bench.run(30);
         assert!(matches!(bench.man.last_end(), Some((_, ActionEnd::Beyond { .. }))), "{:?}", bench.man.last_end());
     }
-    // Within a degree of a limit it is clear.
+    // Within one degree of a limit, the direction is clear.
     for (limits, free) in [((-TURN, 182), Direction::Counterclockwise), ((-182, TURN), Direction::Clockwise)] {
         for way in ways {
             let mut bench = bench(Some(DriveDefect::SaysOutside));
@@ -199,8 +200,8 @@ fn outside_by_bit_15_alone_only_permitted_motion_starts() {
     }
 }
 
-/// Issue 21.4: the outward direction permitted for one press is slow and weak, whatever is requested, and only for that
-/// press.
+/// Issue 21.4: motion outward that is permitted for one press is slow and weak, whatever is requested, and applies only
+/// to that press.
 #[test]
 fn outward_motion_can_be_permitted_for_one_press() {
     let mut bench = bench_outside(5000, None);
@@ -215,13 +216,14 @@ fn outward_motion_can_be_permitted_for_one_press() {
     bench.run(500);
     bench.act(jog(Direction::Clockwise, FULL, false));
     assert!(matches!(bench.until_over(), ActionEnd::Refused(MotionRefusal::Outward { .. })));
-    // An unnecessary permission: from inside the limits apply.
+    // An unnecessary permission has no effect, because inside the limits these apply.
     let mut bench = super::watch::bench(Some(DriveDefect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, true));
     assert_eq!(intervals_past(&mut bench, TURN).0, 0);
 }
 
-/// Issue 21.4: a drive that counts the other way moves outward instead of inward: stopped within a degree.
+/// Issue 21.4: a drive that counts in the opposite direction moves outward instead of inward. It is stopped within one
+/// degree.
 #[test]
 fn inward_motion_that_leads_outward_is_stopped() {
     let mut bench = bench_outside(5000, Some(DriveDefect::Reversed));
@@ -230,19 +232,19 @@ fn inward_motion_that_leads_outward_is_stopped() {
     bench.act(jog(Direction::Counterclockwise, SpeedTorque::DEFAULT_JOG, false));
     let ActionEnd::WrongWay { position } = bench.until_over() else { panic!("{:?}", bench.man.last_end()) };
     assert!(position > stood + DEGREE && position <= stood + DEGREE + INTERVAL_AT_FULL_SPEED / 10 + 1, "{position}");
-    // With permission, the other direction leads in.
+    // With permission, the other direction leads inward.
     bench.run(500);
     bench.act(jog(Direction::Clockwise, SpeedTorque::DEFAULT_JOG, true));
     bench.run(1500);
     assert!(bench.position() < stood);
 }
 
-/// Issue 21.4, case *overrun while braking*: the stop continues, and keeps its reason.
+/// Issue 21.4, case *overrun while braking*: the stop continues and keeps its reason.
 #[test]
 fn an_overrun_while_braking_keeps_the_stop_reason() {
     let mut bench = bench(Some(DriveDefect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, false));
-    // At 35 rpm it brakes within 0.1 s, and moves on by 1911 steps.
+    // At 35 rpm, it brakes within 0.1 s and moves on by 1911 steps.
     while bench.position() < TURN - 1000 {
         bench.cycle();
     }
@@ -254,7 +256,7 @@ fn an_overrun_while_braking_keeps_the_stop_reason() {
     assert!(!bench.moves());
 }
 
-/// Issue 21.5: a move in the wrong direction is stopped with the report that shows more than a degree.
+/// Issue 21.5: a move in the wrong direction is stopped when a report shows more than one degree.
 #[test]
 fn a_move_in_the_wrong_direction_is_stopped_immediately() {
     for target in [TURN / 2, -TURN / 2] {
@@ -267,7 +269,7 @@ fn a_move_in_the_wrong_direction_is_stopped_immediately() {
     }
 }
 
-/// Issue 21.5: a jog against its direction is stopped with the report that shows more than a degree.
+/// Issue 21.5: a jog in the wrong direction is stopped when a report shows more than one degree.
 #[test]
 fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
     for (direction, sign) in [(Direction::Clockwise, 1), (Direction::Counterclockwise, -1)] {
@@ -280,14 +282,14 @@ fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
     }
 }
 
-/// Issue 21.5: a move that does not stop at its target is stopped there, and one whose target is a limit is stopped
-/// beyond that limit.
+/// Issue 21.5: a move that does not stop at its target is stopped there. If the target is a limit, it is stopped beyond
+/// that limit.
 #[test]
 fn a_move_that_passes_its_target_is_stopped() {
     for target in [TURN / 2, TURN, -TURN] {
         let mut bench = bench(Some(DriveDefect::RunsOn));
         bench.act(to(target));
-        // Its accuracy is 2.5°: three whole degrees are allowed at its target, but one beyond a limit.
+        // The accuracy is 2.5°, so three whole degrees are allowed at a target, but only one beyond a limit.
         let degrees = if target.abs() == TURN { 1 } else { 3 };
         let (intervals, position) = intervals_past(&mut bench, target + target.signum() * degrees * DEGREE);
         assert_eq!(intervals, 0, "{target}: stopped at {position}");
@@ -300,7 +302,7 @@ fn a_move_that_passes_its_target_is_stopped() {
     }
 }
 
-/// A drive without a defect is never stopped by the watch: at its limits, at any target, with late reports.
+/// A drive without a defect is never stopped by this check: at its limits, at any target, or with late reports.
 #[test]
 fn a_healthy_drive_reaches_every_target() {
     let mut dice = fastrand::Rng::with_seed(21);

@@ -1,5 +1,5 @@
-//! The connection is cut at every request: the report and the state of the encoder are checked, and everything ends in
-//! time.
+//! The connection is cut at every request. The report and the state of the encoder are checked, and everything must end
+//! in time.
 
 use std::time::Duration;
 
@@ -26,7 +26,7 @@ const DEAF: Cut = |tap, at| tap.deaf_from = Some(at);
 const REQUEST: Cut = |tap, at| tap.swallow_request = Some(at);
 const REPLY: Cut = |tap, at| tap.swallow_reply = Some(at);
 
-/// Returns the requests of an undisturbed job.
+/// Returns the number of requests in a job without faults.
 fn requests(job: impl Fn(&mut Stand) -> InterbusJob) -> usize {
     let mut stand = Stand::new(QUERY);
     let job = job(&mut stand);
@@ -36,7 +36,7 @@ fn requests(job: impl Fn(&mut Stand) -> InterbusJob) -> usize {
     tap.sent.len()
 }
 
-/// Returns two parameters and a mask.
+/// Returns a job that writes two parameters and a mask.
 fn write(stand: &mut Stand) -> InterbusJob {
     let survey = match stand.run(InterbusJob::Survey).unwrap() {
         InterbusOutput::Surveyed(survey) => *survey,
@@ -93,7 +93,7 @@ fn an_interrupted_read_ends_in_time_and_reports_out() {
             let (out, mode) = stand.left();
             assert_eq!(mode, StartupMode::Cams(program(2)), "{at}");
             match error {
-                // The last word has reached it, unless that word was the lost one.
+                // The last word has reached the encoder, unless that word was the lost one.
                 Error::ModeNotRestored { standing, .. } => assert!(!hears || standing.out == out, "{at}: {standing}"),
                 _ => assert_eq!(out, 0, "{at}"),
             }
@@ -135,7 +135,7 @@ fn an_interrupted_write_ends_in_time_and_reports_the_possible_state() {
                 other => panic!("{at}: {other:?}"),
             }
             assert!(stand.elapsed() - begun < LIMIT + CONFIRMED, "{at}: {:?}", stand.elapsed() - begun);
-            // The cable is back: the encoder can be returned to its mode.
+            // The cable is plugged in again, and the encoder can be returned to its mode.
             *stand.tap() = Tap::default();
             stand.run(InterbusJob::RestoreMode).unwrap();
             assert!(stand.session.take_sample().unwrap().is_valid(), "{at}");
@@ -144,10 +144,10 @@ fn an_interrupted_write_ends_in_time_and_reports_the_possible_state() {
     }
 }
 
-/// The work before the cut.
+/// Maximum time for the work before the cut.
 const CONFIRMED: Duration = Duration::from_secs(8);
 
-/// The deliberate faults of the virtual gateway.
+/// The injected faults of the virtual gateway do not affect the results.
 #[test]
 fn a_faulty_gateway_is_tolerated() {
     for fault in ["drop:0.05", "garbage:0.03", "delay:40"] {
@@ -183,14 +183,15 @@ fn the_next_run_restores_the_mode_after_an_interrupted_cam_read() {
             away += usize::from(stand.left().1 != found);
             stand.run_again();
             match stand.run(InterbusJob::Identify) {
-                // Left in the echo of a selection: the user has to confirm that no other master uses it.
+                // If the encoder was left in the echo of a selection, the user has to confirm that no other master uses
+                // it.
                 Err(JobError::Device(Error::NotRunning { .. })) => {
                     stand.run(InterbusJob::RestoreMode).unwrap();
                 }
                 ended => assert!(ended.is_ok(), "{at}: {ended:?}"),
             }
             assert_eq!(stand.left(), (0, found), "{at}");
-            // Only once: a program selected later is another master's choice.
+            // This happens only once, because a program selected later is the choice of another master.
             let chosen = StartupMode::Cams(program(4));
             stand.run(InterbusJob::Select(chosen)).unwrap();
             stand.run_again();
@@ -201,7 +202,7 @@ fn the_next_run_restores_the_mode_after_an_interrupted_cam_read() {
     }
 }
 
-/// Issue 22.6: a mode that no run has set is another master's choice.
+/// Issue 22.6: a mode that was not set by a run of the program is the choice of another master.
 #[test]
 fn a_mode_chosen_by_another_master_is_kept() {
     let query = "steps=3600&revolutions=1&serial=77&cams=demo";

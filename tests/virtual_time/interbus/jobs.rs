@@ -1,4 +1,4 @@
-//! Reading: the words sent, and the state of the encoder afterwards.
+//! Reading: the words that are sent, and the state of the encoder afterwards.
 
 use encoder_studio::devices::interbus::jobs::{InterbusJob, InterbusOutput, JobError, open};
 use encoder_studio::devices::interbus::procedures::check::{CheckFinding, CheckStep, InterbusStepResult, Verdict};
@@ -13,7 +13,7 @@ use super::support::{Stand, cam, gateway, program, station};
 
 const K3: StartupMode = StartupMode::K3;
 
-/// Quarter of a turn of 4096 steps.
+/// A quarter of a turn of 4096 steps.
 const QUARTER: &str = "steps=4096&revolutions=1&position=2048&serial=123456";
 
 #[test]
@@ -41,7 +41,7 @@ fn identify_reads_out_and_returns_to_the_position() {
     assert_eq!(identity.serial_number, "123456");
     assert_eq!((identity.steps, identity.revolutions, identity.direction), (4096, 1, Direction::Clockwise));
     assert_eq!((identity.mode, identity.flags.steps_minus_one()), (K3, false));
-    // The mode first; `00000000` between two values, which look the same.
+    // The mode comes first. `00000000` separates two values that look the same.
     let numbers = [9, 0, 1, 2, 3, 7, 0xA];
     let expected: Vec<u32> = numbers.into_iter().flat_map(|number| [0x2021_0000 + number, 0]).collect();
     assert_eq!(stand.sent(), expected);
@@ -132,7 +132,7 @@ fn a_selected_mode_is_kept() {
         let output = stand.run(InterbusJob::Select(mode)).unwrap();
         assert!(matches!(output, InterbusOutput::Selected(own) if own == mode), "{mode:?}");
         assert_eq!(stand.left(), (0, mode));
-        // Requests in between do not change it.
+        // Requests in between do not change this.
         stand.run(InterbusJob::Identify).unwrap();
         assert_eq!(stand.left(), (0, mode));
         let reading = stand.session.take_sample().unwrap();
@@ -156,7 +156,7 @@ fn each_handshake_step_is_reported_with_its_words() {
     let told: Vec<(u32, u32)> = steps.iter().map(|step| (step.out, step.input)).collect();
     assert!(told.contains(&(0x2021_0000, 0xA000_0007)), "{told:08X?}");
     assert!(matches!(steps.last().map(|step| (step.out, step.reply)), Some((0, WordReply::Runs))));
-    // No word twice in a row.
+    // No word is sent twice in a row.
     assert!(steps.windows(2).all(|pair| (pair[0].out, pair[0].reply) != (pair[1].out, pair[1].reply)));
 }
 
@@ -251,7 +251,8 @@ fn the_device_check_has_a_verdict_per_line_and_sets_nothing() {
 
 #[test]
 fn the_device_check_reports_faults() {
-    // Exchanged halves: a step less than 3 000 000 is 2DC6BFh, which then looks like an echo, and OUT requests nothing.
+    // The halves of the word are swapped. One step below 3 000 000 is 2DC6BFh, which then looks like an echo, although
+    // OUT requests nothing.
     let far = gateway("steps=33554431&revolutions=4096&position=3000000&order=low-first");
     let mut stand = Stand::with(far, station(""));
     let lines = checked(&mut stand);
@@ -263,19 +264,19 @@ fn the_device_check_reports_faults() {
     );
     let error = stand.run(InterbusJob::Identify).unwrap_err();
     assert_eq!(error.to_string(), "IN C6BF002D is plausible only as 002DC6BF: the word order may be swapped");
-    // Left in parameterisation.
+    // The encoder was left in parameterisation.
     let mut stand = Stand::new("steps=4096&revolutions=1");
     stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x0200_00FF));
     let lines = checked(&mut stand);
     assert_eq!(verdict(&lines, CheckStep::InputWord), Some(Verdict::Bad), "{lines:?}");
     assert_eq!(stand.sent(), Vec::<u32>::new());
-    // Another master reads its serial number.
+    // Another master is reading its serial number.
     let mut stand = Stand::new("steps=4096&revolutions=1");
     stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x2021_0000));
     let lines = checked(&mut stand);
     assert_eq!(verdict(&lines, CheckStep::InputWord), Some(Verdict::Attention), "{lines:?}");
     assert_eq!((verdict(&lines, CheckStep::Handshake), stand.sent()), (None, vec![]), "whoever reads is not disturbed");
-    // No K3: OUT does not change anything.
+    // This is not a K3 encoder, so OUT does not change anything.
     let mut stand = Stand::new("class=K2&position=77");
     let lines = checked(&mut stand);
     assert_eq!(verdict(&lines, CheckStep::Handshake), Some(Verdict::Bad), "{lines:?}");
@@ -286,7 +287,7 @@ fn the_device_check_reports_faults() {
     }
 }
 
-/// A recording is played back by the same jobs, with any numbers of the requests.
+/// A recording is played back by the same jobs, even with different request numbers.
 #[test]
 fn a_recorded_trace_replays_the_encoders_replies() {
     let mut stand = Stand::new("steps=3600&revolutions=1&serial=4711");

@@ -1,4 +1,4 @@
-//! Process data that answer as a test writes it down, word by word.
+//! Process data that answer word by word as scripted by a test.
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex};
@@ -21,22 +21,23 @@ use encoder_studio::worker::commit::write_plan;
 
 use super::support::{program, station};
 
-/// The position if the script contains nothing else.
+/// The position on IN if the script specifies nothing else.
 pub(crate) const POSITION: u32 = 1234;
 
-/// An encoder that acknowledges every word at once, except for those of the script: each of these gives its IN words
-/// cycle by cycle, and the last one from then on. A value of a read-out remains until `00000000` or `80000000`.
+/// An encoder that acknowledges every word immediately, except for the words of the script. For each of these, the
+/// script lists the IN words cycle by cycle, and the last one remains. The value of a read-out remains until `00000000`
+/// or `80000000`.
 #[derive(Default)]
 pub(crate) struct Script {
-    /// By OUT word; of several lists the first is for the first time that it is written.
+    /// Answers by OUT word. If there are several lists, the first one is used the first time the word is written.
     pub(crate) answers: HashMap<u32, VecDeque<Vec<u32>>>,
-    /// OUT as the gateway returns it, if it is not the written word.
+    /// OUT as returned by the gateway, if it differs from the written word.
     pub(crate) output: Option<u32>,
-    /// `00000000` ends cam mode and velocity mode.
+    /// Whether `00000000` ends cam mode and velocity mode.
     pub(crate) normal_ends_modes: bool,
-    /// `00000000` does not end the reading of cams.
+    /// Whether `00000000` does not end the reading of cams.
     pub(crate) normal_keeps_values: bool,
-    /// Every word that was written, once if it is repeated.
+    /// All words that were written, without repetitions.
     pub(crate) sent: Arc<Mutex<Vec<u32>>>,
     pub(crate) mode: u32,
     pub(crate) out: u32,
@@ -45,7 +46,7 @@ pub(crate) struct Script {
     pub(crate) now: Duration,
     /// Interval between two reads of IN.
     pub(crate) pace: Duration,
-    /// A word that the gateway rejects with this exception, the first time that it is written; and whether it wrote it.
+    /// A word that the gateway rejects the first time, the exception, and whether the word was written nevertheless.
     pub(crate) refuses: Option<(u32, u8, bool)>,
 }
 
@@ -139,7 +140,7 @@ impl ProcessData for Script {
     }
 }
 
-/// Returns the encoder that a script is.
+/// Returns the identity of the scripted encoder.
 pub(crate) fn identity() -> Identity {
     Identity {
         serial_number: "3".to_owned(),
@@ -152,7 +153,7 @@ pub(crate) fn identity() -> Identity {
     }
 }
 
-/// Executes operations with a script. Returns the result, each step, and all written words.
+/// Executes operations with a script. Returns the result, each step, and all words that were written.
 pub(crate) fn carry_out(
     script: Script,
     ops: Vec<Op>,
@@ -179,7 +180,7 @@ pub(crate) fn carry_out(
     let ended: Result<Committed, JobError> = {
         let master = Master::for_job(script, &mut station).with_reporter(|step| steps.push(step));
         let mut write = EncoderWriter { master, identity: &commit.prepared.identity };
-        // Without the words that read again.
+        // Without the words that read values again.
         let begins = &mut |at: Progress<&Op>| {
             if at.done == 0 {
                 sent.lock().unwrap().clear()
@@ -196,13 +197,13 @@ pub(crate) fn carry_out(
     (ended, steps, sent)
 }
 
-/// Returns the parameters in one parameterisation.
+/// Returns the operations for one parameterisation with the given changes.
 pub(crate) fn parameters(changes: &[(Parameter, u32)]) -> Vec<Op> {
     let change = |(parameter, to): &(Parameter, u32)| ParameterChange { parameter: *parameter, from: 0, to: *to };
     vec![Op::Parameterise(changes.iter().map(change).collect())]
 }
 
-/// Returns program 1 with both edges of a cam, and its mask.
+/// Returns the operations for program 1 with both edges of a cam, and its mask.
 pub(crate) fn cams(cam: u8, start: u32, stop: u32, mask: u8) -> Vec<Op> {
     let change = |edge, to: u32| CamChange {
         cam: CamNumber::new(cam).unwrap(),

@@ -1,5 +1,5 @@
-//! Bytes between the program and a gateway, written by hand from the Modbus application protocol: the requests, and the
-//! handling of every answer of a gateway.
+//! The bytes between the program and a gateway, written by hand from the Modbus application protocol: the requests, and
+//! the handling of every answer of a gateway.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,10 +13,10 @@ use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::support::station;
 
-/// Bytes after a request, each with its delay in milliseconds.
+/// The bytes sent after a request, each group with its delay in milliseconds.
 type Answer = Vec<(u64, Vec<u8>)>;
 
-/// A gateway whose answer a test computes from each request and its number, from 0.
+/// A gateway whose answer a test computes from each request and its number, counted from 0.
 struct Gateway<F> {
     clock: Arc<VirtualClock>,
     answer: F,
@@ -61,18 +61,18 @@ impl<F: FnMut(usize, &[u8]) -> Answer + Send> ByteLink for Gateway<F> {
     }
 }
 
-/// Returns a reply to a request, with its number.
+/// Returns the reply to a request, with the request's number.
 fn reply(request: &[u8], body: &[u8]) -> Vec<u8> {
     let length = u16::try_from(body.len()).unwrap().to_be_bytes();
     [&request[..2], &[0, 0], &length, body].concat()
 }
 
-/// Returns the reply to a reading of two registers.
+/// Returns the reply to a request that reads two registers.
 fn registers(request: &[u8], word: u32) -> Vec<u8> {
     reply(request, &[&[request[6], request[7], 4][..], &word.to_be_bytes()].concat())
 }
 
-/// The result, the requests, and the time taken.
+/// The result, the requests, and the elapsed time.
 type Seen<T> = (Result<T, Error>, Vec<Vec<u8>>, Duration);
 
 fn with<T>(
@@ -127,7 +127,7 @@ fn an_out_word_is_two_holding_registers_written_together() {
     assert_eq!(word_in_frame(true, &requests[0], WordOrder::HighFirst), None);
 }
 
-/// Every request has its own number: a reply to an earlier one is ignored, even if it is the only answer.
+/// Every request has its own number. A reply to an earlier request is ignored, even if it is the only answer.
 #[test]
 fn a_late_reply_is_not_mistaken_for_the_next() {
     let answer = |number: usize, request: &[u8]| match number {
@@ -137,7 +137,7 @@ fn a_late_reply_is_not_mistaken_for_the_next() {
     let (ended, requests, _) = read("", answer);
     assert_eq!((ended.unwrap().word, requests.len()), (2, 2));
     assert_ne!(requests[0][..2], requests[1][..2]);
-    // In one piece with the right one after it.
+    // In one piece with the correct reply after it.
     let answer = |number: usize, request: &[u8]| match number {
         0 => vec![],
         _ => {
@@ -180,7 +180,7 @@ fn a_refusal_is_reported_with_its_cause() {
         assert_eq!(requests.len(), tries, "{text}");
         assert!(took < Duration::from_secs(12));
     }
-    // A gateway that was busy once answers then.
+    // A gateway that was busy once, and then answers.
     let (ended, requests, _) = read("", |number, request| match number {
         0 | 1 => vec![(2, reply(request, &[1, 0x84, 6]))],
         _ => vec![(2, registers(request, 5))],
@@ -220,7 +220,7 @@ fn a_silent_or_endless_gateway_times_out() {
     assert_eq!(ended.unwrap_err(), Error::NoReply { requested: RequestedItem::Input { register: 0 }, tries: 3 });
     assert_eq!(requests.len(), 3);
     assert!(took < Duration::from_secs(12), "{took:?}");
-    // It hangs after a while: the return to the mode ends soon as well.
+    // The gateway hangs after a while. The return to the mode must then end soon as well.
     for answered in 0..40 {
         let answer = move |number: usize, request: &[u8]| match (number < answered, request[7]) {
             (false, _) => vec![],
@@ -236,7 +236,7 @@ fn a_silent_or_endless_gateway_times_out() {
     assert_eq!((ended.unwrap_err(), took < Duration::from_secs(12)), (Error::NeverSilent, true));
 }
 
-/// A recording answers with its own numbers.
+/// A recording answers with its own transaction numbers.
 #[test]
 fn a_recording_answers_any_transaction_number() {
     let mut station = station("");

@@ -1,4 +1,5 @@
-//! Writing: only differences, each read back, one store per operation; and rejections before any write.
+//! Writing: only differences are written, each is read back, and each operation has one store. Rejections occur before
+//! any write.
 
 use std::path::Path;
 use std::time::Duration;
@@ -21,7 +22,7 @@ use super::support::{Stand, cam, program};
 
 const SCALED: &str = "steps=3600&revolutions=1&preset=10&serial=77&cams=demo&position=100";
 
-/// Returns the current content of the encoder, with these programs.
+/// Returns the current content of the encoder, including the given programs.
 fn image(stand: &mut Stand, programs: &[u8]) -> Image {
     let survey = match stand.run(InterbusJob::Survey).unwrap() {
         InterbusOutput::Surveyed(survey) => *survey,
@@ -41,7 +42,7 @@ fn edited(stand: &mut Stand, programs: &[u8], edit: impl FnOnce(&mut Image)) -> 
     Change::Write(Box::new(wanted))
 }
 
-/// Returns the words that set a value: no question, no normal running.
+/// Returns the words that set a value, without questions and normal running.
 fn setting(stand: &Stand) -> Vec<u32> {
     let questions = |word: &u32| matches!(word >> 16, 0x2020 | 0x2021);
     stand.sent().into_iter().filter(|word| *word != 0 && !questions(word)).collect()
@@ -62,12 +63,12 @@ fn parameters_are_set_in_one_parameterisation_with_one_store() {
         let done = stand.commit(prepared).unwrap();
         assert_eq!((done.written.ops, done.written.written, done.written.verified), (1, 3, 3));
         assert_eq!((done.written.write_cycles, stand.stores()), (1, before + 1));
-        // 20 000 = 4E20h, for which there is room only after 4 turns are set.
+        // 20 000 = 4E20h, which is within range only after 4 turns have been set.
         assert_eq!(setting(&stand), [0x0400_0004, 0x0200_4E20, 0x0800_4E1F, 0x8000_0000]);
         assert_eq!(stand.left(), (0, StartupMode::K3));
         let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
         assert_eq!((kept.gear().total_steps(), kept.gear().turns(), kept.preset()), (20_000, 4, 19_999));
-        // The session knows the gear from then on.
+        // The session knows the gear from now on.
         assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.total_steps()), Some(20_000));
         let backup = done.backup.unwrap();
         let document =
@@ -77,7 +78,7 @@ fn parameters_are_set_in_one_parameterisation_with_one_store() {
     }
 }
 
-/// The issue's measure for the sent words: of 64 cams four differ, in two programs.
+/// The criterion of the issue for the words sent: of 64 cams, four differ, in two programs.
 #[test]
 fn only_changed_edges_are_sent_and_a_program_needs_one_store() {
     let all: Vec<u8> = (1..=8).collect();
@@ -97,7 +98,7 @@ fn only_changed_edges_are_sent_and_a_program_needs_one_store() {
         let done = stand.commit(prepared).unwrap();
         assert_eq!((done.written.ops, done.written.written, done.written.verified), (2, 5, 5), "{faults}");
         assert_eq!((done.written.write_cycles, stand.stores()), (2, before + 2), "{faults}");
-        // Only edges: 010 and 011 in front, of which 40000000 could be a preset elsewhere.
+        // Only edges: 010 and 011 in front. 40000000 could be a preset elsewhere.
         let edges = setting(&stand).into_iter().filter(|word| matches!(word >> 29, 0b010 | 0b011)).count();
         assert_eq!(edges, 8, "{faults}");
         assert_eq!(stand.left(), (0, found), "{faults}");
@@ -187,7 +188,7 @@ fn a_restore_writes_differences_and_keeps_another_encoders_mounting() {
         let wanted = profile.image.program(number).unwrap();
         assert_eq!((kept.program(number).mask, kept.program(number).cams), (wanted.mask, wanted.cams));
     }
-    // Repeated: nothing differs, nothing is written.
+    // When the write is repeated, nothing differs, and nothing is written.
     let (stores, prepared) = (other.stores(), other.prepare(Change::Restore { profile, options }));
     assert!(prepared.plan.is_empty());
     assert!(other.commit(prepared).unwrap().backup.is_none());
@@ -197,7 +198,7 @@ fn a_restore_writes_differences_and_keeps_another_encoders_mounting() {
 #[test]
 fn a_change_since_the_plan_stops_the_write() {
     let moment = |stand: &Stand| stand.clock.now();
-    // Another master sets the preset: 08000001, and runs.
+    // Another master sets the preset (08000001) and returns to normal running.
     let mut stand = Stand::new(SCALED);
     let change = edited(&mut stand, &[], |wanted| wanted.parameters.zero_shift = 5);
     let prepared = stand.prepare(change);
@@ -206,7 +207,7 @@ fn a_change_since_the_plan_stops_the_write() {
     let error = stand.commit(prepared).unwrap_err();
     assert_eq!(error.to_string(), "preset has changed since the plan was made");
     assert_eq!(stand.left(), (0, StartupMode::K3));
-    // Or the mask of a program.
+    // Or another master changes the mask of a program.
     let change = edited(&mut stand, &[4], |wanted| {
         assert!(wanted.set_value(Item::CamMask(program(4)), ItemValue::Mask(0xFF)));
     });
@@ -279,8 +280,8 @@ fn the_logbook_counts_stores_by_serial_number() {
     assert!(history.iter().all(|entry| entry.planned_cycles == 1 && entry.backup.as_deref().is_some_and(Path::exists)));
 }
 
-/// Issue 22.3: an encoder may store a program when it is left (manual 5.4.4), changed or not. Each program that was
-/// selected for reading counts once; the store of a changed one belongs to the write.
+/// Issue 22.3: an encoder may store a program when it is left (manual 5.4.4), whether or not it was changed. Each
+/// program selected for reading counts once. The store of a changed program belongs to the write.
 #[test]
 fn reading_programs_counts_as_stores() {
     let mut stand = Stand::new(SCALED);
@@ -291,7 +292,7 @@ fn reading_programs_counts_as_stores() {
     assert_eq!(stand.counted(), 3);
     stand.run(InterbusJob::Read("cam:2:0".parse().unwrap())).unwrap();
     assert_eq!(stand.counted(), 4);
-    // Read for the plan, and again before it is written, which stores.
+    // The program is read for the plan and again before it is written, which stores it.
     let before = stand.stores();
     let prepared = stand.prepare(Change::Item(Item::CamMask(program(6)), ItemValue::Mask(0x5A)));
     assert_eq!(prepared.cycles_seen, Some(CycleCount::complete(5)));
@@ -310,7 +311,7 @@ fn reading_programs_counts_as_stores() {
     assert_eq!(stand.counted(), 3);
 }
 
-/// Less one: the encoder's 3599 are 3600 steps.
+/// An encoder that stores the number of steps less one: 3599 means 3600 steps.
 #[test]
 fn steps_less_one_are_read_and_written_unchanged() {
     let mut stand = Stand::new("steps=3600&revolutions=1&steps-minus-one=on");
@@ -327,7 +328,7 @@ fn steps_less_one_are_read_and_written_unchanged() {
     assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.total_steps()), Some(720));
 }
 
-/// A cancellation takes effect between two words; then the encoder runs again, in its original mode.
+/// A cancellation takes effect between two words. Afterwards, the encoder runs again in its original mode.
 #[test]
 fn cancelling_leaves_a_running_encoder() {
     let wanted = |stand: &mut Stand| {
@@ -386,7 +387,7 @@ fn an_operation_reports_its_changes() {
     assert_eq!(told, [(0, 2, "preset".to_owned()), (1, 2, "position".to_owned())]);
 }
 
-/// It is already near, and returns old words; afterwards it returns the preset.
+/// The shaft is already close to the preset, and the encoder first returns old words and then the preset.
 #[test]
 fn a_preset_near_the_shafts_position_is_set_to_the_step() {
     for (preset, faults) in [(102, "stale=6"), (98, "stale=6&busy=60"), (101, "stale=6"), (102, "stale=0")] {
@@ -399,7 +400,7 @@ fn a_preset_near_the_shafts_position_is_set_to_the_step() {
     }
 }
 
-/// IN is 86000000 all the time: the content was lost. The remedy in the message has to work.
+/// IN is always 86000000, because the content was lost. The remedy in the message has to work.
 #[test]
 fn an_encoder_with_lost_parameters_can_be_recovered_and_restored() {
     let mut stand = Stand::new("steps=360&revolutions=1&cams=demo&serial=5&fault=die-in-store:1");

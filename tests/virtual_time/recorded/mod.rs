@@ -1,9 +1,10 @@
-//! The data of a write, and of every early end of it, byte for byte as in the recordings under `tests/fixtures/wire`:
-//! one file per kind of write. A recording shows the complete write; for each early end it has the number of lines that
-//! equal the complete write, the number of lines after them, a sum of all, and the result.
+//! The data of a write, and of every interruption of it, which must match the recordings under `tests/fixtures/wire`
+//! byte for byte. There is one file per kind of write. A recording contains the complete write. For each interruption,
+//! it contains the number of lines that equal the complete write, the number of further lines, a checksum of all lines,
+//! and the result.
 //!
-//! With `ENCODER_STUDIO_RECORD=1` the files are written again: only if the data are meant to change, and the difference
-//! belongs in the same commit.
+//! `ENCODER_STUDIO_RECORD=1` rewrites the files. Use it only if the data are meant to change, and commit the difference
+//! with the change.
 
 mod biss;
 mod hiperdrive;
@@ -19,19 +20,19 @@ use encoder_studio::worker::{Device, Session};
 
 use crate::support::Tap;
 
-/// A prepared write with the handles for disturbing it.
+/// A prepared write, with the handles that interrupt it.
 struct Ready {
     tap: Arc<Mutex<Tap>>,
     cancel: CancelToken,
     lines: Lines,
-    /// Carries it out; returns the result as text.
+    /// Executes the write and returns the result as text.
     carry_out: Box<dyn FnOnce() -> String>,
 }
 
-/// Frames as the trace shows them: access codes are masked.
+/// Frames as shown by the trace, with masked access codes.
 type Lines = Arc<Mutex<Vec<String>>>;
 
-/// Records every frame of the session from now on; returns the cancellation as well.
+/// Records all further frames of the session. Also returns the token that cancels it.
 fn listen<D: Device>(session: &mut Session<D>) -> (Lines, CancelToken) {
     let lines = Lines::default();
     let kept = lines.clone();
@@ -44,10 +45,10 @@ fn listen<D: Device>(session: &mut Session<D>) -> (Lines, CancelToken) {
     (lines, cancel)
 }
 
-/// Ends a write early, at the frame with this number.
+/// A function that interrupts a write at the frame with the given number.
 type EarlyEnd = fn(&mut Tap, &CancelToken, usize);
 
-/// The interruptions of a write, at one of the sent frames.
+/// The ways to interrupt a write at one of the frames sent.
 const EARLY: [(&str, EarlyEnd); 3] = [
     ("cancelled", |tap, cancel, at| tap.cancel_at = Some((at, cancel.clone()))),
     ("lost", |tap, _, at| tap.lost_from = Some(at)),
@@ -62,8 +63,8 @@ impl Ready {
     }
 }
 
-/// Compares a write and its interruptions with its recording. `points` are the sent frames at which it ends early, from
-/// 0; all of them if there are none.
+/// Runs a write without and with interruptions, and compares the result with the recording. `points` lists the numbers
+/// of the frames at which to interrupt the write, counted from 0. `None` means all frames.
 fn compare(name: &str, points: Option<&[usize]>, ready: &mut dyn FnMut() -> Ready) {
     let undisturbed = ready();
     let (tap, first) = (undisturbed.tap.clone(), undisturbed.tap.lock().unwrap().sent.len());
@@ -86,7 +87,7 @@ fn compare(name: &str, points: Option<&[usize]>, ready: &mut dyn FnMut() -> Read
     assert_recorded(name, &text);
 }
 
-/// Returns FNV-1a of 64 bits.
+/// Returns the 64-bit FNV-1a hash of the lines.
 fn sum(lines: &[String]) -> u64 {
     let bytes = lines.iter().flat_map(|line| line.bytes().chain([b'\n']));
     bytes.fold(0xCBF2_9CE4_8422_2325, |sum, byte| (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3))

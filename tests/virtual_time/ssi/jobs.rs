@@ -31,7 +31,7 @@ fn hello_reports_the_adapter_and_the_word_settings() {
     assert_eq!((identity.hello.name.as_str(), identity.hello.firmware.as_str()), ("virtual adapter", "1.0"));
     assert!(identity.hello.capabilities.contains(Capabilities::SSI));
     assert_eq!(identity.asking, ClockSettings { clocks: 25, clock_hz: 700_000, pause_us: 200 });
-    // 60 MHz divided by 86 is the nearest clock below.
+    // 60 MHz divided by 86 is the nearest clock below the requested one.
     assert_eq!(identity.clock_hz, 697_674);
     // 300 mW at 12 V.
     assert_eq!(identity.supply, Some(Supply { millivolt: 12_000, measured: Some((12_000, 25)) }));
@@ -50,15 +50,15 @@ fn the_supply_stays_off_unless_requested() {
     assert_eq!((hello(&mut stand).supply, stand.count(Operation::Supply)), (None, 0));
 }
 
-/// ATM60 with factory settings, 12 bits of turns and 13 of steps in Gray; the shaft is at turn 1234h, 270°: turn 234h
-/// of 4096, step 1800h of 8192, of which 0x469800 ^ 0x234C00 is the Gray code.
+/// ATM60 with factory settings: 12 bits of turns and 13 bits of steps in Gray code. The shaft is at turn 1234h, 270°,
+/// which is turn 234h of 4096, step 1800h of 8192. The Gray code of this word is 0x469800 ^ 0x234C00.
 #[test]
 fn a_word_is_read_with_the_requested_clocks() {
     let mut stand = Stand::new("", "ssi=atm60,code=gray&position=0x24698000");
     let words = stand.read();
     assert_eq!((words.words.as_slice(), words.clocks, words.first, words.lost), (&[0x65_D400][..], 25, 0, 0));
     assert!(words.is_stream_start() && !words.is_streamed() && !words.is_limited && words.period_ns == 0);
-    // More clocks than bits: zeros after the frame; fewer: its first bits.
+    // With more clocks than bits, zeros follow the frame. With fewer, only its first bits are read.
     assert_eq!(set(&mut stand, ClockSettings { clocks: 27, ..QUICK }).unwrap().clock_hz, 1_500_000);
     let longer = stand.read();
     assert_eq!((longer.words.as_slice(), longer.clocks, longer.first), (&[0x65_D400 << 2][..], 27, 0));
@@ -68,7 +68,7 @@ fn a_word_is_read_with_the_requested_clocks() {
     assert_eq!(configured, [25, 27, 13]);
 }
 
-/// A setting that the adapter rejects leaves everything as it was.
+/// If the adapter rejects a setting, everything stays unchanged.
 #[test]
 fn a_refused_setting_keeps_the_previous_one() {
     let mut stand = Stand::quick("rpm=60");
@@ -95,7 +95,7 @@ fn an_adapter_of_another_version_is_refused_naming_both() {
     assert_eq!(error, Error::Adapter(AdapterError::Version { expected: 1, got: 2 }));
 }
 
-/// The adapter has never answered: the request is repeated once, as in the reference.
+/// The adapter has never answered. The request is repeated once, as in the reference.
 #[test]
 fn a_silent_adapter_is_reported_after_two_tries() {
     let mut stand = Stand::new("", "fault=silent-after:0");
@@ -103,7 +103,8 @@ fn a_silent_adapter_is_reported_after_two_tries() {
     assert_eq!((error, stand.count(Operation::Hello)), (Error::Adapter(AdapterError::Silent), 2));
 }
 
-/// One byte in a hundred is lost, so that a quarter of all exchanges fails; the values read are right nevertheless.
+/// One byte in a hundred is lost, so a quarter of all exchanges fails. The values that are read are correct
+/// nevertheless.
 #[test]
 fn words_are_requested_again_on_a_lossy_line() {
     for seed in 0..20 {

@@ -1,4 +1,5 @@
-//! Repeated words: requested if there is time, otherwise streamed, and the stream ended before any other request.
+//! Repeated words. They are requested if there is time for this and streamed otherwise. The stream is ended before any
+//! other request.
 
 use std::time::Duration;
 
@@ -14,10 +15,10 @@ use super::support::{QUICK, Stand};
 use crate::biss::support::pairs;
 
 const FAST: Duration = Duration::from_micros(50);
-/// ATM60: a turn has 8192 steps, so that 50 revolutions per second are 20.48 steps per word of 50 µs.
+/// A turn of the ATM60 has 8192 steps, so 50 revolutions per second are 20.48 steps per word of 50 µs.
 const TURNING: &str = "ssi=atm60,code=binary&rpm=3000&position=0";
 
-/// Checks that numbers and times are continuous, and the position follows the shaft.
+/// Checks that numbers and times are continuous, and that the position follows the shaft.
 fn check(runs: &[Words]) {
     let (mut next, mut before) = (runs[0].first, None);
     for run in runs {
@@ -89,7 +90,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
     assert_eq!(stand.sample().period_ns, 100_000, "another pace is another stream");
 }
 
-/// A requested stream continues, with the new width from its first word on.
+/// A stream that was requested continues, with the new width from its first word on.
 #[test]
 fn changed_settings_apply_to_a_running_stream() {
     let mut stand = Stand::quick(TURNING);
@@ -106,7 +107,7 @@ fn changed_settings_apply_to_a_running_stream() {
     assert_eq!(stand.count(Operation::Hello), 1);
 }
 
-/// 25 clocks at 500 kHz are 50 µs, and 200 µs of pause.
+/// 25 clocks at 500 kHz take 50 µs, and the pause 200 µs.
 #[test]
 fn a_clock_or_pause_too_slow_for_the_interval_is_reported() {
     let mut slow = Stand::new("clock=500000&pause=200", TURNING);
@@ -134,7 +135,7 @@ fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
     assert!(matches!(stand.session.take_sample(), Err(Error::Link(error)) if error.is_lost()));
 }
 
-/// A reset ends the stream and clears supply and clock: the next job, or the next sample, detects it and continues.
+/// A reset ends the stream and clears the supply and the clock. The next job or sample detects this and continues.
 #[test]
 fn an_adapter_reset_while_streaming_is_configured_again() {
     let query = "supply=switched&rpm=60";
@@ -146,7 +147,7 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
         if by_job {
             stand.read();
         } else {
-            // Data sent before still arrive.
+            // Data that were sent before still arrive.
             let error = (0..100).find_map(|_| stand.session.take_sample().err()).unwrap();
             assert_eq!(error, Error::Adapter(AdapterError::Mute));
         }
@@ -155,7 +156,7 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
     }
 }
 
-/// With single requests, it is detected with the next one.
+/// With single requests, the next one detects the reset.
 #[test]
 fn an_adapter_reset_between_two_words_is_configured_again() {
     let query = "supply=switched&rpm=60";
@@ -168,7 +169,7 @@ fn an_adapter_reset_between_two_words_is_configured_again() {
     assert_eq!((stand.count(Operation::Supply), stand.count(Operation::SsiConfig)), (2, 2));
 }
 
-/// Damaged packets are counted as missing before the next, and no word is wrong.
+/// Damaged packets are counted as missing before the next one, and no word is wrong.
 #[test]
 fn packets_lost_in_transit_are_reported() {
     let mut stand = Stand::quick(&format!("{TURNING}&seed=3&fault=drop:0.001"));

@@ -1,4 +1,4 @@
-//! A desk with an adapter before the virtual SSI encoder.
+//! Test support: a desk with the virtual SSI encoder at an adapter.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -16,7 +16,7 @@ use encoder_studio::worker::Session;
 use crate::biss::support::pairs;
 use crate::support::{MARGIN, Tap, TestLink};
 
-/// 25 clocks in 16.67 µs and 30 µs of pause: a word in less than 50 µs.
+/// 25 clocks in 16.67 µs and a pause of 30 µs, so a word takes less than 50 µs.
 pub(crate) const QUICK: ClockSettings = ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 30 };
 
 pub(crate) struct Stand {
@@ -28,13 +28,13 @@ pub(crate) struct Stand {
 }
 
 impl Stand {
-    /// Creates a session from the settings of the link and of the virtual adapter.
+    /// Creates a session from the settings of the link and those of the virtual adapter.
     pub(crate) fn new(link: &str, query: &str) -> Self {
         let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap()));
         Self::before(link, adapter)
     }
 
-    /// Creates an adapter with 20 000 words per second.
+    /// Creates a session with an adapter that supplies 20 000 words per second.
     pub(crate) fn quick(query: &str) -> Self {
         Self::new("clock=1500000&pause=30", query)
     }
@@ -71,7 +71,7 @@ impl Stand {
         samples
     }
 
-    /// Returns the number of bytes that the adapter sends within a second without a request.
+    /// Returns the number of bytes that the adapter sends in one second without a request.
     pub(crate) fn unsolicited_byte_count(&mut self) -> usize {
         let mut adapter = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {

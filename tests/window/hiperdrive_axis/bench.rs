@@ -14,7 +14,7 @@ use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive,
 use crate::hiperdrive_acts::{ATTEMPTS, has_lapsed, hold_pad_until, last_end, until_free};
 use crate::support::Desk;
 
-/// An adapter whose drive was never requested.
+/// Link to an adapter whose drive has never been requested.
 pub(super) const FRESH: &str = "sim:?requested=0";
 
 pub(super) fn unit(desk: &Desk) -> &HiperdriveDevice {
@@ -43,7 +43,7 @@ pub(super) fn seen(desk: &Desk) -> DriveFacts {
     unit(desk).drive_facts(unit(desk).drive())
 }
 
-/// Reads a parameter by its own number.
+/// Reads a parameter by its number.
 pub(super) fn read(desk: &Desk, number: u16) -> i64 {
     match unit(desk).value(ParameterNumber::new(number).unwrap()) {
         Some(Value::Number(value)) => *value,
@@ -81,7 +81,7 @@ pub(super) fn new_form(link: &str) -> Desk {
     desk
 }
 
-/// Consents to the plan that the step has made.
+/// Consents to the plan made by the step.
 #[track_caller]
 pub(super) fn consent(desk: &mut Desk) {
     desk.until("the plan is there", |studio| {
@@ -95,7 +95,7 @@ pub(super) fn consent(desk: &mut Desk) {
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
 }
 
-/// Consents to it, and closes its review once it is executed.
+/// Consents to the plan and closes its review once it has been executed.
 #[track_caller]
 pub(super) fn write(desk: &mut Desk) {
     consent(desk);
@@ -114,7 +114,7 @@ pub(super) fn step_with_write(desk: &mut Desk) {
     write(desk);
 }
 
-/// Completes the step, and goes to the next one.
+/// Completes the step and goes to the next one.
 #[track_caller]
 pub(super) fn next(desk: &mut Desk, step: AxisStep) {
     let (axis, seen) = (axis(desk), seen(desk));
@@ -143,7 +143,7 @@ pub(super) fn number(desk: &Desk, number: u16) -> i64 {
     unit(desk).parameter_value(unit(desk).drive(), number).unwrap()
 }
 
-/// Holds the jog until the axis has moved this far, then releases it.
+/// Holds the jog until the axis has moved by the given number of steps, then releases it.
 #[track_caller]
 pub(super) fn jog(desk: &mut Desk, direction: Direction, steps: i32) {
     let from = position(desk);
@@ -161,7 +161,8 @@ pub(super) fn until_stopped(desk: &mut Desk) {
     });
 }
 
-/// Runs a write of this step, by the number of drive 1; if `rough`, it is rejected first, then cut off in the middle.
+/// Performs the write of a step, whose parameter has the given number for drive 1. If `rough` is set, the write is
+/// first rejected and then cut off in the middle.
 #[track_caller]
 pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
     for hindrance in [WriteFault::Refused, WriteFault::CutOff].into_iter().filter(|_| rough) {
@@ -193,14 +194,14 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
         });
         let own = axis(desk);
         assert_eq!((own.step(), own.is_writing()), (step, false), "{hindrance:?} of {number}");
-        // The last step does not write anything that is saved.
+        // The last step writes only values that are not saved.
         assert_eq!(own.is_saved(), step == AxisStep::PowerCycle, "{hindrance:?} of {number}");
         assert_eq!(own.invalidated_step(), None, "{hindrance:?} of {number}");
         if hindrance == WriteFault::CutOff && matches!(step, AxisStep::Reference | AxisStep::Upper) {
             control(desk);
         }
     }
-    // The interrupted write may have arrived: then it is already done.
+    // The interrupted write may have arrived, in which case it is already done.
     if axis(desk).request(AxisButton::Do, &seen(desk)).is_ok() {
         step_with_write(desk);
     } else {
@@ -217,7 +218,7 @@ pub(super) fn control(desk: &mut Desk) {
     });
 }
 
-/// Returns a drive with 400 steps per turn of 4 mm, whose limits are to be confirmed.
+/// Returns a drive with 400 steps per turn of 4 mm, whose limits have to be confirmed.
 pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
@@ -235,7 +236,7 @@ pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
     step_with_writes(&mut desk, 156, rough);
-    // Reference 5: 400/256; 511 turns of 400 steps.
+    // Reference 5: 400/256, and 511 turns of 400 steps.
     assert_eq!([154, 156, 158, 160].map(|own| number(&desk, own)), [400, 256, -204_400, 204_400]);
     next(&mut desk, AxisStep::Confirm);
     desk
@@ -245,11 +246,11 @@ pub(super) fn at_jog_step() -> Desk {
     until_scaled(FRESH, 1, false)
 }
 
-/// Takes control and confirms, up to the step with the slow jog.
+/// Takes control and confirms everything up to the step with the slow jog.
 pub(super) fn confirm(mut desk: Desk) -> Desk {
     run(&mut desk, Run::Press(AxisButton::Confirm));
     next(&mut desk, AxisStep::Jog);
-    // Before that the mark of these limits may still be read back from the file, and locks them again.
+    // Before that, the mark of these limits may still be read back from the file, which locks them again.
     let path = desk.outside.store().settings_path();
     desk.until("the confirmation is kept", |_| {
         std::fs::read_to_string(&path).is_ok_and(|text| text.contains("unconfirmed: []"))
@@ -262,7 +263,7 @@ pub(super) fn confirmed() -> Desk {
     confirm(at_jog_step())
 }
 
-/// Returns a drive with its position set to 128 steps, before the limits are taught.
+/// Returns a drive whose position has been set to 128 steps and whose limits have not been set by teach-in yet.
 pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = confirm(until_scaled(link, drive, rough));
     jog(&mut desk, Direction::Clockwise, 20);
@@ -270,7 +271,7 @@ pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
     next(&mut desk, AxisStep::Reference);
     edit(&mut desk, |own| own.reference = "1".to_owned());
     step_with_writes(&mut desk, 198, rough);
-    // 100 steps are rounded to 128: the nearest multiple of 64.
+    // 100 steps are rounded to 128, the nearest multiple of 64.
     desk.until("the position is set", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.drive_facts(own.drive()).position.is_some_and(|position| (position - 128).abs() <= 1)
@@ -279,7 +280,7 @@ pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
     desk
 }
 
-/// Returns a drive in the test, with taught limits.
+/// Returns a drive in the test step, with limits set by teach-in.
 pub(super) fn at_test_step(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = referenced(link, drive, rough);
     jog(&mut desk, Direction::Counterclockwise, 10);
@@ -295,7 +296,8 @@ pub(super) fn at_test_step(link: &str, drive: u8, rough: bool) -> Desk {
     desk
 }
 
-/// Moves to a place until a condition holds; again after a delay of 250 ms on a busy computer, which ends the motion.
+/// Moves to a target until a condition holds. The move is repeated if a busy computer has delayed it by 250 ms, which
+/// ends the motion.
 #[track_caller]
 pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&HiperdriveDevice) -> bool) {
     let drive = unit(desk).drive();
@@ -327,7 +329,7 @@ pub(super) fn tested(mut desk: Desk) -> Desk {
     desk
 }
 
-/// Returns the saved axis, before the check over the supply.
+/// Returns an axis that has been saved, before the check with a power cycle.
 pub(super) fn until_saved_with(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = tested(at_test_step(link, drive, rough));
     next(&mut desk, AxisStep::Save);
