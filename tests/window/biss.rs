@@ -1,4 +1,5 @@
-//! A BiSS encoder in the window: the virtual kit encoder, over its configuration pin and over the virtual adapter.
+//! Tests of the BiSS tab with the virtual kit encoder, connected through its configuration pin or through the virtual
+//! adapter.
 
 use crate::biss_support::command;
 use crate::tabs::Tabs as _;
@@ -22,7 +23,7 @@ fn the_virtual_encoder_is_read_over_either_interface() {
         let encoder = encoder(&desk);
         assert!(encoder.session.is_virtual(), "{link}");
         let identity = encoder.identity().unwrap();
-        // Manual, appendix: firmware of the newest encoder. The serial number of the virtual encoder is 0012D687h.
+        // The virtual encoder has the newest firmware of the manual's appendix. Its serial number 0012D687h is 1234567.
         assert_eq!((identity.serial_number.as_str(), identity.layout.bits()), ("1234567", 41), "{link}");
         assert_eq!(encoder.session.name(), "POSITAL IXARC kit encoder · 1234567");
         let reading = encoder.record.last().unwrap();
@@ -52,7 +53,7 @@ fn a_link_of_only_one_kind_opens_in_its_tab() {
     }
 }
 
-/// The kind of device of a link is remembered, so a BiSS encoder is not opened as a HIPERFACE encoder.
+/// A link opens in the tab in which it was used before, so that a BiSS encoder is not opened as a HIPERFACE encoder.
 #[test]
 fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
     let (port, adapter) = ("serial:/dev/nowhere", "bridge:/dev/nowhere");
@@ -81,7 +82,8 @@ fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
     }
 }
 
-/// Over the configuration pin, a position has no status bits, so the registers are read.
+/// The status bits of the encoder mark a position as invalid over both interfaces. The configuration pin transmits no
+/// status bits with a position, so they are read from the registers.
 #[test]
 fn a_position_is_marked_over_either_interface() {
     for link in ["sim:", "sim:?bridge=on"] {
@@ -176,7 +178,7 @@ fn clicking_a_bank_shows_and_reads_it() {
     screen.until("it is read", is_read);
     screen.click("page.registers");
     assert_eq!(screen.studio().biss().unwrap().memory.read(at("0x04:0x3F")), None);
-    // The list comes before the table, whose heading has the same text.
+    // The list comes before the table, whose heading contains the same text.
     let bank = screen.harness.query_all_by_label_contains("0x04").next().expect("bank 0x04 is listed");
     assert!(bank.rect().right() < 350.0, "{:?}", bank.rect());
     bank.click();

@@ -1,4 +1,4 @@
-//! A BiSS encoder that is exchanged for another one, and a connection requested by two sessions.
+//! Tests with a BiSS encoder that is exchanged for another one, and with a connection that two sessions request.
 
 use crate::biss_support::command;
 use crate::tabs::Tabs as _;
@@ -36,7 +36,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
     assert!(encoder(&desk).session.review.is_none(), "no plan is left for a consent");
     assert!(!encoder(&desk).is_dirty());
     assert_eq!(desk.notice_ids(Severity::Warning), ["session.other_encoder"]);
-    // They are still those of the first encoder.
+    // The edits still belong to the first encoder.
     served.exchange("serial=1");
     command(&mut desk, DeviceCommand::Read);
     desk.until("the first one is back", |studio| {
@@ -44,7 +44,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
     });
 }
 
-/// Without edits, only the discarded plan is reported.
+/// If there are no edits, a notice reports only that the plan was discarded.
 #[test]
 fn a_plan_for_one_encoder_is_discarded_for_another_with_a_notice() {
     let served = ServedDevice::new("serial=1");

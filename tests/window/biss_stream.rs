@@ -1,4 +1,4 @@
-//! The position of a BiSS encoder as streamed by its adapter: 20 000 frames per second are shown without loss.
+//! Tests of the position stream of a BiSS adapter: 20 000 frames per second are shown without loss.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -12,8 +12,8 @@ use crate::biss_support::is_read;
 use crate::screen::Screen;
 use crate::support::{Desk, Outside};
 
-/// Link to a virtual adapter. A frame of 43 clocks takes 21.5 µs at 2 MHz, plus 27 µs of waiting, and the shaft turns
-/// five times per second.
+/// A link to a virtual adapter that reads a frame about every 50 µs: 43 clocks take 21.5 µs at 2 MHz, followed by a
+/// wait of 27 µs. The shaft turns five times per second.
 const LINK: &str = "sim:?bridge=on&clock=2000000&rpm=300";
 const FAST: Duration = Duration::from_micros(50);
 
@@ -21,7 +21,7 @@ fn poll(studio: &Studio, interval: Option<Duration>) -> Action {
     Action::Command(studio.biss().unwrap().session.id, DeviceCommand::Poll(interval))
 }
 
-/// Returns the positions with their times, and the number of gaps between them.
+/// Returns the recorded positions with their times in nanoseconds, and the number of gaps in the recording.
 fn recorded(encoder: &Encoder) -> (Vec<(i64, i64)>, usize) {
     let recorder = encoder.record.recorder();
     let line = &recorder.series()[0];
@@ -31,12 +31,12 @@ fn recorded(encoder: &Encoder) -> (Vec<(i64, i64)>, usize) {
     (samples.iter().map(|own| (own.time.as_nanoseconds(), own.value.to_f64() as i64)).collect(), breaks)
 }
 
-/// Checks that all positions are 50 µs apart and follow the shaft. 655 360 steps per second are 32.768 per frame.
-/// Between two packets, the time is slightly adjusted to the clock of the computer.
+/// Checks that the streamed positions are 50 µs apart and follow the shaft: 655 360 steps per second are 32.768 steps
+/// per frame. The times have a tolerance because they slightly follow the clock of this computer between two packets.
 #[track_caller]
 fn check(encoder: &Encoder, seconds: f64) {
     let (samples, breaks) = recorded(encoder);
-    // There was one single reading before, to which the stream is not joined.
+    // A single reading before the stream is not part of it.
     let streamed = &samples[samples.len() - (encoder.record.position_count() as usize - 2)..];
     assert!(streamed.windows(2).all(|pair| (pair[1].0 - pair[0].0 - 50_000).abs() <= 5_000));
     assert!(streamed.windows(2).all(|pair| (32..=33).contains(&(pair[1].1 - pair[0].1))));
@@ -63,7 +63,7 @@ fn a_stream_is_recorded_without_loss_and_ends_on_request() {
     check(encoder, seconds);
     assert_eq!(encoder.active_stream(), None);
     assert!(desk.notice_ids(Severity::Warning).is_empty());
-    // A job in between causes a gap and nothing worse.
+    // A job during the stream causes a gap but no dropped frames.
     desk.act(poll(&desk.studio, Some(FAST)));
     desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.active_stream().is_some()));
     let before = desk.studio.biss().unwrap().record.position_count();

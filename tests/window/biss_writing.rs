@@ -1,4 +1,5 @@
-//! Writing to a BiSS encoder from the window: edits with their review, and procedures with a user at the motor.
+//! Tests of writing to a BiSS encoder from the window: edits with their review, and procedures in which the user turns
+//! the motor.
 
 use crate::biss_support::command;
 use crate::tabs::Tabs as _;
@@ -24,7 +25,7 @@ fn until_planned(desk: &mut Desk) {
     desk.until("the plan is there", |studio| is_read(studio) && studio.biss().is_some_and(planned));
 }
 
-/// Consents to the displayed plan.
+/// Consents to the displayed plan, which starts the write.
 fn write(desk: &mut Desk) {
     let own = encoder(desk);
     let plan =
@@ -38,7 +39,7 @@ fn plan(desk: &mut Desk, change: Change) {
     until_planned(desk);
 }
 
-/// Polls until the procedure asks the user for the given task.
+/// Polls until the procedure prompts for `task` and the prompt is ready, or not yet ready if `ready` is false.
 #[track_caller]
 fn until_asked(desk: &mut Desk, task: OperatorTask, ready: bool) {
     desk.until("it is asked", |studio| {
@@ -75,7 +76,7 @@ fn three_bytes_of_one_bank_need_three_writes_and_one_save() {
         );
         let writes = encoder(&desk).session.writes.as_ref().unwrap().as_ref().unwrap();
         assert_eq!(writes[0].conclusion.as_ref().unwrap().cycles_spent, 1, "{link}");
-        // The log and the list of writes agree on location, area, old value and new value.
+        // The log and the list of writes agree on the register, the memory area, the old value and the new value.
         let told = log(&desk.studio);
         for words in [&format!("The device at {link} replied."), "Started: Write 3 edited bytes", "read back: 3."] {
             assert!(told.contains(words), "{words}: {told}");
@@ -86,7 +87,7 @@ fn three_bytes_of_one_bank_need_three_writes_and_one_save() {
         ask(&mut desk, Biss::Check);
         desk.until("it is checked", |studio| studio.biss().unwrap().check.is_some());
         let lines = encoder(&desk).check.as_ref().unwrap();
-        // Issue 22.19: no Wiegand test is saved, so there is no verdict about the sensor.
+        // No Wiegand test is saved in this encoder, so there is no verdict about the sensor (issue 22.19).
         let verdict = |step: &str| if step == "check.wiegand" { Verdict::Skipped } else { Verdict::Good };
         let as_expected = lines.iter().all(|line| line.verdict == verdict(line.step.id()));
         assert!(lines.len() == 8 && as_expected, "{lines:?}");
@@ -121,7 +122,7 @@ fn a_calibration_is_guided_step_by_step() {
     desk.until("it waits", |studio| turn_of(studio).is_some());
     let first = turn_of(&desk.studio).unwrap();
     until_asked(&mut desk, first, false);
-    // This is too early, so nothing starts.
+    // The motor has not been turned yet, so nothing starts.
     ask(&mut desk, Biss::Answer(first, OperatorAnswer::Go));
     ask(&mut desk, Biss::Turn(-500.0));
     until_asked(&mut desk, first, true);

@@ -1,4 +1,4 @@
-//! The window never waits: for a link that hangs, a disk that does not answer or is full, or events that are not read.
+//! Tests that the window never waits for a link that hangs, a disk that does not answer or is full, or unread events.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
@@ -16,7 +16,7 @@ use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, Re
 
 use crate::support::{Desk, HANGING, PORT, SLOW, is_review};
 
-/// Creates a pipe that is neither read nor written, so opening it waits forever.
+/// Creates a named pipe that is neither read nor written, so that opening it waits forever.
 fn pipe(path: &Path) {
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
@@ -75,7 +75,7 @@ fn a_search_on_a_hanging_link_can_be_cancelled() {
     desk.act(Action::Escape);
     assert!(!desk.studio.can_stop());
     assert!(crate::tabs::search(desk.studio.connect.as_ref().unwrap()).unwrap().end.is_some());
-    // It does not affect the next search.
+    // The hanging search does not disturb the next one.
     desk.connect(Connect::Use(format!("serial:{PORT}")));
     desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.until("it is found", |studio| {
@@ -104,7 +104,7 @@ fn a_hanging_disk_blocks_nothing() {
     assert_eq!(desk.notice_ids(Severity::Warning), ["file.no_file", "file.no_file"], "a pipe is no profile");
 }
 
-/// The settings cannot be saved, but there is no error. Closing the window waits for a limited time.
+/// If the settings cannot be saved and the disk reports no error, closing the window waits only for a limited time.
 #[cfg(unix)]
 #[test]
 fn a_hanging_disk_does_not_keep_the_window_open() {
@@ -122,7 +122,7 @@ fn a_hanging_disk_does_not_keep_the_window_open() {
     assert!(desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst) > before, "the window is told to look");
 }
 
-/// Not even the search for the draft ends. Closing the window waits for a limited time.
+/// If the disk does not even answer the search for a draft, closing the window waits only for a limited time.
 #[cfg(unix)]
 #[test]
 fn a_hanging_draft_does_not_keep_the_window_open() {
@@ -157,7 +157,7 @@ fn an_unwritable_folder_is_reported() {
     desk.until_ready();
 }
 
-/// Returns the reason why an edit is not written.
+/// Returns the ID of the message that says why an edit is not written.
 fn refused(desk: &mut Desk) -> &'static str {
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -179,12 +179,13 @@ fn without_a_backup_nothing_is_written() {
     assert_eq!((desk.wire().wear(), desk.edits()), (0, vec![(0, 0, b'X')]));
 }
 
-/// Issue 22.4: the number of previous write cycles is unknown. Only the review offers to write nevertheless.
+/// Without a logbook, the previous write cycles are unknown. A write then needs a permission, which only the review
+/// offers (issue 22.4).
 #[test]
 fn without_a_logbook_a_write_needs_a_permission_and_warns() {
     let mut desk = Desk::new_form("");
     let logbook = desk.outside.store().logbook_path();
-    // The connection is already recorded.
+    // The logbook exists because the connection is already recorded.
     fs::remove_file(&logbook).unwrap();
     fs::create_dir_all(logbook).unwrap();
     assert_eq!((refused(&mut desk), desk.wire().wear()), ("write.uncounted", 0));
@@ -200,7 +201,7 @@ fn without_a_logbook_a_write_needs_a_permission_and_warns() {
     desk.until("the list says why", |studio| matches!(studio.hiperface().unwrap().session.writes, Some(Err(_))));
 }
 
-/// Waits without polling the studio.
+/// Waits for a condition without polling the studio, so that its events stay unread.
 fn without_polling(condition: impl Fn() -> bool) {
     let began = Instant::now();
     while !condition() {
@@ -219,16 +220,16 @@ fn unread_samples_and_frames_are_counted_and_the_newest_kept() {
     let (dropped, positions) = (desk.encoder().recording().dropped_count(), desk.encoder().record.position_count());
     assert!(dropped > 0 && positions >= 4_096, "{dropped} {positions}");
     assert!(desk.encoder().session.trace.dropped_count() > 0);
-    // In between, a job is accepted immediately.
+    // During polling, a job is accepted immediately.
     desk.ask(Hiperface::ReadCounter);
     desk.until_ready();
     desk.act(Action::Stop);
     assert!(desk.notice_ids(Severity::Warning).is_empty());
 }
 
-/// Issue 26: below 2,000 frames per second, every frame is in the trace. A window that is drawn takes the frames at
-/// least eight times per second. Here, ten times the frames of a whole second, which are 1,000 readings of two frames
-/// each, wait for the window.
+/// Below 2,000 frames per second, every frame is in the trace. A drawn window takes new frames at least eight times per
+/// second. This test is stricter: it lets a whole second of frames (1,000 readings of two frames each) wait ten times
+/// (issue 26).
 #[test]
 fn two_thousand_frames_a_second_are_all_in_the_trace() {
     let mut desk = Desk::new_form("rpm=60");
@@ -251,7 +252,7 @@ fn two_thousand_frames_a_second_are_all_in_the_trace() {
     let readings = u64::try_from(wire.count(0x42) - before).unwrap();
     assert!(readings >= 10_000);
     assert_eq!(trace.next_number() - frames + trace.dropped_count(), 2 * readings, "a request and a reply each");
-    // On a busy computer, more than ten seconds of frames may wait, for which there is no room.
+    // On a busy computer, more than ten seconds of frames may wait, and there is no room for so many.
     if longest < 9_000 {
         assert_eq!(trace.dropped_count(), 0);
     }
@@ -265,7 +266,7 @@ fn the_end_of_an_unwatched_search_is_not_lost() {
     desk.connect(Connect::Use(format!("serial:{PORT}")));
     desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.until("it has begun", |_| wire.sent() > 0);
-    // Hundreds of tries report their progress.
+    // The search reports the progress of hundreds of attempts, and the reports stay unread.
     without_polling(|| {
         let sent = wire.sent();
         std::thread::sleep(Duration::from_millis(150));

@@ -1,4 +1,5 @@
-//! Escape first stops a motion and then closes a dialog. Closing with unsaved data asks once.
+//! Tests that Escape first stops a running job and then closes the dialog, and that closing with unsaved data asks
+//! once.
 
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::connect::ConnectAction as Connect;

@@ -1,5 +1,5 @@
-//! The commutation assistant: requirements, readings, the offset, both ways to store it, and failures. Numbers are from
-//! section 5 of the sine/cosine reference or were calculated separately.
+//! Tests of the commutation assistant: requirements, readings, the offset, both ways to store it, and failures. The
+//! numbers are from section 5 of the sine/cosine reference or were calculated separately.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::analysis::quality::Verdict;
@@ -15,8 +15,8 @@ use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, Re
 use crate::support::Desk;
 use crate::texts;
 
-/// The virtual SKM36 is 100.75 periods from its zero. It has 128 periods, and the sine and cosine counts are 409 and
-/// 511.
+/// A virtual SKM36 at rest, 100.75 periods from its zero, at 128 periods per turn. Its sine and cosine counts are 409
+/// and 511.
 const AT_REST: &str = "position=3224";
 
 impl Desk {
@@ -30,7 +30,7 @@ impl Desk {
         self.assist(Assistant::Edit(Box::new(form)));
     }
 
-    /// Confirms and enters everything for a motor with four pole pairs.
+    /// Confirms all requirements and fills in the form for a motor with four pole pairs.
     fn prepare(&mut self) {
         self.edit(|form| {
             (form.disabled, form.uncoupled, form.released) = (true, true, true);
@@ -104,12 +104,12 @@ fn nothing_is_read_before_the_checklist_is_complete() {
 fn a_complete_run_stores_the_offset_in_the_encoder() {
     let mut desk = Desk::new_form(AT_REST);
     desk.prepare();
-    // The encoder is polled meanwhile, and the readings take place in between.
+    // The readings take place while the position is polled.
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::ZERO)));
     desk.read(VectorSlot::OneSide);
     let reading = *desk.encoder().commutation.reading_of(VectorSlot::OneSide).unwrap();
-    // (409 − 511.5) · 5/1023 V and (511 − 511.5) · 5/1023 V yield φ = 0.749 223 64, and the middle of step 24 is 0.525
-    // steps further.
+    // (409 − 511.5) · 5/1023 V and (511 − 511.5) · 5/1023 V give φ = 0.749 223 64. The middle of step 24 is 0.525 steps
+    // further.
     assert!((reading.fine_periods - 100.749_223_64).abs() < 1e-8, "{reading:?}");
     let PositionKind::Fine { residual_periods, verdict: Verdict::Ok, .. } = reading.kind else { panic!("{reading:?}") };
     assert!((residual_periods * 32.0 - 0.524_844).abs() < 1e-6);
@@ -138,7 +138,7 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
     assert_eq!(marks, [(16..32, "commutation offset".to_owned())], "it belongs to the mounting");
     let found = commutation::stored(&desk.encoder().staged);
     assert!(!found[0].edited && found[0].record.unwrap().confirmed);
-    // The readings are still there, so entering the same value again is not an edit.
+    // The readings are kept, so storing the same value again makes no edit.
     desk.assist(Assistant::Store);
     assert!(desk.edits().is_empty());
     assert_eq!(desk.notice_count("commutation.same"), 1);
@@ -149,7 +149,7 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
     assert!(english.iter().any(|line| line == "Offset: 53.4288° el. = 25FE68F7h"), "{english:?}");
 }
 
-/// Section 5: fine position 339.02 of 1024 periods with four pole pairs, without an encoder.
+/// Reference, section 5: a typed fine position of 339.02 of 1024 periods, with four pole pairs, needs no encoder.
 #[test]
 fn a_typed_position_yields_the_offset_of_the_reference() {
     let mut desk = Desk::fresh("");
@@ -160,8 +160,7 @@ fn a_typed_position_yields_the_offset_of_the_reference() {
     assert_eq!(desk.offset(), Err("commutation.no_reading"));
     desk.type_in(VectorSlot::OneSide, "339.02");
     assert_eq!(desk.offset(), Ok(0x5305_1EB8));
-    // Reversed, this is 0.675 703 125 turns, or ACFA E148h. With the vector at −30°, it is 1/12 turn more: 0.407 630
-    // 21.
+    // Reversed counting: 0.675 703 125 turns, ACFA E148h. With the vector at −30°, 1/12 turn more: 0.407 630 21.
     desk.edit(|form| form.reversed = true);
     assert_eq!(desk.offset(), Ok(0xACFA_E148));
     desk.edit(|form| (form.reversed, form.vector) = (false, EnergisedVector::UAgainstV));
@@ -186,7 +185,7 @@ fn a_typed_position_yields_the_offset_of_the_reference() {
 fn positions_too_far_apart_are_refused() {
     let mut desk = Desk::new_form("");
     desk.prepare();
-    // Half a period of 128 is 1.40625°, which is 5.625° with four pole pairs.
+    // Half a period is 1.40625° of the shaft at 128 periods per turn, and 5.625° electrical with four pole pairs.
     desk.type_in(VectorSlot::OneSide, "127.9");
     desk.type_in(VectorSlot::OtherSide, "0.4");
     assert_eq!(desk.offset(), Err("commutation.friction"));
@@ -209,16 +208,16 @@ fn the_second_vector_reveals_wiring_faults() {
     desk.type_in(VectorSlot::OneSide, "4");
     for (second, pairs, verdict, id) in [
         ("12", "4", Verdict::Ok, "commutation.fits"),
-        // Beyond the end of the revolution.
+        // The path between both positions crosses the end of the revolution.
         ("124", "4", Verdict::Fault, "commutation.exchanged"),
-        // 22.5° of the shaft are a quarter of a turn with four pole pairs, whatever number was typed.
+        // 22.5° of the shaft are a quarter of an electrical turn with four pole pairs, whatever number was typed.
         ("12", "5", Verdict::Fault, "commutation.other_pairs"),
         ("124", "2", Verdict::Fault, "commutation.exchanged_pairs"),
         ("4.1", "4", Verdict::Fault, "commutation.still"),
         ("4", "4", Verdict::Fault, "commutation.still"),
-        // 3.4 of 8 periods would be 9.4 pole pairs.
+        // A distance of 3.4 instead of 8 periods would mean 9.4 pole pairs.
         ("7.4", "4", Verdict::Fault, "commutation.unclear"),
-        // More than one electrical turn.
+        // The distance is more than an electrical turn.
         ("60", "4", Verdict::Fault, "commutation.unclear"),
     ] {
         desk.edit(|form| form.pole_pairs = pairs.to_owned());
@@ -230,7 +229,7 @@ fn the_second_vector_reveals_wiring_faults() {
         assert_eq!(desk.why_not(), (!stored).then_some("commutation.second_refuses"));
         desk.command(DeviceCommand::RevertAll);
     }
-    // With the other counting direction, swapped is correct.
+    // With the opposite counting direction, exchanged phases are correct.
     desk.edit(|form| (form.pole_pairs, form.reversed) = ("4".to_owned(), true));
     desk.type_in(VectorSlot::Second, "124");
     assert_eq!(desk.second(), (Verdict::Ok, "commutation.fits"));
@@ -247,7 +246,7 @@ fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
     desk.read(VectorSlot::OtherSide);
     desk.edit(|form| form.period = "3".to_owned());
     let setting = desk.encoder().commutation.setting(desk.encoder().geometry()).unwrap();
-    // 3 · 32 + ⌊32 · 0.7492⌋. The rest is 4 · 3.749 224 / 128 of a turn, or 42.178 766°.
+    // 3 · 32 + ⌊32 · 0.7492⌋ = 119. The remainder, 4 · 3.749 224 / 128 of a turn, is 42.178 766°.
     assert_eq!((setting.value, setting.exact, setting.verdict), (119, false, Verdict::Ok));
     assert!((setting.remaining_deg - 42.178_766).abs() < 1e-5, "{setting:?}");
     desk.assist(Assistant::Set);
@@ -264,8 +263,7 @@ fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
     assert_eq!(desk.offset(), Err("commutation.no_reading"));
 }
 
-/// Section 5: with 16 periods and 5 pole pairs, a step is 112.5° electrical. With 128 periods and 4 pole pairs, it is
-/// 14°.
+/// Reference, section 5: a step is 112.5° electrical with 16 periods and 5 pole pairs, and 14° with 128 and 4.
 #[test]
 fn method_2_is_refused_if_its_step_is_too_large() {
     let mut desk = Desk::new_form(AT_REST);
@@ -281,7 +279,7 @@ fn method_2_is_refused_if_its_step_is_too_large() {
         desk.edit(|form| (form.periods, form.pole_pairs) = (periods.to_owned(), pairs.to_owned()));
         let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
         assert_eq!(setting.as_ref().map(|own| own.verdict).map_err(|text| text.id()), result, "{periods} {pairs}");
-        // φ = 0.47, so the last five bits are 15.
+        // φ = 0.47: the lowest five bits are 15.
         assert!(setting.is_err() || setting.unwrap().value == 0x0F);
     }
     desk.edit(|form| (form.periods, form.pole_pairs) = ("16".to_owned(), "5".to_owned()));
@@ -293,7 +291,7 @@ fn method_2_is_refused_if_its_step_is_too_large() {
     });
     let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
     assert_eq!(setting.unwrap_err().id(), "entry.whole");
-    // For the second vector, the shaft is not at the position that was read.
+    // In the second vector, the shaft is no longer at the position that was read.
     desk.edit(|form| form.period = "0".to_owned());
     desk.type_in(VectorSlot::Second, "11.47");
     let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
@@ -314,7 +312,7 @@ fn a_moving_shaft_is_refused_at_its_entry() {
 
 #[test]
 fn a_position_out_of_phase_is_reported() {
-    // The word is shifted by exactly half a period relative to the signals.
+    // The position word is shifted by exactly half a period against the sine and cosine signals.
     let mut desk = Desk::new_form("position=8");
     desk.prepare();
     for (shift, expected) in [(16, Some("commutation.far_apart")), (4, None), (-20, None)] {
@@ -327,7 +325,7 @@ fn a_position_out_of_phase_is_reported() {
         assert_eq!(desk.why_not(), expected, "{shift}");
         desk.assist(Assistant::Clear);
     }
-    // A lag of 12 steps causes a warning (beyond 8/32), which the position alone would not show.
+    // A lag of 12 steps causes a warning because it exceeds 8/32 of a period. The position alone would not show it.
     desk.ask(Hiperface::Plan(Change::ShiftPosition { steps: 12 }));
     desk.until_planned();
     desk.write_as_shown();
@@ -404,7 +402,7 @@ fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
     desk.edit(|form| form.address = "128".to_owned());
     desk.assist(Assistant::Store);
     assert_eq!(desk.why_not(), Some("entry.whole"));
-    // The field has 32 bytes, so the memory itself rejects this in the log.
+    // The field has 32 bytes. The memory itself rejects this address, and the log reports it.
     desk.edit(|form| form.address = "112".to_owned());
     desk.assist(Assistant::Store);
     assert!(desk.edits().is_empty());

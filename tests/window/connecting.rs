@@ -1,4 +1,5 @@
-//! The connection dialog: a form that rejects invalid values, and the search for an encoder with unknown settings.
+//! Tests of the connection dialog: its form rejects invalid values, and its search finds an encoder with unknown
+//! settings.
 
 use encoder_studio::app::DeviceCommand;
 use std::sync::Arc;
@@ -30,8 +31,9 @@ fn edit(desk: &mut Desk, change: impl FnOnce(&mut LinkForm)) {
     desk.connect(Connect::edit_form(form));
 }
 
-/// Issue 22.30: before the first byte on a serial line, the program asks whether there is a drive on it, which may have
-/// been silent since it read the encoder at power-up. After "yes" or "not sure", nothing is opened, searched or polled.
+/// Before the first byte on a serial line, the program asks whether a drive is on the line. Such a drive may have been
+/// silent since it read the encoder at power-up. After "yes" or "not sure", nothing is opened, searched or polled
+/// (issue 22.30).
 #[test]
 fn the_user_must_rule_out_a_drive_before_the_first_byte() {
     let links = [format!("serial:{PORT}"), format!("tcp:{}", SERVERS[0].0)];
@@ -50,7 +52,7 @@ fn the_user_must_rule_out_a_drive_before_the_first_byte() {
         desk.command(DeviceCommand::Read);
         desk.settle();
         assert_eq!(desk.wire().sent(), 0, "{link}");
-        // Another connection requires another answer.
+        // Every new connection needs a new answer.
         let id = desk.encoder().session.id;
         desk.studio.handle_action(Action::Command(id, DeviceCommand::Reconnect));
         assert!(asks_for_drive(&desk.studio));
@@ -65,7 +67,8 @@ fn the_user_must_rule_out_a_drive_before_the_first_byte() {
     desk.until_read();
 }
 
-/// Issue 22.30: a search also asks before its first byte. An encoder that it finds is opened without another question.
+/// A search also asks about a drive before its first byte. An encoder that the search finds is opened without another
+/// question (issue 22.30).
 #[test]
 fn a_search_asks_about_a_drive_before_its_first_byte() {
     let mut desk = Desk::fresh("");
@@ -87,7 +90,7 @@ fn a_search_asks_about_a_drive_before_its_first_byte() {
     desk.until_read();
 }
 
-/// A function that makes an entry of the form invalid.
+/// A change that makes one entry of the form invalid.
 type Slip = fn(&mut LinkForm);
 
 #[test]
@@ -144,8 +147,7 @@ fn each_kind_shows_a_valid_example_link() {
     assert!(dialog(&desk).example_link().starts_with("serial:"), "a pin is reached otherwise than a bus");
 }
 
-/// The form follows a typed link, and the link follows the form. If the link is invalid for this device, the reason is
-/// named.
+/// The form follows a typed link, and the link follows the form. A link that is invalid for this device is reported.
 #[test]
 fn a_link_can_be_typed_or_pasted() {
     let mut desk = Desk::fresh("");
@@ -202,7 +204,8 @@ fn a_recording_is_chosen_from_a_list_of_files() {
     desk.connect(Connect::AskRecording);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Recording)));
     desk.act(Action::Chosen(FileQuestion::Recording, "monday.trace".into()));
-    // Issue 22.24: this works from any folder in which the program is started the next time.
+    // The link has the full path, so that it works from any folder in which the program is started next time
+    // (issue 22.24).
     let path = desk.outside.path("work/monday.trace");
     assert_eq!(dialog(&desk).typed_link(), format!("replay:{}", path.display()));
 }
@@ -233,8 +236,8 @@ fn the_dialog_starts_with_the_last_used_link() {
     assert!(desk.studio.connect.is_none());
 }
 
-/// Starts a search for an encoder at 19200 baud with odd parity at addresses 43h and 44h, which are not the initial
-/// values of a form.
+/// Starts a search for two encoders whose settings differ from the initial values of the form: 19200 baud, odd parity,
+/// addresses 43h and 44h. If `hold` is given, the cable is held before the request with that number.
 fn searching(hold: Option<usize>) -> Desk {
     let mut desk = Desk::fresh("encoders=2&address=0x43&settings=0xF5");
     desk.connect(Connect::Open);
@@ -345,7 +348,7 @@ fn a_search_on_an_open_wire_closes_it_first() {
     desk.until_written();
 }
 
-/// A missing part of a link is reported by a kind of device that uses such links.
+/// A link with an invalid or missing parameter opens the tab of a device kind that uses links of this scheme.
 #[test]
 fn an_invalid_link_is_reported_by_the_kind_of_its_scheme() {
     for (link, tab) in [
@@ -361,7 +364,7 @@ fn an_invalid_link_is_reported_by_the_kind_of_its_scheme() {
     }
 }
 
-/// The answer applies only to the search for which it was given, not to another dialog.
+/// A late answer applies only to the search that asked the question, and not to a dialog that was opened later.
 #[test]
 fn a_late_answer_about_another_master_starts_no_search() {
     let mut desk = Desk::fresh("");

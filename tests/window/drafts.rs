@@ -1,5 +1,6 @@
-//! Edits survive a crash: they are written to disk as they are made, and return with their device or profile. The
-//! invented kind stands for all others. Cases that require a type or a device without a serial number use HIPERFACE.
+//! Tests that edits survive a crash: they are saved to disk as they are made, and return with their device or profile.
+//! The device kind of the tests stands for all kinds. Cases that need a type, or a device without a serial number, use
+//! HIPERFACE.
 
 use std::fs;
 
@@ -13,14 +14,14 @@ use crate::tabs::Tabs as _;
 
 const DRAFT: &str = "data/drafts/novo-virtual/N1-1001.ron";
 
-/// Returns a studio connected to the invented virtual encoder, which has been read.
+/// Returns a studio in which the virtual encoder of the test kind has been read.
 fn connected() -> Desk {
     let mut desk = Desk::with_novo();
     connect(&mut desk);
     desk
 }
 
-/// Drops the studio without closing it and starts it again.
+/// Drops the studio without closing it, as a crash would, and starts a new one.
 fn crash(desk: Desk) -> Desk {
     let mut desk = desk.crash();
     connect(&mut desk);
@@ -85,7 +86,7 @@ fn an_unwritable_draft_is_reported_once() {
     assert_eq!(value(&desk), 4);
 }
 
-/// The notice about restored edits ends when they are written. The result is in the review and in the log.
+/// The notice of restored edits disappears when they are written. The result is in the review and in the log.
 #[test]
 fn a_write_ends_the_notice_of_restored_edits() {
     let mut desk = connected();
@@ -99,7 +100,7 @@ fn a_write_ends_the_notice_of_restored_edits() {
     assert_eq!(desk.notice_count("novo.written"), 1);
 }
 
-/// The edits of a profile belong to its file.
+/// The edits of a profile are in its file once it is saved, so its draft is removed.
 #[test]
 fn saving_a_profile_removes_its_draft() {
     let mut desk = connected();
@@ -218,7 +219,7 @@ fn a_missing_serial_number_prevents_drafts_with_one_notice() {
     desk.write();
     desk.put(0, 0, b"Z");
     assert_eq!(desk.edits().len(), 1, "its own writes make it no other");
-    // At factory settings, its memory is not the one that was written.
+    // The exchanged encoder has factory settings, so its memory is not the one that was edited.
     replug(&mut desk, Some("serial= "));
     assert!(desk.edits().is_empty());
     assert_eq!(desk.notice_count("session.edits_gone"), 1);

@@ -1,5 +1,5 @@
-//! How often the window is drawn while nothing changes (issue 22.32). Only the clock of the frames is used: each frame
-//! is drawn at the time requested by the previous one.
+//! Tests of how often the window is drawn while nothing changes. Only the clock of the frames counts: each frame is
+//! drawn at the time that the previous one requested (issue 22.32).
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -14,16 +14,16 @@ use crate::screen::Screen;
 use crate::support::Outside;
 
 const SIZE: [f32; 2] = [1280.0, 900.0];
-/// Observed time in seconds.
+/// Duration of an observation in seconds.
 const WATCHED: f64 = 10.0;
 /// Maximum delay in seconds of a repaint that counts as immediate.
 const AT_ONCE: f64 = 1.0 / 60.0;
-/// Maximum number of frames for a cursor in a text entry, which is drawn and hidden at most twice per second.
+/// Maximum number of frames for a text cursor, which is drawn and hidden at most twice per second.
 const BLINKS: usize = 2 * WATCHED as usize + 2;
 /// Maximum number of frames for live values, which are drawn every 50 ms.
 const LIVE: usize = (WATCHED / 0.05) as usize + 2;
 
-/// A situation in which the window is observed, such as an open dialog, and how to reach it.
+/// A named state of the window, and the function that brings the window into this state.
 type Situation = (&'static str, fn(&mut Screen));
 
 const SITUATIONS: [Situation; 8] = [
@@ -44,7 +44,7 @@ const SITUATIONS: [Situation; 8] = [
     }),
 ];
 
-/// Returns the number of frames that the window requests during the observed time.
+/// Returns the number of frames that the window requests within [`WATCHED`] seconds.
 fn pictures(screen: &mut Screen) -> usize {
     let (mut passed, mut count) = (0.0, 0);
     loop {
@@ -61,7 +61,7 @@ fn pictures(screen: &mut Screen) -> usize {
     }
 }
 
-/// Returns a window with an encoder that has been read and edited, so there is something to review and to lose.
+/// Returns a window with an encoder that has been read and edited, so that there is something to review and to lose.
 fn edited() -> Screen {
     let mut screen = Screen::new_form(SIZE);
     screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
@@ -81,7 +81,8 @@ fn settle(screen: &mut Screen) {
     }
 }
 
-/// Issue 22.32: after a release of keys, another frame was requested in every frame, even where no keys are held.
+/// An idle window requests no frames. Releasing the keys used to request another frame in every frame, even where no
+/// keys are held (issue 22.32).
 #[test]
 fn nothing_is_drawn_while_nothing_changes() {
     for (what, begin) in SITUATIONS {
@@ -100,7 +101,7 @@ fn nothing_is_drawn_while_nothing_changes() {
     }
 }
 
-/// Issue 22.32: without a device, on each tab.
+/// A window without a device is drawn only when something changes, on every tab (issue 22.32).
 #[test]
 fn a_window_without_a_device_is_drawn_when_something_changes() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SIZE);
@@ -126,7 +127,7 @@ fn a_window_without_a_device_is_drawn_when_something_changes() {
     }
 }
 
-/// Issue 22.32: for each device that has been read and is not polled.
+/// A window with a device that has been read and is not polled is drawn only when something changes (issue 22.32).
 #[test]
 fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
     type Ready = fn(&Studio) -> bool;
@@ -155,7 +156,8 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
     }
 }
 
-/// Issue 22.32: live values are drawn as often as they change, whichever dialog is open.
+/// Live values are drawn only as often as they change, whatever dialog is open and even in the background
+/// (issue 22.32).
 #[test]
 fn live_values_in_a_background_window_keep_the_frame_rate() {
     let mut screen = in_hand();

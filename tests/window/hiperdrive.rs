@@ -1,4 +1,4 @@
-//! The HIPERDRIVE tab, operated through actions: reading, parameters with edits, a write with its review, and the locks
+//! Tests of the HIPERDRIVE tab by actions: reading, edited parameters, a write with its review, and the motion locks
 //! after it.
 
 use crate::tabs::Tabs as _;
@@ -71,13 +71,13 @@ pub(crate) fn edit(desk: &mut Desk, edit: Edit) {
     act(desk, Hiperdrive::Edit(Box::new(edit)));
 }
 
-/// Returns the number of requests that set a value.
+/// Returns the number of requests in the trace that set a value.
 fn sets(desk: &Desk) -> usize {
     let lines = unit(desk).session.trace.lines();
     lines.iter().filter(|line| line.meaning.iter().any(|text| text.id() == "hd_asked.set")).count()
 }
 
-/// Returns a device that answers a search in the network.
+/// Returns a device that answers a discovery request on the network.
 fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> DiscoveredDevice {
     let identity = Identity {
         vendor,
@@ -128,7 +128,7 @@ fn connecting_reads_everything_and_writes_nothing() {
     assert!(!unit.session.trace.lines().is_empty());
     assert_eq!(sets(&desk), 0);
     assert!(!unit.moves.is_open() && !desk.studio.is_moving() && desk.studio.has_drives());
-    // At least 16 numbers and texts of drive 1, and none of the slot without a drive.
+    // There are rows for drive 1, and none for the slot without a drive.
     assert!(unit.rows(Some(ONE)).len() > 40 && unit.rows(DriveNumber::new(2)).is_empty());
     let requested = unit.rows(Some(ONE)).into_iter().find(|row| row.number == number(152)).unwrap();
     assert_eq!((requested.factory.as_str(), requested.is_editable), ("0", true), "of a hub");
@@ -198,7 +198,7 @@ fn pitch_and_unit_are_remembered() {
     let pitch = Length { nanometres: 4_000_000 };
     act(&mut desk, Hiperdrive::SetPitch(ONE, Some(pitch)));
     act(&mut desk, Hiperdrive::SetMeasure(PositionUnit::Millimetres));
-    // 2.5 turns of 65536 steps on 4 mm.
+    // 2.5 turns of 65536 steps with a pitch of 4 mm are 10 mm.
     let place = unit(&desk).position_text(ONE, 163_840).to_string_in(encoder_studio::app::Language::English);
     assert_eq!(place, "10.00000 mm");
     let path = desk.outside.store().settings_path();
@@ -275,7 +275,8 @@ fn a_discovered_device_fills_the_form() {
     assert_eq!(desk.studio.connect.as_ref().unwrap().typed_link(), "enip:10.0.0.9:2222", "there is none");
 }
 
-/// Reference 5: an HDA30 has 512 turns in each direction, which are 33 554 432 steps, or 204 800 at 400 steps per turn.
+/// Reference, section 5: an HDA30 has 512 turns in each direction, which are 33 554 432 steps, or 204 800 steps at 400
+/// steps per turn.
 #[test]
 fn limits_may_span_the_full_range_of_the_drive() {
     let mut desk = read("sim:");

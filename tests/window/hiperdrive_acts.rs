@@ -1,6 +1,6 @@
-//! Actions that move a drive. They are repeated, as a user would, if the computer has delayed them. A window that is
-//! not updated for 250 ms stops its motion on purpose, and so does a test whose thread is delayed by a busy computer.
-//! Any other end of an action fails the test.
+//! Test support for requests that move a drive. They are repeated, as a user would do, if a busy computer has delayed
+//! them: a window that is not updated for 250 ms stops its motion on purpose, and so does a test whose thread is
+//! delayed. Any other end of a motion fails the test.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -13,7 +13,7 @@ use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive,
 use crate::hiperdrive::{act, drive, unit};
 use crate::support::{Desk, LONG};
 
-/// Returns the number of the last action of a drive, and how it ended.
+/// Returns the number of the last action of a drive and how the action ended.
 pub(crate) fn last_end(studio: &Studio, drive: DriveNumber) -> Option<(u64, ActionEnd)> {
     studio.hiperdrive().and_then(|own| own.moves.drive(drive)?.ended)
 }
@@ -24,10 +24,10 @@ pub(crate) fn has_lapsed(studio: &Studio, drive: DriveNumber, since: Option<(u64
     end != since && matches!(end, Some((_, ActionEnd::Stale)))
 }
 
-/// Maximum number of attempts for an action that is no longer refreshed in time.
+/// Maximum number of attempts for an action that ends because it was not refreshed in time.
 pub(crate) const ATTEMPTS: usize = 20;
 
-/// Waits until a drive may move. Its limits are read repeatedly on threads, and a press before that is rejected.
+/// Waits until a drive may move. The motion rules are read repeatedly on threads, and a press before that is rejected.
 #[track_caller]
 pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
     let began = Instant::now();
@@ -43,8 +43,8 @@ pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
     }
 }
 
-/// Repeats a request until a condition holds. A window that is not updated for 250 ms stops its motion, and so does a
-/// test on a busy computer. In that case, the request is repeated, as a user would do. After any other end, it is not.
+/// Repeats a motor request until a condition holds. If a busy computer has delayed the refresh for 250 ms, which ends
+/// the motion, the request is repeated, as a user would do. After any other end it is not repeated.
 #[track_caller]
 pub(crate) fn drive_until(
     desk: &mut Desk,
@@ -55,7 +55,7 @@ pub(crate) fn drive_until(
     act_until(desk, |own| Hiperdrive::Drive(motor(own)), what, condition);
 }
 
-/// Repeats a request like [`drive_until`] for an action of the displayed drive.
+/// Repeats an action of the shown drive under the same conditions as [`drive_until`].
 #[track_caller]
 pub(crate) fn act_until(
     desk: &mut Desk,
@@ -91,7 +91,8 @@ pub(crate) fn set_off(desk: &mut Desk) {
     );
 }
 
-/// Returns a value observed while the displayed drive moves, provided that it moved during the whole observation.
+/// Returns the value that `look` observes while the shown drive moves. If the motion ends during the observation
+/// because it was not refreshed, both are repeated.
 #[track_caller]
 pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk) -> T) -> T {
     let shown = unit(desk).drive();
@@ -110,7 +111,7 @@ pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk)
     panic!("it has lapsed {ATTEMPTS} times");
 }
 
-/// Returns the warnings, except that a motion was no longer refreshed.
+/// Returns the IDs of all warnings except the one about a motion that was not refreshed.
 pub(crate) fn warned(desk: &Desk) -> Vec<&'static str> {
     desk.notice_ids(Severity::Warning).into_iter().filter(|id| *id != "hd_end.stale").collect()
 }
@@ -127,8 +128,8 @@ pub(crate) fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) 
     }
 }
 
-/// Holds a pad until a condition holds. If a busy computer has delayed the refresh for 250 ms, which ends a jog, the
-/// pad is released and pressed again after `prepare`. Any other end is a failure.
+/// Holds a pad until a condition holds. If a busy computer delays the refresh for 250 ms, the jog ends, and the pad is
+/// released and pressed again after `prepare`. Any other end is a failure.
 #[track_caller]
 pub(crate) fn hold_pad_until(
     desk: &mut Desk,

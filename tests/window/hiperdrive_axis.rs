@@ -1,6 +1,6 @@
-//! The set-up of an axis in one run, through actions with a virtual drive, from a drive that was never requested to
-//! limits in millimetres that have survived a power cycle. Also the locks along the way, and the state after a
-//! cancellation.
+//! Tests of the set-up of an axis as one run, by actions with a virtual drive: from a drive that was never requested to
+//! limits in millimetres that have survived a power cycle. The tests also cover the motion locks on the way and the
+//! state after a cancellation.
 
 mod bench;
 mod foreign;
@@ -64,13 +64,13 @@ fn nothing_moves_before_the_limits_are_confirmed() {
     assert_eq!(position(&mut desk), before);
 }
 
-/// The values that the user saw when pressing the button count, even if the press itself reveals that they are
-/// outdated.
+/// A confirmation applies to the limits that the user saw when pressing the button, even if the window learns at the
+/// same moment that they are outdated.
 #[test]
 fn limits_changed_since_they_were_shown_are_not_confirmed() {
     let mut desk = at_jog_step();
     run(&mut desk, Run::Press(AxisButton::Confirm));
-    // Start again from the beginning, so that no lock interferes.
+    // The run starts again from the beginning, so that no lock blocks the confirmation.
     run(&mut desk, Run::Begin);
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
@@ -80,7 +80,7 @@ fn limits_changed_since_they_were_shown_are_not_confirmed() {
         let own = studio.hiperdrive().unwrap();
         own.moves.is_open() && own.session.is_ready() && own.may_move(DriveNumber::FIRST).is_ok()
     });
-    // Another master acts while the window is not updated.
+    // Another master changes a limit while the window is not updated.
     let upper = ParameterNumber::for_drive(160, DriveNumber::FIRST).unwrap();
     let target = unit(&desk).target.clone().unwrap();
     target.with_station(|station| station.write(Moment::default(), upper, &Value::Number(1000)).unwrap());
@@ -110,7 +110,7 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     until_stopped(&mut desk);
     let own = axis(&desk);
     assert_eq!((own.setup_end(), own.is_saved(), own.changes().len()), (Some(SetupEnd::Cancelled), false, 5));
-    // Everything is written back and read. The drive is no longer requested.
+    // All values are written back and read. The drive is then no longer requested.
     run(&mut desk, Run::Press(AxisButton::Recall));
     write(&mut desk);
     assert!(axis(&desk).changes().is_empty());
@@ -126,8 +126,8 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     assert!(report.contains("The set-up was cancelled") && !report.contains("Nothing was written"), "{report}");
 }
 
-/// Issue 21.6 (d): 47 = −2 affects only the adapter. Scale and limits of the drive remain, and no text claims
-/// otherwise.
+/// A recall (parameter 47 = −2) affects only the adapter. The scale and the limits of the drive remain, and no text
+/// claims otherwise (issue 21.6 d).
 #[test]
 fn a_recall_does_not_change_the_drive() {
     let mut desk = confirmed();
@@ -136,11 +136,11 @@ fn a_recall_does_not_change_the_drive() {
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 400, 256, -204_400, 204_400]);
     let told = labels::differences(&seen(&desk)).unwrap().to_string_in(Language::English);
     assert!(told.contains("parameter 154 is 400 instead of 256") && !told.contains("152"), "{told}");
-    // The request is lost. The displayed step remains and names the step that must be repeated.
+    // The request is lost, so the run stays at the shown step and names the step that must be repeated.
     assert_eq!((axis(&desk).step(), axis(&desk).invalidated_step()), (AxisStep::Jog, Some(AxisStep::Request)));
 }
 
-/// Issue 21.6 (a): the pads of the set-up use their own speed and torque, and those of the Motion page stay unchanged.
+/// The jog pads of the set-up send their own speed and torque, and the Motion page keeps its own (issue 21.6 a).
 #[test]
 fn the_jog_pads_of_the_setup_have_a_separate_effort() {
     let mut desk = new_form("sim:");
@@ -166,8 +166,8 @@ fn the_jog_pads_of_the_setup_have_a_separate_effort() {
     }
 }
 
-/// Issue 21.6 (f): typed text is not used as the pitch until the user leaves the step with it, and none of it is
-/// remembered.
+/// A typed pitch is not used as the spindle pitch until the user leaves the step with it. Text that is not confirmed is
+/// not remembered (issue 21.6 f).
 #[test]
 fn a_pitch_applies_only_after_confirmation() {
     let mut desk = new_form("sim:");
@@ -179,14 +179,14 @@ fn a_pitch_applies_only_after_confirmation() {
     assert_eq!(unit(&desk).spindle_pitch(unit(&desk).drive()), None);
     next(&mut desk, AxisStep::Confirm);
     assert_eq!(unit(&desk).spindle_pitch(unit(&desk).drive()).map(|own| own.nanometres), Some(4_000_000));
-    // On another page, a different drive is selected.
+    // The pitch is changed on another page.
     let drive = unit(&desk).drive();
     act(&mut desk, Hiperdrive::SetPitch(drive, Some(Length { nanometres: 5_000_000 })));
     desk.settle();
     assert_eq!((axis(&desk).step(), axis(&desk).invalidated_step()), (AxisStep::Confirm, Some(AxisStep::Scale)));
 }
 
-/// Issue 21.6 (h): the next run reports an interrupted one, even after a restart of the program.
+/// A new run reports the changes left by an interrupted one, even after the program was restarted (issue 21.6 h).
 #[test]
 fn a_new_run_lists_changes_left_by_an_aborted_one() {
     let mut desk = at_jog_step();
@@ -198,11 +198,11 @@ fn a_new_run_lists_changes_left_by_an_aborted_one() {
     );
     run(&mut desk, Run::Begin);
     assert_eq!(differences(&desk), Some(told.clone()));
-    // The same drive in a restarted program.
+    // A restarted program finds the same values in the settings.
     desk.until("it is remembered", |studio| studio.settings.emit().contains("154: 256"));
     let kept = Settings::parse(&desk.studio.settings.emit()).unwrap();
     assert_eq!(kept, desk.studio.settings);
-    // A power cycle discards the change, so there is nothing to report.
+    // A power cycle discards the changes, so there is nothing to report.
     unit(&desk).target.clone().unwrap().power_cycle();
     command(&mut desk, DeviceCommand::Read);
     desk.until("it is read again", |studio| {
@@ -212,8 +212,8 @@ fn a_new_run_lists_changes_left_by_an_aborted_one() {
     assert_eq!(differences(&desk), None);
 }
 
-/// Issue 21.6 (e): closing and reopening a connection is not a restart. A changed value that is never saved proves
-/// this.
+/// A reconnection is not mistaken for a power cycle. Only a changed value that was never saved proves a restart
+/// (issue 21.6 e).
 #[test]
 fn a_reconnection_is_not_a_power_cycle() {
     let mut desk = until_saved("sim:?requested=0&timeout=250", 1);
@@ -224,7 +224,7 @@ fn a_reconnection_is_not_a_power_cycle() {
         studio.hiperdrive().is_some_and(|own| !own.moves.is_open() && own.session.is_ready())
     });
     let target = unit(&desk).target.clone().unwrap();
-    // The cable is unplugged and plugged in again.
+    // The cable is pulled and plugged in again.
     target.set_faults(&"silent-after:0".parse().unwrap());
     desk.until("it is silent", |studio| {
         matches!(studio.hiperdrive().unwrap().axis().unwrap().power(), Some(Power::Gone(_)))
@@ -238,7 +238,7 @@ fn a_reconnection_is_not_a_power_cycle() {
     });
     assert!(!axis(&desk).has_survived());
     assert_eq!(axis(&desk).check_can_continue(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
-    // A power cycle that the program does not notice, as can happen with a real drive. No request is made meanwhile.
+    // No request is made during the power cycle, so the program does not notice it, as with a real drive.
     target.power_cycle();
     command(&mut desk, DeviceCommand::Read);
     until_ready(&mut desk);
@@ -250,8 +250,8 @@ fn a_reconnection_is_not_a_power_cycle() {
     assert_eq!(axis(&desk).setup_end(), Some(SetupEnd::Done));
 }
 
-/// Issue 21.6 (g): a fault during the test is reported with its code and prevents motion. It can be acknowledged in the
-/// same step.
+/// A fault during the test step is reported with its code, disables motion, and can be acknowledged in that step
+/// (issue 21.6 g).
 #[test]
 fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
     let mut desk = at_test_step(FRESH, 1, false);
@@ -290,13 +290,13 @@ fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
     assert!(labels::fault_text(&seen(&desk)).is_none());
 }
 
-/// Issue 21.6 (j): the result is saved as text, in millimetres, to a file that the user chooses.
+/// The result is saved as text, in millimetres, in a file that the user chooses (issue 21.6 j).
 #[test]
 fn the_result_is_saved_as_a_report() {
     let mut desk = confirmed();
     run(&mut desk, Run::Cancel);
     run(&mut desk, Run::AskReport);
-    // The folder does not exist. The error is reported, and nothing is lost.
+    // If the folder does not exist, the error is reported and nothing is lost.
     let question = desk.studio.take_file_question().unwrap();
     let nowhere = desk.outside.path("nowhere").join("axis.txt");
     desk.act(Action::Chosen(question, nowhere));
@@ -314,8 +314,8 @@ fn the_result_is_saved_as_a_report() {
     assert_eq!(desk.notice_ids(Severity::Good).last(), Some(&"report.saved"));
 }
 
-/// Issue 21.6: the complete run with a drive of a hub. Each write is first rejected and then interrupted by a lost
-/// connection.
+/// The complete run works on a drive of a hub even if each write is first rejected and then loses its connection
+/// halfway (issue 21.6).
 #[test]
 fn a_hub_drive_is_set_up_despite_refusals_and_lost_lines() {
     let desk = until_saved_with("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3, true);
@@ -326,14 +326,14 @@ fn a_hub_drive_is_set_up_despite_refusals_and_lost_lines() {
     assert_eq!([152, 154, 156, 160].map(|own| read(&desk, own)), [0, 256, 1, 33_488_896]);
 }
 
-/// Issue 21.6: the last step with a drive of a hub. Its write is rejected and then cut off, and the supply is lost. The
-/// result is reported correctly.
+/// The last step on a drive of a hub reports its end correctly even if its write is rejected and then interrupted
+/// before the supply is switched off (issue 21.6).
 #[test]
 fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
     let mut desk = until_saved("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3);
     assert_eq!(unit(&desk).axis_report(Language::English), None, "it goes on");
     step_with_writes(&mut desk, 182, true);
-    // The connection was lost after the write had arrived. The value is read, and no restart can be claimed.
+    // The connection was lost after the write had arrived. The value is read back, and no restart can be claimed.
     assert_eq!((read(&desk, 382), read(&desk, 182)), (1001, 1000));
     assert_eq!(axis(&desk).check_can_continue(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(axis(&desk).request(AxisButton::Restarted, &seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");

@@ -1,5 +1,6 @@
-//! The window closes, or the system ends the program, while a drive moves. The drive first stops and is switched off,
-//! and its connection is closed. Questions are asked afterwards (issue 21.1). The state is read from the drive itself.
+//! Tests of a window that closes, or is ended by the system, while a drive moves: the drive stops first and is switched
+//! off, and its connection is closed. Questions come after that (issue 21.1). The tests read the state from the drive
+//! itself.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -37,11 +38,12 @@ fn until_released(desk: &Desk) {
         assert!(began.elapsed() < LONG, "the connection is open");
         std::thread::sleep(Duration::from_millis(1));
     }
-    // A fault reported by the watchdog would be visible now.
+    // A fault of the watchdog would be visible here.
     assert_eq!((drive_state(desk).0, drive_state(desk).1), (State::NotReady, true));
 }
 
-/// Issue 21.1: no question is asked. The window waits for the drive, and nothing moves afterwards.
+/// A closing window without edits asks no question. It waits for the drive to stop, and nothing moves afterwards
+/// (issue 21.1).
 #[test]
 fn a_closing_window_releases_the_drives_first() {
     for (closes, action) in [("closed", Action::Close), ("ended by the system", Action::Quit)] {
@@ -59,14 +61,14 @@ fn a_closing_window_releases_the_drives_first() {
     }
 }
 
-/// Issue 21.1: a question is asked after the stop, and nothing resumes if the answer is no.
+/// The question about unsaved edits comes after the stop, and nothing resumes if the user answers no (issue 21.1).
 #[test]
 fn the_close_question_follows_the_stop_and_nothing_resumes() {
     let mut desk = moving();
     edit(&mut desk, Edit::Set(number(24), 7));
     desk.act(Action::Close);
     assert!(desk.studio.question.is_some() && !desk.studio.hiperdrive().unwrap().moves.is_motion_active());
-    // No frame is drawn. The stop was requested before the question.
+    // The stop was requested before the question, so no frame needs to be drawn.
     let began = Instant::now();
     while !drive_state(&desk).1 {
         assert!(began.elapsed() < LONG, "it moves under the question");
@@ -87,7 +89,7 @@ fn the_close_question_follows_the_stop_and_nothing_resumes() {
     until_released(&desk);
 }
 
-/// Issue 21.1: a signal from the system does not cause a question.
+/// A termination signal from the system closes the window without a question (issue 21.1).
 #[test]
 fn a_signal_closes_without_asking() {
     let mut desk = moving();
@@ -100,7 +102,7 @@ fn a_signal_closes_without_asking() {
     until_released(&desk);
 }
 
-/// Issue 21.1: this works even if the window is not updated, for example because the display does not respond.
+/// Drives are released even if the window is not updated, for example because the display does not answer (issue 21.1).
 #[test]
 fn drives_are_released_without_the_window() {
     let desk = moving();
@@ -112,8 +114,8 @@ fn drives_are_released_without_the_window() {
     assert!(!brakes.wait_for_window(Duration::ZERO));
 }
 
-/// Issue 21.1: closing a session stops its own drive before a question is asked. An endless run in another session
-/// stops because its page is not shown. Closing the window waits for a closed session.
+/// Closing a session stops its own drive and leaves the motion of other sessions alone. Closing the window waits for
+/// the closed session (issue 21.1).
 #[test]
 fn closing_a_session_stops_its_motion() {
     let mut desk = in_control("sim:");
@@ -139,7 +141,7 @@ fn closing_a_session_stops_its_motion() {
     assert_eq!((status.state(), open), (State::NotReady, false));
 }
 
-/// Issue 21.1: after control has been released, there is nothing to wait for.
+/// After control was given up, closing the window has nothing to wait for (issue 21.1).
 #[test]
 fn a_window_without_control_closes_immediately() {
     let mut desk = in_control("sim:");

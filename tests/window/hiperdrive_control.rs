@@ -1,5 +1,5 @@
-//! Control of HIPERDRIVE drives through actions: its loss and the messages about it, and parameters that another master
-//! changes meanwhile.
+//! Tests of control over HIPERDRIVE drives, by actions: its loss and the messages about it, and parameters that another
+//! master changes meanwhile.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -38,7 +38,7 @@ fn is_open(studio: &Studio) -> bool {
 #[test]
 fn lost_control_shows_the_reason_until_taken_again() {
     let mut desk = in_control("sim:");
-    // The loss is reported without any request to the device.
+    // Nothing is requested from the device, and the loss is still reported.
     command(&mut desk, DeviceCommand::Poll(None));
     desk.settle();
     assert_eq!(unit(&desk).loss_reason(), None);
@@ -78,8 +78,8 @@ fn limits_set_by_another_master_under_control_are_read_and_applied() {
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
 
-/// Issue 21.6: a new reference changes the meaning of every position, so everything based on the old one becomes
-/// invalid.
+/// A reference set by another master is read under control, because everything based on the old reference becomes
+/// invalid (issue 21.6).
 #[test]
 fn a_reference_set_by_another_master_under_control_is_read() {
     let mut desk = in_control("sim:");
@@ -101,7 +101,7 @@ fn a_scale_set_by_another_master_locks_motion_until_limits_are_confirmed() {
     desk.until("it is locked", |studio| {
         studio.hiperdrive().unwrap().moves.motion_locks(ONE) == [MotionLock::LimitsUnconfirmed]
     });
-    // Limits that were read before cannot be confirmed.
+    // Limits that were read before the change cannot be confirmed.
     drive(&mut desk, MotorCommand::ConfirmLimits(ONE));
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread"], "the user is told why the button has no effect");
     desk.until("it is read", |studio| {
@@ -112,8 +112,7 @@ fn a_scale_set_by_another_master_locks_motion_until_limits_are_confirmed() {
     assert_eq!(unit(&desk).moves.motion_locks(ONE), [MotionLock::LimitsUnconfirmed]);
     drive(&mut desk, MotorCommand::Step { by: 4 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread", "hd_lock.limits"]);
-    // The scale changes again before the confirmation. The limits keep their numbers, but are at different positions
-    // again.
+    // Another change before the confirmation keeps the numbers of the limits and moves them to other places again.
     set(&desk, 154, 100);
     desk.until("it is read again", |studio| {
         let own = studio.hiperdrive().unwrap();
@@ -153,8 +152,8 @@ fn nothing_moves_until_everything_is_read_again_under_control() {
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
 }
 
-/// 4096 steps are a sixteenth of a turn (reference 4). Such a move ends with 3E37 (reference 9), or with the same word
-/// and the other acknowledge bit.
+/// The table shows live values. Reference: 4096 steps are a sixteenth of a turn (section 4), and such a move ends with
+/// status 3E37h or the same with the other acknowledge bit (section 9).
 #[test]
 fn the_table_shows_live_values_of_the_drive() {
     let mut desk = in_control("sim:");
@@ -173,7 +172,7 @@ fn the_table_shows_live_values_of_the_drive() {
     let target = unit(&desk).target.clone().unwrap();
     target
         .with_station(|station| station.drive(ONE).unwrap().inject_error(Moment::default(), ErrorCode::BLOCK_FORWARD));
-    // Reference 4: blocked forwards is 8301h, which is 33537.
+    // Reference, section 4: a block in the forward direction is error 8301h, which is 33537.
     desk.until("its error is read", |studio| {
         let own = studio.hiperdrive().unwrap().drive_status(ONE);
         own.is_some_and(|own| own.buffer.first() == Some(&ErrorCode::BLOCK_FORWARD))
@@ -223,7 +222,7 @@ fn stop_does_not_end_readings_needed_for_control() {
     assert!(unit(&desk).session.is_polling(), "whoever has control goes on seeing");
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
     assert!(unit(&desk).session.is_polling() && is_open(&desk.studio));
-    // Cancelling a write does not do so either.
+    // Cancelling a write does not end the polling either.
     desk.until("nothing runs", |studio| studio.hiperdrive().unwrap().session.is_ready());
     edit(&mut desk, Edit::Set(number(24), 7));
     command(&mut desk, DeviceCommand::Review);
@@ -239,7 +238,7 @@ fn stop_does_not_end_readings_needed_for_control() {
 
 #[test]
 fn without_control_a_reading_can_be_stopped_and_missing_values_are_named() {
-    // The replies take so long that STOP is pressed before the first of them arrives.
+    // The replies are delayed so much that STOP comes before the first of them.
     let mut desk = in_control("sim:?fault=delay:15");
     act(&mut desk, Hiperdrive::Axis(Run::Begin));
     fall_silent(&desk);
@@ -263,7 +262,7 @@ fn values_unread_under_control_are_read_after_giving_it_up() {
     act(&mut desk, Hiperdrive::Take);
     desk.until("the connection is open", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
     desk.act(Action::Stop);
-    // The reading has ended, but the window has not received the result yet.
+    // The reading has ended, but the window has not received its result yet.
     std::thread::sleep(Duration::from_millis(200));
     act(&mut desk, Hiperdrive::Give);
     desk.until("it is given back", |studio| !is_open(studio));

@@ -1,5 +1,5 @@
-//! Separate drives of a hub: text typed for one drive, messages about it, and its motion while another one is
-//! displayed.
+//! Tests of the separate drives of a hub: text typed for one drive, messages about it, and its motion while another one
+//! is shown.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -31,7 +31,7 @@ fn moves(studio: &Studio, drive: DriveNumber) -> bool {
     studio.hiperdrive().unwrap().state(drive) == Some(State::Moving)
 }
 
-/// Issue 21.7: speed and torque and the *Endless* setting of one drive do not apply to another.
+/// The speed, the torque and *Endless* of one drive do not apply to another (issue 21.7).
 #[test]
 fn settings_of_one_drive_do_not_apply_to_another() {
     let mut desk = in_control(HUB);
@@ -60,12 +60,12 @@ fn settings_of_one_drive_do_not_apply_to_another() {
     assert_eq!((unit(&desk).moves.move_speed_torque(ONE), unit(&desk).moves.jog_speed_torque(ONE)), (slow, slow));
 }
 
-/// Issue 21.7: a second motion is rejected with a message and does not end the running one, for any drive.
+/// A second motion is rejected with a message and does not end a running one, whichever drive it is for (issue 21.7).
 #[test]
 fn a_second_motion_waits_for_the_end_of_the_first() {
     let mut desk = in_control(HUB);
     until_free(&mut desk, ONE);
-    // Before the drive itself has reported its motion.
+    // The second request comes before the drive itself has reported its motion.
     drive(&mut desk, MotorCommand::Move { target: 30_000_000 });
     drive(&mut desk, MotorCommand::Step { by: 64 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.still_moves"]);
@@ -110,7 +110,7 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
     });
 }
 
-/// Issue 21.7: a request to another drive does not discard a waiting job.
+/// A paused move is not discarded by a request to another drive (issue 21.7).
 #[test]
 fn a_paused_job_is_not_discarded_by_another_drive() {
     let mut desk = in_control(HUB);
@@ -138,7 +138,8 @@ fn a_paused_job_is_not_discarded_by_another_drive() {
     desk.until("it stands", |studio| !studio.is_moving());
 }
 
-/// Issue 21.7: messages name the drive of a hub. An adapter has only one.
+/// Messages name the drive if it belongs to a hub. A single adapter has only one drive, which needs no name
+/// (issue 21.7).
 #[test]
 fn messages_name_the_drive() {
     for (link, own, named) in [(HUB, two(), Some("drive 2")), ("sim:", ONE, None)] {
@@ -160,7 +161,8 @@ fn messages_name_the_drive() {
     }
 }
 
-/// Issue 21.7: the values sent for a motion are displayed separately from those set in the meantime.
+/// The speed and torque sent for the running move are shown apart from those that were set during the move
+/// (issue 21.7).
 #[test]
 fn the_pending_speed_is_shown_apart_from_the_sent_one() {
     let mut desk = in_control("sim:");
@@ -177,7 +179,7 @@ fn the_pending_speed_is_shown_apart_from_the_sent_one() {
         let moves = &unit(desk).moves;
         let seen =
             (moves.move_speed_torque(ONE), moves.running_move_speed_torque(ONE), moves.running_jog_speed_torque(ONE));
-        // Prepares for another attempt.
+        // The first values are restored for another attempt.
         drive(desk, MotorCommand::MoveEffort(before));
         seen
     });
@@ -222,8 +224,8 @@ fn target(screen: &Screen) -> Node<'_> {
     screen.harness.query_all_by(is_it).last().unwrap()
 }
 
-/// Moves drive 1, runs `then`, and observes the window while the drive still moves. A delayed window stops its motion,
-/// so a busy computer may need several attempts.
+/// Moves drive 1, runs `then`, and returns what `look` observes while the drive still moves. A delayed window stops its
+/// motion, so that a busy computer may need several attempts.
 fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: impl Fn(&Screen) -> bool) -> bool {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     let own = |action| Action::device(id, action);
@@ -243,7 +245,7 @@ fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: i
     panic!("it never moved for long enough");
 }
 
-/// Issue 21.7: text typed for one drive is in the entries of that drive.
+/// Text typed for one drive stays in the entries of that drive (issue 21.7).
 #[test]
 fn typed_values_are_kept_per_drive() {
     let mut screen = on_screen();
@@ -263,7 +265,7 @@ fn has_entry(screen: &Screen, text: &str) -> bool {
     screen.harness.query_all_by(|node| node.value().is_some_and(|own| own.contains(text))).next().is_some()
 }
 
-/// Issue 21.7: the buttons that select a drive show its state, whichever drive is displayed.
+/// The buttons that select a drive show the state of that drive, whichever drive is shown (issue 21.7).
 #[test]
 fn drive_buttons_show_the_drive_states() {
     let mut screen = on_screen();
@@ -284,7 +286,7 @@ fn drive_buttons_show_the_drive_states() {
     assert!(says(&screen, "drive 1, Fault"));
 }
 
-/// Issue 21.7: text typed during a motion is marked in its entry.
+/// A speed that is typed during a motion is marked as not sent in its entry (issue 21.7).
 #[test]
 fn a_speed_typed_during_a_motion_is_marked_as_not_sent() {
     let mut screen = on_screen();

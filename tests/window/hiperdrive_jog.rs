@@ -1,4 +1,4 @@
-//! The jog panel: what is visible without scrolling, what its speed buttons set, and what the travel bar shows.
+//! Tests of the jog panel: what is visible without scrolling, what its speed buttons set, and what the travel bar says.
 
 use egui::Rect;
 use egui::accesskit::Role;
@@ -19,7 +19,7 @@ const BELOW: f32 = 170.0;
 /// Height of everything above the page, in points.
 const ABOVE: f32 = 155.0;
 
-/// Opens a window of the given size that controls the drives of a virtual device.
+/// Opens a window of this size that is in control of the drives of a virtual device.
 pub(crate) fn in_control_on_screen(link: &str, size: [f32; 2]) -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, link, size);
     screen.until("it is read", |studio| {
@@ -47,7 +47,7 @@ fn preset<'s>(screen: &'s Screen, percent: &str) -> Node<'s> {
     screen.harness.query_all_by(move |node| node.label().as_ref() == Some(&label)).next().unwrap()
 }
 
-/// Returns the entry for the jog speed, which is the first one on its page.
+/// Returns the entry of the jog speed, which is the first speed entry on the page.
 fn typed_speed(screen: &Screen) -> Node<'_> {
     let label = screen.say("hd_effort.speed");
     let is_it = move |node: &AccessKitNode<'_>| node.role() == Role::TextInput && node.label().as_ref() == Some(&label);
@@ -56,15 +56,15 @@ fn typed_speed(screen: &Screen) -> Node<'_> {
     entries.remove(0)
 }
 
-/// Returns the area that contains the pads, the state and the travel bar.
+/// Returns the smallest rectangle around the pads, the state indicators and the travel bar.
 fn what_is_needed(screen: &Screen) -> Rect {
     let pads = ["hd_jog.down", "hd_jog.up"].map(|id| screen.button(id).rect());
     let states = ["Moving", "Fault"].map(|name| screen.harness.get_by_role_and_label(Role::Button, name).rect());
     [pads, states].into_iter().flatten().fold(travel(screen).rect(), Rect::union)
 }
 
-/// Issue 26.2: pads, state and travel bar are visible together at 1280 × 800 beside an open trace, and at 1024 × 640
-/// after scrolling once at most.
+/// The pads, the state and the travel bar are visible together: at 1280 × 800 with an open trace, and at 1024 × 640
+/// after at most one scroll (issue 26.2).
 #[test]
 fn pads_state_and_travel_are_seen_together() {
     let needed = what_is_needed(&in_control_on_screen("sim:", [1280.0, 800.0]));
@@ -74,7 +74,7 @@ fn pads_state_and_travel_are_seen_together() {
     assert!(needed.bottom() <= ABOVE + 2.0 * page, "{needed:?}");
 }
 
-/// Issue 26: the Tab key continues from a speed that was selected with the pointer.
+/// Tab continues from a speed preset that was clicked (issue 26).
 #[test]
 fn tab_continues_after_a_clicked_preset() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 800.0]);
@@ -85,8 +85,8 @@ fn tab_continues_after_a_clicked_preset() {
     assert!(preset(&screen, "100").accesskit_node().is_focused());
 }
 
-/// Issue 26.2: a preset sets the speed and does not start anything. It also replaces typed text, even if that is not a
-/// percentage.
+/// A preset sets the speed without starting a motion. It also replaces typed text, even if that is not a percentage
+/// (issue 26.2).
 #[test]
 fn a_preset_sets_the_speed_and_begins_nothing() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 900.0]);
@@ -112,7 +112,7 @@ fn a_preset_sets_the_speed_and_begins_nothing() {
     assert!(screen.is_enabled("hd_jog.up") && speed(&screen) == 10);
 }
 
-/// Issue 26.2: the speed is 10 % after every connection, not only at the start.
+/// The jog speed is 10 % after every connection, not only after the start of the program (issue 26.2).
 #[test]
 fn every_connection_begins_slowly() {
     let mut desk = in_control("sim:");
@@ -126,7 +126,8 @@ fn every_connection_begins_slowly() {
     assert_eq!(unit(&desk).moves.jog_speed_torque(ONE), SpeedTorque::DEFAULT_JOG);
 }
 
-/// Issue 26.2: limits, position and target are in the user's unit. Outside the limits, the way back in is shown.
+/// The travel bar shows the limits, the position and the target in the user's unit. Outside the limits, it shows the
+/// way back in (issue 26.2).
 #[test]
 fn the_travel_bar_names_the_way_back_in() {
     let inside = in_control_on_screen("sim:?position=65536", [1280.0, 800.0]);

@@ -1,6 +1,5 @@
-//! Keys and drives: held keys, keys that stop a motion, and repeated keys, which must not start anything (issue 21.2).
-//! The events are those of the window system. egui reports the first repetition after a change of the window as a first
-//! press.
+//! Tests of keys that are held, keys that stop a motion, and key repeats, which start nothing (issue 21.2). The events
+//! are those of the window system. egui reports the first repeat after a window change as a new press.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -34,15 +33,14 @@ fn up(screen: &mut Screen, key: Key) {
     screen.harness.step();
 }
 
-/// Holds the key until it repeats.
+/// Sends eight repeats of a held key, one in each frame.
 fn repeats(screen: &mut Screen, key: Key) {
     for _ in 0..8 {
         down(screen, key);
     }
 }
 
-/// Takes the keyboard focus from the window, as the window system does while a key is down. The reported release is
-/// artificial.
+/// Takes the keyboard focus from the window. The window system then also reports a release of a key that is still down.
 fn leave(screen: &mut Screen, key: Key) {
     screen.harness.input_mut().focused = false;
     picture(screen, [event(key, false), Event::WindowFocused(false)]);
@@ -70,7 +68,8 @@ fn is_held(screen: &Screen) -> bool {
     screen.studio().hiperdrive().unwrap().moves.is_held()
 }
 
-/// Returns a window in which a pad has the keyboard focus and Space has been released.
+/// Returns a window in which a jog pad has the keyboard focus and Space has been released, so that the next press
+/// counts.
 fn on_pad() -> Screen {
     let mut screen = in_hand();
     focus(&mut screen, "hd_jog.up");
@@ -80,7 +79,8 @@ fn on_pad() -> Screen {
     screen
 }
 
-/// Issue 21.2: in 8 of 8 attempts, the drive moved.
+/// A key that is held in another window starts no motion when this window gets the keyboard focus. Before the fix, the
+/// drive ran in 8 of 8 attempts (issue 21.2).
 #[test]
 fn a_key_held_in_another_window_moves_nothing_when_focus_returns() {
     for key in [Key::Space, Key::Enter] {
@@ -98,7 +98,7 @@ fn a_key_held_in_another_window_moves_nothing_when_focus_returns() {
     }
 }
 
-/// Issue 21.2: a jog that ends because the window loses the keyboard focus does not start again while the key is held.
+/// A jog that ends because the window loses the keyboard focus does not start again while the key is held (issue 21.2).
 #[test]
 fn a_jog_ended_by_a_window_change_does_not_restart() {
     let mut screen = on_pad();
@@ -110,7 +110,7 @@ fn a_jog_ended_by_a_window_change_does_not_restart() {
     repeats(&mut screen, Key::Space);
     assert!(!is_motion_active(screen.studio()));
     until_stopped(&screen);
-    // All of these events arrive between two frames.
+    // All events of the window change arrive between two frames.
     up(&mut screen, Key::Space);
     down(&mut screen, Key::Space);
     assert!(is_held(&screen));
@@ -121,8 +121,8 @@ fn a_jog_ended_by_a_window_change_does_not_restart() {
     assert!(!is_motion_active(screen.studio()));
 }
 
-/// Issue 21.2: buttons that start a motion with a click are pressed once by a held key, and not at all by one that was
-/// held in another window.
+/// A held key presses a button that starts a motion only once. A key that was held in another window does not press it
+/// at all (issue 21.2).
 #[test]
 fn a_key_repeat_presses_no_button() {
     let mut screen = in_hand();
@@ -143,8 +143,8 @@ fn a_key_repeat_presses_no_button() {
     assert!(!is_motion_active(screen.studio()), "held since then");
 }
 
-/// Issue 26: a held key on a speed preset sets the speed once and moves nothing. Repetitions after the focus has moved
-/// on do not press a pad.
+/// A key held on a speed preset sets the speed once and moves nothing. The repeats after the focus has moved on press
+/// no pad (issue 26).
 #[test]
 fn a_key_held_on_a_speed_preset_moves_nothing() {
     for key in [Key::Enter, Key::Space] {
@@ -166,8 +166,8 @@ fn a_key_held_on_a_speed_preset_moves_nothing() {
     }
 }
 
-/// Issue 21.2: if a key repeat is reported as a release and an immediate press, the two may be in frames that are far
-/// apart.
+/// Some systems repeat a key by an immediate release and press. Even if the two arrive in frames that are far apart,
+/// they start no motion (issue 21.2).
 #[test]
 fn a_key_repeat_split_over_two_frames_moves_nothing() {
     let split = |screen: &mut Screen, key| {
@@ -183,7 +183,7 @@ fn a_key_repeat_split_over_two_frames_moves_nothing() {
     split(&mut screen, Key::Space);
     until_stopped(&screen);
     up(&mut screen, Key::Space);
-    // This one is started by a click.
+    // This button starts a motion with a click.
     focus(&mut screen, "hd_run.forth");
     down(&mut screen, Key::Enter);
     assert!(is_motion_active(screen.studio()));
@@ -195,7 +195,7 @@ fn a_key_repeat_split_over_two_frames_moves_nothing() {
     assert!(is_motion_active(screen.studio()), "a fresh act");
 }
 
-/// Issue 21.2: Space stops the motion whatever has the keyboard focus, and presses nothing else.
+/// Space stops a motion whichever widget has the keyboard focus, and presses nothing (issue 21.2).
 #[test]
 fn space_stops_motion_with_any_focus() {
     let mut screen = in_hand();
@@ -209,7 +209,7 @@ fn space_stops_motion_with_any_focus() {
         let space = Event::Key { key: Key::Space, physical_key: None, pressed: true, repeat: false, modifiers };
         picture(&mut screen, [space]);
         assert!(!is_motion_active(screen.studio()), "{place:?}");
-        // In panic, the key is released, pressed again and then held.
+        // Pressing Space again in panic and holding it starts nothing.
         picture(&mut screen, [event(Key::Space, false)]);
         repeats(&mut screen, Key::Space);
         assert!(!is_motion_active(screen.studio()), "{place:?}");
@@ -219,7 +219,7 @@ fn space_stops_motion_with_any_focus() {
     }
 }
 
-/// Issue 21.2: in a text entry, Space is a character, and also a stop if a drive moves.
+/// In a text entry, Space types a character and also stops a moving drive (issue 21.2).
 #[test]
 fn space_in_a_text_entry_is_typed_and_stops_motion() {
     for moves in [false, true] {
@@ -241,12 +241,12 @@ fn space_in_a_text_entry_is_typed_and_stops_motion() {
     }
 }
 
-/// Issue 21.2: while the pointer holds a pad, any key ends the motion and has no other effect.
+/// Any key pressed while the pointer holds a pad ends the motion and has no other effect (issue 21.2).
 #[test]
 fn any_key_during_a_pointer_jog_stops() {
     let mut screen = in_hand();
     for key in [Key::Space, Key::Enter, Key::F1, Key::A] {
-        // This is the button that Enter would press.
+        // Enter would press this button.
         focus(&mut screen, "hd_run.forth");
         let place = screen.button("hd_jog.up").rect().center();
         screen.harness.hover_at(place);
@@ -265,7 +265,7 @@ fn any_key_during_a_pointer_jog_stops() {
     }
 }
 
-/// Issue 22.29: the write button accepts a key only after the key has been released while the review is open.
+/// The write button accepts a key only after that key was released while the review was open (issue 22.29).
 #[test]
 fn a_review_accepts_a_key_only_after_its_release() {
     let mut screen = in_hand();
@@ -284,8 +284,8 @@ fn a_review_accepts_a_key_only_after_its_release() {
     screen.until("it is written", |studio| !studio.selected_device().unwrap().is_dirty());
 }
 
-/// Issue 22.29: a barcode scanner sends Enter within milliseconds of the last digit while *Write* has the keyboard
-/// focus, in one frame or in two.
+/// A barcode scanner that sends Enter within milliseconds of the last digit writes nothing, even if *Write* has the
+/// keyboard focus and both keys arrive in one frame or in two (issue 22.29).
 #[test]
 fn a_barcode_scanner_writes_nothing() {
     let mut screen = in_hand();
@@ -299,7 +299,7 @@ fn a_barcode_scanner_writes_nothing() {
     for _ in 0..4 {
         for digit in [Key::Num4, Key::Num0, Key::Num6] {
             let now = screen.harness.ctx.input(|input| input.time);
-            // The release of a digit is in the same frame as the next key.
+            // The release of a digit arrives in the frame of the next key.
             screen.harness.input_mut().time = Some(now + 0.004);
             picture(&mut screen, [event(digit, true)]);
         }

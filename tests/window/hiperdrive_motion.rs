@@ -1,4 +1,4 @@
-//! HIPERDRIVE drives moved by the user from the window: the start of a motion, its refresh, and every way in which it
+//! Tests of drives that the user moves from the window: the start of a motion, its refresh, and every way in which it
 //! ends. The standstill is read from the drive itself.
 
 use crate::hiperdrive::command;
@@ -20,10 +20,10 @@ use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit, write};
 use crate::hiperdrive_acts::{drive_until, hold_pad_until, hold_until, set_off, warned, while_it_moves};
 use crate::support::{Desk, LONG};
 
-/// Returns the status, read from the drive itself and independent of the window.
+/// Returns the status word of the drive itself, independent of the window.
 fn status(desk: &Desk) -> StatusWord {
     let target = unit(desk).target.clone().unwrap();
-    // Sending advances its time.
+    // Only sent packets advance the time of the virtual drive.
     target.with_station(|station| station.drive(ONE).unwrap().actual_values(Moment::default()).status)
 }
 
@@ -50,7 +50,7 @@ fn moves(desk: &Desk) -> bool {
     unit(desk).state(ONE) == Some(State::Moving)
 }
 
-/// Holds a jog that turns the drive.
+/// Holds a jog pad until the drive moves.
 #[track_caller]
 fn jog(desk: &mut Desk) {
     let press = MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false };
@@ -82,7 +82,7 @@ fn a_jog_turns_the_drive_while_it_is_held() {
     desk.until("the window knows it", |studio| !studio.is_moving());
     let where_it_stands = unit(&desk).actual_values(ONE).unwrap().position;
     assert!(where_it_stands != 0);
-    // A late refresh of the hold and a repeated key start nothing.
+    // A late refresh and a key repeat start nothing.
     drive(&mut desk, MotorCommand::JogHold);
     drive(&mut desk, MotorCommand::JogPress { direction: Direction::Clockwise, repeated: true });
     desk.settle();
@@ -95,7 +95,7 @@ fn a_jog_that_is_not_refreshed_ends_by_itself() {
     let mut desk = in_control("sim:");
     jog(&mut desk);
     let before = desk.notice_count("hd_end.stale");
-    // Frames are drawn without the button.
+    // The window is still updated, but the jog is no longer refreshed.
     desk.until("it stands", |studio| !studio.is_moving());
     assert!(is_at_standstill(&desk) && !unit(&desk).moves.is_held());
     assert_eq!(desk.notice_count("hd_end.stale"), before + 1);
@@ -119,8 +119,7 @@ fn hiding_the_jog_pad_ends_a_jog_immediately() {
         ("focus", |desk| desk.act(Action::LetGo)),
         ("tab", |desk| desk.act(Action::ShowTab(crate::tabs::BISS))),
         ("dialog", |desk| desk.connect(connect::ConnectAction::Open)),
-        // The stop happens with the request for the dialog, not with its frame, because the system may take half a
-        // second for that.
+        // The jog ends with the request for the dialog, because the system may take half a second to show it.
         ("file dialog", |desk| desk.act(Action::AskOpen)),
         ("file dialog of the device", |desk| command(desk, DeviceCommand::AskSave)),
         ("question", |desk| {
@@ -202,7 +201,7 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     let is_back = |studio: &Studio| studio.hiperdrive().unwrap().actual_values(ONE).unwrap().position == 0;
     drive_until(&mut desk, back, "it is back", is_back);
     desk.until("it stands", |studio| !studio.is_moving());
-    // 511 turns are 33 488 896 steps.
+    // 511 turns are 33 488 896 steps, so this target is outside the limits.
     drive(&mut desk, MotorCommand::Move { target: 33_488_897 });
     assert_eq!(warned(&desk), ["hd_refused.outside"]);
     drive(&mut desk, MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
@@ -225,8 +224,7 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     assert_eq!(warned(&desk).last(), Some(&"hd_refused.endless"));
 }
 
-/// The factory scale has 65,536 steps per turn. Moves initially use 25 % of 35 rpm (parameter 166), so 35 turns take 4
-/// minutes.
+/// The factory scale is 65,536 steps per turn. Moves start at 25 % of 35 rpm (parameter 166): 35 turns in 4 minutes.
 #[test]
 fn distance_and_duration_of_a_move_are_estimated() {
     let desk = in_control("sim:");
@@ -314,8 +312,8 @@ fn limits_set_by_another_master_are_read_before_any_motion() {
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
 
-/// Issue 21.4: a drive outside its limits reports this. The pad that leads further out is blocked with the reason. It
-/// can be permitted for one press at a time, at 10 % speed and 25 % torque.
+/// A drive outside its limits reports it, and the pad that leads further out is blocked with its reason. The user can
+/// permit it for one press at a time, at 10 % speed and 25 % torque (issue 21.4).
 #[test]
 fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     let mut desk = in_control("sim:?position=33488896&defect=runs-on");
@@ -351,7 +349,7 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
         });
         assert!(unit(&desk).check_can_jog(ONE, up).is_err(), "freed for one press");
     }
-    // A permission ends with a stop, and when another page of the window is opened.
+    // A permission ends with a stop, and when another page of the window is shown.
     drive(&mut desk, MotorCommand::AllowOutward(up));
     desk.act(Action::StopMotion);
     assert!(unit(&desk).check_can_jog(ONE, up).is_err());
@@ -361,8 +359,8 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     assert!(unit(&desk).check_can_jog(ONE, up).is_err());
 }
 
-/// Issue 21.4: if only status bit 15 is set and the position is well inside, the inward direction is unknown. Nothing
-/// moves, and each pad can be permitted for one press.
+/// If only status bit 15 reports a position outside the limits and the position is well inside, the way back is
+/// unknown. Nothing moves, and each pad can be permitted for one press (issue 21.4).
 #[test]
 fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
     let mut desk = in_control("sim:?defect=says-outside");
@@ -402,7 +400,7 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
     assert!(is_at_standstill(&desk));
 }
 
-/// Issue 21.11: unreadable settings may contain a lock, so nothing moves until they have been read.
+/// Unreadable settings may contain a motion lock, so nothing moves until they have been read (issue 21.11).
 #[test]
 fn unreadable_settings_lock_motion() {
     let mut desk = in_control("sim:");

@@ -1,4 +1,5 @@
-//! A window that is operated over a remote desktop. Motion that lasts until it is stopped ends, and cannot be started.
+//! Tests of a window that is operated over a remote desktop: motion that lasts until it is stopped ends, and cannot be
+//! started.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -46,7 +47,7 @@ fn a_jog_ends_when_the_session_becomes_remote() {
         assert_eq!(unit(&desk).may_move_until_stopped(ONE).unwrap_err().id(), "hd_refused.remote");
         assert!(warned(&desk).contains(&"hd_refused.remote") && !unit(&desk).moves.is_motion_active());
     }
-    // A move ends by itself.
+    // A move to a target ends by itself, so it is allowed.
     let moves = |studio: &Studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving);
     drive_until(&mut desk, |_| MotorCommand::Move { target: 30_000_000 }, "it moves", moves);
 

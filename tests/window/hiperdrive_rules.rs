@@ -1,5 +1,5 @@
-//! The limits of a controlled drive are read repeatedly, whatever is polled and displayed. If they cannot be read,
-//! nothing moves.
+//! Tests that the motion rules of a controlled drive are read repeatedly, whatever is polled and shown. If they cannot
+//! be read, nothing moves.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -51,7 +51,7 @@ fn limits_under_control_are_read_at_any_polling_rate() {
         });
         assert!(began.elapsed() < Duration::from_secs(6), "{pace:?}: {:?}", began.elapsed());
         assert_eq!(unit(&desk).session.live_session().unwrap().polling_interval(), pace);
-        // No limit is missing later either.
+        // The rules also stay known afterwards.
         let began = Instant::now();
         desk.until("some time passes", |studio| {
             studio.hiperdrive().unwrap().may_move(ONE).unwrap();
@@ -78,7 +78,7 @@ fn a_newly_selected_drive_moves_only_with_freshly_read_limits() {
     });
 }
 
-/// A stream that damages every reply while a flag is set. Packets are unchanged.
+/// A connection that damages every message reply while the flag is set. Cyclic packets are unchanged.
 struct Damaging(Box<dyn ByteLink>, Arc<AtomicBool>);
 
 impl ByteLink for Damaging {
@@ -89,7 +89,7 @@ impl ByteLink for Damaging {
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
         let before = into.len();
         self.0.receive(until, into)?;
-        // The service that is answered, after the headers of the frame and of its items.
+        // The service of the reply follows the headers of the frame and of its items.
         if let Some(service) = into.get_mut(before + 40).filter(|_| self.1.load(Ordering::SeqCst)) {
             *service ^= 0x55;
         }
@@ -167,7 +167,7 @@ fn the_notice_of_unreadable_limits_ends_with_control() {
     let (mut desk, bad) = over_a_bad_stream();
     bad.store(true, Ordering::SeqCst);
     desk.until("that is told", has_rules_notice);
-    // Before the next reading.
+    // The connection works again before the next reading.
     bad.store(false, Ordering::SeqCst);
     act(&mut desk, Hiperdrive::Give);
     desk.until("it is given back", |studio| {
@@ -187,7 +187,7 @@ fn has_fault_notice(studio: &Studio) -> bool {
     studio.services.log.current().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.fault"))
 }
 
-/// Drive 2 had failed before. Drive 1 fails while it moves, which is reported, and drive 2 recovers.
+/// A fault notice of drive 1, which failed while it moved, does not end when drive 2, which failed before, recovers.
 #[test]
 fn a_fault_notice_does_not_end_with_another_drives_recovery() {
     let mut desk = in_control("sim:?hub=4&drives=1,1&requested=1");
@@ -216,7 +216,7 @@ fn a_fault_notice_does_not_end_with_another_drives_recovery() {
     drive_until(&mut desk, |_| MotorCommand::Acknowledge, "all have recovered", |studio| !has_fault_notice(studio));
 }
 
-/// A reading of all states that began before a fault ends after it.
+/// The notice of a fault does not end with a reading of all states that began before the fault.
 #[test]
 fn a_reading_from_before_a_fault_does_not_end_its_notice() {
     let mut desk = in_control("sim:?hub=4&drives=1,1,1,1&requested=1");
@@ -239,7 +239,7 @@ fn a_reading_from_before_a_fault_does_not_end_its_notice() {
     }
 }
 
-/// If a drive is locked for two reasons, there is still only one place to confirm its limits.
+/// A drive that is locked for two reasons has only one place to confirm its limits.
 #[test]
 fn limits_are_confirmed_in_one_place() {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);

@@ -1,4 +1,4 @@
-//! Runs at a speed: their own speed and torque, and the conditions for an endless run.
+//! Tests of runs at a constant speed: their own speed and torque, and the condition for an endless run.
 
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
@@ -20,7 +20,8 @@ fn effort(speed: u8, torque: u8) -> SpeedTorque {
     SpeedTorque { speed: Percent::new(speed).unwrap(), torque: Percent::new(torque).unwrap() }
 }
 
-/// Issue 26: runs used the values of moves, which initially are 25 % speed and 100 % torque, without separate entries.
+/// A run has its own speed and torque, which start as low as those of a jog. Runs used to share the values of moves,
+/// which start at 25 % speed and 100 % torque (issue 26).
 #[test]
 fn a_run_has_its_own_speed_and_torque() {
     let mut desk = in_control("sim:");
@@ -51,13 +52,14 @@ fn shows(screen: &Screen, words: &str) -> bool {
     screen.harness.query_all_by_label(words).next().is_some()
 }
 
-/// Issue 26: the condition is shown on the card even while it is met. It names the parameters that do not meet it.
+/// The card of an endless run shows the condition for it even while the condition is met, and names the parameters that
+/// do not meet it (issue 26).
 #[test]
 fn the_condition_of_an_endless_run_is_on_its_card() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 1400.0]);
     let condition = screen.say("hd_run.condition");
     assert!(shows(&screen, &condition));
-    // 511 turns of 65,536 steps are 33,488,896.
+    // 511 turns of 65,536 steps are 33,488,896 steps.
     let differs = "Parameter 158 is -65536 instead of -33488896.";
     assert!(!shows(&screen, differs));
     let target = screen.studio().hiperdrive().unwrap().target.clone().unwrap();

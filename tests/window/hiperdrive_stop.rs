@@ -1,4 +1,4 @@
-//! STOP and Esc pressed in panic: the motion ends with the first press, and the next press has no other effect.
+//! Tests of STOP and Esc pressed in panic: the first press ends the motion, and the next one has no other effect.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -18,7 +18,7 @@ use crate::hiperdrive::ONE;
 use crate::screen::Screen;
 use crate::support::LONG;
 
-/// Returns a window in which one session watches an encoder and another one controls a drive.
+/// Returns a window in which an encoder is polled in one session, and a drive is under control in another.
 pub(crate) fn in_hand() -> Screen {
     let mut screen = Screen::new_form([1280.0, 1200.0]);
     screen.click("live.start");
@@ -62,7 +62,7 @@ fn moves(screen: &Screen) -> bool {
     screen.studio().is_moving()
 }
 
-/// Returns the positions of the buttons with the given name, the topmost first.
+/// Returns the centres of the buttons with this label, from top to bottom.
 fn places(screen: &Screen, id: &'static str) -> Vec<Pos2> {
     let label = screen.say(id);
     let found =
@@ -94,7 +94,7 @@ pub(crate) fn until_stopped(screen: &Screen) {
     }
 }
 
-/// Returns a drive at standstill while the button that stopped it is still pressed, and the position of the button.
+/// Returns a window whose drive was stopped by a press of STOP, and the position of the button, which is still down.
 fn stopped_by_a_press() -> (Screen, Pos2) {
     let mut screen = moving();
     let place = stop(&screen);
@@ -108,13 +108,13 @@ fn stopped_by_a_press() -> (Screen, Pos2) {
 #[test]
 fn a_click_that_stops_a_drive_stops_nothing_else() {
     let (mut screen, place) = stopped_by_a_press();
-    // Two frames of a quarter of a second still form a click.
+    // Two frames of a quarter of a second each are still a click.
     screen.harness.step();
     screen.harness.step();
     pointer(&mut screen, place, false);
     assert!(is_watched(&screen) && !moves(&screen));
     screen.steps();
-    // A later press applies to all drives.
+    // A later press also ends the polling of the encoder.
     pointer(&mut screen, place, true);
     pointer(&mut screen, place, false);
     screen.until("everything has ended", |studio| !studio.hiperface().unwrap().session.is_polling());
@@ -164,7 +164,7 @@ fn a_click_after_the_page_stop_stops_nothing_else() {
     screen.harness.step();
     pointer(&mut screen, page, true);
     until_stopped(&screen);
-    // Two frames of a quarter of a second still form a click.
+    // Two frames of a quarter of a second each are still a click.
     screen.harness.step();
     screen.harness.step();
     pointer(&mut screen, page, false);
@@ -176,8 +176,7 @@ fn a_click_after_the_page_stop_stops_nothing_else() {
     assert!(is_watched(&screen));
 }
 
-/// After a pause, the same button resumes the motion. A second press in panic is not a request to resume, but a later
-/// press is.
+/// The pause button resumes a paused move. A quick second press in panic does not resume it, but a later one does.
 #[test]
 fn a_quick_second_click_on_pause_does_not_resume() {
     let mut screen = moving();
@@ -186,7 +185,7 @@ fn a_quick_second_click_on_pause_does_not_resume() {
     screen.until("it can be paused", |studio| {
         matches!(studio.hiperdrive().unwrap().moves.phase(ONE), Some(Phase::Moving(_)))
     });
-    // The button next to *Go*, because recordings have a pause button as well.
+    // The right button is next to *Go*, because recordings have a pause button as well.
     let row = places(&screen, "hd_move.go")[0].y;
     let place = places(&screen, "hd_move.pause").into_iter().find(|own| (own.y - row).abs() < 2.0).unwrap();
     screen.harness.hover_at(place);
@@ -209,7 +208,7 @@ fn a_quick_second_click_on_pause_does_not_resume() {
         .until("it goes on", |studio| matches!(studio.hiperdrive().unwrap().moves.phase(ONE), Some(Phase::Moving(_))));
 }
 
-/// Esc pressed with a modifier also stops a motion.
+/// Esc also stops a motion if a modifier is down.
 #[test]
 fn escape_with_a_modifier_stops() {
     for modifiers in [Modifiers::CTRL, Modifiers::ALT, Modifiers::SHIFT] {
@@ -222,7 +221,7 @@ fn escape_with_a_modifier_stops() {
     }
 }
 
-/// Esc is already down when the motion starts, so the system repeats the key.
+/// If Esc is already down when a motion starts, the repeat of the key stops the motion.
 #[test]
 fn held_escape_stops_a_newly_started_motion() {
     let mut screen = in_hand();
@@ -235,7 +234,7 @@ fn held_escape_stops_a_newly_started_motion() {
     assert!(matches!(ended, Some((_, ActionEnd::Stopped))) && is_watched(&screen), "{ended:?}");
 }
 
-/// Returns a window that watches a drive moved by another master.
+/// Returns a window that polls a drive which another master moves.
 fn moved_by_another_master() -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
     let own = |studio: &Studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready());
@@ -249,7 +248,7 @@ fn moved_by_another_master() -> Screen {
     screen
 }
 
-/// The motion of another host cannot be stopped here, so Esc closes the open dialog.
+/// Esc cannot stop the motion of another master, so it closes the open dialog.
 #[test]
 fn escape_closes_dialogs_while_another_master_moves_a_drive() {
     let mut screen = moved_by_another_master();
@@ -260,7 +259,7 @@ fn escape_closes_dialogs_while_another_master_moves_a_drive() {
     assert!(screen.studio().hiperdrive().unwrap().session.is_polling(), "nothing else was open");
 }
 
-/// STOP must not promise what it cannot do, and must not end the display of the drive.
+/// STOP is disabled because it cannot stop the drive. A click on it does not end the polling either.
 #[test]
 fn stop_is_disabled_while_only_another_master_moves_a_drive() {
     let mut screen = moved_by_another_master();
@@ -283,7 +282,8 @@ fn stop_is_disabled_while_only_another_master_moves_a_drive() {
     assert!(!is_disabled(&screen));
 }
 
-/// Issue 23: an action for another kind of device was meant for something that does not exist here.
+/// An action for another device kind was meant for something that does not exist in this session. It is reported, and
+/// the motion stops (issue 23).
 #[test]
 fn an_action_of_another_kind_is_reported_and_stops_motion() {
     let mut screen = moving();

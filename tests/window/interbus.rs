@@ -1,5 +1,5 @@
-//! The INTERBUS tab, operated through actions: reading, parameters and cams with edits, a write with its review, tables
-//! of cams, and the question before a running machine is disturbed.
+//! Tests of the INTERBUS tab by actions: reading, edited parameters and cams, a write with its review, cam tables, and
+//! the question before a running machine is disturbed.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;
@@ -14,7 +14,7 @@ use encoder_studio::devices::interbus::state::{Edit, Encoder, InterbusAction as 
 
 use crate::support::{Desk, GATE};
 
-/// Link to an encoder that contains cams.
+/// A link to a virtual encoder that contains cams.
 const CAMS: &str = "sim:?steps=3600&revolutions=1&cams=demo";
 
 fn connected(link: &str) -> Desk {
@@ -76,7 +76,7 @@ fn cam(number: u8) -> CamNumber {
     CamNumber::new(number).unwrap()
 }
 
-/// Reviews and writes the edits. Returns the cost of the plan.
+/// Reviews and writes the edits, and returns the cost that the plan states.
 #[track_caller]
 fn write(desk: &mut Desk) -> String {
     wish(desk, DeviceCommand::Review);
@@ -99,7 +99,7 @@ fn write(desk: &mut Desk) -> String {
 #[test]
 fn a_virtual_encoder_is_read_automatically() {
     let mut desk = read(CAMS);
-    // Issue 22.3: each of the eight programs may have been stored when it was left.
+    // Leaving a program may store it, so each of the eight programs counts (issue 22.3).
     desk.until("stores are counted", |studio| {
         studio.interbus().unwrap().store_count() == Some(encoder_studio::worker::commit::CycleCount::complete(8))
     });
@@ -119,24 +119,24 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     assert!(encoder(&desk).has_parameter_edits() && encoder(&desk).has_cam_edits());
     wish(&mut desk, DeviceCommand::Undo);
     wish(&mut desk, DeviceCommand::Redo);
-    // One parameterisation and one program.
+    // The write costs one parameterisation and one program.
     let cost = write(&mut desk);
     assert!(cost.starts_with("EEPROM write cycles required: 2. The logbook has counted 9 of"), "{cost}");
     let own = encoder(&desk);
     assert!(!own.is_dirty());
     let wanted = own.staged.device().unwrap().program(program(2)).unwrap().cams[5].unwrap();
     assert_eq!((wanted.start.get(), wanted.stop.get()), (7000, 40));
-    // Read for the window, for the plan, for the write and after it: 8 + 1 + 1 + 1. Written: 2.
+    // Programs were read for the window, the plan, the write and after it: 8 + 1 + 1 + 1. Two stores were written.
     desk.until("stores are counted", |studio| {
         studio.interbus().unwrap().store_count() == Some(encoder_studio::worker::commit::CycleCount::complete(13))
     });
-    // The entry rejects the value, and nothing changes.
+    // The entry rejects the cam, and nothing changes.
     edit(&mut desk, Edit::Cam { program: program(1), cam: cam(0), start: 7200, stop: 1, on: true });
     assert!(encoder(&desk).refusal.is_some() && !encoder(&desk).is_dirty());
 }
 
-/// Issue 26: the plot showed positions beyond the range while the rows showed them within it. A turn of the shaft is
-/// the whole range.
+/// The plot shows positions within the range, like the rows beside it. A turn of the shaft is the whole range
+/// (issue 26).
 #[test]
 fn the_plot_shows_the_position_of_the_rows() {
     let mut desk = read("sim:?steps=3600&revolutions=1&rpm=60");
@@ -199,7 +199,8 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
     wish(&mut desk, DeviceCommand::Read);
     desk.settle();
     assert_eq!((desk.notice_count("ib_stop.first"), sent(&desk)), (1, 0));
-    // Issue 22.31: saving a profile of its content selects cam programs.
+    // Saving a profile of the encoder selects cam programs, so the machine must be stopped for it as well
+    // (issue 22.31).
     command(&mut desk, DeviceCommand::AskSave);
     act(&mut desk, Interbus::Save("k3.ron".into()));
     desk.settle();
@@ -213,7 +214,7 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
     act(&mut desk, Interbus::ReadPrograms(vec![program(3)]));
     desk.until("the program is read", |studio| studio.interbus().unwrap().known_program_count() == 1);
     until_ready(&mut desk);
-    // After the connection was lost, this is unknown.
+    // After a lost connection, it is unknown whether the machine is stopped.
     desk.outside.wire(GATE).unplug();
     desk.until("it is lost", |studio| matches!(studio.interbus().unwrap().session.phase, Phase::Lost(_)));
     desk.outside.wire(GATE).plug();
@@ -225,7 +226,7 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
 #[test]
 fn a_pasted_table_is_previewed_with_the_rounding_of_each_edge() {
     let mut desk = read(CAMS);
-    // A machine of 360 degrees over 3600 steps, where a tenth of a degree is one step.
+    // The machine has 360 degrees over 3600 steps, so a tenth of a degree is a step.
     act(&mut desk, Interbus::SetScale(Scale::in_degrees(3600.0, 0).unwrap()));
     let table = "program;cam;name;start;stop\n3;0;glue;10,05;20\n3;1;glue;30;40\n3;2;knife;350;400\n9;0;x;1;2\n";
     act(&mut desk, Interbus::PasteTable(program(1), table.to_owned()));
@@ -240,10 +241,10 @@ fn a_pasted_table_is_previewed_with_the_rounding_of_each_edge() {
     assert!(own.import.is_none() && own.has_cam_edits());
     let wanted = own.staged.edited_values().unwrap();
     let edges = |number| wanted.cam(program(3), cam(number)).map(|own| (own.start.get(), own.stop.get()));
-    // 350 to 400 degrees pass the end of the range, where 400 is 40.
+    // 350 to 400 degrees cross the end of the range, so 400 degrees become 40.
     assert_eq!((edges(1), edges(2)), (Some((300, 400)), Some((3500, 400))));
     assert_eq!(wanted.name(program(3), cam(2)), Some("knife"));
-    // A file is exported and imported.
+    // The table is exported to a file and imported again.
     let path = desk.outside.path("cams.csv");
     act(&mut desk, Interbus::SaveTable { path: path.clone(), decimal_comma: true });
     desk.until("it is written", |_| path.exists());

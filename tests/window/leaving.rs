@@ -1,4 +1,5 @@
-//! Sessions that are closed, reopened or dead. The results of their work are reported and waited for within limits.
+//! Tests of sessions that are closed, opened again or ended by a panic: the results of their work are reported, and
+//! closing waits for them within limits.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -11,7 +12,7 @@ use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, Re
 
 use crate::support::{Desk, PORT, SLOW, is_review};
 
-/// Two bytes are being written and held before the first one, and the session is closed.
+/// Closes a session while it writes two bytes. The cable is held before the first of them.
 fn closed_while_writing(mut desk: Desk) -> Desk {
     desk.put(0, 0, b"X");
     desk.put(0, 2, b"Y");
@@ -54,7 +55,8 @@ fn a_wire_is_reopened_only_after_its_write_has_ended() {
     assert_eq!(desk.encoder().staged.device_byte(0, 0), Some(b'X'));
 }
 
-/// The disk accepts the edit only when the test allows it.
+/// Closing the window waits until the edit of a closed session is on disk. The draft file is a named pipe, so that the
+/// write completes only when the test reads it.
 #[cfg(unix)]
 #[test]
 fn the_draft_of_a_closed_session_is_awaited() {
@@ -73,7 +75,7 @@ fn the_draft_of_a_closed_session_is_awaited() {
     desk.until("it may close", |studio| studio.can_close());
 }
 
-/// The first attempt is late and completes after another one has connected.
+/// A link that opens only after a later attempt has connected is not used.
 #[test]
 fn a_link_from_an_earlier_attempt_is_not_used() {
     let mut desk = Desk::fresh("");

@@ -1,5 +1,4 @@
-//! Stopping half-way, unplugging the cable, exchanging the encoder. Edits remain and are never written to another
-//! encoder.
+//! Tests of a stopped write, a pulled cable and an exchanged encoder: edits remain, and never go to another encoder.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -25,7 +24,7 @@ pub(crate) fn lost(studio: &Studio) -> bool {
     studio.hiperface().is_some_and(|encoder| matches!(encoder.session.phase, Phase::Lost(_)))
 }
 
-/// Opens a profile of the virtual encoder that differs in four single bytes, beside the encoder.
+/// Opens a profile that differs from the virtual encoder in four single bytes, and plans to write it.
 fn with_a_profile(desk: &mut Desk) {
     let encoder = desk.encoder().session.id;
     let path = desk.outside.path("mine.ron");
@@ -59,10 +58,10 @@ fn a_stopped_restore_reports_progress_and_can_be_completed() {
     desk.wire().release();
     desk.until("it has ended", failed);
     let ReviewState::Failed { texts, begun: true, .. } = &desk.review().state else { panic!() };
-    // The exchange in progress is completed, and no other one begins.
+    // The running exchange is completed, and no further one is started.
     assert_eq!(texts[0], crate::texts::text("write.cancelled").with("done", 2).with("planned", 4));
     assert_eq!(texts[1].id(), "write.backup");
-    // Issue 22.14: the list of operations remains visible and marks the completed ones.
+    // The list of operations remains, with the completed ones (issue 22.14).
     let sheet = desk.studio.selected_device().unwrap().review_sheet().unwrap();
     assert!(matches!(sheet.stage, Stage::Failed { begun: true, done: 2, .. }), "{:?}", sheet.stage);
     assert_eq!(sheet.lines.len(), 4);
@@ -133,7 +132,7 @@ fn a_cable_pulled_while_reading_is_reported_once() {
     assert_eq!(frames.back().unwrap().bytes, "40 46 06", "what passed at last is shown");
 }
 
-/// Another encoder is connected to the same cable. The edits wait for the encoder for which they were made.
+/// Another encoder on the same cable does not get the edits. They return with the encoder that they were made for.
 #[test]
 fn edits_return_only_with_their_own_encoder() {
     let mut desk = Desk::at_port("");
@@ -171,7 +170,7 @@ fn serial(studio: &Studio) -> Option<&str> {
     Some(&identity.serial.serial_number)
 }
 
-/// The adapter stays plugged in, but its encoder is exchanged. No link is lost, and the program is not notified.
+/// If the encoder is exchanged behind a connected adapter, no link is lost. The exchange is noticed before planning.
 #[test]
 fn an_encoder_swapped_behind_the_adapter_is_detected_before_planning() {
     let mut desk = Desk::at_port("");
@@ -187,7 +186,7 @@ fn an_encoder_swapped_behind_the_adapter_is_detected_before_planning() {
     assert_eq!(desk.wire().wear(), 0);
 }
 
-/// Without edits, only the discarded plan is reported.
+/// If there are no edits, a notice reports only that the plan was discarded.
 #[test]
 fn a_plan_for_a_swapped_encoder_is_discarded_with_a_notice() {
     let mut desk = Desk::at_port("");
@@ -199,7 +198,7 @@ fn a_plan_for_a_swapped_encoder_is_discarded_with_a_notice() {
     assert_eq!((desk.notice_count("session.plan_of_another"), desk.notice_count("session.other_encoder")), (1, 0));
 }
 
-/// The survey after reconnecting is stopped. The encoder is not identified, and the edits are not offered to it.
+/// If the reading after the reconnection is stopped, the encoder is not identified and does not get the edits.
 #[test]
 fn a_stopped_reading_offers_no_edits_to_another_encoder() {
     let mut desk = Desk::at_port("");
@@ -244,7 +243,7 @@ fn a_new_address_is_used_by_this_and_the_next_session() {
     assert_eq!(desk.encoder().session.source, encoder_studio::app::session::Source::Link(link.parse().unwrap()));
 }
 
-/// The cable is unplugged after the address was changed and before it is read back.
+/// If the cable is pulled after the address was changed and before it is read back, the new address is used.
 #[test]
 fn a_change_by_an_interrupted_write_is_followed() {
     let mut desk = Desk::at_port("");
@@ -307,7 +306,7 @@ fn changed_settings_are_followed_after_the_restart() {
     assert_eq!(*desk.phase(), Phase::Connected);
 }
 
-/// The link is open but there is no answer. The encoder is neither connected nor lost.
+/// A link that is open without answers counts neither as connected nor as lost.
 #[test]
 fn a_silent_encoder_is_not_shown_as_connected() {
     let mut desk = Desk::at_port("");
@@ -409,7 +408,7 @@ fn live_values_continue_around_a_job_and_end_with_the_cable() {
     desk.wire().unplug();
     desk.until("it is lost", lost);
     assert!(!desk.studio.is_live() && !desk.studio.can_stop());
-    // Longer than the interval between two checks of the connection.
+    // The test waits longer than the interval between two checks of the connection.
     for _ in 0..70 {
         desk.studio.poll();
         std::thread::sleep(Duration::from_millis(10));
@@ -417,7 +416,7 @@ fn live_values_continue_around_a_job_and_end_with_the_cable() {
     assert_eq!(desk.notice_ids(Severity::Error), ["link.lost"], "once");
 }
 
-/// The failure was in transit when the user made a new request. It belongs to the earlier request.
+/// A failure that arrives after polling was restarted belongs to the earlier polling and does not end the new one.
 #[test]
 fn a_late_failure_does_not_affect_newer_live_values() {
     let mut desk = Desk::at_port("");
@@ -429,7 +428,7 @@ fn a_late_failure_does_not_affect_newer_live_values() {
         assert!(began.elapsed() < crate::support::LONG, "what is shown is what the worker does");
         std::thread::sleep(Duration::from_millis(2));
     }
-    // The event follows immediately.
+    // The event about the failure arrives within this time.
     std::thread::sleep(Duration::from_millis(50));
     desk.wire().exchange("");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));

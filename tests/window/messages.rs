@@ -1,4 +1,4 @@
-//! Messages that appear and disappear on a page. Nothing that can be clicked may move.
+//! Tests that messages appear and disappear on a page without moving anything that can be clicked.
 
 use egui::Rect;
 use egui::accesskit::Role;
@@ -12,7 +12,7 @@ use crate::tabs::Tabs as _;
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 800.0], [1024.0, 640.0]];
 
-/// Returns the buttons and entries with their positions.
+/// Returns the buttons and entries with their labels and rectangles.
 fn places(screen: &Screen) -> Vec<(Role, String, Rect)> {
     let nodes = screen.harness.query_all_by(|node| {
         matches!(node.role(), Role::Button | Role::TextInput | Role::CheckBox | Role::ComboBox | Role::Slider)
@@ -31,7 +31,7 @@ fn places(screen: &Screen) -> Vec<(Role, String, Rect)> {
 fn assert_nothing_moved(before: &[(Role, String, Rect)], after: &[(Role, String, Rect)]) {
     for (role, label, place) in before {
         let now: Vec<_> = after.iter().filter(|own| own.0 == *role && own.1 == *label).collect();
-        // If a job ends meanwhile, its button disappears.
+        // The button of a job that has ended meanwhile may be missing.
         let stays = now.is_empty() || now.iter().any(|own| own.2 == *place);
         assert!(stays, "{role:?} {label:?} was at {place:?}: {now:?}");
     }
@@ -39,7 +39,7 @@ fn assert_nothing_moved(before: &[(Role, String, Rect)], after: &[(Role, String,
 
 #[test]
 fn a_refused_target_moves_nothing() {
-    // The window is high enough to show the button without scrolling.
+    // The window is so high that the button can be reached without scrolling.
     for size in SIZES.map(|[width, height]| [width, height * 2.0]) {
         let mut screen = in_control_on_screen("sim:", size);
         let label = screen.say("hd_move.target");
@@ -69,7 +69,7 @@ fn cams_beyond_the_range_move_nothing_on_the_other_pages() {
         screen.click("page.parameters");
         let id = screen.studio().interbus().unwrap().session.id;
         let edit = |steps| Action::device(id, Interbus::Edit(Box::new(Edit::Steps(steps))));
-        // First, an edit without a mark enables the buttons of the edit bar.
+        // The first edit causes no message, but enables the buttons of the edit bar.
         screen.act(edit(3601));
         let before = places(&screen);
         screen.act(edit(3000));

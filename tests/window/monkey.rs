@@ -1,5 +1,5 @@
-//! Random clicks, drags and keys in windows of every size. Nothing may panic, the window must keep answering, and
-//! nothing may be written without consent. The same seeds yield the same sequences.
+//! Tests with random clicks, drags and keys in windows of every size: nothing panics, the window keeps answering, and
+//! nothing is written without consent. The same seeds give the same sequences.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
 use encoder_studio::app::{Action, ColorScheme, Language};

@@ -1,4 +1,4 @@
-//! Height of the pages in a small window. Each page must be completely visible after scrolling once.
+//! Tests that each page can be seen completely in a small window after at most one scroll.
 
 use egui::Role;
 use egui_kittest::kittest::Queryable;
@@ -14,12 +14,12 @@ const PAGE: (f32, f32) = (160.0, 764.0);
 const HEADER: f32 = 48.0;
 /// Height of the status line below the page, in points.
 const STATUS: f32 = 36.0;
-/// Height of the bar of a drive, in points.
+/// Height of the drive bar above the page, in points.
 const BAR: f32 = 88.0;
-/// Pages on which a table, an editor or a text scrolls separately.
+/// Pages that are not checked because a table, an editor or a text in them scrolls by itself.
 const SCROLLED: [&str; 5] = ["page.registers", "page.memory", "page.data", "page.export", "page.parameters"];
 
-/// Returns the position of the lower end of the page, which may not be visible.
+/// Returns the lower end of the page's content, even if it is not visible.
 fn end_of_page(screen: &Screen) -> f32 {
     let counts = |role| {
         matches!(
@@ -29,7 +29,7 @@ fn end_of_page(screen: &Screen) -> f32 {
     };
     let nodes = screen.harness.query_all_by(|node| counts(node.role()));
     let rects = nodes.map(|node| node.rect()).filter(|rect| rect.left() > PAGE.0 && rect.right() < PAGE.1);
-    // The status line and the edit bar stay in place.
+    // The status line and the edit bar are fixed, so they do not count.
     let below = SIZE[1] - STATUS;
     rects.filter(|rect| rect.top() < below - 44.0 || rect.top() > SIZE[1]).map(|rect| rect.bottom()).fold(0.0, f32::max)
 }

@@ -1,4 +1,4 @@
-//! The command palette: Ctrl+K, a few letters, Enter.
+//! Tests of the command palette: Ctrl+K, a few letters, Enter.
 
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
@@ -48,7 +48,7 @@ fn pages_devices_and_settings_are_found_by_name() {
     assert!(screen.has_button("memory.review"));
 }
 
-/// One user has read the German manual. Another one has a German window and knows the English name.
+/// A page is found by its German name in an English window, and by its English name in a German window.
 #[test]
 fn names_are_found_in_both_languages() {
     let mut screen = Screen::new_form(SIZE);
@@ -86,7 +86,7 @@ fn disabled_actions_and_no_match_do_nothing() {
 fn arrows_select_and_escape_closes() {
     let mut screen = Screen::new_form(SIZE);
     open(&mut screen);
-    // Both languages and themes are listed one below the other.
+    // The commands for the languages and themes are listed one below the other.
     type_text(&mut screen, "theme");
     screen.key(Key::ArrowDown);
     screen.key(Key::ArrowUp);

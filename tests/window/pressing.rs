@@ -1,6 +1,6 @@
-//! A press and its release must reach the same button, and the keyboard focus must remain, whatever appears or
-//! disappears elsewhere in the window (issue 21.7: clicks on the button of a drive were lost while its limits were
-//! read).
+//! Tests that a press and its release reach the same button and that the keyboard focus remains, whatever appears or
+//! disappears elsewhere in the window. Clicks on a drive's button used to be lost while its limits were read
+//! (issue 21.7).
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,8 @@ use crate::support::{DRIVE, GATE, KIT, Outside, PORT, is_review};
 
 const SIZE: [f32; 2] = [1280.0, 900.0];
 
-/// Each kind of device on a cable: its tab, its link, its location in the test, and a command used to read it.
+/// The tested device kinds: the tab, the scheme and the target of the link, and a command that is sent to read the
+/// device.
 const KINDS: [(Tab, &str, &str, u8); 4] = [
     (crate::tabs::HIPERFACE, "serial", PORT, 0x52),
     (crate::tabs::BISS, "serial", KIT, 0x01),
@@ -26,7 +27,8 @@ const KINDS: [(Tab, &str, &str, u8); 4] = [
     (crate::tabs::HIPERDRIVE, "enip", DRIVE, 0x0E),
 ];
 
-/// Returns the widgets that can be pressed or typed into, by name. Only unique names are included.
+/// Returns the IDs of the widgets that can be pressed or typed into, by name. Names that occur more than once are left
+/// out.
 fn widgets(screen: &Screen) -> BTreeMap<String, String> {
     let (mut found, mut several) = (BTreeMap::new(), Vec::new());
     for node in screen.harness.query_all_by(|node| {
@@ -57,7 +59,7 @@ fn ready(screen: &mut Screen) {
     });
 }
 
-/// Issue 21.7: a notice and a running job appear and disappear without user input.
+/// A notice or a running job that appears or disappears does not move the buttons (issue 21.7).
 #[test]
 fn notices_and_progress_do_not_move_buttons() {
     for (tab, scheme, port, reads) in KINDS {
@@ -65,7 +67,7 @@ fn notices_and_progress_do_not_move_buttons() {
         ready(&mut screen);
         let id = screen.studio().selected_device().unwrap().id();
         if tab == crate::tabs::INTERBUS {
-            // Otherwise, it is not read.
+            // The encoder is read only after the user has confirmed that the machine is stopped.
             screen.act(Action::device(id, Interbus::Stopped(true)));
         }
         screen.act(Action::Dismiss);
@@ -92,7 +94,7 @@ fn notices_and_progress_do_not_move_buttons() {
     }
 }
 
-/// Issue 21.7: a notice appears or disappears during a click.
+/// A click counts even if a notice appears or disappears between its press and its release (issue 21.7).
 #[test]
 fn a_click_counts_despite_layout_changes_during_it() {
     for comes in [true, false] {
@@ -118,15 +120,15 @@ fn a_click_counts_despite_layout_changes_during_it() {
     }
 }
 
-/// Issue 22.29: if a button of a review has the keyboard focus while the plan is still being made, no button has the
-/// focus once the plan is complete.
+/// If a button of the review has the keyboard focus while the plan is made, no button of the completed plan has it
+/// (issue 22.29).
 #[test]
 fn a_review_becoming_ready_ignores_a_key_pressed_before() {
     let mut screen = Screen::opened(Outside::new(""), Some(&format!("serial:{PORT}")), SIZE);
     ready(&mut screen);
     screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
     let wire = screen.outside.wire(PORT).clone();
-    // The status of the data field.
+    // The cable is held at the request for the status of the data field.
     wire.hold_at(0x4C, 1);
     screen.command(DeviceCommand::Review);
     wire.wait_until_held();

@@ -1,4 +1,4 @@
-//! Profiles: saved from the encoder, opened beside it, and edited without one.
+//! Tests of profiles that are saved from an encoder, opened beside it, or edited without one.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -90,7 +90,7 @@ fn saving_suggests_a_file_named_after_the_encoder() {
     assert_eq!(desk.studio.take_path_question(), Some(FileQuestion::Open));
 }
 
-/// Two saves at once: the second one is rejected, and the first one is written to its own file.
+/// A save that is requested during another one is rejected, and the first one goes to its own file.
 #[test]
 fn a_refused_save_does_not_redirect_another() {
     let mut desk = Desk::new_form("");
@@ -127,7 +127,7 @@ fn an_unreadable_profile_is_reported_and_not_changed() {
     assert_eq!(desk.studio.devices().len(), 1);
 }
 
-/// Issue 22.17: saving would lose the unknown parts of a newer schema.
+/// A profile of a newer schema has unknown parts, which would be lost with a save (issue 22.17).
 #[test]
 fn a_profile_of_a_newer_schema_is_neither_saved_nor_written() {
     let (mut desk, path) = saved();
@@ -158,12 +158,12 @@ fn a_reloaded_profile_keeps_its_edits() {
     desk.until("it is read again", |studio| studio.hiperface().unwrap().staged.device_byte(0, 1) == Some(0x4E));
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 
-    // A file that has become invalid does not change anything.
+    // A file that is invalid by now does not change the open profile.
     fs::write(&path, "(").unwrap();
     desk.command(DeviceCommand::Read);
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "profile.invalid"));
     assert_eq!((desk.encoder().staged.device_byte(0, 1), desk.edits()), (Some(0x4E), vec![(0, 0, b'X')]));
-    // It is not replaced without a question either.
+    // The invalid file is not replaced without a question either.
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is asked", |studio| studio.diverged.is_some());
     assert_eq!(fs::read_to_string(&path).unwrap(), "(");
@@ -210,7 +210,7 @@ fn sheet(desk: &Desk) -> ReviewSheet {
     desk.studio.selected_device().unwrap().review_sheet().unwrap()
 }
 
-/// Saves a profile with the given edits. Another encoder rejects it because of its serial number.
+/// Edits a profile and plans to write it to another encoder, which is rejected because its serial number differs.
 fn refused_by_another(desk: &mut Desk, path: &std::path::Path, edits: &[(usize, &[u8])]) {
     desk.open(&format!("serial:{OTHER_PORT}"));
     desk.until_read();
@@ -229,22 +229,22 @@ fn until_refused(desk: &mut Desk) {
     desk.until_ready();
 }
 
-/// Opens a profile with a commutation offset and the review for another encoder, with all permissions granted.
+/// Plans to write a commutation offset to another encoder, and permits its serial number and its type.
 fn onto_another(desk: &mut Desk, path: &std::path::Path) {
     refused_by_another(desk, path, &[(0, b"CO1"), (20, b"?")]);
     allow_another(desk);
     desk.until_planned();
 }
 
-/// Allows another serial number and then another type, because the encoder is an SKS36.
+/// Permits another serial number, then another type, because the other encoder is an SKS36.
 fn allow_another(desk: &mut Desk) {
     desk.toggle(Permit::OtherDevice);
     until_refused(desk);
     desk.toggle(Permit::TypeMismatch);
 }
 
-/// Issue 22.7: with both permissions, the values that must be readjusted are in the review, at its end and after an
-/// interruption.
+/// The review names the values of another mounting that must be set up again, before the write, at its end, and after
+/// an interruption (issue 22.7).
 #[test]
 fn values_of_another_mounting_are_named_until_the_end() {
     let (mut desk, path) = saved();
@@ -268,7 +268,7 @@ fn values_of_another_mounting_are_named_until_the_end() {
     });
     let cut = sheet(&desk);
     assert_eq!((cut.redo, cut.lines.len()), (with.redo, with.lines.len()));
-    // Written completely.
+    // The same write is completed without an interruption.
     let (mut desk, path) = saved();
     onto_another(&mut desk, &path);
     desk.toggle(Permit::Mounting);
@@ -278,8 +278,7 @@ fn values_of_another_mounting_are_named_until_the_end() {
     assert!(matches!(sheet(&desk).stage, Stage::Done { .. }) && sheet(&desk).redo.is_some());
 }
 
-/// Issue 22.8: the user is asked about a field with bytes of unknown meaning. It is left unchanged unless the user
-/// decides otherwise.
+/// The review asks about bytes of unknown meaning, and leaves them unchanged by default (issue 22.8).
 #[test]
 fn the_review_asks_about_bytes_of_unknown_meaning() {
     let (mut desk, path) = saved();
@@ -300,7 +299,7 @@ fn the_review_asks_about_bytes_of_unknown_meaning() {
     assert!(sheet(&desk).lines.is_empty() && sheet(&desk).redo.is_none());
 }
 
-/// Issue 22.9: another type of encoder is named and requires an explicit permission.
+/// A different encoder type is named, and needs an explicit permission (issue 22.9).
 #[test]
 fn another_type_of_encoder_needs_a_separate_permission() {
     let (mut desk, path) = saved();
@@ -314,8 +313,7 @@ fn another_type_of_encoder_needs_a_separate_permission() {
     assert!(sheet(&desk).warnings.iter().any(|text| text.id() == "review.other_type"));
 }
 
-/// Issue 22.14: data that have been read can be saved even after the connection is lost. The file states that they are
-/// not current.
+/// Values that were read can be saved after the connection is lost. The file says they are not current (issue 22.14).
 #[test]
 fn read_values_can_be_saved_after_the_line_is_lost() {
     let mut desk = Desk::at_port("");
@@ -343,7 +341,7 @@ fn read_values_can_be_saved_after_the_line_is_lost() {
     assert!(!desk.studio.selected_device().unwrap().is_savable());
 }
 
-/// If a path is typed, no existing file is replaced without a question.
+/// An existing file at a typed path is replaced only after a question.
 #[test]
 fn an_existing_file_is_replaced_only_after_confirmation() {
     let mut desk = Desk::new_form("");
@@ -370,7 +368,7 @@ fn an_existing_file_is_replaced_only_after_confirmation() {
     assert!(desk.studio.question.is_none());
 }
 
-/// Issue 22.24: a relative path refers to the same file as long as the window is open, however it was entered.
+/// A relative path leads to the same file while the window is open, however it was entered (issue 22.24).
 #[test]
 fn a_relative_path_is_saved_to_the_same_file() {
     let (mut desk, path) = saved();
@@ -394,8 +392,7 @@ fn a_relative_path_is_saved_to_the_same_file() {
     assert_ne!(read_text(&rel).unwrap(), read_text(&path).unwrap());
     assert_eq!(read_text(&home.join("rel.ron")).unwrap(), read_text(&path).unwrap());
 
-    // Whether dropped or typed, the file belongs to the existing session. The file in the home folder has a session of
-    // its own.
+    // A dropped or typed path selects the existing session. The file in the home folder gets its own session.
     desk.act(Action::Open("./rel.ron".into()));
     desk.act(Action::Typed(FileQuestion::Open, "rel.ron".into()));
     desk.until("both were read", |studio| studio.files_being_opened().is_empty());
@@ -405,7 +402,7 @@ fn a_relative_path_is_saved_to_the_same_file() {
     assert_eq!(desk.encoder().session.data_source(), home.join("rel.ron").display().to_string());
 }
 
-/// Issue 22.24: a link to a recording leads to the same file at the next start, whatever the current folder.
+/// A link to a recording leads to the same file at the next start, from any folder (issue 22.24).
 #[test]
 fn a_link_to_a_recording_is_remembered_with_its_full_path() {
     let mut desk = Desk::fresh("");

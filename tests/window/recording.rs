@@ -1,4 +1,4 @@
-//! Recordings of a polled encoder, and actions on them.
+//! Tests of the recordings of a polled encoder, and of the actions on them.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
@@ -32,7 +32,7 @@ fn line<'a>(recorder: &'a Recorder, name: &str) -> &'a Series {
     recorder.series().iter().find(|line| line.heading == name).unwrap()
 }
 
-/// Returns the least and greatest value in the complete recording of a line, in its unit.
+/// Returns the minimum and the maximum of the complete recording of a line, in its unit.
 fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
     let line = line(recorder, name);
     let history = recorder.history(line).unwrap();
@@ -40,7 +40,7 @@ fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
     (statistics.min.to_f64() * line.factor(), statistics.max.to_f64() * line.factor())
 }
 
-/// The 4096 turns wrap during the recording. Without unwrapping, position and speed would jump by 4096 turns.
+/// The end of the range of 4096 turns causes no spike. Without unwrapping, position and speed would jump by 4096 turns.
 #[test]
 fn a_wrap_at_the_end_of_the_range_is_no_spike() {
     let mut desk = Desk::new_form("rpm=600&position=16600000");
@@ -132,7 +132,7 @@ fn the_recording_is_saved_as_a_table() {
     let text = fs::read_to_string(&path).unwrap();
     assert_eq!(text.lines().next(), Some("time [s],position [turns],speed [rpm],remark"));
     assert_eq!(text.lines().count() as u64, 1 + recorded(&desk.studio));
-    // An existing file whose path was typed is not replaced without a question.
+    // An existing file at a typed path is replaced only after a question.
     desk.act(Action::Typed(question(false), path.clone()));
     desk.until("it asks", |studio| studio.question.is_some());
     desk.act(Action::Escape);
@@ -173,7 +173,7 @@ fn watched_values_are_recorded_with_the_position() {
     assert!(line(recording, "temperature").remark.is_none());
     desk.ask(Hiperface::Watch(WatchedQuantity::Counter, false));
     assert!(recorder(&desk).series().iter().all(|line| line.heading != "counter"));
-    // Watched values remain after the cable is unplugged.
+    // The watched values remain after the cable was pulled.
     assert_eq!(
         desk.encoder().record.watched_values(),
         [WatchedQuantity::Analogue(0x48), WatchedQuantity::Analogue(0x07)]
@@ -198,8 +198,8 @@ fn reading_a_position_while_polling_disturbs_nothing() {
     assert!(slowest > 590.0 && fastest < 610.0, "{slowest} {fastest}");
 }
 
-/// Issue 21.12: closing a session discards its recording. As elsewhere, the user is asked if it is at least two minutes
-/// long.
+/// Closing a session discards its recording, so the window asks first if the recording is two minutes long or longer
+/// (issue 21.12).
 #[test]
 fn closing_a_session_with_minutes_of_recording_asks_first() {
     let mut desk = Desk::new_form("");

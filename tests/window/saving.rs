@@ -1,5 +1,5 @@
-//! Saving to an open file. If others have changed it, the user is asked, and the user's comments between the entries
-//! remain.
+//! Tests of saving to an open file: changes by others cause a question, and the user's comments between the entries are
+//! kept.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -18,7 +18,7 @@ use encoder_studio::profile::ChangedSide;
 
 use crate::support::Desk;
 
-/// A profile edited by a user, in a form that the program would not write.
+/// A profile that a user has written in a form that the program would not write.
 const OWN: &str = "// bench 3\r\n(schema: 1, device: \"hiperface\",\r\n  note: \"as wired\", // ours\r\n  identity: (serial_number: \"A1\", encoder_type: 0x37),\r\n  interface: (settings: 0xE4, address: 0x40),\r\n  fields: [(number: 0, status: 0xC8, // the motor\r\n    bytes: [\"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"])], // end\r\n)\r\n";
 
 fn opened(text: &str) -> (Desk, PathBuf) {
@@ -31,7 +31,7 @@ fn opened(text: &str) -> (Desk, PathBuf) {
     (desk, path)
 }
 
-/// Returns whether the profile of a file is displayed.
+/// Returns whether a profile from a file is shown.
 fn is_open(studio: &Studio) -> bool {
     studio.selected_device().is_some_and(|own| *own.phase() == Phase::Offline)
 }
@@ -59,7 +59,7 @@ fn is_asked(studio: &Studio) -> bool {
     studio.diverged.is_some()
 }
 
-/// Issue 22.25: the open file is written without a question, but another file requires an answer.
+/// Saving writes the open file without a question. Saving to another file asks for its path (issue 22.25).
 #[test]
 fn saving_writes_the_open_file_and_save_as_asks_for_another() {
     let (mut desk, path) = opened(OWN);
@@ -68,18 +68,19 @@ fn saving_writes_the_open_file_and_save_as_asks_for_another() {
     desk.until("it is saved", is_saved);
     assert!(desk.studio.question.is_none() && desk.studio.diverged.is_none());
     assert_eq!(desk.studio.take_file_question(), None);
-    // Issue 22.26: one byte changes in only one place.
+    // One edited byte changes one place in the text (issue 22.26).
     assert_eq!(file_text(&path), OWN.replace("\"00 01", "\"58 01"));
     desk.command(DeviceCommand::AskSave);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
 
-    // An encoder has no file.
+    // An encoder has no file, so the window asks for a path.
     let mut desk = Desk::new_form("");
     save(&mut desk);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
 }
 
-/// Issue 22.25: changes made by an editor are not replaced without a question, and each answer has the stated effect.
+/// Changes that were made with an editor are not replaced without a question, and each answer has the stated effect
+/// (issue 22.25).
 #[test]
 fn saving_over_a_changed_file_asks_first() {
     let theirs = OWN.replace("as wired", "as rewired").replace("01 02", "AA 02").replace("// end", "// theirs");
@@ -126,7 +127,7 @@ fn saving_over_a_changed_file_asks_first() {
     desk.act(Action::Resolve(ConflictResolution::Merge));
     desk.until("it is saved", is_saved);
     assert_eq!(file_text(&path), theirs.replace("\"00 AA", "\"58 01"));
-    // The saved content is the open one, so the next save finds no difference.
+    // The saved content is now the open one, so the next save finds no difference.
     desk.put(0, 2, b"Z");
     save(&mut desk);
     desk.until("it is saved", is_saved);
@@ -139,8 +140,8 @@ fn saving_over_a_changed_file_asks_first() {
     assert_eq!(file_text(&path), theirs);
 }
 
-/// Issue 22.25: comments alone do not count as a difference and remain. A deleted file is written again, and an invalid
-/// one is reported.
+/// Changed comments alone are not a difference, and are kept. A deleted file is written again, and an invalid one is
+/// reported (issue 22.25).
 #[test]
 fn only_changed_values_count_as_a_difference() {
     let (mut desk, path) = opened(OWN);
@@ -180,7 +181,7 @@ fn only_changed_values_count_as_a_difference() {
     assert_eq!(file_text(&path), newer);
 }
 
-/// Issue 22.26: comments that have no place in the new text are named before it is saved.
+/// Before a save, the window names the comments that have no place in the saved text (issue 22.26).
 #[test]
 fn saving_asks_before_losing_comments() {
     let rows = "\"00 01 02 03 04 05 06 07\", // name plate\r\n\"08 09 0A 0B 0C 0D 0E 0F\"";
@@ -203,7 +204,7 @@ fn saving_asks_before_losing_comments() {
     assert!(file_text(&path).starts_with("// bench 3\r\n") && file_text(&path).contains("// the motor\r\n"));
 }
 
-/// Issue 22.26: the byte order mark of a file is preserved.
+/// The byte order mark of a file is kept (issue 22.26).
 #[test]
 fn a_byte_order_mark_is_kept() {
     let (mut desk, path) = opened(&format!("\u{FEFF}{OWN}"));
@@ -213,7 +214,7 @@ fn a_byte_order_mark_is_kept() {
     assert_eq!(file_text(&path), format!("\u{FEFF}{}", OWN.replace("\"00 01", "\"58 01")));
 }
 
-/// Issue 22.28: a save removes the earlier notices about its document but not those about another one.
+/// A save dismisses the earlier notices about its document, but not those about another one (issue 22.28).
 #[test]
 fn a_save_dismisses_the_notices_of_its_document() {
     let (mut desk, path) = opened(OWN);
@@ -239,7 +240,7 @@ fn a_save_dismisses_the_notices_of_its_document() {
     save(&mut desk);
     desk.until("it is saved", |studio| stands(studio, "session.saved"));
 
-    // Another document's notice remains.
+    // The notice about another document remains.
     desk.act(Action::Open(desk.outside.path("none.ron")));
     desk.until("it is told", |studio| stands(studio, "file.not_found"));
     desk.put(0, 2, b"Z");
@@ -249,8 +250,8 @@ fn a_save_dismisses_the_notices_of_its_document() {
     assert_eq!(*desk.phase(), Phase::Offline);
 }
 
-/// Issue 22.28: a measuring range that does not include all cams of a profile is reported on every page, and again when
-/// the profile is saved.
+/// A measuring range that ends below the cams of a profile is reported on every page, and again when the profile is
+/// saved (issue 22.28).
 #[test]
 fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
     let mut desk = Desk::fresh("");
@@ -279,8 +280,8 @@ fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
     assert_eq!(file_text(&path), text.replace("steps: 3600", "steps: 1800"));
 }
 
-/// Issue 22.27: a colleague's changes to a closed file remain, and so do earlier edits, for a layout, parameters and
-/// cams alike. This also applies if the file is only read again.
+/// Restored edits keep the changes that a colleague made to the closed file, for layouts, parameters and cams alike.
+/// The same applies if the open file is only read again (issue 22.27).
 #[test]
 fn restored_edits_keep_changes_by_others() {
     let ssi = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
@@ -331,8 +332,8 @@ fn restored_edits_keep_changes_by_others() {
     }
 }
 
-/// Issue 22.27: earlier edits that do not form a valid layout together with a colleague's changes are dropped with a
-/// message.
+/// Restored edits that give no valid layout together with the changes of a colleague are dropped with a notice
+/// (issue 22.27).
 #[test]
 fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
@@ -358,7 +359,7 @@ fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
     assert_eq!(file_text(&path), theirs);
 }
 
-/// Issue 22.27: a draft of an earlier program version, which contains the complete layout, can still be opened.
+/// A draft of an earlier version, which contains the complete layout, can still be opened (issue 22.27).
 #[test]
 fn a_draft_of_a_complete_layout_still_opens() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
@@ -369,7 +370,7 @@ fn a_draft_of_a_complete_layout_still_opens() {
     let folder = desk.outside.path("data/drafts/ssi-files");
     let draft = fs::read_dir(folder).unwrap().next().unwrap().unwrap().path();
     let desk = desk.crash();
-    // As version 1 wrote it.
+    // This is the form that version 1 wrote.
     let whole = text.replace("preset: 7", "preset: 11").replace('"', "\\\"").replace('\n', "");
     fs::write(draft, format!("[\"{whole}\"]")).unwrap();
     let mut desk = desk;

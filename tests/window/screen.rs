@@ -1,5 +1,5 @@
-//! The real window of a test's studio. It is operated through its accessible labels, which are taken from the
-//! catalogues of texts.
+//! Test support: the real window of a studio, operated by its accessible labels, which are read from the table of
+//! texts.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -33,7 +33,7 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
-    /// Opens a window that initially shows the given link, or the virtual encoder if there is none.
+    /// Opens a window that connects to this link, or to the virtual encoder if there is none.
     pub(crate) fn opened(outside: Outside, link: Option<&str>, size: [f32; 2]) -> Self {
         let mut studio = outside.studio();
         studio.start_with(link.map(|link| link.parse::<LinkUrl>().unwrap()), None);
@@ -41,7 +41,7 @@ impl Screen {
         Self::of(outside, studio, size)
     }
 
-    /// Creates a window for a studio of the given environment.
+    /// Creates a window for a studio in this environment.
     pub(crate) fn of(outside: Outside, studio: Studio, size: [f32; 2]) -> Self {
         let harness = Harness::builder().with_size(Vec2::from(size)).build_eframe(|cc| {
             install_fonts(&cc.egui_ctx);
@@ -50,7 +50,7 @@ impl Screen {
         Screen { harness, outside }
     }
 
-    /// Creates a window that initially shows the given link in the given tab.
+    /// Creates a window that connects to this link in this tab.
     pub(crate) fn opened_in(tab: Tab, link: &str, size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), Some("serial:/dev/nothing"), size);
         screen.act(Action::ShowTab(tab));
@@ -102,14 +102,14 @@ impl Screen {
         }
     }
 
-    /// Executes an action without a widget.
+    /// Runs an action directly, without a widget.
     pub(crate) fn act(&mut self, action: Action) {
         self.studio().mailbox().send(action);
         self.steps();
         self.only_master();
     }
 
-    /// Sends a command to the displayed encoder.
+    /// Sends an action to the displayed HIPERFACE encoder.
     pub(crate) fn ask(&mut self, action: Hiperface) {
         self.act(Action::device(self.encoder().session.id, action));
     }
@@ -126,7 +126,7 @@ impl Screen {
         text.to_string_in(self.language())
     }
 
-    /// Returns the button with the given name. If there are several, returns the last one, which is on top.
+    /// Returns the button with this label. If there are several, the last one is drawn on top.
     #[track_caller]
     pub(crate) fn button(&self, id: &'static str) -> Node<'_> {
         self.buttons(id).last().unwrap_or_else(|| panic!("there is no button {:?}", self.say(id)))
@@ -175,7 +175,7 @@ impl Screen {
         self.only_master();
     }
 
-    /// Answers the question about a drive on the line, if it is asked. These tests have no drive.
+    /// Answers the question about a drive on the line, if the window asks it. These tests have no drive.
     fn only_master(&mut self) {
         if asks_for_drive(self.studio()) {
             self.studio().mailbox().send(Action::Confirm);

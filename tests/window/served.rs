@@ -1,4 +1,4 @@
-//! An adapter that is accessed over a network, like a real one.
+//! Test support: an adapter that is reached over a network, as a real one would be.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -14,11 +14,11 @@ use encoder_studio::units::Moment;
 /// An adapter on a TCP port that serves one connection after another.
 pub(crate) struct ServedDevice {
     port: u16,
-    /// Received requests.
+    /// The requests that were received.
     heard: Arc<Mutex<Vec<Request>>>,
-    /// Whether to close the connection.
+    /// Whether the connection is to be closed.
     cut: Arc<Mutex<bool>>,
-    /// The adapter that replaces this one.
+    /// The adapter that is to replace the current one.
     other: Arc<Mutex<Option<Adapter>>>,
 }
 
@@ -47,12 +47,12 @@ impl ServedDevice {
         format!("bridge:tcp:127.0.0.1:{}", self.port)
     }
 
-    /// Closes the connection.
+    /// Closes the current connection.
     pub(crate) fn cut(&self) {
         *self.cut.lock().unwrap() = true;
     }
 
-    /// Exchanges the device of the connection.
+    /// Exchanges the device behind the connection, and waits until that is done.
     pub(crate) fn exchange(&self, query: &str) {
         *self.other.lock().unwrap() = Some(adapter(query));
         while self.other.lock().unwrap().is_some() {
@@ -87,7 +87,7 @@ fn serve(
         if let Some(other) = other.take() {
             *adapter = other;
             adapter.connect(now());
-            // Another encoder on the same adapter, which keeps its settings.
+            // Another encoder is on the same adapter, which keeps its settings.
             let heard = heard.lock().unwrap();
             let set = |own: &&Request| matches!(own, Request::Supply { .. } | Request::BissConfig { .. });
             heard.iter().filter(set).for_each(|own| adapter.on_bytes(now(), &own.emit(0).emit()));

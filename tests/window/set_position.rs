@@ -1,4 +1,5 @@
-//! Setting the position of a HIPERFACE encoder: the units of the entry, the review, and how a position can be restored.
+//! Tests of setting the position of a HIPERFACE encoder: the units of the entry, the review, and what restores a
+//! position.
 
 use egui::Role;
 use egui_kittest::Node;
@@ -40,7 +41,8 @@ fn choose(screen: &mut Screen, unit: &'static str) {
     screen.steps();
 }
 
-/// The virtual SKM36 has 4096 steps per turn, so 10,240 steps are two turns and 180°, or 900°.
+/// A position can be entered in every unit. The virtual SKM36 has 4096 steps per turn: 10,240 steps are two turns and
+/// 180°, or 900°.
 #[test]
 fn a_position_can_be_entered_in_every_unit() {
     let mut screen = setup();
@@ -58,15 +60,15 @@ fn a_position_can_be_entered_in_every_unit() {
     assert_eq!(value(&screen, "position_card.wanted"), "900,000");
 }
 
-/// The review states the position in turns and degrees and names the access code. It does not claim that the position
-/// can be restored.
+/// The review names the position in turns and degrees, and the access code. The card says that nothing restores the
+/// position.
 #[test]
 fn the_review_of_a_position_names_turns_and_the_access_code() {
     let mut screen = setup();
     assert!(screen.shows(&screen.say("position_card.not_restored")));
     type_into(&mut screen, "position_card.wanted", "10240");
     let label = screen.say("position_card.plan");
-    // Other cards also have a button with this name. This one is below the entry.
+    // Other cards have a button with the same label. This one is below the entry.
     let below = field(&screen, "position_card.wanted").rect();
     let plans =
         screen.harness.query_all_by(move |node| node.role() == Role::Button && node.label().as_ref() == Some(&label));

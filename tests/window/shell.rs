@@ -1,5 +1,5 @@
-//! The shell of the window: the lower panel and the line below it, what stays in place while messages appear and
-//! disappear, and live values that start automatically.
+//! Tests of the shell of the window: the lower panel and the line below it, what keeps its place while messages come
+//! and go, and live values that start automatically.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use crate::tabs::Tabs as _;
 const LARGE: [f32; 2] = [1280.0, 800.0];
 const SMALL: [f32; 2] = [1024.0, 640.0];
 
-/// Creates a desk that uses the program's default settings and the given link.
+/// Returns a studio with the default settings of the program, connected to a link.
 fn usual(query: &str, link: Option<&str>) -> Desk {
     let outside = Outside::new(query);
     let mut desk = Desk { studio: outside.usual_studio(), outside };
@@ -28,7 +28,7 @@ fn is_live(studio: &Studio) -> bool {
     studio.selected_device().is_some_and(|device| device.is_polling())
 }
 
-/// Returns the areas of the given buttons on the open page.
+/// Returns the rectangles of these buttons on the open page.
 fn places(screen: &Screen, ids: &[&'static str]) -> Vec<Rect> {
     ids.iter().map(|id| screen.button(id).rect()).collect()
 }
@@ -53,7 +53,7 @@ fn the_lower_panel_is_one_line_until_it_is_opened_and_is_remembered() {
     screen.until("it is kept", |_| std::fs::read_to_string(&path).is_ok_and(|text| text.contains("lower_open: true")));
     let studio = screen.outside.usual_studio();
     assert!(studio.settings.lower_open);
-    // Another window with the layout of that time.
+    // Another window opens with the saved layout.
     let Screen { outside, .. } = screen;
     let again = Screen::of(outside, studio, LARGE);
     assert!(is_open(&again));
@@ -67,13 +67,13 @@ fn clickable_widgets_do_not_move_when_a_message_or_a_job_appears() {
         screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0xEE] });
         let ids = ["memory.undo", "memory.review", "shell.stop", "live.start", "status_line.open", "page.encoder"];
         let before = places(&screen, &ids);
-        // A notice.
+        // A notice appears.
         screen.command(DeviceCommand::AskSave);
         screen.act(Action::Open("/no/such/profile.ron".into()));
         screen.until("it is told", |studio| studio.services.log.current().is_some());
         assert!(screen.has_button("shell.dismiss"));
         assert_eq!(places(&screen, &ids), before, "a notice");
-        // A job, with and without a notice beside it.
+        // A job starts beside the notice, and later without it.
         let wire = screen.outside.wire(PORT).clone();
         wire.hold_at(0x56, 1);
         screen.command(DeviceCommand::Read);
@@ -93,7 +93,7 @@ fn clickable_widgets_do_not_move_when_a_message_or_a_job_appears() {
         assert_eq!(places(&screen, &ids), before, "a job");
         wire.release();
         screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
-        // The encoder falls silent, and the buttons for reconnecting appear.
+        // The encoder falls silent, and the buttons to reconnect appear.
         screen.outside.wire(PORT).unplug();
         screen.command(DeviceCommand::Read);
         screen.until("it is lost", |studio| {
@@ -119,7 +119,7 @@ fn live_values_start_by_themselves_on_virtual_devices_and_confirmed_lines() {
         desk.settle();
         assert_eq!(is_live(&desk.studio), starts, "{link:?}");
     }
-    // The virtual INTERBUS encoder is not disturbed either.
+    // Live values of the virtual INTERBUS encoder do not start automatically either.
     let mut desk = usual("", Some("serial:/dev/nothing"));
     desk.act(Action::ShowTab(crate::tabs::INTERBUS));
     desk.act(Action::OpenVirtual);
@@ -132,7 +132,7 @@ fn live_values_start_by_themselves_on_virtual_devices_and_confirmed_lines() {
 fn live_values_that_were_stopped_stay_so_at_the_next_start() {
     let mut desk = usual("", None);
     desk.until("it starts", is_live);
-    // STOP applies only once, while the button in the panel is a lasting choice.
+    // STOP applies only for now, while the button in the panel changes the setting.
     desk.act(Action::Stop);
     assert!(!is_live(&desk.studio) && !desk.studio.settings.live_stopped);
     desk.command(DeviceCommand::Reconnect);
@@ -153,7 +153,7 @@ fn live_values_that_were_stopped_stay_so_at_the_next_start() {
     desk.until("it starts again", is_live);
 }
 
-/// Reading the position automatically does not change anything. Only reading takes place on the line.
+/// Live values that start automatically change nothing, because only positions are read over the line.
 #[test]
 fn live_values_that_start_by_themselves_only_read() {
     let mut desk = usual("", None);
@@ -216,7 +216,7 @@ fn the_last_frames_stay_visible_while_new_ones_arrive() {
     let row = screen.harness.query_all_by_label(&time).last().expect("the last frame is drawn").rect();
     let line = screen.button("status_line.close").rect();
     assert!(row.bottom() <= line.top(), "{row:?} above {line:?}");
-    // Scrolled up, the list does not follow until this is requested.
+    // After the user has scrolled away, the list does not follow new frames until the user requests it.
     screen.harness.event(egui::Event::PointerMoved(row.center()));
     screen.harness.event(egui::Event::MouseWheel {
         unit: egui::MouseWheelUnit::Point,
@@ -264,11 +264,11 @@ fn the_trace_is_searched_and_paused() {
     });
     search(&mut screen, read_position);
     assert!(count(&screen, read_position) > 0);
-    // Each reply of the virtual encoder is valid.
+    // All replies of the virtual encoder are valid.
     screen.click("trace.faults");
     assert!(screen.shows(&no_match));
     screen.click("trace.faults");
-    // While it is paused, the list does not change.
+    // While the list is paused, it does not change.
     let before = count(&screen, read_position);
     screen.click("trace.follow");
     let frames = screen.encoder().session.trace.next_number();
@@ -281,7 +281,7 @@ fn the_trace_is_searched_and_paused() {
     assert!(count(&screen, read_position) > before);
 }
 
-/// If a frame is clicked, all of its bytes are shown beside the list, and the arrow keys select the adjacent frames.
+/// A clicked frame is shown with all of its bytes beside the list, and the arrow keys select its neighbours.
 #[test]
 fn a_selected_frame_is_shown_with_its_bytes() {
     use egui_kittest::kittest::Queryable;
@@ -316,7 +316,7 @@ fn a_selected_frame_is_shown_with_its_bytes() {
     assert!(!screen.shows("0000  "));
 }
 
-/// A trace saved by the window contains the frames of the list in the format that `replay:` reads.
+/// A saved trace contains the frames of the list, in the format that `replay:` reads.
 #[test]
 fn the_trace_is_saved_as_a_recording() {
     let mut desk = usual("", Some("sim:"));
@@ -334,7 +334,7 @@ fn the_trace_is_saved_as_a_recording() {
     assert!(text.starts_with("# encoder-studio trace 1\n"));
 }
 
-/// While the window asks for the path of a file, the keys of the lower panel have no effect.
+/// While the window asks for a path, the dialog is on top, and the key of the lower panel has no effect.
 #[test]
 fn the_key_of_the_lower_panel_waits_for_dialogs() {
     let mut screen = Screen::new_form(SMALL);

@@ -1,5 +1,4 @@
-//! The Signals tab without drawing: captures are read, corrected, rejected and cancelled, and the displayed one
-//! remains.
+//! Tests of the Signals tab without drawing: captures are read, corrected, rejected and cancelled.
 
 use crate::tabs::Tabs as _;
 use std::fmt::Write as _;
@@ -34,7 +33,7 @@ impl Desk {
         path
     }
 
-    /// Opens a capture like the window does, and waits until it has been read.
+    /// Opens a capture as the window does, and waits until it has been read.
     #[track_caller]
     fn open_capture(&mut self, path: &std::path::Path) {
         self.act(Action::Open(path.to_owned()));
@@ -47,7 +46,7 @@ impl Desk {
     }
 }
 
-/// Returns `periods` periods of a circle with a radius of half a volt, with a hundred samples per period, 10 µs apart.
+/// Returns the text of a capture that draws a circle of 0.5 V: `periods` periods of 100 samples each, 10 µs apart.
 pub(crate) fn circle(periods: usize) -> String {
     let mut text = "time [ms];SIN;COS\n".to_owned();
     for at in 0..=100 * periods {
@@ -231,7 +230,7 @@ fn reading_can_be_cancelled_and_a_stale_capture_is_dropped() {
     assert_eq!(desk.studio.signals().table().unwrap().place, TableSource::Example(ExampleCapture::Healthy));
     assert_eq!(desk.notice_ids(Severity::Note), ["signal.cancelled"]);
     assert!(!desk.studio.can_stop());
-    // The later one counts, whichever is read first.
+    // The capture that was opened later is shown, whichever is read first.
     desk.act(Action::Open(large));
     desk.signals(Signals::Example(ExampleCapture::WithErrors));
     desk.until_measured();
@@ -314,7 +313,7 @@ fn the_virtual_encoder_is_measured_repeatedly_with_its_settings() {
     desk.until_live("it is as new", |own| own.ellipse.offset_sine_v.abs() < 1e-3);
 }
 
-/// Returns whether there is nothing worse than a notice.
+/// Returns whether no finding is worse than a notice.
 fn is_good(findings: &[DiagnosisFinding]) -> bool {
     findings.iter().all(|own| own.severity == encoder_studio::analysis::diagnosis::Severity::Notice)
 }
@@ -337,7 +336,7 @@ fn holding_freezes_the_measurement_and_stopping_ends_it() {
     assert!(!desk.studio.signals().source().is_running() && !desk.studio.can_stop());
     let last = desk.studio.signals().measurement().unwrap().clone();
     let wakes = || desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst);
-    // A task that is still running may return later.
+    // A task that is still running may return.
     let began = std::time::Instant::now();
     let is_quiet = || {
         let before = wakes();
@@ -372,13 +371,13 @@ fn a_window_that_is_not_drawn_counts_lost_samples() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Set(Quantity::Rate, 1_000_000.0));
     desk.source(SourceAction::Start);
-    // At most 200 000 samples wait, which is a fifth of a second at 1 MHz.
+    // At most 200 000 samples can wait, which is a fifth of a second at 1 MHz.
     let began = std::time::Instant::now();
     while desk.studio.signals().source().lost_samples() == 0 && began.elapsed() < crate::support::LONG {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     assert!(desk.studio.signals().source().lost_samples() > 0);
-    // A test build is too slow for that.
+    // A test build is too slow for the full rate.
     desk.source(SourceAction::Set(Quantity::Rate, 50_000.0));
     desk.until_live("it goes on", |own| own.samples == 10_000);
 }
@@ -407,7 +406,7 @@ fn the_scope_shows_captures_and_live_signals_and_exports_a_readable_table() {
         studio.recorder_of(encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS)).unwrap().recorded_span()
     };
     let (from, to) = recorder(&desk.studio).unwrap();
-    // 401 rows including a header are 400 samples, 5 µs apart.
+    // 401 rows including the header are 400 samples, 5 µs apart.
     assert_eq!(to.nanoseconds_since(from), 399 * 5_000);
     let path = desk.outside.path("scope.csv");
     let question = FileQuestion::Table {
@@ -428,7 +427,7 @@ fn the_scope_shows_captures_and_live_signals_and_exports_a_readable_table() {
     assert!(desk.studio.signals().problem().is_none(), "{:?}", desk.studio.signals().problem());
     let measurement = desk.studio.signals().measurement().unwrap();
     assert_eq!(measurement.capture.sine_v.len(), 400);
-    // 2 kHz in healthy.csv.
+    // The signals in healthy.csv have 2 kHz.
     assert!((measurement.analysis.as_ref().unwrap().frequency_hz().unwrap() - 2_000.0).abs() < 1.0);
 }
 

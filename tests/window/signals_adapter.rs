@@ -1,5 +1,5 @@
-//! Sine and cosine from an adapter, either the virtual one or one on a network: the displayed values, and the message
-//! if there is no adapter.
+//! Tests of sine and cosine through an adapter: the virtual one and one on a network, the displayed values, and the
+//! message if there is no adapter.
 
 use crate::tabs::Tabs as _;
 use std::time::Instant;
@@ -20,7 +20,7 @@ fn begin(desk: &mut Desk, link: &str, sample_hz: u32) {
     desk.signals(Signals::Source(SourceAction::StartAdapter));
 }
 
-/// Returns the number of samples in the scope, and the number of gaps between them. The first sample counts as a gap.
+/// Returns the number of samples in the scope and the number of gaps, where the first sample counts as one.
 fn recorded(studio: &Studio) -> (u64, usize) {
     let recorder = studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap();
     let history = recorder.history(&recorder.series()[0]).unwrap();
@@ -28,7 +28,8 @@ fn recorded(studio: &Studio) -> (u64, usize) {
     (history.indices().end, history.indices().filter(is_break).count())
 }
 
-/// The virtual adapter samples an encoder with 0.5 V and 1024 periods. One revolution takes ten seconds.
+/// The virtual adapter is measured like a capture. It samples an encoder with 0.5 V and 1024 periods, which turns once
+/// in ten seconds.
 #[test]
 fn the_virtual_adapter_is_measured_like_a_capture() {
     let mut desk = Desk::fresh("");
@@ -64,7 +65,7 @@ fn a_network_adapter_streams_without_a_gap_and_is_stopped() {
         desk.until("a second of it is there", |studio| recorded(studio).0 > 20_000);
         assert_eq!((recorded(&desk.studio).1, desk.studio.signals().source().lost_samples()), (0, 0), "{round}");
         desk.signals(Signals::Source(SourceAction::Stop));
-        // The next start waits until this one has released the connection.
+        // The next start waits until this source has released the connection.
     }
     desk.until("it was told to stop", |_| served.requested_frame(&Request::AnalogStream { on: false }) == 3);
     assert_eq!(served.requested_frame(&Request::AnalogStream { on: true }), 3);
@@ -134,7 +135,8 @@ fn a_valid_adapter_link_is_remembered_and_an_invalid_one_is_not() {
     assert!(!desk.studio.signals().source().is_running());
 }
 
-/// With `supply=switched`, the virtual adapter supplies its encoder only on command. 0.3 W at 8 V are 37 mA.
+/// The encoder is supplied only as the user chooses. The virtual adapter with `supply=switched` supplies it only on
+/// command; 0.3 W at 8 V are 37 mA.
 #[test]
 fn the_encoder_is_supplied_only_as_chosen() {
     let mut desk = Desk::fresh("");

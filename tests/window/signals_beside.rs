@@ -1,5 +1,5 @@
-//! A capture with a reference encoder and with an absolute position: DNL, INL and the offset, in the state and in the
-//! window.
+//! Tests of a capture with a reference encoder and an absolute position: DNL, INL and the offset, as values and as
+//! drawn.
 
 use crate::tabs::Tabs as _;
 use std::fmt::Write as _;
@@ -12,8 +12,8 @@ use encoder_studio::sim::sine_cosine::Quantity;
 use crate::screen::Screen;
 use crate::support::{Desk, HANGING, Outside};
 
-/// Returns a table of 1.25 revolutions with 64 periods, an eccentricity of 0.01°, an offset of 1 %, and an absolute
-/// position that is 3 steps ahead.
+/// Returns the text of a capture of 1.25 revolutions of 64 periods. It has an eccentricity of 0.01°, an offset of 1 %
+/// and an absolute position that is 3 steps ahead.
 fn table() -> String {
     let mut text = "time,sin,cos,angle,absolute\n".to_owned();
     let tau = std::f64::consts::TAU;
@@ -77,8 +77,8 @@ fn both_positions_are_shown_and_the_offset_is_adopted() {
     screen.until("it is read", |studio| studio.signals().measurement().is_some());
     screen.check_signals_pages();
     screen.click("page.error");
-    // An offset of 1 % is ±0.573° / 64 = 0.00895°, an eccentricity of 0.01° is 36″, and 50 samples per period add a
-    // little.
+    // An offset of 1 % is an error of ±0.573° / 64 = 0.00895°, and an eccentricity of 0.01° is one of 36″. The sampling
+    // at 50 samples per period changes both slightly.
     assert!(screen.shows(&screen.say("nonlinearity.inl_raw")));
     assert!(screen.shows("0.00896°") && screen.shows("32.24″") && screen.shows("35.99″"));
     screen.click("page.synchronise");

@@ -1,4 +1,4 @@
-//! The calculators of the Signals tab as operated by a user.
+//! Tests of the calculators of the Signals tab, operated like a user by typing and reading.
 
 use crate::tabs::Tabs as _;
 use egui::Key;
@@ -9,7 +9,7 @@ use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use crate::screen::Screen;
 use crate::support::{Desk, HANGING, Outside};
 
-/// Window size at which a complete page is drawn.
+/// Window size in which a complete page is drawn.
 const TALL: [f32; 2] = [1400.0, 1600.0];
 
 impl Screen {
@@ -32,7 +32,8 @@ impl Screen {
     }
 }
 
-/// Section 1: 512 periods at 12 000/min are 102.4 kHz. After 10 kΩ and 47 pF, they lag by 16.825°.
+/// The input circuit is calculated while the user types. Reference, section 1: 512 periods at 12 000/min are 102.4 kHz,
+/// which lag by 16.825° after 10 kΩ and 47 pF.
 #[test]
 fn the_input_circuit_is_computed_while_typing() {
     let mut screen = Screen::calculator("page.input_circuit");
@@ -55,7 +56,7 @@ fn the_input_circuit_is_computed_while_typing() {
     assert!(screen.shows("338,6 kHz"));
 }
 
-/// Issue 26: entries use the decimal sign of the language, both initially and after a change of the language.
+/// The entries use the decimal sign of the language, from the start and after the language is changed (issue 26).
 #[test]
 fn entries_are_shown_with_the_decimal_sign_of_the_language() {
     let mut screen = Screen::calculator("page.synchronise");
@@ -72,8 +73,8 @@ fn entries_are_shown_with_the_decimal_sign_of_the_language() {
     assert_eq!(phase(&screen), "0,25");
 }
 
-/// Section 4: A = 2A5Fh and φ = 0.02 are 339.02 of 1024 periods. If φ is a fifth of a period further, it is off by half
-/// a period.
+/// Both positions are synchronised while the user types. Reference, section 4: A = 2A5Fh and φ = 0.02 are 339.02 of
+/// 1024 periods. A fifth of a period further, φ is half a period off.
 #[test]
 fn absolute_and_analog_positions_are_synchronised_while_typing() {
     let mut screen = Screen::calculator("page.synchronise");
@@ -104,7 +105,8 @@ fn absolute_and_analog_positions_are_synchronised_while_typing() {
     assert!(screen.shows(&screen.say("help.synchronise")));
 }
 
-/// The virtual SKM36 at step 24: counts 409 and 511 according to its own signals.
+/// Both positions are read from the selected encoder. The virtual SKM36 at step 24 has counts of 409 and 511 according
+/// to its own signals.
 #[test]
 fn both_positions_are_read_from_the_selected_encoder() {
     let mut screen = Screen::opened(Outside::new("position=3224"), None, TALL);

@@ -1,4 +1,4 @@
-//! The virtual encoder without drawing: held, stopped, changed, and started during other work.
+//! Tests of the virtual encoder without drawing: it is held, stopped, changed and started during other work.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::analysis::history::Flags;
@@ -10,7 +10,7 @@ use encoder_studio::sim::sine_cosine::Quantity;
 use crate::signals::circle;
 use crate::support::Desk;
 
-/// Returns the number of samples in the scope, and the positions of the gaps.
+/// Returns the number of samples in the scope, and the indices of the gaps.
 fn recorded(studio: &Studio) -> (u64, Vec<u64>) {
     let recorder = studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap();
     let history = recorder.history(&recorder.series()[0]).unwrap();
@@ -34,8 +34,8 @@ fn time_on_hold_is_a_gap_in_the_scope() {
     assert!(after.contains(&count) && !breaks.contains(&count), "{count}: {after:?}");
 }
 
-/// Issue 22.13: the number of periods per turn is entered by the user rather than assumed. Until then, neither speed
-/// nor seconds of arc are shown. The periods of the virtual encoder do not apply to a capture.
+/// The number of periods per turn is not assumed. Until the user enters it, there is no speed and no error in seconds
+/// of arc. The periods of the virtual encoder do not apply to a capture (issue 22.13).
 #[test]
 fn periods_are_not_assumed() {
     let mut desk = Desk::fresh("");
@@ -125,14 +125,14 @@ fn a_kept_capture_keeps_no_samples() {
     desk.signals(Signals::Example(encoder_studio::signals::state::ExampleCapture::Healthy));
     desk.until_measured();
     desk.until("the samples are gone", |_| samples.strong_count() == 0);
-    // A circle of 100 samples per period.
+    // The circle has 100 samples per period.
     assert_eq!(desk.studio.signals().compared_result().unwrap().analysis.as_ref().unwrap().samples, 150_001);
 }
 
 #[test]
 fn a_kept_capture_is_judged_by_the_selected_limits() {
     let mut desk = Desk::fresh("");
-    // 0.84 V is too low for HIPERFACE but good for AFS/AFM60.
+    // 0.84 V is too low for HIPERFACE, but good for AFS/AFM60.
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 0.42)));
     desk.signals(Signals::SetFamily(Family::AfsAfm60));
     desk.signals(Signals::Source(SourceAction::Start));

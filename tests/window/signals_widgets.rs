@@ -1,4 +1,4 @@
-//! The real widgets of the Signals tab, operated through their accessible labels.
+//! Tests of the real widgets of the Signals tab, found by their accessible labels.
 
 use crate::tabs::Tabs as _;
 use egui::{Key, Modifiers};
@@ -74,7 +74,7 @@ fn the_tab_opens_by_key_and_click_and_loads_an_example() {
     screen.click("signals.example_errors");
     screen.until("it is read", |studio| studio.signals().measurement().is_some());
     assert!(screen.shows("the permitted range is 0.9 to 1.1 V"));
-    // 2 · 0.5 / 1.12 V, and 40 mV of 0.5 V, which are the parameters of the example.
+    // The parameters of the example give 2 · 0.5 / 1.12 V, and 40 mV of 0.5 V.
     assert!(screen.shows("0.8928 V") && screen.shows("8.00 %"));
     assert!(screen.harness.query_all_by_label(&screen.say("quality.outside")).count() >= 6);
     screen.key(Key::F1);
@@ -101,7 +101,7 @@ fn the_figure_has_an_accessible_value_and_a_corrected_view() {
     assert!(value(&screen).contains("0,415 … 0,558 V"), "{}", value(&screen));
 }
 
-/// Issue 22.14: an error while reading a capture is shown on every page of the tab.
+/// An error while reading a capture is shown on every page of the tab (issue 22.14).
 #[test]
 fn a_failed_capture_is_shown_on_every_page() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
@@ -156,7 +156,7 @@ fn a_capture_is_kept_and_compared_in_two_columns() {
     screen.check_signals_pages();
     screen.click("page.quality");
     assert!(screen.shows("Compared with offset-gain-phase.csv"));
-    // 1.0020 V − 0.8928 V, and 0.40 % − 8.00 %.
+    // The differences are 1.0020 V − 0.8928 V and 0.40 % − 8.00 %.
     assert!(screen.shows("+0.1092") && screen.shows("-7.60"));
     screen.click("page.error");
     assert!(screen.shows(&screen.say("error.kept_raw")));
@@ -171,7 +171,7 @@ fn a_pair_of_voltages_is_converted_exactly_and_by_table() {
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(ExampleCapture::Healthy));
     screen.click("page.error");
-    // Section 3: 7.93e-5 rad with 32 intervals, or 16.27 bits. The arctangent of 0.25 / 0.433 is 30.0007°.
+    // Reference, section 3: 7.93e-5 rad with 32 intervals, or 16.27 bits. The arctangent of 0.25 / 0.433 is 30.0007°.
     assert!(screen.shows("0.00454°") && screen.shows("16.27") && screen.shows("30.00073°"));
 }
 

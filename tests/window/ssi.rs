@@ -1,5 +1,4 @@
-//! The SSI tab, operated through actions: designing a layout, an encoder at the virtual adapter, and the search for a
-//! layout.
+//! Tests of the SSI tab by actions: designing a layout, an encoder at the virtual adapter, and the search for a layout.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;
@@ -15,7 +14,7 @@ use encoder_studio::devices::ssi::state::{
 
 use crate::support::Desk;
 
-/// Returns a desk with the SSI tab, to which nothing has been connected.
+/// Returns a studio that shows the SSI tab with nothing connected.
 fn layout() -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::SSI));
@@ -68,7 +67,7 @@ fn a_layout_needs_no_device() {
     assert!(matches!(own.session.source, Source::New { .. }));
     assert_eq!((own.session.phase.clone(), own.is_dirty()), (Phase::Offline, false));
     assert_eq!(own.designer.family().unwrap().key, "ahm36");
-    // Section 8 of the reference: AHM36, MT 123h, ST 2A5Bh, binary and Gray code.
+    // Reference, section 8: AHM36, multiturn 123h, singleturn 2A5Bh, in binary and in Gray code.
     act(&mut desk, Ssi::Try(TrialInput::Place(0x123, 0x2A5B)));
     assert_eq!(encoder(&desk).displayed_frame().frame, 0x091_D4B6);
     act(&mut desk, Ssi::Enter(Field::Code, FieldInput::Choice(1)));
@@ -114,7 +113,7 @@ fn impossible_layouts_are_refused_and_change_nothing() {
     act(&mut desk, Ssi::Try(TrialInput::Bits("10102".to_owned())));
     assert_eq!(encoder(&desk).trial.problem().unwrap().id(), "ssi_trial.form");
     assert_eq!(*encoder(&desk).design(), before);
-    // In both languages, and both sides are named.
+    // The message names both settings that exclude each other.
     edit(&mut desk, Edit::Family("ahs36".to_owned()));
     act(&mut desk, Ssi::Enter(Field::Clocks, FieldInput::Number(14)));
     let words = encoder(&desk).designer.problem().unwrap().terminal_text();
@@ -126,7 +125,7 @@ fn a_frame_edited_by_hand_can_return_to_its_family() {
     let mut desk = layout();
     edit(&mut desk, Edit::Family("atm60".to_owned()));
     assert!(encoder(&desk).design().settings.is_some());
-    // A bit before the position, which no frame of the ATM60 has.
+    // The ATM60 has no frame with a bit before the position.
     let mut frame = encoder(&desk).design().profile.descriptor.clone();
     (frame.clocks, frame.area, frame.lead) = (26, 26, 1);
     edit(&mut desk, Edit::Frame(Box::new(frame)));
@@ -136,7 +135,7 @@ fn a_frame_edited_by_hand_can_return_to_its_family() {
     let own = encoder(&desk).design();
     assert_eq!((own.profile.descriptor.clocks, own.settings.is_some()), (25, true));
     assert!(field(&desk, Field::Align).is_some() && field(&desk, Field::Lead).is_none());
-    // Without a family, it can have any value.
+    // Without a family, every part of the frame can be set.
     edit(&mut desk, Edit::Free);
     act(&mut desk, Ssi::AddErrorBit);
     act(&mut desk, Ssi::Enter(Field::Parity, FieldInput::Choice(1)));
@@ -282,8 +281,8 @@ fn a_layout_found_live_can_be_adopted() {
     act(&mut desk, Ssi::Find);
     desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
     let SearchState::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
-    // The end of 4096 turns was not passed, so the result is uncertain. The number of remaining classes depends on the
-    // angle by which the shaft turned in the meantime.
+    // The shaft did not pass the end of the 4096 turns, so the result is uncertain. The number of remaining classes
+    // depends on the angle that the shaft turned meanwhile.
     assert!(matches!(search.doubt, Some(SearchUncertainty::Open | SearchUncertainty::Close)), "{:?}", search.doubt);
     let is_afm60 = |member: &LayoutProposal| member.family.as_ref().is_some_and(|(key, _)| key == "afm60");
     let (class, member) = search
@@ -319,7 +318,7 @@ fn a_layout_of_a_profile_is_used_for_an_encoder() {
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ttk70");
     wish(&mut desk, DeviceCommand::Undo);
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36");
-    // No data is written, and a message says so.
+    // Nothing is written to an SSI encoder, and a message says so.
     wish(&mut desk, DeviceCommand::Review);
     assert!(!desk.studio.selected_device().unwrap().is_reviewing());
 }
@@ -418,7 +417,7 @@ fn the_virtual_encoder_sends_the_edited_layout() {
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36", "the layout stays");
 }
 
-/// Section 8 of the reference: AHS36 with 12 bits, with its error bit fixed on clock 15 or following on clock 13.
+/// Reference, section 8: an AHS36 with 12 bits has its error bit fixed on clock 15, or next to the position on 13.
 #[test]
 fn dragging_a_boundary_changes_the_family_settings() {
     let mut desk = layout();

@@ -1,4 +1,5 @@
-//! The start: the virtual encoder is connected and read, polling is off, and nothing is sent without a request.
+//! Tests of the start of the program: the virtual encoder is connected and read, polling is off, and nothing is sent
+//! without a request.
 
 use encoder_studio::app::DeviceCommand;
 use std::time::Duration;
@@ -21,7 +22,7 @@ fn the_studio_starts_with_the_virtual_encoder_and_no_polling() {
     let identity = encoder.identity.as_ref().unwrap();
     assert_eq!(identity.name, "SKM36");
     assert_eq!(identity.serial.serial_number, "GB0450179");
-    // The name plate occupies two of 112 blocks.
+    // The name plate takes two of 112 blocks.
     assert_eq!(identity.memory, Some(FreeMemory { blocks: 110, fields: 1 }));
     assert_eq!(encoder.field(0).unwrap().bytes.as_ref().unwrap()[..6], *b"EMD71K");
     assert_eq!(encoder.counter, Some(0));
@@ -39,7 +40,7 @@ fn nothing_is_sent_without_a_request() {
         desk.encoder().session.trace.lines().iter().filter(|line| line.direction == Direction::Sent).count(),
         sent
     );
-    // Longer than the interval between two checks of the connection.
+    // The test waits longer than the interval between two checks of the connection.
     for _ in 0..60 {
         desk.studio.poll();
         std::thread::sleep(Duration::from_millis(10));
@@ -125,7 +126,7 @@ fn two_encoders_are_shown_one_at_a_time() {
     assert_eq!(desk.encoder().session.id, first);
     desk.act(Action::CloseSession(first));
     assert_eq!((desk.encoder().session.id, desk.studio.devices().len()), (second, 1));
-    // Opening the same connection again leads to the same session.
+    // Opening the same connection again selects the existing session.
     desk.open(&format!("serial:{OTHER_PORT}?address=0x40"));
     desk.until_read();
     assert_eq!((desk.encoder().session.id, desk.studio.devices().len()), (second, 1));

@@ -1,4 +1,4 @@
-//! The tabs of the program, and their content.
+//! Test support: the tabs of the program, and access to the content of each.
 
 use std::sync::OnceLock;
 
@@ -23,13 +23,13 @@ pub(crate) const SIGNALS: Tab = Tab::named("Signals");
 /// The tab of the kind defined in the tests.
 pub(crate) const NOVEL: Tab = Tab::named("Novo");
 
-/// Returns the program with an external kind of device appended to its own kinds.
+/// Returns the program with the device kind of the tests added to its own kinds.
 pub(crate) fn with_novo() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| Program::new(&[KINDS, &[NOVO]].concat(), &[signals::TAB], &[], &[]))
 }
 
-/// Access to the content of a studio's tabs.
+/// Access to the content of each tab of a studio.
 pub(crate) trait Tabs {
     fn hiperface(&self) -> Option<&hiperface::state::Encoder>;
     fn biss(&self) -> Option<&biss::state::Encoder>;
@@ -70,27 +70,27 @@ pub(crate) fn search_for(options: FindOptions) -> ConnectAction {
     ConnectAction::find::<EncoderSearchForm>(SearchAction::Search(options))
 }
 
-/// Returns the action that connects to an encoder that was found.
+/// Returns the action that connects to the found encoder with this index.
 pub(crate) fn choose(at: usize) -> ConnectAction {
     ConnectAction::find::<EncoderSearchForm>(SearchAction::Choose(at))
 }
 
-/// Returns the action that searches for devices in the network.
+/// Returns the action that searches for devices on the network.
 pub(crate) fn discover() -> ConnectAction {
     ConnectAction::find::<DiscoveryFinder>(DiscoveryAction::Discover)
 }
 
-/// Returns the action that selects a device that has answered.
+/// Returns the action that selects the discovered device with this index.
 pub(crate) fn choose_answer(at: usize) -> ConnectAction {
     ConnectAction::find::<DiscoveryFinder>(DiscoveryAction::Choose(at))
 }
 
-/// Returns the encoder search of a dialog.
+/// Returns the encoder search of a dialog, if there is one.
 pub(crate) fn search(dialog: &ConnectDialog) -> Option<&Search> {
     dialog.finder_as::<EncoderSearchForm>()?.search.as_ref()
 }
 
-/// Returns the network search of a dialog.
+/// Returns the network discovery of a dialog, if there is one.
 pub(crate) fn discovery(dialog: &ConnectDialog) -> Option<&Discovery> {
     dialog.finder_as::<DiscoveryFinder>()?.discovery.as_ref()
 }

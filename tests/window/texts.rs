@@ -1,5 +1,5 @@
-//! Checks of every text in these tests. Each text must be in a catalogue, be complete in both languages, and have all
-//! its arguments filled in. No id may occur twice.
+//! Test support that checks each text of these tests in both languages: it is in a catalogue, each of its placeholders
+//! has a value, and no ID occurs twice.
 
 use crate::tabs::Tabs as _;
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,7 +23,7 @@ struct Row {
     terminal: String,
 }
 
-/// The common catalogue and those of all devices, buses and tools.
+/// The text catalogues of the program and of all device kinds.
 const CATALOGUES: [&Catalogue; 9] = [
     &COMMON,
     &hiperface::state::TEXTS,
@@ -36,7 +36,7 @@ const CATALOGUES: [&Catalogue; 9] = [
     &crate::novo::state::TEXTS,
 ];
 
-/// The rows of all catalogues, by id.
+/// The rows of all catalogues by text ID.
 static TABLE: LazyLock<BTreeMap<String, Row>> = LazyLock::new(|| {
     let rows = CATALOGUES.map(|own| ron::from_str::<BTreeMap<String, Row>>(own.source()).unwrap());
     rows.into_iter().flatten().collect()
@@ -127,7 +127,7 @@ fn check_encoder(encoder: &Encoder) {
     sheet.needs.iter().chain(&sheet.warnings).chain(&sheet.cost).for_each(check);
 }
 
-/// Returns whether a string is a text id, which is displayed if the catalogue has no such text.
+/// Returns whether the words are a text ID, which the window shows if the catalogue has no such text.
 pub(crate) fn is_name(words: &str) -> bool {
     let part = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_lowercase() || c == '_');
     words.split_once('.').is_some_and(|(area, name)| {

@@ -1,5 +1,5 @@
-//! Two windows that share one settings file, in the same process and in separate processes. The changes made in one
-//! survive the writes of the other, and limits that are unconfirmed in one are locked in the other.
+//! Tests of two windows that share a settings file, in this process and in separate processes. The changes of one
+//! window survive the writes of the other, and unconfirmed limits in one lock motion in the other.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -22,7 +22,7 @@ use crate::support::{Desk, LONG, Outside};
 
 const HUB: &str = "sim:?hub=4&drives=1,1&requested=1";
 
-/// Returns two windows that use the same folder.
+/// Returns two windows that share a settings folder.
 fn two() -> (Desk, Desk) {
     let first = Desk::fresh("");
     let second = Desk { studio: first.outside.studio(), outside: Outside::new("") };
@@ -47,7 +47,7 @@ fn poll_both_until(windows: [&mut Desk; 2], what: &str, condition: impl Fn(&Desk
     }
 }
 
-/// Returns whether the settings file contains all of the given words.
+/// Returns whether the settings file contains all of these words.
 fn settings_contain(desk: &Desk, words: &[&str]) -> bool {
     let text = fs::read_to_string(desk.outside.store().settings_path()).unwrap_or_default();
     words.iter().all(|word| text.contains(word))
@@ -67,7 +67,7 @@ fn take(desk: &mut Desk) {
     });
 }
 
-/// Changes the scale of the drive as another master would, and surveys the drive.
+/// Changes the scale of the drive as another master would, and reads the drive again.
 fn scale(desk: &mut Desk, numerator: i64) {
     let target = unit(desk).target.clone().unwrap();
     target.with_station(|station| station.write(Moment::default(), number(154), &Value::Number(numerator)).unwrap());
@@ -82,7 +82,8 @@ fn is_locked(desk: &Desk) -> bool {
     unit(desk).moves.motion_locks(ONE).contains(&MotionLock::LimitsUnconfirmed)
 }
 
-/// Issue 21.11: settings are merged by key, however often the windows take turns.
+/// Settings are merged by key, so the changes of each window survive, however often the windows write in turn
+/// (issue 21.11).
 #[test]
 fn changes_of_each_window_survive_the_others_write() {
     let (mut first, mut second) = two();
@@ -101,12 +102,12 @@ fn changes_of_each_window_survive_the_others_write() {
     let mut links = kept.links_of(crate::tabs::HIPERFACE).to_vec();
     links.sort();
     assert_eq!(links, ["tcp:first:1", "tcp:second:1"]);
-    // Nothing changes while the user works.
+    // The settings of a window do not change while the user works in it.
     assert_eq!((first.studio.settings.language, second.studio.settings.theme), (Language::English, ColorScheme::Dark));
 }
 
-/// Issue 21.11: limits marked by one window are locked in another window that controls the drives, even if that window
-/// neither writes nor reads anything, and in one that is opened later, whatever the other window writes.
+/// Limits that one window has marked are locked in another one that controls the drives, even if that one neither reads
+/// nor writes anything. They are also locked in a window that is opened later, whatever the others write (issue 21.11).
 #[test]
 fn limits_marked_by_another_window_are_locked() {
     let (mut first, mut second) = two();
@@ -130,8 +131,8 @@ fn limits_marked_by_another_window_are_locked() {
     assert!(is_locked(&later));
 }
 
-/// Issue 21.11: a confirmation applies to the window in which it was given. Another window keeps its lock and marks the
-/// limits again if the scale changes again.
+/// A confirmation of limits applies only to the window in which it was given. Another window keeps its lock, and marks
+/// the limits again if the scale changes again (issue 21.11).
 #[test]
 fn limits_are_confirmed_in_each_window() {
     let (mut first, mut second) = two();
@@ -146,7 +147,7 @@ fn limits_are_confirmed_in_each_window() {
         settings_contain(first, &["unconfirmed: []"])
     });
     assert!(is_locked(&first) && !is_locked(&second));
-    // After any write by either window.
+    // The lock remains after further writes by both windows.
     first.act(Action::SetTheme(ColorScheme::Light));
     second.act(Action::SetLanguage(Language::German));
     poll_both_until([&mut first, &mut second], "that is kept", |first, _| {
@@ -160,8 +161,8 @@ fn limits_are_confirmed_in_each_window() {
     assert!(settings_contain(&first, &["unconfirmed: [", "1,"]));
 }
 
-/// Issue 21.11: text typed for a drive in one window stays in that window and is saved together with that of another
-/// one.
+/// A value typed for a drive stays in its window, and is saved together with the values of the other window
+/// (issue 21.11).
 #[test]
 fn values_typed_for_a_drive_stay_in_their_window() {
     let (mut first, mut second) = two();
@@ -188,7 +189,7 @@ fn values_typed_for_a_drive_stay_in_their_window() {
 const FOLDER: &str = "ENCODER_STUDIO_TEST_FOLDER";
 const NAME: &str = "ENCODER_STUDIO_TEST_NAME";
 
-/// Starts a window in a separate process that uses the same folder.
+/// Runs an ignored test of this module as a window in a separate process, with the folder of `desk`.
 fn process(desk: &Desk, test: &str, name: &str) -> Child {
     let mut own = Command::new(env::current_exe().unwrap());
     own.args(["--ignored", "--exact", &format!("two_windows::{test}")]);
@@ -217,7 +218,8 @@ fn process_using_links() {
     }
 }
 
-/// Issue 21.11: two processes write six links each as fast as they can. Twelve links are the maximum number remembered.
+/// Two processes that write six links each as fast as they can lose none of them. No more than twelve links are
+/// remembered (issue 21.11).
 #[test]
 fn concurrent_processes_lose_no_settings() {
     let desk = Desk::fresh("");
@@ -242,7 +244,7 @@ fn process_writing_forever() {
     }
 }
 
-/// Issue 21.11: a process may be killed at any moment while writing.
+/// A process that is killed at any moment while it writes leaves a complete file and no lock (issue 21.11).
 #[test]
 fn a_killed_process_leaves_a_complete_file_and_no_lock() {
     let mut desk = Desk::fresh("");
@@ -269,7 +271,7 @@ fn a_killed_process_leaves_a_complete_file_and_no_lock() {
     }
 }
 
-/// Issue 21.11: if the folder is not writable, only the settings are lost, and motion remains possible.
+/// If the settings folder cannot be written, only the settings are lost, and motion remains possible (issue 21.11).
 #[cfg(unix)]
 #[test]
 fn unwritable_settings_do_not_prevent_motion() {

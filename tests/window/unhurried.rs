@@ -1,5 +1,5 @@
-//! Virtual HIPERDRIVE drives whose time passes more slowly. A motion that is not refreshed for 250 ms stops on purpose,
-//! and a frame that is drawn in software on a busy computer may take longer than that.
+//! Test support: virtual HIPERDRIVE drives whose time passes more slowly. A motion that is not refreshed for 250 ms
+//! stops on purpose, and a frame that a busy computer draws in software may take longer than that.
 
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex};
@@ -14,7 +14,7 @@ use encoder_studio::worker::{OpenError, Session};
 
 use crate::support::MARGIN;
 
-/// Number of real seconds per second of the session and its drives.
+/// Number of real seconds for one second of the session and its drives.
 const SLOWER: u32 = 2;
 
 struct Unhurried(RealClock);
@@ -29,7 +29,7 @@ impl Clock for Unhurried {
     }
 }
 
-/// Returns a session with the virtual drives of a `sim:` link on a slow clock.
+/// Opens a session with the virtual drives of a `sim:` link, on the slower clock.
 pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenError> {
     let clock: Arc<dyn Clock> = Arc::new(Unhurried(RealClock::start()));
     let target = Target::new(&Config::from_pairs(&url.query.without(&["rpi", "udp", "timeout"]))?);

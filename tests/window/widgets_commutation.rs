@@ -1,4 +1,4 @@
-//! The commutation page as operated by a user: ticked, typed and clicked.
+//! Tests of the commutation page, operated like a user by ticking, typing and clicking.
 
 use crate::tabs::Tabs as _;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -8,7 +8,7 @@ use encoder_studio::devices::hiperface::state::commutation::{CommutationAction a
 
 use crate::screen::Screen;
 
-/// Window size that is tall enough for the complete page.
+/// Window size in which the complete page is drawn.
 const TALL: [f32; 2] = [1400.0, 1800.0];
 
 impl Screen {
@@ -19,7 +19,7 @@ impl Screen {
     }
 
     fn fill_in(&mut self, label: &str, text: &str) {
-        // The label next to its entry has the same name.
+        // The label next to the entry has the same name.
         let is_entry = |node: &egui_kittest::Node<'_>| node.accesskit_node().role() == egui::Role::TextInput;
         self.harness.query_all_by_label(label).find(is_entry).unwrap().focus();
         self.steps();

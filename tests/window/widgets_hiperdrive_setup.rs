@@ -1,4 +1,5 @@
-//! Indicators, network and the set-up of an axis as operated by a user: clicked, typed, and checked in both languages.
+//! Tests of the indicators, the network page and the set-up of an axis, operated like a user and checked in both
+//! languages.
 
 use crate::tabs::Tabs as _;
 use egui::Key;
@@ -17,7 +18,7 @@ use encoder_studio::units::Moment;
 
 use crate::screen::Screen;
 
-/// Window size at which a complete page is drawn.
+/// Window size in which a complete page is drawn.
 const TALL: [f32; 2] = [1280.0, 2400.0];
 
 fn page(link: &str, page: &'static str) -> Screen {
@@ -88,7 +89,7 @@ fn an_address_is_typed_checked_and_written() {
         studio.selected_device().unwrap().review_sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
             && studio.hiperdrive().unwrap().session.is_ready()
     });
-    // The dialog also shows it, above the form.
+    // The dialog shows the warning as well, above the form.
     let sheet = screen.studio().selected_device().unwrap().review_sheet().unwrap();
     let warned = |text: &Text| {
         text.terminal_text().contains("At the next power-up") && text.terminal_text().contains("192.168.5.20")
@@ -125,8 +126,8 @@ fn axis_setup_names_missing_steps_in_the_language() {
     assert!(screen.shows("Nothing was written."));
 }
 
-/// Reference 5: a spindle of 4 mm in steps of 0.01 mm has 400 steps per turn. 511 turns in each direction are 2044 mm,
-/// or 204400 steps.
+/// A pitch and a resolution set the scale, and the limits keep their places. Reference, section 5: a spindle of 4 mm in
+/// steps of 0.01 mm has 400 steps per turn; 511 turns in each direction are 2044 mm, or 204400 steps.
 #[test]
 fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     let mut screen = page("sim:", "page.parameters");
@@ -150,14 +151,14 @@ fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     assert_eq!(wanted.scale(own.drive()).unwrap().steps_per_turn(), 400.0);
     assert_eq!(wanted.limits(own.drive()), Some((-204_400, 204_400)));
     let id = own.session.id;
-    // The review shows each value in millimetres with its own scale, the old and the new one on one line.
+    // The review shows the limits in millimetres, each with its own scale, old and new on one line.
     screen.act(Action::Command(id, DeviceCommand::Review));
     screen.until("there is a plan", |studio| {
         studio.selected_device().unwrap().review_sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     assert!(screen.shows("256  →  400") && screen.shows("-33488896 · -2044.0000 mm  →  -204400 · -2044.00 mm"));
     screen.act(Action::Review(id, ReviewAction::Close));
-    // As numbers, they are 164 times larger.
+    // If the limits keep their numbers instead, they are 164 times further away.
     screen.act(Action::Command(id, DeviceCommand::Undo));
     screen.press(Role::RadioButton, "Limits: keep their values");
     screen.click("hd_scale.set");
@@ -170,8 +171,8 @@ fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     }
 }
 
-/// A number is typed in the table. An invalid number stays in the entry with its reason, and with its parameter if
-/// other rows are displayed.
+/// A number can be typed into the table. An invalid one stays in its row with the reason, even after other rows were
+/// shown.
 #[test]
 fn parameters_can_be_typed_into_their_table() {
     let mut screen = page("sim:?hub=4&drives=1,0,1", "page.parameters");
@@ -189,7 +190,7 @@ fn parameters_can_be_typed_into_their_table() {
     screen.put("166 Maximum speed", "9999");
     screen.key(Key::Enter);
     assert!(screen.shows("Allowed values: 5 to 350"));
-    // Other rows are displayed, and the invalid text moves with its own row.
+    // When other rows are shown, the invalid text stays with its own row.
     screen.press(Role::RadioButton, "Show: All");
     assert!(row(&screen, "105 Status word").is_some());
     screen.put("166 Maximum speed", "300");
@@ -200,10 +201,10 @@ fn parameters_can_be_typed_into_their_table() {
     };
     assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
     assert!(!screen.shows("Allowed values: 5 to 350"));
-    // A read-only value cannot be overwritten, and a message says so.
+    // A read-only value cannot be edited, and a message says so.
     begin(&mut screen, "105 Status word");
     assert!(screen.shows("105 (Status word) is read-only"));
-    // The typed text takes effect before other rows, or none at all, are displayed.
+    // Typed text is applied before other rows are shown, and before there are no rows at all.
     begin(&mut screen, "172 Jog 1 speed");
     screen.put("172 Jog 1 speed", "50");
     screen.press(Role::RadioButton, "Show: Changed");
@@ -214,7 +215,7 @@ fn parameters_can_be_typed_into_their_table() {
     assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
     assert!(screen.shows("Spindle pitch"));
     screen.press(Role::RadioButton, "Show: All");
-    // Another drive has other rows, and nothing is typed into them.
+    // Another drive has other rows, and the typed text does not go into them.
     begin(&mut screen, "158 Lower limit");
     screen.put("158 Lower limit", "17");
     let id = screen.studio().hiperdrive().unwrap().session.id;
@@ -225,7 +226,7 @@ fn parameters_can_be_typed_into_their_table() {
     assert!(screen.harness.query_by_role_and_label(Role::TextInput, "158 Lower limit").is_none());
 }
 
-/// A second click that was meant for the previous step does not leave the next one.
+/// A step is not left by a second click that was meant for the previous step.
 #[test]
 fn a_step_is_shown_before_it_can_be_left() {
     let mut screen = page("sim:", "page.axis");
@@ -241,7 +242,7 @@ fn a_step_is_shown_before_it_can_be_left() {
     assert!(screen.is_enabled("hd_axis.back"));
 }
 
-/// The controls under a dialog are blocked, except for STOP.
+/// A dialog blocks the controls below it, except for STOP.
 #[test]
 fn stop_is_reachable_over_a_dialog() {
     let mut screen = page("sim:", "page.motion");
@@ -261,8 +262,8 @@ fn stop_is_reachable_over_a_dialog() {
     assert!(own.actual_values(own.drive()).unwrap().position < 30_000_000 && screen.studio().connect.is_some());
 }
 
-/// Issue 21.6 (i): whatever the drive reports, no clickable control moves, and the step remains until the user leaves
-/// it.
+/// Whatever the drive reports, no clickable control moves, and the step remains until the user leaves it
+/// (issue 21.6 i).
 #[test]
 fn the_layout_of_a_step_does_not_shift() {
     let mut screen = page("sim:", "page.axis");
@@ -275,7 +276,7 @@ fn the_layout_of_a_step_does_not_shift() {
     screen.steps();
     assert!(!screen.is_enabled("hd_axis.recall"), "nothing is known to differ");
     advance(&mut screen, AxisStep::Scale);
-    // 655.36 mm in steps of 0.01 mm equals the factory setting of 65536 steps per turn, so there is nothing to write.
+    // 655.36 mm per turn in steps of 0.01 mm are the 65536 steps of the factory setting, so there is nothing to write.
     screen.put("Pitch (mm per turn)", "655.36");
     assert!(!screen.is_enabled("hd_axis.write"));
     advance(&mut screen, AxisStep::Confirm);

@@ -1,4 +1,5 @@
-//! Keys, dropped files, and the system's close button. A window without changes requests no frame.
+//! Tests of keys, dropped files and the close button of the system, and of a window without changes, which requests no
+//! frame.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;
@@ -13,7 +14,7 @@ use crate::support::PORT;
 
 const SIZE: [f32; 2] = [1280.0, 800.0];
 
-/// Returns the time after which the window requests to be drawn again.
+/// Returns the delay after which the window requests to be drawn again.
 fn next_picture(screen: &Screen) -> Duration {
     screen.harness.output().viewport_output[&ViewportId::ROOT].repaint_delay
 }

@@ -1,4 +1,5 @@
-//! The cam page as operated by a user, by pointer, by key, typed and pasted. Chart and table must agree.
+//! Tests of the cam page, operated like a user by pointer, by key, by typing and by pasting. The chart and the table
+//! agree.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -11,7 +12,7 @@ use encoder_studio::devices::interbus::state::{Edit, InterbusAction as Interbus}
 
 use crate::screen::Screen;
 
-/// Window size that is tall enough for the chart and the table.
+/// Window size in which the chart and the table are drawn completely.
 const TALL: [f32; 2] = [1280.0, 1600.0];
 
 fn program() -> ProgramNumber {
@@ -22,7 +23,7 @@ fn cam(number: u8) -> CamNumber {
     CamNumber::new(number).unwrap()
 }
 
-/// Returns the cam page of an encoder with 3600 steps per turn and cams of 450 steps in program 1.
+/// Opens the cam page of an encoder with 3600 steps per turn and cams of 450 steps in program 1.
 fn page() -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::INTERBUS, "sim:?steps=3600&revolutions=1&cams=demo", TALL);
     screen.until("it is read", |studio| {
@@ -53,7 +54,7 @@ impl Screen {
         self.harness.get_by_role_and_label(role, label)
     }
 
-    /// Returns the texts of an edge in the chart and in the table.
+    /// Returns the values that the chart and the table show for an edge.
     fn edge_values(&self, label: &str) -> (String, String) {
         let value = |role| self.of_role(role, label).accesskit_node().value().unwrap_or_default();
         (value(Role::Slider), value(Role::TextInput))
@@ -141,7 +142,7 @@ fn conflicts_and_out_of_range_cams_are_marked_in_their_lanes() {
     );
     screen.edit_cams(Edit::Steps(3200));
     assert!(screen.shows("Program 1: cam 7 is outside the measuring range, which ends at 3199."));
-    // Issue 22.28: the cams of a program that are beyond the range share one line, so that the chart stays visible.
+    // All cams of a program outside the range are reported in one line, so that the chart stays visible (issue 22.28).
     screen.edit_cams(Edit::Steps(3000));
     assert!(screen.shows("Program 1: cams 6, 7 are outside the measuring range, which ends at 2999."));
     assert!(!screen.shows("Program 1: cam 7"));

@@ -1,4 +1,4 @@
-//! Every page, at both sizes, in both themes and languages. It must be drawn, and its next steps must be reachable.
+//! Tests that every page is drawn at both sizes, in both themes and languages, and that its next steps can be reached.
 
 use crate::tabs::Tabs as _;
 use egui::{Key, Rect, Role, Vec2};
@@ -66,8 +66,8 @@ fn every_page_is_drawn_with_a_virtual_biss_encoder() {
     }
 }
 
-/// Issue 22.15: values that were written in mode 04 and never saved are reported above the registers and above the
-/// data, with a button for the return to operation.
+/// Values that were written in mode 04 and never saved are reported above the registers and above the data, with a
+/// button that returns to operation (issue 22.15).
 #[test]
 fn unsaved_registers_are_reported_with_a_remedy() {
     let outside = Outside::new("");
@@ -97,8 +97,7 @@ fn unsaved_registers_are_reported_with_a_remedy() {
     assert!(!screen.has_button("lead_back_card.button"));
 }
 
-/// If an encoder rejects the request for its position, the message in the Live panel does not make the panel wider than
-/// a small window.
+/// If an encoder rejects its position, the Live panel shows a message and still fits into a small window.
 #[test]
 fn a_refused_position_keeps_the_panel_within_the_window() {
     let mut screen = Screen::opened(Outside::new("temperature=140&rpm=9000"), None, SMALL);
@@ -150,7 +149,7 @@ fn every_page_of_an_ssi_layout_is_drawn() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SMALL);
     screen.act(Action::ShowTab(crate::tabs::SSI));
     check_every_page(&mut screen, SMALL);
-    // Any frame with all of its optional parts.
+    // The frame belongs to no family and has all optional parts.
     let id = screen.studio().ssi().unwrap().session.id;
     screen.act(Action::device(id, Ssi::Edit(Box::new(Edit::Free))));
     for action in [
@@ -323,7 +322,7 @@ fn language_and_theme_change_with_one_click() {
     assert_eq!(screen.studio().settings.theme, ColorScheme::Dark);
 }
 
-/// If the system has no file dialogs, the user types a path.
+/// If the system has no file dialogs, the user can type a path.
 #[test]
 fn a_path_can_be_typed_without_a_file_dialog() {
     let mut screen = Screen::new_form(SMALL);

@@ -1,4 +1,4 @@
-//! The plot in the window: its tools by their labels, its chart by pointer and keyboard.
+//! Tests of the plot in the window: its tools by their labels, its chart by the pointer and the keyboard.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
@@ -13,7 +13,7 @@ use encoder_studio::app::{Language, RecorderOwner as Of, recorder};
 use crate::screen::Screen;
 use crate::support::Outside;
 
-/// Returns a window in which a turning encoder has been recorded for a while and is now at standstill.
+/// Returns a window in which a turning encoder has been recorded for a while and is no longer polled.
 fn recorded() -> Screen {
     let mut screen = Screen::opened(Outside::new("rpm=600"), None, [1280.0, 800.0]);
     screen.until("it is read", |studio| {
@@ -36,7 +36,7 @@ fn chart(screen: &Screen) -> Rect {
     Rect::from_min_max(bounds.min, bounds.max)
 }
 
-/// Returns a position in the chart, excluding the labels of the axes.
+/// Returns a point in the chart from relative coordinates, without the area of the axis labels.
 fn inside(screen: &Screen, x: f32, y: f32) -> Pos2 {
     let chart = chart(screen);
     let chart = Rect::from_min_max(chart.min + egui::vec2(80.0, 10.0), chart.max - egui::vec2(10.0, 30.0));
@@ -89,7 +89,7 @@ fn dragging_zooms_into_a_box_and_a_double_click_shows_all() {
     let (a, b) = (inside(&screen, 0.2, 0.1), inside(&screen, 0.6, 0.35));
     drag(&mut screen, PointerButton::Primary, a, b);
     assert!(recorder(&screen).series().first().unwrap().range.is_some());
-    // Moved with the right button, so the span is unchanged.
+    // Dragging with the right button moves the visible span without changing its length.
     let span = recorder(&screen).window_length();
     let before = recorder(&screen).window_bounds().0;
     let (a, b) = (inside(&screen, 0.2, 0.5), inside(&screen, 0.5, 0.5));
@@ -97,7 +97,7 @@ fn dragging_zooms_into_a_box_and_a_double_click_shows_all() {
     assert_eq!(recorder(&screen).window_length(), span);
     assert!(recorder(&screen).window_bounds().0 < before, "what lay at the left came into sight");
     let pos = inside(&screen, 0.5, 0.5);
-    // Here, each event is in a separate frame, a quarter of a second after the previous one.
+    // Each event is a separate frame here, a quarter of a second after the previous one.
     screen.harness.ctx.options_mut(|options| options.input_options.max_double_click_delay = 2.0);
     screen.harness.event(Event::PointerMoved(pos));
     screen.harness.step();
@@ -124,7 +124,8 @@ fn cursors_are_shown_dragged_and_read() {
     let a = recorder(&screen).cursor(Cursor::A).unwrap();
     assert!(recorder(&screen).cursor_distance().unwrap() > 0);
     let (mut from, to) = (inside(&screen, 0.0, 0.5), inside(&screen, 0.9, 0.5));
-    // The first third of the visible part. The width of the gutter is unknown here, so the position is searched for.
+    // The cursor is at the first third of the visible part. The width of the gutter is unknown here, so the test
+    // searches for the cursor.
     let mut moved = false;
     for _ in 0..120 {
         from.x += 2.0;
@@ -182,7 +183,7 @@ fn a_trigger_can_be_set_armed_and_switched_off() {
             screen.key(Key::Escape);
         }
     }
-    // Another type of trigger, in a panel that stays open.
+    // Another trigger condition is chosen in a panel that stays open.
     screen.click("recorder.trigger");
     let falling = format!("{}: {}", screen.say("trigger.when"), screen.say("trigger.falling"));
     screen.harness.get_by_role_and_label(Role::RadioButton, &falling).click();
@@ -235,7 +236,7 @@ fn a_table_can_be_exported_from_the_menu() {
     let of = Of::Device(screen.encoder().session.id);
     screen.click("recorder.export");
     screen.click("recorder.csv_visible");
-    // Without a portal, the window itself asks for a path, and the question is in transit.
+    // Without a portal, the window asks for a path itself, and this question is still on the way.
     screen.until("it asks for a path", |_| true);
     let question = FileQuestion::Table { owner: of, visible: true, suggested: "x".into() };
     let path = screen.outside.path("samples.csv");

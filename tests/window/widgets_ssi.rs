@@ -1,4 +1,4 @@
-//! The pages of the SSI tab as operated by a user, with keys and typed text.
+//! Tests of the pages of the SSI tab, operated like a user by keys and typed text.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -50,7 +50,7 @@ fn words_arriving_while_typing_do_not_replace_the_typed_text() {
         screen.until("the shaft has turned", move |studio| {
             studio.ssi().unwrap().last().unwrap().decoded.as_ref().unwrap().frame != before
         });
-        // The value is left unchanged.
+        // The entry is left without a change.
         let node = screen.harness.get_by_role_and_label(Role::TextInput, &label);
         assert!(node.accesskit_node().is_focused());
         screen.key(Key::Tab);
@@ -58,7 +58,7 @@ fn words_arriving_while_typing_do_not_replace_the_typed_text() {
     }
 }
 
-/// A picture is drawn without its source, and text is shown as text.
+/// An export that is a picture is drawn, and its source is not shown. An export that is text is shown as text.
 #[test]
 fn exports_are_shown_in_their_format() {
     let mut screen = layout();
@@ -75,8 +75,8 @@ fn exports_are_shown_in_their_format() {
     assert!(screen.shows("FUNCTION_BLOCK \"SSI_DECODE\""));
 }
 
-/// The frames of a file are found, decoded with the layout, and tried with a click. Section 8 of the reference: AHM36
-/// in Gray code.
+/// Frames from a file are listed, decoded with the layout, and tried by a click. Reference, section 8: AHM36 in Gray
+/// code.
 #[test]
 fn frames_of_a_file_are_listed_and_tried() {
     let mut screen = layout();
@@ -95,8 +95,7 @@ fn frames_of_a_file_are_listed_and_tried() {
     assert_eq!(screen.studio().ssi().unwrap().trial.frame(), 0x0D9_3EEC);
 }
 
-/// The essential parts of the Frame page are visible without scrolling at 1280 × 800: the strip, the position and the
-/// bits.
+/// The strip, the position and the bits of the Frame page are visible without scrolling at 1280 × 800.
 #[test]
 fn the_frame_page_fits_the_window() {
     let screen = layout();

@@ -1,4 +1,5 @@
-//! Writing of a byte with the real widgets: edited, reviewed, written and read back, including STOP and the questions.
+//! Tests of writing a byte with the real widgets: it is edited, reviewed, written and read back. The tests also cover
+//! STOP and the questions.
 
 use crate::tabs::Tabs as _;
 use egui::{Key, Modifiers};
@@ -80,8 +81,9 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
     assert!(!screen.encoder().staged.is_dirty());
 }
 
-/// Issue 26: Ctrl is a separate key, and a key pressed immediately before Enter made that press suspect. In the hex
-/// editor, which is not a text entry, Ctrl+Enter had no effect if both keys were pressed together.
+/// Ctrl and Enter open the review even if both are pressed together. Ctrl is a separate key, and a key right before
+/// Enter made the press doubtful, so that Ctrl+Enter did nothing in the hex editor, which is not a text entry
+/// (issue 26).
 #[test]
 fn ctrl_and_enter_pressed_together_open_the_review() {
     let mut screen = Screen::new_form(SIZE);
@@ -98,12 +100,12 @@ fn ctrl_and_enter_pressed_together_open_the_review() {
     assert_eq!(screen.outside.wire(PORT).wear(), 0, "nothing is written yet");
 }
 
-/// Issue 22.4: a write that requires a permission cannot be started without it.
+/// A write that needs a permission cannot be started without it (issue 22.4).
 #[test]
 fn without_a_logbook_the_write_button_needs_a_permission() {
     let mut screen = Screen::new_form(SIZE);
     let logbook = screen.outside.store().logbook_path();
-    // The connection is already recorded.
+    // The logbook exists because the connection is already recorded.
     std::fs::remove_file(&logbook).unwrap();
     std::fs::create_dir_all(logbook).unwrap();
     type_bytes(&mut screen, "58");

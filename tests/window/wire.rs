@@ -1,4 +1,4 @@
-//! A cable to virtual encoders or to an adapter. The devices keep their state when it is unplugged, and the cable can
+//! Test support: a cable to virtual encoders or to an adapter. They remain when the cable is pulled, and the cable can
 //! be held at a request.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
@@ -20,7 +20,7 @@ use encoder_studio::units::{CharacterFormat, Moment};
 use crate::novo::sim::Virtual;
 use crate::support::LONG;
 
-/// A cable to virtual devices.
+/// A cable to virtual devices, which can be pulled and held.
 pub(crate) struct Wire {
     target: String,
     end: End,
@@ -33,15 +33,15 @@ pub(crate) struct Wire {
 enum End {
     /// HIPERFACE encoders.
     Hiperface(Arc<Mutex<Bus>>),
-    /// A BiSS encoder's configuration pin.
+    /// The configuration pin of a BiSS encoder.
     Pin(Arc<Mutex<UbicomPort>>),
-    /// An adapter on a BiSS encoder's bus.
+    /// An adapter on the bus of a BiSS encoder.
     Adapter(Arc<Mutex<Adapter>>),
-    /// A gateway with an INTERBUS encoder.
+    /// A gateway to an INTERBUS encoder.
     Gateway(Arc<Mutex<Gateway>>),
-    /// An adapter with its drive.
+    /// An adapter with a HIPERDRIVE drive.
     Target(Arc<Mutex<Target>>),
-    /// An encoder of the external kind.
+    /// An encoder of the device kind of the tests.
     Novo(Arc<Mutex<Virtual>>),
 }
 
@@ -57,17 +57,17 @@ impl End {
         }
     }
 
-    /// Returns the command in a request. For a packet to an adapter, it is not determined.
+    /// Returns the command of a request, or `None` for a packet to an adapter, which is not parsed.
     fn command(&self, frame: &[u8]) -> Option<u8> {
         match self {
             End::Hiperface(_) => frame.get(1).copied(),
             End::Pin(_) => frame.get(2).copied(),
             End::Adapter(_) => None,
             End::Novo(_) => frame.first().copied(),
-            // The service, after the headers of the frame and of its items.
+            // The service follows the headers of the frame and of its items.
             End::Target(_) => frame.get(40).copied(),
-            // The function code, after number, protocol, length and unit. If the function writes, the first byte of its
-            // OUT word instead.
+            // The function follows number, protocol, length and unit. For a write, the first byte of the OUT word
+            // counts instead.
             End::Gateway(_) => frame.get(if frame.get(7) == Some(&16) { 13 } else { 7 }).copied(),
         }
     }
@@ -76,17 +76,17 @@ impl End {
 #[derive(Default)]
 struct State {
     unplugged: bool,
-    /// Whether sending causes a panic.
+    /// Whether the next frame that is sent causes a panic.
     deadly: bool,
-    /// Every frame that was passed to the line.
+    /// Every frame that was sent.
     sent: Vec<Vec<u8>>,
-    /// The request at which the line is held, given by its command and the number of such requests before it.
+    /// The request at which the cable is held: its command, and the number of such requests before it.
     hold: Option<(u8, usize)>,
     held: bool,
 }
 
 impl Wire {
-    /// Creates a cable to HIPERFACE encoders as described by `sim:?…`.
+    /// Creates a cable to HIPERFACE encoders, which `query` describes like a `sim:` link.
     pub(crate) fn new(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Hiperface(Arc::new(Mutex::new(bus(query)))))
     }
@@ -101,12 +101,12 @@ impl Wire {
         Self::to(target, End::Gateway(Arc::new(Mutex::new(gateway(query)))))
     }
 
-    /// Creates a cable to an adapter with its drive.
+    /// Creates a cable to an adapter with a HIPERDRIVE drive.
     pub(crate) fn to_target(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Target(Arc::new(Mutex::new(drive(query)))))
     }
 
-    /// Creates a cable to an encoder of the external kind.
+    /// Creates a cable to an encoder of the device kind of the tests.
     pub(crate) fn to_novo(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Novo(Arc::new(Mutex::new(novo(query)))))
     }
@@ -145,7 +145,7 @@ impl Wire {
         bus.lock().unwrap()
     }
 
-    /// Writes registers of a BiSS encoder without using the window.
+    /// Writes registers of a BiSS encoder directly, without the window.
     pub(crate) fn enter(&self, entries: &[(&str, u8)]) {
         let End::Pin(port) = &self.end else { panic!("{} leads to no configuration pin", self.target) };
         let (now, mut port) = (self.clock.now(), port.lock().unwrap());
@@ -154,7 +154,7 @@ impl Wire {
         }
     }
 
-    /// Replaces the encoders.
+    /// Replaces the devices at the end of the cable.
     pub(crate) fn exchange(&self, query: &str) {
         match &self.end {
             End::Hiperface(own) => *own.lock().unwrap() = bus(query),
@@ -174,17 +174,17 @@ impl Wire {
         self.state().unplugged = false;
     }
 
-    /// Makes the next thread that sends panic.
+    /// Makes the next thread that sends a frame panic.
     pub(crate) fn kill(&self) {
         self.state().deadly = true;
     }
 
-    /// Holds the line before the `number`th request with the given command from now on, counted from 1.
+    /// Holds the cable before a request with this command. `number` counts such requests from now on, starting with 1.
     pub(crate) fn hold_at(&self, command: u8, number: usize) {
         self.state().hold = Some((command, number - 1));
     }
 
-    /// Waits until the line is held.
+    /// Waits until the cable is held at the request.
     pub(crate) fn wait_until_held(&self) {
         let state = self.state();
         let (state, _) = self.changed.wait_timeout_while(state, LONG, |state| !state.held).unwrap();
@@ -201,7 +201,7 @@ impl Wire {
         self.changed.notify_all();
     }
 
-    /// Returns the number of frames passed to the line.
+    /// Returns the number of frames that were sent.
     pub(crate) fn sent(&self) -> usize {
         self.state().sent.len()
     }
@@ -221,7 +221,7 @@ impl Wire {
         self.bus().encoders()[0].memory().field_bytes(number).unwrap().to_vec()
     }
 
-    /// Returns the number of writes to the encoder's EEPROM.
+    /// Returns the number of write cycles of the encoder's EEPROM.
     pub(crate) fn wear(&self) -> u64 {
         self.bus().encoders()[0].wear().total().into()
     }
@@ -254,14 +254,14 @@ impl Wire {
     }
 }
 
-/// The host's end of a cable.
+/// The program's end of a cable.
 pub(crate) struct TestLink {
     wire: Arc<Wire>,
     line: SimLink,
 }
 
 impl TestLink {
-    /// Connects to the cable, or returns an error if it is unplugged.
+    /// Connects to the cable, or returns an error if the cable is pulled.
     pub(crate) fn plug_into(wire: &Arc<Wire>) -> Result<Self, LinkError> {
         let missing = |_| LinkError::new(&wire.target, LinkErrorKind::NotFound);
         wire.check_plug().map_err(missing)?;

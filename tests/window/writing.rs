@@ -1,4 +1,4 @@
-//! Edit, review, write and check the read-back. Nothing is written otherwise.
+//! Tests that an edit is reviewed, written and checked by reading it back, and that nothing is written without that.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -16,8 +16,7 @@ use encoder_studio::store::{DeviceKey, Outcome, read_text};
 use crate::support::{Desk, is_review};
 use crate::texts;
 
-/// Address of a byte in the rated current on the SKM36's name plate. After 16 characters follow the speed and, at 18,
-/// the rated current 01 22h.
+/// Address of the low byte of the rated current (01 22h at 18), after the speed on the name plate of the SKM36.
 const RATED: usize = 19;
 
 #[test]
@@ -108,7 +107,7 @@ fn nothing_is_written_without_consent() {
     desk.write_as_shown();
     assert!(!desk.encoder().session.is_busy(), "there is no plan");
     desk.command(DeviceCommand::Review);
-    // Before the plan is displayed, there is nothing to consent to.
+    // Before the plan is shown, there is nothing to consent to.
     desk.write_as_shown();
     desk.until_planned();
     desk.ask(Hiperface::CloseReview);
@@ -267,7 +266,7 @@ fn an_access_code_is_checked_and_never_shown() {
     assert_eq!(*desk.notice_ids(Severity::Note).last().unwrap(), "session.code_unused");
 }
 
-/// Lists and backups that were requested before the encoder was exchanged.
+/// Lists and backups that were requested before the encoder was exchanged are dropped when they arrive.
 #[test]
 fn late_results_for_another_encoder_are_dropped() {
     let mut desk = Desk::new_form("");
@@ -303,7 +302,7 @@ fn late_results_for_another_encoder_are_dropped() {
     assert!(desk.encoder().session.review.is_none() && !desk.encoder().session.is_busy());
 }
 
-/// Returns a desk whose encoder has a second field, so that the first one is no longer the last.
+/// Returns a studio whose encoder has a second field, so that the first is no longer the last.
 fn with_two_fields() -> Desk {
     let mut desk = Desk::new_form("");
     let status = DataFieldStatus::new(FieldSize::from_bytes(16).unwrap(), AccessCodeNumber::ZERO, true);
@@ -320,7 +319,7 @@ fn change(desk: &mut Desk, change: Change) {
     desk.ask(Hiperface::CloseReview);
 }
 
-/// Returns the reason why a change cannot be planned.
+/// Returns the message that says why a change cannot be planned.
 fn refused(desk: &mut Desk, change: Change) -> Text {
     let wear = desk.wire().wear();
     desk.ask(Hiperface::Plan(change));
@@ -362,7 +361,7 @@ fn changes_against_the_field_rules_are_refused_with_a_reason() {
 #[test]
 fn a_field_exceeding_the_memory_is_refused() {
     let mut desk = Desk::new_form("");
-    // 112 blocks without the two of the name plate: 13 fields of 128 bytes leave six blocks.
+    // 112 blocks minus two for the name plate: 13 fields of 128 bytes leave six blocks.
     let size = FieldSize::from_bytes(128).unwrap();
     let status = DataFieldStatus::new(size, AccessCodeNumber::ZERO, false);
     for number in 1..=13 {

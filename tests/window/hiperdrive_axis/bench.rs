@@ -1,4 +1,4 @@
-//! Test support for the set-up of axes: steps, successful and failed writes, jogs.
+//! Test support for the set-up of an axis: its steps, successful and failed writes, and jogs.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -14,7 +14,7 @@ use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive,
 use crate::hiperdrive_acts::{ATTEMPTS, has_lapsed, hold_pad_until, last_end, until_free};
 use crate::support::Desk;
 
-/// Link to an adapter whose drive has never been requested.
+/// A link to an adapter whose drive was never requested.
 pub(super) const FRESH: &str = "sim:?requested=0";
 
 pub(super) fn unit(desk: &Desk) -> &HiperdriveDevice {
@@ -43,7 +43,7 @@ pub(super) fn seen(desk: &Desk) -> DriveFacts {
     unit(desk).drive_facts(unit(desk).drive())
 }
 
-/// Reads a parameter by its number.
+/// Returns the value of a parameter by its absolute number.
 pub(super) fn read(desk: &Desk, number: u16) -> i64 {
     match unit(desk).value(ParameterNumber::new(number).unwrap()) {
         Some(Value::Number(value)) => *value,
@@ -81,7 +81,7 @@ pub(super) fn new_form(link: &str) -> Desk {
     desk
 }
 
-/// Consents to the plan made by the step.
+/// Consents to the plan of the current step.
 #[track_caller]
 pub(super) fn consent(desk: &mut Desk) {
     desk.until("the plan is there", |studio| {
@@ -95,7 +95,7 @@ pub(super) fn consent(desk: &mut Desk) {
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
 }
 
-/// Consents to the plan and closes its review once it has been executed.
+/// Consents to the plan of the current step, and closes the review after the write.
 #[track_caller]
 pub(super) fn write(desk: &mut Desk) {
     consent(desk);
@@ -114,7 +114,7 @@ pub(super) fn step_with_write(desk: &mut Desk) {
     write(desk);
 }
 
-/// Completes the step and goes to the next one.
+/// Checks that the current step is complete, and goes to the next one, which must be `step`.
 #[track_caller]
 pub(super) fn next(desk: &mut Desk, step: AxisStep) {
     let (axis, seen) = (axis(desk), seen(desk));
@@ -129,7 +129,7 @@ pub(super) fn edit(desk: &mut Desk, change: impl FnOnce(&mut LengthEntries)) {
     run(desk, Run::Edit(Box::new(entries)));
 }
 
-/// Waits for packets, and returns the position of the axis.
+/// Waits for cyclic data, and returns the position of the axis in steps.
 #[track_caller]
 pub(super) fn position(desk: &mut Desk) -> i32 {
     let drive = unit(desk).drive();
@@ -143,7 +143,7 @@ pub(super) fn number(desk: &Desk, number: u16) -> i64 {
     unit(desk).parameter_value(unit(desk).drive(), number).unwrap()
 }
 
-/// Holds the jog until the axis has moved by the given number of steps, then releases it.
+/// Jogs until the axis has moved by at least this number of steps, and releases the pad.
 #[track_caller]
 pub(super) fn jog(desk: &mut Desk, direction: Direction, steps: i32) {
     let from = position(desk);
@@ -161,8 +161,8 @@ pub(super) fn until_stopped(desk: &mut Desk) {
     });
 }
 
-/// Performs the write of a step, whose parameter has the given number for drive 1. If `rough` is set, the write is
-/// first rejected and then cut off in the middle.
+/// Runs the write of the current step. `number` is the parameter as numbered for drive 1. If `rough` is true, the write
+/// is first rejected, then cut off halfway.
 #[track_caller]
 pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
     for hindrance in [WriteFault::Refused, WriteFault::CutOff].into_iter().filter(|_| rough) {
@@ -194,14 +194,14 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
         });
         let own = axis(desk);
         assert_eq!((own.step(), own.is_writing()), (step, false), "{hindrance:?} of {number}");
-        // The last step writes only values that are not saved.
+        // The write of the last step needs no saving, so the axis stays saved.
         assert_eq!(own.is_saved(), step == AxisStep::PowerCycle, "{hindrance:?} of {number}");
         assert_eq!(own.invalidated_step(), None, "{hindrance:?} of {number}");
         if hindrance == WriteFault::CutOff && matches!(step, AxisStep::Reference | AxisStep::Upper) {
             control(desk);
         }
     }
-    // The interrupted write may have arrived, in which case it is already done.
+    // The interrupted write may have arrived, in which case nothing is left to write.
     if axis(desk).request(AxisButton::Do, &seen(desk)).is_ok() {
         step_with_write(desk);
     } else {
@@ -218,7 +218,7 @@ pub(super) fn control(desk: &mut Desk) {
     });
 }
 
-/// Returns a drive with 400 steps per turn of 4 mm, whose limits have to be confirmed.
+/// Returns a studio whose drive has 400 steps per turn of 4 mm and limits that are to be confirmed.
 pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
@@ -236,7 +236,7 @@ pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
     step_with_writes(&mut desk, 156, rough);
-    // Reference 5: 400/256, and 511 turns of 400 steps.
+    // Reference, section 5: the scale is 400/256, and 511 turns of 400 steps are 204 400 steps.
     assert_eq!([154, 156, 158, 160].map(|own| number(&desk, own)), [400, 256, -204_400, 204_400]);
     next(&mut desk, AxisStep::Confirm);
     desk
@@ -246,11 +246,11 @@ pub(super) fn at_jog_step() -> Desk {
     until_scaled(FRESH, 1, false)
 }
 
-/// Takes control and confirms everything up to the step with the slow jog.
+/// Confirms the limits, goes to the step with the slow jog, and takes control.
 pub(super) fn confirm(mut desk: Desk) -> Desk {
     run(&mut desk, Run::Press(AxisButton::Confirm));
     next(&mut desk, AxisStep::Jog);
-    // Before that, the mark of these limits may still be read back from the file, which locks them again.
+    // Until the file contains the confirmation, the mark of these limits may be read back from it and lock them again.
     let path = desk.outside.store().settings_path();
     desk.until("the confirmation is kept", |_| {
         std::fs::read_to_string(&path).is_ok_and(|text| text.contains("unconfirmed: []"))
@@ -263,7 +263,7 @@ pub(super) fn confirmed() -> Desk {
     confirm(at_jog_step())
 }
 
-/// Returns a drive whose position has been set to 128 steps and whose limits have not been set by teach-in yet.
+/// Returns a studio whose drive has its position set to 128 steps, before the limits are taught.
 pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = confirm(until_scaled(link, drive, rough));
     jog(&mut desk, Direction::Clockwise, 20);
@@ -280,7 +280,7 @@ pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
     desk
 }
 
-/// Returns a drive in the test step, with limits set by teach-in.
+/// Returns a studio with taught limits at the test step.
 pub(super) fn at_test_step(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = referenced(link, drive, rough);
     jog(&mut desk, Direction::Counterclockwise, 10);
@@ -296,8 +296,8 @@ pub(super) fn at_test_step(link: &str, drive: u8, rough: bool) -> Desk {
     desk
 }
 
-/// Moves to a target until a condition holds. The move is repeated if a busy computer has delayed it by 250 ms, which
-/// ends the motion.
+/// Moves to a target of the test step until a condition holds. If a busy computer delays the refresh for 250 ms, which
+/// ends the motion, the move is repeated.
 #[track_caller]
 pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&HiperdriveDevice) -> bool) {
     let drive = unit(desk).drive();
@@ -329,7 +329,7 @@ pub(super) fn tested(mut desk: Desk) -> Desk {
     desk
 }
 
-/// Returns an axis that has been saved, before the check with a power cycle.
+/// Returns a studio whose axis is saved, before the power-cycle check.
 pub(super) fn until_saved_with(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = tested(at_test_step(link, drive, rough));
     next(&mut desk, AxisStep::Save);

@@ -1,4 +1,4 @@
-//! Another master sets the reference again, at another place and to the same number, so that no parameter changes.
+//! Tests in which another master sets the reference at another place to the same number, so that no parameter changes.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -7,7 +7,7 @@ use encoder_studio::sim::SimulatedFaults;
 
 use super::*;
 
-/// Returns a drive whose position was set to 128 steps and that is now 0.15 turns away from there.
+/// Returns a studio whose drive had its position set to 128 steps and is now 0.15 turns away from there.
 fn other_mode_text() -> Desk {
     let mut desk = referenced("sim:?requested=0&timeout=250", 1, false);
     jog(&mut desk, Direction::Clockwise, 60);
@@ -22,8 +22,8 @@ fn set_by_another(desk: &Desk) {
     target.with_station(|station| station.write(Moment::default(), reference, &Value::Number(128)).unwrap());
 }
 
-/// Issue 21.6 (c): the position jumps while the axis is at standstill, and everything based on the reference becomes
-/// invalid.
+/// A reference that another master sets again is detected: the position jumps at standstill, and everything based on
+/// the reference becomes invalid (issue 21.6 c).
 #[test]
 fn a_reference_changed_by_another_master_is_detected() {
     let mut desk = other_mode_text();
@@ -36,8 +36,8 @@ fn a_reference_changed_by_another_master_is_detected() {
     assert_eq!(axis(&desk).may_move(&seen(&desk)).unwrap_err().id(), "hd_axis.fallen");
 }
 
-/// Issue 21.6 (c): while the connection is lost, the axis may also have been moved. The change is reported without a
-/// conclusion.
+/// If the position changes while the connection is lost, the axis may also have been moved. The change is therefore
+/// reported without a conclusion (issue 21.6 c).
 #[test]
 fn a_position_change_while_disconnected_is_reported() {
     let mut desk = other_mode_text();
