@@ -42,12 +42,12 @@ pub(crate) struct Outside {
     pub(crate) folder: tempfile::TempDir,
     wires: BTreeMap<String, Arc<Wire>>,
     pub(crate) wakes: Arc<AtomicUsize>,
-    /// Whether [`SLOW`] opens.
+    /// Whether links to [`SLOW`] open.
     pub(crate) opens: Arc<AtomicBool>,
     pub(crate) patience: GracePeriods,
-    /// Answers to a search in the network.
+    /// The devices that answer a discovery request on the network.
     pub(crate) found: Vec<DiscoveredDevice>,
-    /// The kinds of devices in the environment.
+    /// The program with its device kinds.
     pub(crate) program: Program,
 }
 
@@ -64,11 +64,11 @@ pub(crate) const SLOW: &str = "tcp:slow:1";
 pub(crate) const KIT: &str = "/dev/kit0";
 /// The port of an adapter on the bus of another BiSS encoder.
 pub(crate) const ADAPTER: &str = "/dev/adapter0";
-/// The gateway of an INTERBUS encoder.
+/// The address of a gateway to an INTERBUS encoder.
 pub(crate) const GATE: &str = "gate:502";
-/// An adapter with a HIPERDRIVE.
+/// The address of an adapter with a HIPERDRIVE drive.
 pub(crate) const DRIVE: &str = "drive:44818";
-/// A port with an encoder of the kind defined in the tests.
+/// A port with an encoder of the device kind of the tests.
 pub(crate) const NOVO_PORT: &str = "/dev/novo0";
 /// Device servers in front of [`PORT`], [`KIT`] and [`ADAPTER`], as named in links.
 pub(crate) const SERVERS: [(&str, &str); 3] = [("moxa:4001", PORT), ("moxa:4002", KIT), ("tcp:adapter:5000", ADAPTER)];
@@ -183,7 +183,7 @@ impl Outside {
         studio
     }
 
-    /// Creates a studio as started by the program.
+    /// Creates a studio with the default settings of the program.
     pub(crate) fn usual_studio(&self) -> Studio {
         let wakes = self.wakes.clone();
         let wake = move || {
@@ -213,13 +213,13 @@ impl Desk {
         Desk { studio: outside.studio(), outside }
     }
 
-    /// Creates the same studio with the kind defined in the tests.
+    /// Creates a studio that has not been started, with the device kind of the tests added.
     pub(crate) fn with_novo() -> Self {
         let outside = Outside { program: crate::tabs::with_novo(), ..Outside::new("") };
         Desk { studio: outside.studio(), outside }
     }
 
-    /// Creates a desk connected to [`PORT`], which has been read, in an environment with short time-outs.
+    /// Creates a studio with short grace periods for closing, connected to the encoder at [`PORT`], which has been read.
     pub(crate) fn impatient(query: &str) -> Self {
         let mut outside = Outside::new(query);
         let milliseconds = Duration::from_millis;
@@ -235,7 +235,7 @@ impl Desk {
         desk
     }
 
-    /// Creates a desk connected to the virtual encoder, which has been read.
+    /// Creates a studio connected to the virtual encoder, which has been read.
     pub(crate) fn new_form(query: &str) -> Self {
         let mut desk = Self::fresh(query);
         desk.studio.start_with(None, None);
@@ -243,7 +243,7 @@ impl Desk {
         desk
     }
 
-    /// Creates a desk connected to [`PORT`], which has been read.
+    /// Creates a studio connected to the encoder at [`PORT`], which has been read.
     pub(crate) fn at_port(query: &str) -> Self {
         let mut desk = Self::fresh(query);
         desk.open(&format!("serial:{PORT}"));
@@ -341,7 +341,7 @@ impl Desk {
             let edits: Vec<(u8, usize, u8)> = studio.hiperface().unwrap().staged.edited_bytes().collect();
             let kinds = std::fs::read_dir(&folder).into_iter().flatten();
             let files = kinds.flat_map(|kind| std::fs::read_dir(kind.unwrap().path()).unwrap());
-            // The file that is to replace it is next to it.
+            // A temporary file that is to replace the draft may be in the same folder.
             let files =
                 files.map(|file| file.unwrap().path()).filter(|path| path.extension().is_some_and(|own| own == "ron"));
             let texts = files.filter_map(|path| std::fs::read_to_string(path).ok());
@@ -408,7 +408,7 @@ impl Desk {
         self.until_written();
     }
 
-    /// Returns the ids of the texts in all notices of at least the given severity.
+    /// Returns the IDs of the texts in all notices of at least the given severity.
     pub(crate) fn notice_ids(&self, least: Severity) -> Vec<&'static str> {
         let notices = self.studio.services.log.notices().filter(|notice| notice.severity >= least);
         notices.flat_map(|notice| notice.texts.iter().map(encoder_studio::app::Text::id)).collect()
