@@ -219,7 +219,7 @@ impl Desk {
         Desk { studio: outside.studio(), outside }
     }
 
-    /// Creates a studio with short grace periods for closing, connected to the encoder at [`PORT`], which has been read.
+    /// Creates a studio with short grace periods for closing, connected to an encoder at [`PORT`] that has been read.
     pub(crate) fn impatient(query: &str) -> Self {
         let mut outside = Outside::new(query);
         let milliseconds = Duration::from_millis;
