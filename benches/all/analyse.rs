@@ -24,7 +24,7 @@ const ROUNDS: usize = 5;
 const ELLIPSE: Ellipse =
     Ellipse { amplitude_v: 0.5, offset_cosine_v: 0.02, offset_sine_v: -0.03, gain_ratio: 1.05, phase_error_rad: 0.052 };
 
-/// Returns a thousand samples per period with some noise.
+/// Returns times, sine and cosine with a thousand samples per period and some noise.
 fn capture(count: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let mut random = fastrand::Rng::with_seed(1);
     let time: Vec<f64> = (0..count).map(|at| at as f64 * 1e-6).collect();
@@ -36,7 +36,7 @@ fn capture(count: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     (time, sine, cosine)
 }
 
-/// Solves all rows of the equations at once, and computes the angle of each sample.
+/// Solves the equations of all samples at once and calculates the angle of each sample.
 fn naive_fit(sine: &[f64], cosine: &[f64]) -> f64 {
     let rows = sine.len();
     let design = DMatrix::from_fn(rows, 5, |row, column| {
@@ -75,7 +75,7 @@ pub(crate) fn run() {
         density
     };
     println!("{:<28} {:>8.3}", "density of the Lissajous", median(ROUNDS, density));
-    // A tenth of the samples, because all of them would need gigabytes.
+    // Only a tenth of the samples are used, because all of them would need gigabytes of memory.
     let tenth = SAMPLES / 10;
     let naive = median(ROUNDS, || naive_fit(&sine[..tenth], &cosine[..tenth])) * 10.0;
     println!("{:<28} {naive:>8.3}  (ten times a tenth of the samples)", "QR of all, atan2 of all");

@@ -19,11 +19,11 @@ const FRAMES: usize = 1 << 16;
 /// Number of times that the batch is decoded in one measurement.
 const PASSES: usize = 16;
 const ROUNDS: usize = 9;
-/// Period of the stream.
+/// Time between two frames of the stream.
 const PERIOD_US: u32 = 50;
 const SECONDS: u32 = 10;
 
-/// Returns the frames of random positions, one in a thousand of them with a flipped bit.
+/// Returns frames of pseudo-random positions. One in a thousand has an inverted bit.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut random = fastrand::Rng::with_seed(1);
     (0..FRAMES)
@@ -53,7 +53,7 @@ fn rate<T>(frames: &[u64], decode: impl Fn(u64) -> T) -> f64 {
     (FRAMES * PASSES) as f64 / seconds / 1e6
 }
 
-/// Decodes the kit encoder's frame as described in the manual, with the checksum calculated bit by bit.
+/// Decodes a frame of the kit encoder as in the manual, calculating the checksum bit by bit.
 fn bit_by_bit(raw: u64) -> Option<PositionData> {
     let data = raw >> 6;
     let mut sum = 0u8;
@@ -83,8 +83,7 @@ fn decoding() {
     println!("{:<32} {:>7.1}", "20 + 26 bits, CRC16", rate(&frames, |raw| wide.parse(raw)));
 }
 
-/// Returns the data that an adapter sends in ten seconds with a shaft at 3000 revolutions per minute and 56 frames per
-/// packet.
+/// Returns the data that an adapter sends in ten seconds while the shaft turns at 3000 rpm, with 56 frames per packet.
 fn sent(layout: &Layout) -> Vec<u8> {
     let frame = |index: u32| {
         let steps = u64::from(index) * 131_072 * u64::from(PERIOD_US) / 20_000;
@@ -101,7 +100,7 @@ fn sent(layout: &Layout) -> Vec<u8> {
     (0..count).step_by(56).flat_map(packet).collect()
 }
 
-/// Records all data in a history and returns the number of frames.
+/// Records all frames of the stream in a history and returns their number.
 fn receive(bytes: &[u8], layout: &Layout) -> u64 {
     let mut receiver = Receiver::default();
     let mut continuity = Continuity::at_start();

@@ -1,6 +1,7 @@
-//! Growth of the data that a session accumulates, each at three sizes: samples, registers, trace frames, logbook
-//! entries and connected devices. The slope is the exponent by which the time grows from the smallest to the largest
-//! size: 0 if it does not depend on the size, 1 if it is proportional. Prints figures without a verdict.
+//! How the cost of an operation grows with what a session accumulates: samples, registers, trace frames, logbook
+//! entries and connected devices, each at three sizes. The slope is the exponent with which the time grows from the
+//! smallest to the largest size: 0 if it does not depend on the size, 1 if it is proportional. Prints figures without a
+//! verdict.
 //!
 //! `cargo bench -- growth`
 
@@ -39,7 +40,7 @@ pub(crate) fn run(parts: &[String]) {
     }
 }
 
-/// Prints the times for three sizes, with the slope after the last one.
+/// Prints the times for three sizes, followed by the slope.
 fn print(what: &str, times: &[(usize, f64)]) {
     for (at, (size, seconds)) in times.iter().enumerate() {
         let slope = match times {

@@ -46,7 +46,7 @@ fn opened(port: u16) -> OpenedConnection {
     }
 }
 
-/// A virtual drive with a separate socket and clock, which records the arrival of each word.
+/// A virtual drive with its own socket and clock, which records the arrival of each word.
 struct Target {
     port: u16,
     words: Receiver<(Instant, ControlWord)>,
@@ -191,7 +191,7 @@ fn ours() -> (Box<dyn DeviceConnection>, Target) {
         timeout: Some(20),
         reference: Some(0),
     };
-    // They are not read again here. The time is that of a reading at the end.
+    // The limits are not read again here, so the time of their reading lies after the end of the benchmark.
     let read = clock.now() + Duration::from_secs(3600);
     motion
         .publish_limits(DriveNumber::FIRST, DriveLimits::from_rules(rules, (Topology::Adapter, Variant::new(7)), read));
@@ -252,7 +252,8 @@ fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f6
     took
 }
 
-/// Measures the intervals between packets that are sent, at the socket, and between packets that are received.
+/// Measures the intervals between the packets that arrive at the target's socket and between those that the host
+/// receives.
 fn evenness(way: &dyn DeviceConnection, target: &Target, time: Duration) -> [Histogram; 2] {
     sleep(INTERVAL * 5);
     target.words.try_iter().for_each(drop);
@@ -268,7 +269,7 @@ fn evenness(way: &dyn DeviceConnection, target: &Target, time: Duration) -> [His
     [sent, way.arrivals()]
 }
 
-/// Starts a window that draws 60 times per second, which takes half of the time.
+/// Starts a thread that imitates a window: it draws 60 times per second and takes half of the time.
 fn window() -> (Arc<AtomicBool>, JoinHandle<()>) {
     let end = Arc::new(AtomicBool::new(false));
     let ends = end.clone();
@@ -284,12 +285,12 @@ fn window() -> (Arc<AtomicBool>, JoinHandle<()>) {
     (end, thread)
 }
 
-/// Returns the processor seconds of this process, if the system reports them.
+/// Returns the processor time of this process in seconds, if the system reports it.
 fn processor_seconds() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields: Vec<f64> =
         stat.rsplit(") ").next().unwrap_or("").split(' ').map(|f| f.parse().unwrap_or(0.0)).collect();
-    // User and system time, in hundredths.
+    // User and system time in hundredths of a second.
     fields.get(11..13).map_or(0.0, |times| times.iter().sum::<f64>() / 100.0)
 }
 

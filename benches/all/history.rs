@@ -1,5 +1,6 @@
-//! Cost of keeping samples for hours and of drawing them: appending compared with a pyramid of plain vectors, frames
-//! compared with a full scan, memory, and a soak test in virtual time. Prints figures without a verdict.
+//! Cost of keeping samples for hours and of drawing them: appending is compared with a pyramid of plain vectors,
+//! drawing a frame with a scan of all samples. Also measures memory, and runs a soak test in virtual time. Prints
+//! figures without a verdict.
 //!
 //! `cargo bench -- history`
 
@@ -41,7 +42,7 @@ pub(crate) fn run(parts: &[String]) {
     }
 }
 
-/// The naive alternative: vectors that grow sample by sample, without flags.
+/// The naive alternative: vectors without flags that grow by one sample at a time.
 #[derive(Default)]
 struct Naive {
     times: Vec<i64>,
@@ -87,8 +88,8 @@ impl Naive {
     }
 }
 
-/// Measures both solutions in turn, and then copies the same bytes to memory that the system has to provide first,
-/// which is the minimum cost of keeping them. The worst stall is the longest batch that is long in every round, which
+/// Measures both alternatives in turn. Then copies the same bytes into memory that the system must provide first, which
+/// is the least possible cost of keeping them. The worst stall is the longest batch that is long in every round, which
 /// excludes other activity of the computer.
 fn append(batch: usize) {
     let samples = 4_000_000;
@@ -149,7 +150,7 @@ fn copies(times: &[SampleTime], columns: &[Vec<f64>], batches: usize) -> (Durati
     (median(&mut totals), least.into_iter().max().unwrap())
 }
 
-/// Draws pictures while the view moves by a tenth of a pixel column per picture.
+/// Measures the time of frames while the view moves by a tenth of a pixel column per frame.
 fn pictures(history: &History) {
     let all = history.indices();
     let (first, last) = (history.time(all.start).unwrap(), history.time(all.end - 1).unwrap());
@@ -217,7 +218,7 @@ fn memory(history: &History, columns: usize) {
     println!("  memory {:.1} MB, {ratio:.3} × the raw columns", history.memory() as f64 / 1e6);
 }
 
-/// Records the samples of an hour or a day with pauses. No more than ten million samples are kept.
+/// Appends the samples of a day or an hour with pauses in between. At most ten million samples are kept.
 fn soak_of(label: &str, samples: usize, period: i64, columns: usize, kind: Kind) {
     const BATCH: usize = 10_000;
     const RANGE: i64 = 4096 * 32_768;
@@ -302,7 +303,7 @@ fn filled(kind: Kind, columns: usize, flagged: bool) -> History {
 }
 
 fn times(start: usize, count: usize) -> Vec<SampleTime> {
-    // Slightly uneven, as on a real line.
+    // The intervals are slightly uneven, as on a real line.
     (start..start + count)
         .map(|at| SampleTime::from_nanoseconds(at as i64 * PERIOD + (at * 7919 % 50_000) as i64))
         .collect()

@@ -19,7 +19,7 @@ mod window;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Returns the median duration of the given number of rounds, in seconds.
+/// Runs the work several times and returns the median time in seconds.
 fn median<T>(rounds: usize, mut work: impl FnMut() -> T) -> f64 {
     let mut times: Vec<f64> = (0..rounds)
         .map(|_| {
@@ -51,7 +51,7 @@ const ALL: &[Benchmark] = &[
 ];
 
 fn main() {
-    // Cargo adds an option.
+    // Cargo adds an option of its own.
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     let Some((name, parts)) = words.split_first() else {
         for (name, run) in ALL {

@@ -17,10 +17,10 @@ use encoder_studio::ui::{Theme, install_fonts};
 
 const SAMPLES: usize = 10_000_000;
 const SIGNALS: usize = 4;
-/// Sample period in nanoseconds.
+/// Time between two samples in nanoseconds.
 const PERIOD: i64 = 10_000;
 const ROUNDS: usize = 101;
-/// Size of a plot with a width of a thousand pixels, plus the gutter for the labels.
+/// Size of the plot: a thousand pixels, plus the space for the labels.
 const SIZE: Vec2 = Vec2::new(1060.0, 600.0);
 
 pub(crate) fn run(parts: &[String]) {
@@ -35,7 +35,7 @@ pub(crate) fn run(parts: &[String]) {
     let mut bench = Bench::new();
     let all = (SampleTime::ORIGIN, SampleTime::from_nanoseconds(SAMPLES as i64 * PERIOD));
     let span = all.1.nanoseconds_since(all.0);
-    // Each frame shows another part, so nothing of the previous frame can be reused.
+    // Each frame shows another section, so that nothing of the previous one can be reused.
     let stretch = |share: f64, round: usize| {
         let length = (span as f64 * share) as i64;
         let from = (span - length).max(0) / 3 + round as i64 * length / 997;
@@ -59,7 +59,7 @@ pub(crate) fn run(parts: &[String]) {
     recorder.handle_action(recorder::RecorderAction::Follow);
     let mut next = SAMPLES;
     let took = bench.rounds(&mut recorder, |recorder, _| {
-        // Two thousand samples between two frames, as at 100 kHz.
+        // Two thousand samples arrive between two frames, as at 100 kHz.
         append(recorder, group, next, 2_000, false);
         next += 2_000;
     });
@@ -174,7 +174,7 @@ fn frame(ctx: &Context, mut content: impl FnMut(&mut egui::Ui)) -> (Duration, us
     (took, vertices)
 }
 
-/// Draws the same samples as lines of egui_plot, which reads each sample for every frame.
+/// Draws the same samples as lines of egui_plot, which processes all of them in every frame.
 fn egui_plot_frame() -> String {
     let columns: Vec<Vec<egui_plot::PlotPoint>> = (0..SIGNALS)
         .map(|signal| {

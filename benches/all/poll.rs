@@ -14,9 +14,9 @@ use encoder_studio::worker::Session;
 
 /// Time in milliseconds that the virtual encoder needs for 42h.
 const PROCESSING: f64 = 3.7;
-/// Longest time in milliseconds for 42h in the manual's table.
+/// Longest time for 42h in the manual's table, in milliseconds.
 const LONGEST: f64 = 10.0;
-/// Settings bytes of the polled encoders: 9600 and 38400 baud, even parity, a time-out of 44 bits.
+/// The interface settings with which the encoder is polled: 9600 and 38400 baud, even parity, time-out of 44 bits.
 const SETTINGS: [u8; 2] = [0xE4, 0xE6];
 
 /// Returns the minimum time for 42h in milliseconds: a request of three characters, silence, processing, a reply of
@@ -34,7 +34,7 @@ fn median(mut cycles: Vec<f64>) -> f64 {
     cycles[cycles.len() / 2]
 }
 
-/// Returns the median time from one position to the next, in milliseconds, as polled by the program.
+/// Polls as the program does, and returns the median time from one position to the next in milliseconds.
 fn studio(settings: u8, clock: Arc<dyn Clock>, count: usize) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     let mut station = Station::new(Duration::from_millis(20));

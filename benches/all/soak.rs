@@ -89,7 +89,7 @@ pub(crate) fn run(parts: &[String]) {
     }
 }
 
-/// Returns a window in which all virtual devices are polled, and sine and cosine are recorded.
+/// Returns a window in which all virtual devices are polled and sine and cosine are recorded.
 fn connected(folder: &Path) -> Screen {
     let mut screen = open_window(folder);
     connect_devices(&mut screen, DEVICES);
@@ -97,7 +97,7 @@ fn connected(folder: &Path) -> Screen {
     screen
 }
 
-/// Returns the window in its state after the start of the program, with its files in the given folder.
+/// Returns the window as it is after the program has started, with its files in a folder.
 pub(crate) fn open_window(folder: &Path) -> Screen {
     let environment = StudioEnvironment::production(Store::at_root(folder), program().studio);
     let mut studio = Studio::new(environment, Arc::new(|| {}));
@@ -108,8 +108,8 @@ pub(crate) fn open_window(folder: &Path) -> Screen {
     })
 }
 
-/// Connects virtual devices, up to one of each kind, and polls them as fast as their links allow. The first one is
-/// connected when the program starts.
+/// Connects virtual devices, at most one of each kind, and polls them as fast as their links allow. The first one is
+/// already connected when the program starts.
 pub(crate) fn connect_devices(screen: &mut Screen, wanted: usize) {
     until(screen, "the first device", |studio| polled(studio) == 1);
     for (tab, count) in TABS[1..wanted].iter().zip(2..) {
@@ -122,7 +122,7 @@ pub(crate) fn connect_devices(screen: &mut Screen, wanted: usize) {
     }
 }
 
-/// Draws frames until a condition holds. Devices that are ready are polled as fast as their links allow.
+/// Draws frames until a condition is met. Devices that become ready are polled as fast as their links allow.
 fn until(screen: &mut Screen, what: &str, condition: impl Fn(&Studio) -> bool) {
     let began = Instant::now();
     loop {
@@ -164,9 +164,9 @@ impl Usage {
         let devices = screen.state().0.studio().devices();
         Usage {
             at: Instant::now(),
-            // Hundredths of a second.
+            // The fields are in hundredths of a second.
             busy: (fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap()) / 100.0,
-            // Pages of 4 KiB.
+            // The field is a number of pages of 4 KiB.
             bytes: fields[21].parse::<f64>().unwrap() * 4096.0,
             handles: count("/proc/self/fd"),
             threads: count("/proc/self/task"),

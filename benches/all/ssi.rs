@@ -23,7 +23,7 @@ fn layout(text: &str) -> Layout {
     settings.resolve(Families::built_in().find_by_key(&key).unwrap()).unwrap().layout
 }
 
-/// Returns the frames of random positions, some of them with an error bit.
+/// Returns frames of pseudo-random positions, some with an error bit.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut random = fastrand::Rng::with_seed(1);
     let frame = |_| {
@@ -33,7 +33,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
     (0..FRAMES).map(frame).collect()
 }
 
-/// Decodes 25 bits in Gray code, 12 of them turns, as described in the manual: bit by bit, from the first clock on.
+/// Decodes 25 bits in Gray code, of which 12 are turns, as in the manual: bit by bit from the first clock on.
 fn bit_by_bit(frame: u64) -> (u32, u32) {
     let (mut turns, mut steps, mut before) = (0_u32, 0_u32, 0_u64);
     for clock in 1..=25 {

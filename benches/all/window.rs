@@ -148,7 +148,7 @@ fn stream() {
     .unwrap();
 }
 
-/// Number of samples in each of four lines (sine, cosine, REFSIN, REFCOS) at one microsecond each.
+/// Number of samples of each of the four lines: sine, cosine, REFSIN and REFCOS at intervals of one microsecond.
 const SAMPLES: usize = 10_000_000;
 
 fn write_capture(path: &std::path::Path) {
@@ -197,7 +197,7 @@ fn plot() {
                 if self.times.len() == 1 {
                     let lines = studio.tool_as::<Signals>().expect("there is a Signals tab").scope().recorder.series();
                     for (at, line) in lines.iter().enumerate() {
-                        // Sine, cosine and both references.
+                        // The plot shows sine, cosine and both references.
                         let shown = [0, 1, 4, 6].contains(&at);
                         mailbox.send(Action::Recorder(
                             encoder_studio::app::RecorderOwner::Tool(encoder_studio::app::Tab::named("Signals")),
@@ -209,7 +209,7 @@ fn plot() {
             self.window.draw(ui);
             ui.ctx().request_repaint();
             if self.times.len() > PICTURES {
-                // The first frames lay out letters and fill the memory.
+                // The first frames lay out letters and fill the memory, so they are left out.
                 let mut took: Vec<u64> =
                     self.times.windows(2).skip(20).map(|pair| (pair[1] - pair[0]).as_micros() as u64).collect();
                 let folder = std::env::var("XDG_DATA_HOME").unwrap();
@@ -251,7 +251,7 @@ fn plot() {
     .unwrap();
 }
 
-/// Runs an empty window, which shows the minimum cost of eframe, the driver and the X server.
+/// Runs the empty window, which is the least cost of eframe, the driver and the X server.
 fn minimal() {
     struct Nothing(Option<Instant>);
     impl eframe::App for Nothing {
@@ -320,7 +320,7 @@ fn end(child: &mut Child) {
     let _ = child.wait();
 }
 
-/// The display of this session, or a virtual one.
+/// The display of this session or a virtual one.
 struct Display {
     name: String,
     server: Option<Child>,

@@ -82,8 +82,8 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns whether a path leads to the list of devices at the virtual adapter, which is needed to open an adapter. This
-/// is the only part of the list of kinds that devices, tests of a bus and Signals use.
+/// Returns whether a path is the list of devices that can be attached to the virtual adapter, which is needed to open
+/// an adapter. It is the only part of the list of kinds that a device, the tests of a bus and Signals may use.
 fn is_attachable_kinds(path: &[String]) -> bool {
     path == ["kinds", "attachable_kinds"]
 }
@@ -137,8 +137,8 @@ fn no_two_folders_of_the_core_use_each_other() {
     assert!(uses.is_empty(), "these use each other: {uses:?}");
 }
 
-/// A device is used only by itself and by the list of kinds. A bus is used only by devices, and by Signals at the
-/// inputs of an adapter. Signals is used only by the list.
+/// Only a device itself and the list of kinds use the device. A bus is used by devices, and by Signals for an adapter's
+/// inputs. Signals is used only by the list of kinds.
 #[test]
 fn devices_and_buses_are_used_only_where_allowed() {
     for source in sources() {
@@ -266,8 +266,8 @@ fn every_text_is_in_the_table_and_every_row_is_used() {
     let areas: BTreeSet<&str> =
         known.0.iter().flat_map(|(_, ids)| ids).filter_map(|id| id.split_once('.')).map(|(area, _)| area).collect();
     let mut used = BTreeSet::new();
-    // These are the layers from the state upwards, and files that declare parameters together with the names of their
-    // entries.
+    // Texts are used by the layers from the state upwards and by tables of parameters, whose entries are named where
+    // they are declared.
     let says = |source: &&Source| source.place.floor() >= 5 || source.text.contains("parameters! {");
     for source in sources.iter().filter(says).filter(|source| !source.path.ends_with("texts.rs")) {
         for (line, code) in source.code() {
@@ -332,7 +332,7 @@ fn no_view_contains_a_literal_text() {
     /// The name of the program, example inputs, and names from the manual.
     const ALLOWED: [&str; 7] =
         ["encoder-studio", "drop:0.01", "capture.trace", "atm60,code=gray", "error%1bposition%24ge", "nERR", "nWARN"];
-    /// Files that are not views, and contain messages on the terminal and the names of renderers and fonts.
+    /// Files that are not views: they have messages on the terminal, or names of renderers and fonts.
     const NO_VIEWS: [&str; 3] = ["src/ui/renderer.rs", "src/ui/run.rs", "src/ui/theme.rs"];
     let sources = sources();
     let known = Known::read(&sources);
@@ -426,7 +426,7 @@ fn literals(source: &str) -> Vec<Literal> {
     found
 }
 
-/// Returns a text without its escape sequences, none of which represents a letter.
+/// Returns a text without its escape sequences. None of them stands for a letter.
 fn unescaped(text: &str) -> String {
     let mut characters = text.chars();
     let mut bare = String::new();

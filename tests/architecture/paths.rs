@@ -1,13 +1,13 @@
 //! Detection of paths to modules anywhere in the text of a file: after `use`, in a type, or in an expression.
 
-/// A path from the root of the crate, and the line on which it starts.
+/// A path from the root of the crate, with the line on which it begins.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Used {
     pub(crate) line: usize,
     pub(crate) path: Vec<String>,
 }
 
-/// Returns every path that begins with `crate`, `super` or `self`, resolved from a module. Comments are ignored.
+/// Returns every path outside comments that begins with `crate`, `super` or `self`, resolved from the given module.
 pub(crate) fn paths(module: &[String], text: &str) -> Vec<Used> {
     let code: String = text.lines().map(|line| format!("{}\n", line.split("//").next().unwrap_or_default())).collect();
     let mut found = Vec::new();
@@ -36,7 +36,7 @@ pub(crate) fn paths(module: &[String], text: &str) -> Vec<Used> {
     found
 }
 
-/// Reads the path that follows `before`, with all of its branches, and returns the rest of the text.
+/// Reads a path after `before` with all its branches into `ends`, and returns the rest of the text.
 fn read<'t>(text: &'t str, before: &[String], ends: &mut Vec<Vec<String>>) -> &'t str {
     let text = text.trim_start();
     if let Some(mut rest) = text.strip_prefix('{') {
@@ -52,7 +52,7 @@ fn read<'t>(text: &'t str, before: &[String], ends: &mut Vec<Vec<String>>) -> &'
                 .trim_start()
                 .strip_prefix("as ")
                 .map_or(behind, |name| name.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_'));
-            // Anything that is not a path ends the list, because it was part of a macro.
+            // If something other than a path follows, the list ends, because it was in a macro.
             if behind.len() == rest.len() {
                 return behind;
             }

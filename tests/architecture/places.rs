@@ -28,7 +28,7 @@ const LAYERS: [(&str, u8); 21] = [
 /// Layers that the core does not have, because it knows neither the bytes nor the procedures of a device.
 const NEVER_OF_THE_CORE: [&str; 2] = ["protocol", "procedures"];
 
-/// The modules of a device, a bus or Signals, with their layers.
+/// The modules of a device, a bus and Signals, with the layer of each.
 const MODULES: [(&str, &str); 8] = [
     ("protocol", "protocol"),
     ("profile", "profile"),
@@ -40,7 +40,7 @@ const MODULES: [(&str, &str); 8] = [
     ("commands", "cli"),
 ];
 
-/// The owner of a module.
+/// The part of the program to which a module belongs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Owner {
     Core,
@@ -92,7 +92,7 @@ fn layer_of_module(name: &str) -> Option<&'static str> {
     MODULES.iter().find(|(module, _)| *module == name).map(|(_, layer)| *layer)
 }
 
-/// Returns the modules for a file path below `src`, such as `app` and `hiperface` for `app/hiperface/mod.rs`.
+/// Returns the module path of a file's path under `src`: for `app/hiperface/mod.rs`, it is `app`, `hiperface`.
 pub(crate) fn modules_of(path: &str) -> Vec<String> {
     let mut modules: Vec<String> = path.trim_end_matches(".rs").split('/').map(ToOwned::to_owned).collect();
     if matches!(modules.last().map(String::as_str), Some("mod" | "lib")) {

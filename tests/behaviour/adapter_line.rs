@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::support::Bench;
 
-/// A data field with 32 writable bytes that is protected by code 0.
+/// One data field: 32 writable bytes, protected by access code 0.
 const FIELDS: &str = r#"[{"status":"C9","bytes":"0815"}]"#;
 
 #[test]
@@ -16,7 +16,7 @@ fn an_encoder_at_an_adapter_is_read_and_written() {
     assert_eq!((&told["serial_number"], &told["encoder_name"]), (&json!("GB0450179"), &json!("SKM36")));
     // 9600 baud and even parity are set before the first frame.
     assert_eq!(adapter.requests().first().map(String::as_str), Some("F 9600 2"));
-    // The SKM36 is at 000E0531h, which is turn E0h, step 1329 of 4096.
+    // An SKM36 at position 000E0531h is at turn E0h, step 1329 of 4096.
     let read = run(&["position", "hiperface"]);
     assert_eq!((&read["raw"], &read["turns"], &read["steps"]), (&json!(918_833), &json!(224), &json!(1329)));
     adapter.requests();
@@ -27,7 +27,8 @@ fn an_encoder_at_an_adapter_is_read_and_written() {
     assert_eq!(stores, 1, "a store is never repeated without a check");
 }
 
-/// The encoder has executed the store. The host reads the byte back and does not store it again.
+/// The encoder has executed the store although its reply is lost. The host reads the byte back and does not store it
+/// again.
 #[test]
 fn a_store_whose_reply_is_lost_is_not_repeated() {
     let bench = Bench::new();
@@ -40,7 +41,7 @@ fn a_store_whose_reply_is_lost_is_not_repeated() {
     assert_eq!(run(&["read", "hiperface", "field:0@0+3"]).json()["value"], json!("08ABFF"));
 }
 
-/// Transfer 2 reaches the encoder, but its reply does not reach the host.
+/// The request of transfer 2 reaches the encoder, but the reply does not reach the host.
 #[test]
 fn a_lost_reply_is_requested_again() {
     let bench = Bench::new();
@@ -61,7 +62,7 @@ fn the_supply_is_switched_on_and_restored() {
     assert_eq!(supplied(), ["S 8000", "S off"]);
     assert_eq!(position("?voltage=8&leave-supply=on").json()["raw"], json!(918_833));
     assert_eq!(supplied(), ["S 8000"]);
-    // Technical data in the manual: 7 to 12 V.
+    // The manual's technical data allow 7 to 12 V.
     position("?voltage=5").fails(2, &["voltage=5", "7 to 12"]);
     position("?voltage=24").fails(2, &["voltage=24", "7 to 12"]);
     assert!(supplied().is_empty(), "nothing is sent");
@@ -80,7 +81,8 @@ fn a_silent_encoder_or_adapter_is_named() {
     bench.run(&["identify", "hiperface", "--link", &other.url]).fails(1, &["bench adapter", "no serial line"]);
 }
 
-/// The configuration pin of a kit encoder. A temperature of 30 °C is 80 in register 66h (BiSS reference 2).
+/// The kit encoder has a configuration pin. Its temperature of 30 °C is the value 80 in register 66h (BiSS reference
+/// 2).
 #[test]
 fn a_configuration_pin_at_an_adapter_is_read_and_written() {
     let bench = Bench::new();

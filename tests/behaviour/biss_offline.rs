@@ -33,7 +33,7 @@ fn golden_bytes_are_explained() {
     }
 }
 
-/// BiSS reference 2: every frame of the table, and a frame with its lowest data bit inverted.
+/// Checks every frame of the table in BiSS reference 2, and a frame whose lowest data bit is inverted.
 #[test]
 fn position_frames_are_checked() {
     let bench = Bench::new();
@@ -59,7 +59,8 @@ fn position_frames_are_checked() {
     assert_eq!(prefixed["frames"][0]["turns"], json!(0x1234));
 }
 
-/// UBICOM reference 6, turn 1234h at 270°: a word printed by `position` can be decoded in either form.
+/// The word that `position` prints for turn 1234h at 270° (UBICOM reference 6) can be decoded, both as a decimal and as
+/// a hexadecimal number.
 #[test]
 fn position_words_are_decoded_as_printed() {
     let bench = Bench::new();
@@ -73,7 +74,7 @@ fn position_words_are_decoded_as_printed() {
         assert_eq!((&one["raw"], &one["turns"], &one["steps"]), (&json!(0x2469_8000), &json!(4660), &json!(98_304)));
     }
     bench.run(&["decode", "biss", "raw=8589934592"]).fails(1, &["33 bits"]);
-    // Nine digits can be either form.
+    // Nine digits may be a decimal or a hexadecimal number.
     bench.run(&["decode", "biss", "123456789"]).fails(2, &["0x024698000", "raw="]);
     bench.run(&["decode", "biss", "raw=x"]).fails(2, &["raw=x", "0x024698000"]);
 }
@@ -97,10 +98,10 @@ fn damaged_frames_name_the_failed_checksum() {
         let told = bench.run(&[&command[..], &["--json"]].concat()).json_with(1);
         assert!(told["frames"].as_array().unwrap().iter().all(|frame| frame["valid"] == json!(false)), "{told}");
     }
-    // This frame was read by an adapter with a wrong CRC, but its packet is valid.
+    // The adapter has read a frame with a wrong CRC, but the packet that contains it is valid.
     let packet = "06 07 A1 41 42 0F 01 01 01 01 01 02 CE 04 80 69 24 01 01 03 85 9D 00";
     bench.run(&["decode", "biss", packet]).fails(1, &["CRC-6", "024698000CE"]);
-    // The valid frames of the same command are printed.
+    // Valid frames are printed even if the same command contains invalid ones.
     let mixed = bench.run(&["decode", "biss", "024698000CF", "024698000CE", "--json"]).json_with(1);
     let valid: Vec<&Value> = mixed["frames"].as_array().unwrap().iter().map(|frame| &frame["valid"]).collect();
     assert_eq!(valid, [&json!(true), &json!(false)]);
@@ -127,7 +128,7 @@ fn two_profiles_are_compared_without_a_link() {
     let left = bench.write("left.ron", PROFILE);
     let equal = bench.run(&["diff", &left, &left, "--json"]).json();
     assert_eq!((&equal["equal"], &equal["differences"], &equal["missing"]), (&json!(true), &json!([]), &json!([])));
-    // At least 64 banks of 64 registers.
+    // A profile has at least 64 banks of 64 registers.
     assert!(equal["compared"].as_u64() >= Some(4096), "{equal}");
     let other =
         PROFILE.replace("(bank: 0x24, bytes: [\"00", "(bank: 0x24, bytes: [\"A1").replace("0x03, // b", "0x04, // b");
@@ -140,15 +141,15 @@ fn two_profiles_are_compared_without_a_link() {
     assert_eq!((&told["equal"], &told["differences"]), (&json!(false), &differences), "{told}");
     let text = bench.run(&["diff", &left, &right]);
     assert!(text.status == Some(3) && text.out.contains("0x24:0x00  00  →  A1"), "{text:?}");
-    // If the profile is for another kind of device, the message names both kinds.
+    // The message about a profile of another kind of device names both kinds.
     let other = bench.file("other.ron");
     assert_eq!(bench.run(&["save", "hiperface", "--link", "sim:", "-o", &other]).status, Some(0));
     bench.run(&["diff", &left, &other, "--json"]).fails(1, &["other.ron", "hiperface", "biss"]);
     bench.run(&["diff", &other, &left, "--json"]).fails(1, &["left.ron", "hiperface", "biss"]);
 }
 
-/// Issue 22.17: a misspelt name stops a restore and is reported with its position. A profile with a newer schema is
-/// compared but not restored.
+/// A misspelt name prevents a restore and is reported with its position. A profile with a newer schema can be compared
+/// but not restored (issue 22.17).
 #[test]
 fn a_misspelt_name_is_reported_and_a_newer_schema_is_read_only() {
     let bench = Bench::new();

@@ -1,6 +1,6 @@
 //! A profile of the foreign kit encoder as a user might write it.
 
-/// Bank 24h contains 00h to 3Fh, and bank 25h three bytes. The preset is 270°.
+/// A profile in which bank 24h has the bytes 00h to 3Fh, bank 25h has three bytes, and the preset is 270°.
 pub(crate) const PROFILE: &str = r#"(
     schema: 1,
     device: "biss",

@@ -48,7 +48,8 @@ fn the_configuration_pin_may_echo_and_use_either_byte_order() {
     assert_eq!(ask(&bench, &noisy, &["identify", "biss", JSON]).json()["serial_number"], json!("12345678"));
 }
 
-/// BiSS reference 7: error register 12h means the multiturn and a too weak field, warning 01h the temperature.
+/// Error register 12h reports the multiturn counter and a magnetic field that is too low. Warning 01h reports the
+/// temperature (BiSS reference 7).
 #[test]
 fn status_names_the_set_bits() {
     let bench = Bench::new();
@@ -68,15 +69,15 @@ fn status_names_the_set_bits() {
         assert_eq!(told["warnings"], json!([{"code": 0, "text": "temperature too high"}]));
         let text = ask(&bench, encoder, &["status", "biss"]);
         assert!(text.out.contains("magnetic field too low"), "{text:?}");
-        // The bits of the position itself, or the registers if the position has no bits.
+        // The error bits come from the position itself, or from the registers if the position has none.
         let position = ask(&bench, encoder, &["position", "biss", JSON]).json();
         assert_eq!((&position["valid"], &position["warning"]), (&json!(false), &json!(true)));
     }
 }
 
-/// Issue 22.19: a Wiegand sensor whose test was never saved is not reported as good. Each line has one verdict. The
-/// encoders are one with factory settings, and one with the errors of reference 7 that exceeds the maximum temperature
-/// of its data sheet (105 °C), on a disturbed line at an adapter that measures its supply.
+/// A check does not report a Wiegand sensor as good if its test was never saved (issue 22.19), and it gives one verdict
+/// per line. It is tested with an encoder with factory settings, and with one that has the errors of reference 7, is
+/// hotter than its data sheet allows (105 °C) and is on a noisy line of an adapter that measures its supply.
 #[test]
 fn a_check_judges_the_encoders_own_diagnostics() {
     let bench = Bench::new();
@@ -110,8 +111,8 @@ fn a_check_judges_the_encoders_own_diagnostics() {
     bench.run(&["do", "biss", "check", "restart", "--link", "sim:"]).fails(2, &["no argument"]);
 }
 
-/// Issue 22.20: if an encoder does not report its frame, the position is printed only as a word, unless the link
-/// specifies turns and steps: turn 1234h and 270°.
+/// If an encoder does not report its frame format, the position is only the raw word until the link gives the numbers
+/// of turns and steps (issue 22.20). The shaft is at turn 1234h and 270°.
 #[test]
 fn a_position_is_raw_until_the_link_gives_the_frame() {
     let bench = Bench::new();
@@ -129,7 +130,8 @@ fn a_position_is_raw_until_the_link_gives_the_frame() {
     assert_eq!((&told["turns"], &told["steps"], &told["degrees"]), (&json!(4660), &json!(98_304), &json!(270.0)));
 }
 
-/// Turn 1234h and 270°: the same word on each connection, and over BiSS also the frame with its CRC.
+/// Each connection returns the same word for turn 1234h and 270°. Over BiSS, the frame with its CRC is returned as
+/// well.
 #[test]
 fn the_position_has_turns_steps_and_degrees() {
     let bench = Bench::new();
@@ -184,7 +186,7 @@ fn a_frame_with_a_wrong_crc_is_counted_and_not_printed() {
     let ran = ask(&bench, &encoder, &["position", "biss", "--csv", "--count", "20", "--interval", "0"]);
     assert_eq!((ran.status, ran.out.lines().count()), (Some(0), 21), "{ran:?}");
     assert!(ran.out.lines().skip(1).all(|line| line.contains(",4660,98304,270,")), "{ran:?}");
-    // 20 frames are good, and every third of all frames between them is damaged.
+    // There are 20 good frames. Every third of all frames is damaged.
     let count: u64 = ran.err.strip_prefix("crc errors: ").unwrap().trim().parse().unwrap();
     assert!((9..=10).contains(&count), "{ran:?}");
     let Some(hopeless) = bench.adapter(&["--damage", "1"]) else { return };

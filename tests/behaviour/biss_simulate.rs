@@ -1,4 +1,4 @@
-//! `simulate biss`, examined by independent hosts with the frames and rules of the references.
+//! `simulate biss`, tested by hosts that are not part of this program with the frames and rules of the references.
 
 use std::io::Write;
 use std::net::TcpStream;
@@ -58,7 +58,7 @@ fn the_configuration_pin_answers_the_frames_of_the_reference() {
     let terminal = Simulated::start(&bench, &[&["biss", "--pty", &bench.file("enc")], &WARM[..]].concat());
     assert!(bench.path("enc").is_symlink());
     examine(&terminal.place);
-    // The next client finds the mode set by the first one.
+    // The next client finds the mode that the first one has set.
     let mode = foreign_host("ubicom_host.py", &terminal.place, &["80 01 01 02 00 2A 00 51"]);
     assert_eq!(mode, ["80 01 01 01 00 07 75"]);
     terminal.end("INT");
@@ -68,7 +68,7 @@ fn the_configuration_pin_answers_the_frames_of_the_reference() {
     port.end("TERM");
 }
 
-/// The encoder supports a single speed (UBICOM reference 1) and does not understand a line at another one.
+/// The encoder supports only one speed (UBICOM reference 1) and does not understand requests at another speed.
 #[test]
 fn the_baud_rate_can_be_set_in_the_link() {
     let bench = Bench::new();
@@ -84,7 +84,7 @@ fn the_baud_rate_can_be_set_in_the_link() {
     terminal.end("INT");
 }
 
-/// Saving a preset restarts the encoder. It is silent for half a second and then in operation.
+/// Saving a preset restarts the encoder. It does not answer for half a second, and is in operation afterwards.
 #[test]
 fn a_restart_is_silent_and_configured_faults_are_injected() {
     let bench = Bench::new();
@@ -148,10 +148,11 @@ fn examine_adapter(path: &str) {
     assert_eq!(hello["capabilities"].as_u64().unwrap() & 0b110, 0b110, "{hello}");
     assert!(hello["max_clock_hz"].as_u64() >= Some(2_000_000), "{hello}");
     assert_eq!(said[2], json!({"clock_hz": 2_000_000}));
-    // BiSS reference 2: MT 1234, ST 18000.
+    // The frame of turn 1234h and step 18000h, from BiSS reference 2.
     assert_eq!((&said[3]["status"], &said[3]["raw"]), (&json!(0), &json!("024698000CF")));
     let values: Vec<&Value> = said[4..14].iter().map(|told| &told["value"]).collect();
-    // 25 °C; bank 2; minimum time-out; bank 3; 16 bits of turns; a mode without and with the password; and back.
+    // The values are 25 °C, bank 2, the minimum time-out, bank 3, 16 bits of turns, a mode without and with the
+    // password, and the values reset.
     assert_eq!(values, [0x4B, 0x02, 0x1C, 0x03, 0x10, 0x00, 0x2A, 0x07, 0x00, 0x00]);
     assert_eq!(said[16], json!({"value": 0x46}));
 }
@@ -171,8 +172,8 @@ fn the_adapter_reads_frames_and_registers_of_every_bank() {
     terminal.end("TERM");
 }
 
-/// 20 000 frames per second, none of which is missing. Each has its time, its CRC and its position on a shaft that
-/// turns ten times per second.
+/// A stream of 20 000 frames per second has no missing frame. Each frame has its time, its CRC, and its position on a
+/// shaft that turns ten times per second.
 #[test]
 fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
     let bench = Bench::new();
@@ -188,14 +189,14 @@ fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
     }
     assert_eq!((&stream["period_us"], &stream["ended"]), (&json!(50), &json!(true)), "{stream}");
     let number = |key: &str| stream[key].as_u64().unwrap();
-    // On a busy computer, the host may start to count late. Even then, there is no gap in the counted frames.
+    // On a busy computer, the host may start counting late, but no counted frame is missing even then.
     assert!(number("frames") > 30_000, "{stream}");
     let (moved, expected) = (number("last_steps") - number("first_steps"), (number("frames") - 1) * 131_072 / 2_000);
     assert!(moved.abs_diff(expected) <= 1, "{moved} steps where {expected} were expected: {stream}");
     assert_eq!(said[3]["status"], json!(0), "single frames again when the stream has ended");
 }
 
-/// Faults in the bytes of the adapter itself: both sides discard damaged bytes, and lost ones are requested again.
+/// Faults of the line between host and adapter: both sides drop damaged bytes, and lost bytes are requested again.
 #[test]
 fn configured_adapter_line_faults_are_injected() {
     let bench = Bench::new();
@@ -219,13 +220,13 @@ fn configured_adapter_line_faults_are_injected() {
     assert_eq!((&died[4]["error"], &died[5]["status"]), (&json!(4), &json!(1)), "{died:?}");
 }
 
-/// A client starts a stream and does not read any of it.
+/// Ctrl-C ends the simulation even while a client has started a stream that it does not read.
 #[test]
 fn an_interrupt_ends_the_simulation_with_a_busy_client() {
     let bench = Bench::new();
     let port = Simulated::start(&bench, &["biss", "--bridge", "--listen", "127.0.0.1:0"]);
     let mut client = TcpStream::connect(&port.place).unwrap();
-    // ANALOG_CONFIG and ANALOG_STREAM: a million samples per second with four bytes each.
+    // The requests ANALOG_CONFIG and ANALOG_STREAM start a stream of a million samples per second of four bytes each.
     client.write_all(b"\x06\x0B\x30\x40\x42\x0F\x03\x33\xCC\x00").unwrap();
     client.write_all(b"\x06\x0C\x31\x01\x78\x9F\x00").unwrap();
     std::thread::sleep(Duration::from_secs(5));

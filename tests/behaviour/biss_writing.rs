@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::biss_profile::PROFILE;
 use super::support::{Bench, Foreign, Ran, run_on_terminal};
 
-/// The profile's content of banks 24h and 25h.
+/// The content of banks 24h and 25h in the profile, and its preset value of 270°.
 const AS_PROFILE: &str = r#"{"0x24:0x00": "000102030405060708090A0B0C0D0E0F101112131415161718191A1B1C1D1E1F202122232425262728292A2B2C2D2E2F303132333435363738393A3B3C3D3E3F", "0x25:0x00": "A1B2C3"}"#;
 /// The preset value of the profile: 270°.
 const PRESET: &str = "008001000000";
@@ -25,8 +25,8 @@ fn written(encoder: &Foreign) -> Vec<String> {
     encoder.registers_written().into_iter().filter(|line| !line.starts_with("0x40 ")).collect()
 }
 
-/// Returns the writes that save OEM data (reference 5.3): password and mode, opening the OEM data, the registers,
-/// saving, and the return to operation with the password cleared.
+/// Returns the writes of a save as in reference 5.3: set password and mode, open the OEM data, write the registers,
+/// save, return to operation and reset the password.
 fn saved(registers: &[&str]) -> Vec<String> {
     let around = (["0x6B 2A", "0x6A 04", "0x00:0x1A 02"], ["0x00:0x1A 03", "0x6A 00", "0x6B 00"]);
     [&around.0[..], registers, &around.1].concat().into_iter().map(str::to_owned).collect()
@@ -49,7 +49,7 @@ fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
         assert_eq!((&dry["operations"], &dry["write_cycles"]), (&expected, &json!(1)), "{dry}");
         let told = ask(&bench, encoder, &["restore", &file, "--yes"]).json();
         assert_eq!((&told["written"], &told["verified"], &told["write_cycles"]), (&json!(3), &json!(3), &json!(1)));
-        // All other registers of the data, the filter and the preset value.
+        // Everything else is unchanged: the other data registers, the filter and the preset value.
         assert!(told["unchanged"].as_u64() >= Some(4096 - 3), "{told}");
         assert_eq!(written(encoder), saved(&["0x24:0x01 A1", "0x24:0x02 A2", "0x24:0x0F EE"]));
         assert_eq!(ask(&bench, encoder, &["verify", &file]).json()["equal"], json!(true));
@@ -60,7 +60,7 @@ fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
         assert_eq!((&undone["written"], &undone["write_cycles"]), (&json!(3), &json!(1)));
         let there = ask(&bench, encoder, &["read", "biss", "0x24:0x00+16"]).json();
         assert_eq!(there["value"], json!("000102030405060708090A0B0C0D0E0F"));
-        // When the restore is repeated, nothing differs, and nothing is sent or saved.
+        // When the restore is repeated, nothing differs, so nothing is sent and no backup is stored.
         written(encoder);
         let again = ask(&bench, encoder, &["restore", backup, "--yes"]).json();
         assert_eq!((&again["written"], &again["write_cycles"], &again["backup"]), (&json!(0), &json!(0), &Value::Null));
@@ -79,7 +79,7 @@ fn write_stores_exactly_these_bytes() {
             (&json!("0x25:0x10"), &json!(1), &json!(1))
         );
         assert_eq!(written(encoder), saved(&["0x25:0x10 5A"]));
-        // Only the changed registers of a run are written.
+        // Only the changed registers of a contiguous range are sent.
         let told = ask(&bench, encoder, &["write", "biss", "0x25:0x00+4", "A1 00 C3 01", "--yes"]).json();
         assert_eq!((&told["written"], &told["write_cycles"]), (&json!(2), &json!(1)));
         assert_eq!(written(encoder), saved(&["0x25:0x01 00", "0x25:0x03 01"]));
@@ -135,7 +135,7 @@ fn the_mounting_of_another_encoder_is_not_changed() {
     assert_eq!(value["value"], json!(PRESET));
 }
 
-/// Issue 22.9: another type is named and rejected without explicit permission.
+/// An encoder of another type is named in the message, and rejected unless the user permits it explicitly (issue 22.9).
 #[test]
 fn an_encoder_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -151,7 +151,7 @@ fn an_encoder_of_another_type_needs_a_separate_permission() {
     assert_eq!((dry.status, written(&encoder)), (Some(0), vec![]));
     let other = bench.file("hiperface.ron");
     assert_eq!(bench.run(&["save", "hiperface", "--link", "sim:", "-o", &other]).status, Some(0));
-    // The file names the kind of device, so a HIPERFACE encoder is addressed, which does not answer.
+    // The file names the kind of device, so the program looks for a HIPERFACE encoder, which does not answer.
     ask(&bench, &encoder, &["restore", &other, "--dry-run"]).fails(1, &[]);
     assert_eq!(encoder.requests(), [""; 0]);
 }
@@ -236,10 +236,10 @@ fn filter_and_preset_are_actions() {
             let told = ask(&bench, encoder, &[&["do", "biss", "preset"], words, &["--yes"]].concat()).json();
             told["write_cycles"].as_u64().unwrap()
         };
-        // 270° and turn 5 are stored and then executed.
+        // The preset of 270° and turn 5 is stored first and executed afterwards.
         assert_eq!(preset(&["98304", "5"]), 2);
         assert_eq!(place(encoder), (5, 98_304));
-        // The preset is already stored, and the shaft has moved since, so there is nothing to store.
+        // The preset is already stored. Only the shaft has moved since, so nothing needs to be stored.
         assert_eq!(preset(&[]), 1);
         assert_eq!(preset(&["1000", "singleturn"]), 2);
         assert_eq!(place(encoder), (5, 1000), "the turn stays");
@@ -250,7 +250,8 @@ fn filter_and_preset_are_actions() {
     }
 }
 
-/// Manual 6.1: 1000 write cycles. From 800 on, a warning is printed. Beyond 1000, nothing is written unless forced.
+/// The flash is rated for 1000 write cycles (manual 6.1). From 800 cycles on a warning is printed; after 1000, nothing
+/// is written unless the write is forced.
 #[test]
 fn a_worn_flash_is_reported_and_written_only_if_forced() {
     let bench = Bench::new();
@@ -275,7 +276,7 @@ fn a_worn_flash_is_reported_and_written_only_if_forced() {
     assert_eq!(bench.logbook().write_cycles(&device).unwrap(), 1001);
 }
 
-/// The link is lost once during reading and at three points during writing.
+/// The link is lost once while reading and at three points while writing.
 #[test]
 fn a_link_lost_during_a_write_is_reported_with_the_backup() {
     let bench = Bench::new();
@@ -296,8 +297,8 @@ fn a_link_lost_during_a_write_is_reported_with_the_backup() {
     }
 }
 
-/// Issue 22.15: registers that were written but never saved are reported, and no comparison treats them as the content
-/// of the encoder. Only `lead-back` restores the mode.
+/// Registers that were written but never saved are reported, and no comparison treats them as the encoder's content.
+/// Only `lead-back` restores the mode (issue 22.15).
 #[test]
 fn unsaved_registers_of_a_killed_write_are_not_compared() {
     let bench = Bench::new();
@@ -326,7 +327,7 @@ fn unsaved_registers_of_a_killed_write_are_not_compared() {
     }
 }
 
-/// Issue 22.16: the supply is restored when the program ends.
+/// The adapter's supply is restored when the program ends (issue 22.16).
 #[test]
 fn the_adapters_supply_is_restored_on_exit() {
     let bench = Bench::new();
@@ -345,7 +346,7 @@ fn the_adapters_supply_is_restored_on_exit() {
     bench.run(&["read", "biss", "0x66", "--link", &url]).fails(2, &["leave-supply=no", "as-found, on or off"]);
 }
 
-/// Reference 5: a mode and password set by another host are reset.
+/// The mode and the password that another host has set are reset (reference 5).
 #[test]
 fn an_encoder_left_in_a_mode_is_returned_to_operation() {
     let bench = Bench::new();
@@ -360,8 +361,8 @@ fn an_encoder_left_in_a_mode_is_returned_to_operation() {
     }
 }
 
-/// Issue 22.15: restoring the mode discards unsaved changes. On a terminal, the program asks first unless --yes is
-/// given. Nothing is stored, so a script does not need --yes.
+/// Restoring the mode discards unsaved changes. On a terminal, the program therefore asks for confirmation unless
+/// `--yes` was given. In a script, no `--yes` is needed because nothing is stored (issue 22.15).
 #[test]
 fn on_a_terminal_the_return_to_operation_needs_confirmation() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Actions on a foreign encoder, checked frame by frame, and on unusual encoders.
+//! Actions on a foreign encoder, checked frame by frame, and encoders with unusual properties.
 
 use serde_json::{Value, json};
 
@@ -14,7 +14,7 @@ fn data_fields_are_created_protected_resized_and_deleted() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C9","bytes":"0815"}]"#]) else { return };
     let steps: [(&[&str], &str); 7] = [
-        // Field 1 of the manual's example, with its access code as the text requires.
+        // Creates field 1 of the manual's example. Its access code is required, as the manual's text demands.
         (&["create-field", "1", "16", "code=2"], "40 4D 01 E8 55"),
         (&["lock-field", "1"], "40 4D 01 A8 55"),
         (&["unlock-field", "1"], "40 4D 01 E8 55"),
@@ -54,13 +54,14 @@ fn a_position_is_set_in_phase_or_exactly() {
     assert_eq!(sent.len(), 1, "{sent:?}");
     let bytes: Vec<u32> = sent[0].split(' ').map(|byte| u32::from_str_radix(byte, 16).unwrap()).collect();
     let set = bytes[2..6].iter().fold(0, |word, byte| word << 8 | byte);
-    // The lowest five bits are those of the sine signal, 17 here. The rest is as close as this allows.
+    // The five lowest bits are those of the sine signal, here 17. The remaining bits are as close to the requested
+    // position as that allows.
     assert_eq!(set % 32, 0x000E_0531 % 32);
     assert!(set.abs_diff(4096) <= 16, "{set}");
 
     act(&bench, &encoder, &["set-position", "0x1234", "--exact"]).json();
     assert_eq!(encoder.writes(), ["40 43 00 00 12 34 55 70"]);
-    // An encoder with its own bearing has nothing to synchronise.
+    // An encoder with its own bearing does not need to be synchronised.
     act(&bench, &encoder, &["set-position", "0x1000000"]).fails(1, &["0 to 16777215"]);
 }
 
@@ -124,7 +125,7 @@ fn an_encoder_is_identified_by_its_extended_label() {
     let told = bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]).json();
     assert_eq!((&told["encoder_type"], &told["encoder_name"]), (&json!(0xFF), &json!("SEL37-HFB0-K02")));
     let line = bench.run(&["position", "hiperface", "--link", &encoder.url, "--json"]).json();
-    // 512 steps per turn.
+    // A turn has 512 steps.
     assert_eq!((&line["turns"], &line["steps"]), (&json!(2), &json!(0x131)));
     assert!((line["degrees"].as_f64().unwrap() - 305.0 * 360.0 / 512.0).abs() < 1e-9, "{line}");
 }
@@ -132,7 +133,7 @@ fn an_encoder_is_identified_by_its_extended_label() {
 #[test]
 fn a_linear_encoder_reports_millimetres() {
     let bench = Bench::new();
-    // A linear encoder with 1000 periods of 1,000,000 nm.
+    // A label of a linear encoder with 1000 periods of 1,000,000 nm each.
     let label = format!("00 01 000F4240 000003E8 {} {}", "20".repeat(18), "00".repeat(36));
     let Some(encoder) = bench.encoder(&["--type", "FF", "--label", &label, "--position", "1329"]) else { return };
     let line = bench.run(&["position", "hiperface", "--link", &encoder.url, "--json"]).json();
@@ -153,8 +154,8 @@ fn an_unknown_type_takes_periods_and_turns_from_the_link() {
     assert_eq!((&line["turns"], &line["steps"]), (&json!(2), &json!(0x131)));
 }
 
-/// Issue 22.12: a restore to another encoder creates data fields. Restoring its backup deletes them again, except for a
-/// field that was changed in the meantime, which is reported, and the fields before it.
+/// A restore onto another encoder creates data fields. Restoring its backup deletes them again, except for a field that
+/// was changed meanwhile, which is named in the message, and the fields before it (issue 22.12).
 #[test]
 fn undoing_a_restore_deletes_only_the_fields_it_created() {
     let bench = Bench::new();
@@ -190,7 +191,7 @@ fn undoing_a_restore_deletes_only_the_fields_it_created() {
         let deleted = |number: u8| frame(&format!("40 4D 0{number} 48 55"));
         let defined: Vec<String> = target.writes().into_iter().filter(|frame| frame.starts_with("40 4D")).collect();
         if changed {
-            // The last field is as written, but the one before it is not.
+            // Field 2 is as written, so it is deleted. Field 1 was changed, so it remains.
             assert_eq!(defined, [deleted(2)], "{undo:?}");
             assert!(undo.err.contains("Data field 1"), "{undo:?}");
             assert_eq!(target.host_address(&["40 4A 01 00 01 55"]), [frame("40 4A 01 00 01 77")]);
@@ -198,7 +199,7 @@ fn undoing_a_restore_deletes_only_the_fields_it_created() {
             assert_eq!(defined, [deleted(2), deleted(1)], "{undo:?}");
             assert!(!undo.err.contains("data field"), "{undo:?}");
         }
-        // The previous fields contain their bytes again.
+        // The earlier fields have their previous bytes again.
         assert_eq!(target.host_address(&["40 4A 00 00 01 55"]), [frame("40 4A 00 00 01 AA")]);
     }
 }

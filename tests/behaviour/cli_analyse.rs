@@ -1,5 +1,5 @@
-//! The `analyse` command: the analysis of a synthetic capture yields its parameters, and an invalid capture one
-//! sentence.
+//! `analyse`: the analysis of synthetic captures returns the parameters with which they were made, and invalid captures
+//! are reported in one sentence.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::support::Bench;
 
-/// R, p, q, r, and α in degrees, as defined in the documentation of the program.
+/// The parameters R, p, q, r, and α in degrees, as defined in the program's documentation.
 #[derive(Clone, Copy)]
 struct Signal {
     amplitude: f64,
@@ -23,7 +23,7 @@ struct Signal {
 const REFERENCE: Signal =
     Signal { amplitude: 0.5, offset_cosine: 0.02, offset_sine: -0.03, ratio: 1.05, phase_deg: 3.0 };
 
-/// Returns the sine and cosine at an angle in periods.
+/// Returns the sine and cosine at an angle, which is given in periods.
 fn at(signal: &Signal, periods: f64) -> (f64, f64) {
     let (angle, phase) = (TAU * periods, signal.phase_deg.to_radians());
     let sine = (signal.amplitude * angle.sin() * phase.cos() - signal.amplitude * angle.cos() * phase.sin())
@@ -57,7 +57,7 @@ fn near(told: &Value, key: &str, expected: f64, tolerance: f64) {
 #[test]
 fn the_parameters_of_the_reference_signal_are_recovered() {
     let bench = Bench::new();
-    // 360 points of a period, and six at 0, 60 … 300°, which cover one step less than the period.
+    // Either 360 points of a period or the six points at 0, 60 … 300°. They cover one step less than the period.
     for (count, header) in [(360, "time,sin,cos\n"), (6, "")] {
         let file = bench.write("c.csv", table(header, &rows(&REFERENCE, count, 0.0, 1.0)));
         let told = bench.run(&["analyse", &file, "--json"]).json();
@@ -219,7 +219,7 @@ fn the_example_captures_are_judged_as_documented() {
     let good = bench.run(&["analyse", &path("healthy.csv")]);
     assert_eq!(good.status, Some(0), "{good:?}");
     assert!(good.out.contains("within the limits") && good.out.contains("periods"), "{good:?}");
-    // The parameters of the capture R, p, q, r and α, with 0.5 mV rms of noise on 400 points.
+    // The parameters R, p, q, r, α of the capture, which has 0.5 mV rms of noise on 400 points.
     let told = bench.run(&["analyse", &path("offset-gain-phase.csv"), "--json"]).json();
     let expected = [
         ("amplitude_v", 0.5, 2e-4),
@@ -271,7 +271,7 @@ fn the_example_revolution_reveals_its_eccentricity() {
         "{text}"
     );
 
-    // If the number of periods is missing, there is a hint. If it is wrong, the correct one is named.
+    // If the number of periods is missing, a hint is printed. If it is wrong, the message names the right number.
     let ran = bench.run(&["analyse", path, "--json"]);
     assert!(ran.json().get("inl_deg").is_none() && ran.err.contains("--periods"), "{ran:?}");
     let ran = bench.run(&["analyse", path, "--json", "--periods", "32"]);
@@ -320,7 +320,8 @@ fn interference_and_a_broken_wire_are_reported() {
     bench.run(&["analyse", &file]).fails(1, &["cosine channel has no signal", "COS is at ground"]);
 }
 
-/// 2 kHz sampled at 2.5 µs, and the effects of a slow recorder, a second recording in the file, and too few samples.
+/// The frequency is 2 kHz at a sample interval of 2.5 µs. It is marked as uncertain if the recorder was slow, if the
+/// file contains a second recording, or if there are too few samples.
 #[test]
 fn the_frequency_is_reported_and_marked_if_uncertain() {
     let bench = Bench::new();
@@ -348,7 +349,7 @@ fn the_frequency_is_reported_and_marked_if_uncertain() {
     }
 }
 
-/// The shaft of the virtual adapter turns once per second, and the sampled signals have no errors.
+/// The virtual adapter turns its shaft once per second, and its sampled signals have no errors.
 #[test]
 fn an_adapter_is_sampled_and_analysed() {
     let bench = Bench::new();

@@ -64,7 +64,8 @@ fn a_broken_profile_is_refused_with_its_name_and_error() {
     }
 }
 
-/// Issue 22.17: a profile with a newer schema is compared, and the message states that nothing else is possible.
+/// A profile with a newer schema can be compared, and the message says that it cannot be used for anything else (issue
+/// 22.17).
 #[test]
 fn a_profile_of_a_newer_schema_is_read_only() {
     let bench = Bench::new();
@@ -106,15 +107,15 @@ fn a_profile_of_another_encoder_is_refused_before_writing() {
     }
     assert_eq!(encoder.writes(), [""; 0]);
     let arguments = ["restore", &file, "--yes", "--allow-other-device", "--link", &encoder.url, "--json"];
-    // The meaning of the bytes in this field is unknown (issue 22.8).
+    // The meaning of the field's bytes is not known (issue 22.8).
     let arguments = [&arguments[..], &["--copy", "field:0"]].concat();
     let told = bench.run(&arguments).json();
     assert_eq!(told["verified"], told["written"]);
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
 }
 
-/// Issue 22.30: a silent line does not prove that there is no drive on it, so a search on a serial line requires
-/// confirmation by the user. Other commands run without it, as scripts expect.
+/// If nothing answers on a line, a drive may still be connected to it. A search on a serial line therefore needs a
+/// confirmation from the user. Other commands run without it, as scripts expect (issue 22.30).
 #[test]
 fn a_search_in_a_script_needs_only_master() {
     let bench = Bench::new();
@@ -133,7 +134,7 @@ fn ready_made(kind: &str, name: &str) -> String {
     format!("{}/profiles/{kind}/{name}.ron", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Issue 22.8: options for data fields are rejected for devices without such fields, before anything is opened.
+/// Options about data fields are rejected for devices without data fields before anything is opened (issue 22.8).
 #[test]
 fn data_field_options_are_refused_for_other_devices() {
     let bench = Bench::new();
@@ -150,7 +151,8 @@ fn data_field_options_are_refused_for_other_devices() {
     }
 }
 
-/// Issue 22.9: another kind of BiSS encoder is named and rejected without explicit permission.
+/// A BiSS encoder of another type is named in the message, and rejected unless the user permits it explicitly (issue
+/// 22.9).
 #[test]
 fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -164,7 +166,7 @@ fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
     assert!(allowed.status == Some(0) && allowed.err.contains("may have a different meaning"), "{allowed:?}");
 }
 
-/// Issue 22.9: another type is named and rejected without explicit permission.
+/// An encoder of another type is named in the message, and rejected unless the user permits it explicitly (issue 22.9).
 #[test]
 fn a_profile_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Access codes other than the factory setting: they are requested by number, used if given, and never shown.
+//! Access codes that differ from the factory codes: they are requested by number, used if given, and never shown.
 
 use serde_json::json;
 
@@ -72,7 +72,7 @@ fn a_code_opens_a_field_and_is_never_printed() {
     codes_in(&["read", "hiperface", "field:1@0+2", "--code", "2=B3"], None);
     assert!(bench.read("t.trace").lines().any(|line| line.ends_with("> 40 4A 01 00 02 ** **")), "{shown}");
 
-    // Profiles, backups, the logbook and traces contain neither the codes nor a checksum over them.
+    // Profiles, backups, the logbook and traces contain neither the codes nor a checksum calculated from them.
     shown.push_str(&bench.everything_kept());
     let shown = bench.without_folder(&shown).to_uppercase();
     for secret in ["A7", "B3"] {

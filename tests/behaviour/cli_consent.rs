@@ -1,4 +1,4 @@
-//! Consent, and mounting-specific values, which require further permission.
+//! Consent to writes, and the values that depend on the mounting, which need an additional permission.
 
 use serde_json::json;
 
@@ -11,7 +11,7 @@ fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
     if python("master.py").is_none() {
         return;
     }
-    // On a terminal, the program also asks about a drive (issue 22.30), unless an option has answered the question.
+    // On a terminal, the program also asks about a drive, unless an option has answered that question (issue 22.30).
     let arguments = ["write", "hiperface", "field:0@1", "16", "--only-master", "--link", &encoder.url];
     for no in ["n\n", "\n", "what?\n"] {
         let ran = run_on_terminal(&bench, &arguments, no);
@@ -26,8 +26,8 @@ fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
     assert_eq!(encoder.writes(), [frame("40 4B 00 01 01 55 16")]);
 }
 
-/// Issue 22.30: on a terminal, the program asks whether there is a drive on the line before it sends the first byte. It
-/// continues only if the answer is no.
+/// On a terminal, the program asks whether a drive is on the line before it sends the first byte, and continues only if
+/// the answer is no (issue 22.30).
 #[test]
 fn on_a_terminal_the_user_must_rule_out_a_drive_on_the_line() {
     let bench = Bench::new();
@@ -52,7 +52,7 @@ fn on_a_terminal_the_user_must_rule_out_a_drive_on_the_line() {
 #[test]
 fn mounting_values_are_not_copied_to_another_encoder_by_default() {
     let bench = Bench::new();
-    // A commutation offset in the format of this program, followed by another byte.
+    // The field has a commutation offset as this program stores it, followed by other bytes.
     let fields = format!(r#"[{{"status":"C9","bytes":"434F31{}0815"}}]"#, "00".repeat(13));
     let Some(source) = bench.encoder(&["--fields", &fields]) else { return };
     let other = ["--serial", "XX0000001", "--fields", r#"[{"status":"C9"}]"#];
@@ -61,7 +61,7 @@ fn mounting_values_are_not_copied_to_another_encoder_by_default() {
     assert_eq!(bench.run(&["save", "hiperface", "--link", &source.url, "-o", &file]).status, Some(0));
     assert!(bench.read("p.ron").contains("field:0@0+16"));
 
-    // Issue 22.8: two bytes have no known meaning, so the restore asks about them.
+    // The meaning of two bytes is unknown, so the restore asks about them (issue 22.8).
     let restore = ["restore", &file, "--yes", "--allow-other-device", "--link", &encoder.url, "--json"];
     bench.run(&restore).fails(1, &["Data field 0", "--copy", "--leave"]);
     let dry = bench.run(&[&restore[..], &["--dry-run"]].concat());
@@ -76,7 +76,7 @@ fn mounting_values_are_not_copied_to_another_encoder_by_default() {
     assert_eq!((&ran.json()["written"], &ran.json()["redo"]), (&json!(2), &json!(["commutation"])));
     assert!(ran.err.contains("field:0@0+16") && ran.err.contains("--with-mounting"), "{ran:?}");
     assert_eq!(encoder.writes(), [frame("40 4B 00 10 02 55 08 15")]);
-    // Issue 22.7: even with both permissions, the values that must be readjusted are reported.
+    // Even with both permissions, the values that must be adjusted again are reported (issue 22.7).
     let ran = bench.run(&[&restore[..], &["--with-mounting"]].concat());
     assert_eq!(ran.json()["written"], json!(16));
     assert_eq!(ran.json()["redo"], json!(["commutation", "field:0@0+16"]));
@@ -85,7 +85,7 @@ fn mounting_values_are_not_copied_to_another_encoder_by_default() {
         "{ran:?}"
     );
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
-    // For its own encoder, no value is left out.
+    // If the profile is restored onto its own encoder, no value is left out.
     source.host_address(&["40 4B 00 00 01 55 00"]);
     let own = bench.run(&["restore", &file, "--yes", "--link", &source.url, "--json"]).json();
     assert_eq!(own["written"], json!(1));
@@ -106,8 +106,8 @@ fn two_writes_in_one_second_keep_two_backups() {
     }
 }
 
-/// Issue 22.28: on a terminal, an existing file is replaced only after consent. Without a terminal, it is replaced, and
-/// a message says so.
+/// On a terminal, an existing file is replaced only after consent. Without a terminal it is replaced, and a message is
+/// printed (issue 22.28).
 #[test]
 fn on_a_terminal_save_asks_before_replacing_a_file() {
     let bench = Bench::new();
@@ -139,14 +139,14 @@ fn on_a_terminal_save_asks_before_replacing_a_file() {
     }
     assert_eq!(run_on_terminal(&bench, &save, "y\n").status, Some(0));
     assert_eq!(bench.read("layout.ron"), written);
-    // If an option answers the question, it is not asked.
+    // If an option already gives the answer, the program does not ask.
     std::fs::write(&file, "dear").unwrap();
     assert_eq!(run_on_terminal(&bench, &[&save[..], &["--force"]].concat(), "").status, Some(0));
     assert_eq!(bench.read("layout.ron"), written);
 }
 
-/// Issue 22.4: if the write cycles cannot be read from the logbook, a write is rejected before the user is asked for
-/// consent. This applies to every kind of device.
+/// If the write cycles cannot be read from the logbook, a write to any kind of device is rejected before the program
+/// asks for consent (issue 22.4).
 #[test]
 fn a_write_refused_for_unknown_wear_needs_no_confirmation() {
     if python("master.py").is_none() {

@@ -1,4 +1,4 @@
-//! Encoders that are silent, send invalid data, lose power or are unplugged.
+//! Encoders that do not answer, send invalid data, lose power or are unplugged.
 
 use std::path::Path;
 use std::thread::sleep;
@@ -18,7 +18,7 @@ fn a_silent_encoder_ends_a_command_in_time() {
     let ran = bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]);
     ran.fails(1, &["40h"]);
     assert!(ran.took < Duration::from_secs(10), "{ran:?}");
-    // The request is repeated, but not forever.
+    // The request is repeated a limited number of times.
     assert!((2..=5).contains(&encoder.requests().len()));
 }
 
@@ -48,7 +48,7 @@ fn garbage_is_never_mistaken_for_a_value() {
 #[test]
 fn unplugging_ends_polling_with_one_message() {
     let bench = Bench::new();
-    // Polling back to back, and with the encoder disconnected during a long pause between two readings.
+    // The encoder is polled without pauses, and is disconnected during a long pause between two readings.
     for interval in ["0", "100", "60000"] {
         let Some(mut encoder) = bench.encoder(&[]) else { return };
         let arguments = ["position", "hiperface", "--link", &encoder.url, "--count", "100000", "--interval", interval];
@@ -92,7 +92,7 @@ fn power_loss_in_a_restore_names_the_backup_and_the_next_one_completes() {
     let mut words = ran.err.split_whitespace().map(|word| word.trim_end_matches([';', ',', '.']));
     let backup = words.find(|word| word.ends_with(".ron") && word.contains("backups")).unwrap();
     assert!(Path::new(backup).is_file(), "{ran:?}");
-    // Writes that must not be repeated: one store, followed only by reading.
+    // Stores must not be repeated: one store is sent, and only readings after it.
     assert_eq!(encoder.writes(), [frame("40 4B 00 00 0A 55 00 11 22 33 44 55 66 77 88 99")]);
 
     let text = std::fs::read_to_string(backup).unwrap();
@@ -135,8 +135,7 @@ fn an_unprotected_field_is_named_and_the_next_restore_protects_it() {
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
 }
 
-/// The encoders that answered before the interruption are printed. The first format and address are those of this
-/// encoder.
+/// The encoders found before the interruption are printed. This encoder answers at the first format and address.
 #[test]
 fn a_search_can_be_interrupted() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! The `log` command: what was written, by whom, and with which values.
+//! The command `log`, which lists what was written, by whom and with which values.
 
 use serde_json::{Value, json};
 
@@ -53,7 +53,7 @@ fn entries_are_selected_and_the_newest_is_first() {
         assert_eq!(ran.status, Some(0), "{ran:?}");
         lines(&ran.out).iter().map(|line| line["device"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
     };
-    // Each command first connects and then writes.
+    // Each command adds an entry for connecting and one for writing.
     assert_eq!(devices(&[]), ["hiperdrive", "hiperdrive", "hiperface", "hiperface"]);
     assert_eq!(devices(&["--limit", "1"]), ["hiperdrive"]);
     assert_eq!(devices(&["--device", "hiperface"]), ["hiperface", "hiperface"]);
@@ -87,14 +87,16 @@ fn a_damaged_logbook_is_kept_and_a_new_one_is_begun() {
     let names = std::fs::read_dir(bench.path("data/encoder-studio")).unwrap().map(|entry| entry.unwrap().file_name());
     let kept = names.map(|name| name.into_string().unwrap()).find(|name| name.starts_with("logbook-damaged-")).unwrap();
     assert!(bench.read(&format!("data/encoder-studio/{kept}")).starts_with("no database"));
-    // Work continues, but a write requires a permit, because the earlier write cycles are in the damaged file.
+    // Commands continue to work, but a write must be permitted explicitly, because the earlier write cycles are in the
+    // damaged file.
     let store = ["write", "interbus", "preset", "7", "--yes", "--link", "sim:"];
     let write = ["write", "hiperface", "field:0@3+2", "C0FF", "--yes", "--link", "sim:"];
     for words in [&store, &write] {
         bench.run(words).fails(1, &["was damaged", "unknown", "--force-wear"]);
         assert_eq!(bench.run(&[&words[..], &["--force-wear"]].concat()).status, Some(0));
     }
-    // Without that file, the count is only a minimum. Writes to memory that wears out quickly still require a permit.
+    // Without that file, the count is only a minimum. Writes to a memory that wears out quickly must still be permitted
+    // explicitly.
     std::fs::remove_file(bench.path(&format!("data/encoder-studio/{kept}"))).unwrap();
     assert_eq!(bench.run(&write).status, Some(0));
     bench.run(&store).fails(1, &["at least 1 of", "the file was damaged", "--force-wear"]);
@@ -119,7 +121,8 @@ fn each_kind_of_event_is_logged() {
         }
         let found = kinds(&bench, &["--device", device]);
         let expected = ["connected", "connected", "backup", "connected", "check"];
-        // A check may read status codes, and reading cam programs may cost store operations, which are counted.
+        // These kinds are left out: a check may read status codes, and reading cam programs may cost stores, which are
+        // counted.
         let is_own = |kind: &&str| !["status", "procedure"].contains(kind);
         let found: Vec<&str> = found.iter().map(String::as_str).filter(is_own).collect();
         assert_eq!(found, expected, "{device}");
@@ -167,7 +170,7 @@ fn an_asset_is_assigned_and_selects_entries() {
     }
 }
 
-/// The rules of a plant may forbid names in the logbook.
+/// A company's rules may forbid user names in the logbook.
 #[test]
 fn the_settings_choose_how_the_user_is_named() {
     let bench = Bench::new();

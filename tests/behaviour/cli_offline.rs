@@ -1,4 +1,4 @@
-//! Commands without a device: recordings, captured frames, and the virtual encoder.
+//! Commands without a device: recordings, captured frames and the virtual encoder.
 
 use serde_json::{Value, json};
 
@@ -16,7 +16,7 @@ fn a_recording_replays_the_encoders_replies() {
     let (first, second) = (bench.file("first.ron"), bench.file("second.ron"));
     let save = ["save", "hiperface", "--link", &encoder.url, "--trace", &trace, "-o", &first];
     assert_eq!(bench.run(&save).status, Some(0));
-    // Masked codes match any code.
+    // A masked code matches any code.
     let text = bench.read("t.trace");
     assert!(text.lines().any(|line| line.ends_with("> 40 4A 00 00 20 ** **")), "{text}");
     for codes in [&[][..], &["--code", "0=12"]] {

@@ -21,7 +21,7 @@ fn a_port_in_use_is_refused() {
     let polling = ["position", "hiperface", "--link", &encoder.url, "--count", "100000", "--interval", "20"];
     let mut first = bench.program(&polling).spawn().unwrap();
     let mut line = [0];
-    // The first line of output means that it has the port.
+    // The first line of output shows that the process has opened the port.
     first.stdout.as_mut().unwrap().read_exact(&mut line).unwrap();
     let second = bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]);
     first.kill().unwrap();
@@ -73,7 +73,7 @@ fn without_a_backup_folder_nothing_is_written() {
     bench.write("data", "a file where the folder should be");
     bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]).json();
     let write = ["write", "hiperface", "field:0", "00", "--yes", "--link", &encoder.url, "--json"];
-    // Issue 22.4: there is no folder for the logbook either.
+    // The logbook has no folder either (issue 22.4).
     bench.run(&write).fails(1, &["Nothing was written", "logbook", "--force-wear"]);
     bench.run(&[&write[..], &["--force-wear"]].concat()).fails(1, &["nothing was written", "data"]);
     assert_eq!(encoder.writes(), [""; 0]);

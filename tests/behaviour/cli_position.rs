@@ -10,7 +10,8 @@ const HEADER: &str = "t_s,raw,turns,steps,degrees,valid,codes";
 #[test]
 fn a_table_has_one_header_and_a_line_per_reading() {
     let bench = Bench::new();
-    // The SKM36 has 128 periods of 32 steps and 4096 turns. 0E0531h is turn 224 and step 1329, which is 116.806640625°.
+    // An SKM36 has 128 periods of 32 steps and 4096 turns. The position 0E0531h is turn 224 and step 1329, or
+    // 116.806640625°.
     let link = "sim:?position=0xE0531";
     let ran = bench.run(&["position", "hiperface", "--link", link, "--csv", "--count", "3", "--interval", "0"]);
     assert_eq!((ran.status, ran.err.as_str()), (Some(0), ""), "{ran:?}");
@@ -36,7 +37,7 @@ fn millimetres_and_status_codes_have_columns() {
     let lines: Vec<&str> = ran.out.lines().collect();
     assert_eq!(lines[0], "t_s,raw,turns,steps,millimetres,valid,codes");
     let behind_the_time = |line: &str| line.split_once(',').unwrap().1.to_owned();
-    // Warnings do not invalidate the position and are on the line in which they were reported.
+    // Warnings leave the position valid, and are printed in the line of the sample that reported them.
     assert_eq!(behind_the_time(lines[1]), "918833,,,28713.53125,true,1C 08", "{ran:?}");
     assert_eq!(behind_the_time(lines[2]), "918833,,,28713.53125,true,", "{ran:?}");
 }
@@ -54,7 +55,7 @@ fn ctrl_c_ends_a_stream_between_two_lines() {
             let mut child = bench.program(&arguments).spawn().unwrap();
             let mut out = BufReader::new(child.stdout.take().unwrap());
             let mut text = String::new();
-            // Each line is printed when it is read, not when a buffer is full.
+            // Each line is printed as soon as it is read, without waiting for a full buffer.
             (0..4).for_each(|_| assert!(out.read_line(&mut text).unwrap() > 0));
             signal(&child, "INT");
             let rest = std::thread::spawn(move || {

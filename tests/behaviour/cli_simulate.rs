@@ -1,4 +1,4 @@
-//! The `simulate` command, examined by an independent host with the frames of the reference.
+//! `simulate`, tested by a host that is not part of this program, with the frames of the reference.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -59,7 +59,7 @@ fn a_pseudoterminal_answers_the_reference_frames_for_successive_clients() {
     assert_eq!(simulated.place, bench.file("enc"));
     assert!(bench.path("enc").is_symlink());
     examine(&simulated.place);
-    // The next client finds the content left by the first one.
+    // The next client finds the content that the first one has left.
     assert_eq!(host_address(&simulated.place, &["40 4A 00 00 04 55 5B"]), ["40 4A 00 00 04 DE AD BE EF 2C"]);
     assert_eq!(
         host_address(&simulated.place, &["FF 50 AF", "40 53 13", "40 50 10"]),
@@ -120,12 +120,12 @@ fn after_a_reset_the_encoder_is_silent_and_then_answers() {
         }
         reply
     };
-    // On a busy computer, a request may arrive too late for the silent time. In this case, it is repeated.
+    // On a busy computer, a request may arrive after the silent time has ended. The attempt is then repeated.
     for _ in 0..5 {
         let begun = Instant::now();
         assert!(ask(&[0x40, 0x53, 0x13], 25).is_empty());
         let reply = ask(&[0x40, 0x50, 0x10], 20);
-        // Or the request is joined with the reset into a frame of the wrong length.
+        // The request may also be joined with the reset to one frame of the wrong length.
         let asked_in_time = begun.elapsed() < Duration::from_millis(55) && reply != [0x40, 0x50, 0x0C, 0x1C];
         sleep(Duration::from_millis(200));
         assert_eq!(ask(&[0x40, 0x50, 0x10], 2000), [0x40, 0x50, 0x00, 0x10]);

@@ -82,7 +82,7 @@ fn layouts_are_exported() {
     assert_eq!(timing(&[]).err, "");
     assert!(timing(&["--cable", "150"]).err.contains("to 200 kHz or less"));
     assert!(timing(&["--pause", "20"]).err.contains("more than 25 µs"));
-    // If no family is given, the general SSI times apply, and the output says so: 13 clocks at 500 kHz take 26 µs.
+    // Without a family, the general times of SSI apply, and the output says so. 13 clocks at 500 kHz take 26 µs.
     let any = ["ssi", "export", "--layout", "frame,st=13", "--format", "timing", "--clock", "500000", "--pause", "20"];
     let any = bench.run(&any);
     assert!(any.out.contains("13 clocks, 26.00 µs") && any.out.contains("tm up to 25 µs"), "{}", any.out);
@@ -94,7 +94,7 @@ fn layouts_are_exported() {
     assert_eq!(told["position"], 0x2A5B);
 }
 
-/// Returns a recording from `tests/vectors/ssi_find` (made in Python): its path, its frames as text, and the intended
+/// Returns the path of a recording in `tests/vectors/ssi_find` (made with Python), its frames as text, and the intended
 /// positions.
 fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
     let path = format!("{}/tests/vectors/ssi_find/{name}.txt", env!("CARGO_MANIFEST_DIR"));
@@ -104,12 +104,11 @@ fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
     (path, rows)
 }
 
-/// Issue 22.22: `ssi find` fulfils its contract: the first layout of the list decodes the frames as intended and can be
-/// used unchanged.
+/// The first layout that `ssi find` lists reads the frames as intended and can be used unchanged (issue 22.22).
 #[test]
 fn layouts_of_recorded_frames_are_found() {
     let bench = Bench::new();
-    // Whether the frames are sufficient to decide.
+    // Each recording is listed with whether its frames leave the layout ambiguous.
     for (name, ambiguous) in
         [("excess_360_fast", false), ("start_bit", true), ("twice_with_gap", true), ("gray_even_parity", true)]
     {
@@ -128,8 +127,8 @@ fn layouts_of_recorded_frames_are_found() {
         let decoded = bench.run(&["ssi", "decode", "--json", "--layout", spec, frame]).json();
         assert_eq!(decoded["position"].as_u64(), *meant, "{name}: {spec}");
     }
-    // Further columns are ignored, hexadecimal frames take their clocks from the option, and the text output has the
-    // same content.
+    // Additional columns are ignored, the number of clocks of hexadecimal frames comes from the option, and the text
+    // output has the same content as the JSON.
     let (_, rows) = recording("excess_360_fast");
     let hex = |(frame, _): &(String, Option<u64>)| format!("0x{:X},17\n", u64::from_str_radix(frame, 2).unwrap());
     let hex = bench.write("hex.csv", rows.iter().map(hex).collect::<String>());
@@ -148,7 +147,7 @@ fn layouts_of_recorded_frames_are_found() {
     bench.run(&["ssi", "find", &hex, "--clocks", "65"]).fails(2, &["65"]);
 }
 
-/// Issue 22.22: any frame can be specified as a single word, in the form that `ssi find` prints.
+/// The layout of any frame can be written as one word, in the form that `ssi find` prints (issue 22.22).
 #[test]
 fn any_frame_has_a_one_word_specification() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Status codes: the complete queue, and the effect of other codes on a value.
+//! Status codes: reading the complete queue, and the effect of codes on a value.
 
 use serde_json::{Value, json};
 
@@ -15,7 +15,7 @@ fn position(bench: &Bench, codes: &str) -> Option<(Ran, Value)> {
     Some((ran, line))
 }
 
-/// Issue 22.10: codes that `status` has removed from the encoder are in the logbook.
+/// Reading status codes removes them from the encoder, so `status` writes them to the logbook (issue 22.10).
 #[test]
 fn status_codes_are_kept_in_the_logbook() {
     let bench = Bench::new();
@@ -37,13 +37,13 @@ fn status_reads_the_entire_queue_and_always_exits_with_success() {
     for entry in told["errors"].as_array().unwrap().iter().chain(told["warnings"].as_array().unwrap()) {
         assert!(entry["text"].as_str().is_some_and(|text| !text.is_empty()), "{entry}");
     }
-    // The queue is empty now.
+    // The queue of status codes is empty now.
     let told = bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).json();
     assert_eq!(told, json!({"ok": true, "errors": [], "warnings": []}));
 }
 
-/// Issue 22.10: 50h removes a code from the encoder. A reply that is ten times as late as allowed (17.6 ms, reference
-/// 4) is still accepted, so no code is lost by repeating the request.
+/// Request 50h removes a code from the encoder. A reply that takes ten times as long as allowed (17.6 ms, reference 4)
+/// is still accepted, so that no code is lost by repeating the request (issue 22.10).
 #[test]
 fn codes_in_late_replies_are_not_lost() {
     let bench = Bench::new();
@@ -57,8 +57,8 @@ fn codes_in_late_replies_are_not_lost() {
     }
 }
 
-/// Issue 22.10: whatever arrives in place of a reply to 50h, even a repeated earlier reply, each code is either printed
-/// or reported as lost, and none is printed twice.
+/// Whatever data arrive instead of a reply to 50h, including a repetition of an old reply, each code is printed once or
+/// reported as lost (issue 22.10).
 #[test]
 fn each_code_is_reported_once_or_as_lost() {
     let bench = Bench::new();
@@ -86,7 +86,7 @@ fn each_code_is_reported_once_or_as_lost() {
     }
 }
 
-/// Issue 22.10: if a device server sends a reply twice, its codes are still read.
+/// If a device server sends a reply twice, its codes are still read (issue 22.10).
 #[test]
 fn a_duplicated_reply_loses_no_code() {
     let bench = Bench::new();
@@ -151,7 +151,7 @@ fn the_check_prints_a_verdict_per_line() {
         {"step": "data fields", "verdict": "good", "findings": ["0: 32 bytes, writable, code 0, code required"]},
     ]);
     assert_eq!((&good["ok"], &good["steps"]), (&json!(true), &steps));
-    // Issue 22.11: the keys named in CLI.md.
+    // The keys are those that CLI.md names (issue 22.11).
     let lines = json!([
         {"name": "status", "verdict": "good", "text": ""},
         {"name": "identity", "verdict": "good", "text": "SKM36; GB0450179"},
@@ -161,7 +161,7 @@ fn the_check_prints_a_verdict_per_line() {
     assert_eq!(good["lines"], lines);
     let hot = bench.run(&[&check[..], &["sim:?temperature=200", "--json"]].concat()).json();
     assert_eq!((&hot["lines"][0]["name"], &hot["lines"][0]["verdict"]), (&json!("status"), &json!("warning")));
-    // Issue 22.11: the quality of the line.
+    // The output includes the quality of the line (issue 22.11).
     let quality = &good["line_quality"];
     assert!(quality["requests"].as_u64().is_some_and(|count| count > 5), "{quality}");
     assert_eq!(quality["requests"], quality["replies"]);

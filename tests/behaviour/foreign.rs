@@ -1,10 +1,10 @@
-//! A foreign encoder on a real pseudo-terminal: read, save, compare, restore, verify.
+//! A foreign encoder on a real pseudo-terminal: reading, saving, comparing, restoring and verifying.
 
 use serde_json::{Value, json};
 
 use super::support::{Bench, Foreign, frame};
 
-/// A data field with 32 writable bytes that is protected by code 0, and one with 16 bytes that is protected by code 2.
+/// Two data fields: 32 writable bytes under code 0 and 16 protected ones under code 2.
 const FIELDS: &str = r#"[{"status":"C9","bytes":"0815"},{"status":"A8","bytes":"01"}]"#;
 
 fn save(bench: &Bench, encoder: &Foreign, file: &str) -> String {
@@ -51,7 +51,7 @@ fn the_position_has_turns_steps_and_degrees() {
     let lines: Vec<Value> = ran.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!(lines.len(), 3);
     for line in &lines {
-        // The SKM36 is at 000E0531h, which is turn E0h, step 1329 of 4096.
+        // An SKM36 at position 000E0531h is at turn E0h, step 1329 of 4096.
         assert_eq!((&line["raw"], &line["turns"], &line["steps"]), (&json!(918_833), &json!(224), &json!(1329)));
         assert!((line["degrees"].as_f64().unwrap() - 116.806_641).abs() < 1e-5, "{line}");
         assert_eq!(line["valid"], json!(true));
@@ -236,7 +236,8 @@ fn an_echoing_converter_is_detected_or_configured() {
         let told = bench.run(&["read", "hiperface", "field:0@0+2", "--link", &url, "--json"]).json();
         assert_eq!(told["value"], json!("0815"), "{echo}");
     }
-    // The reply to 47h equals its request, so it does not prove that there is an echo. Another request is made first.
+    // The reply to 47h equals its request. That alone does not prove that the line echoes, so another request is made
+    // first.
     for action in [&["increment-counter", "--yes"][..], &["configure-for-now", "0xE4"][..]] {
         encoder.requests();
         let ran = bench.run(&[&["do", "hiperface", "--link", &encoder.url], action].concat());

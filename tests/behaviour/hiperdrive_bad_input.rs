@@ -7,10 +7,11 @@ use super::support::Bench;
 fn unwritable_values_are_refused_with_a_reason() {
     let bench = Bench::new();
     let cases: [(&[&str], i32, &[&str]); 32] = [
-        // Both limits are named, in the rejection by the program and in that by the drive.
+        // Both the program's and the drive's rejection name both limits.
         (&["166", "351"], 1, &["166", "351", "5 to 350"]),
         (&["166", "4"], 1, &["5 to 350"]),
-        // Issue 21.10: 512 turns of 65536 steps in each direction, and 1024 for the steps of the keys.
+        // The range is 512 turns of 65536 steps in either direction, and 1024 turns for the step sizes of the jog keys
+        // (issue 21.10).
         (&["158", "2147483648"], 1, &["158", "-33554432 to 33554432"]),
         (&["158", "-2147483648"], 1, &["-33554432 to 33554432"]),
         (&["158", "-33554433"], 1, &["-33554432 to 33554432"]),
@@ -24,7 +25,7 @@ fn unwritable_values_are_refused_with_a_reason() {
         (&["154", "0"], 1, &["1 to 65535"]),
         (&["47", "2"], 1, &["-4, -3, -2, -1, 1"]),
         (&["47", "0"], 1, &["47", "save"]),
-        // The value of 158 would exceed that of 160.
+        // The lower limit (158) is above the upper one (160).
         (&["158", "33488896"], 1, &["33488896"]),
         // These parameters are read-only.
         (&["107", "0"], 1, &["107", "Actual position", "read-only"]),
@@ -134,7 +135,7 @@ fn without_consent_nothing_is_written() {
 #[test]
 fn a_missing_device_is_reported_within_ten_seconds() {
     let bench = Bench::new();
-    // Port 1 accepts no connections here.
+    // Port 1 accepts no connections.
     let ran = bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1:1"]);
     ran.fails(1, &["127.0.0.1:1"]);
     let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();

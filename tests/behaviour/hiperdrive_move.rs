@@ -1,4 +1,4 @@
-//! The `move hiperdrive` command, which is the only one that causes motion.
+//! `move hiperdrive`, the only command that causes motion.
 
 use std::time::Duration;
 
@@ -6,23 +6,23 @@ use serde_json::json;
 
 use super::support::{Bench, Simulated};
 
-/// Reference 3 and 5: a turn has 65536 steps. The drive reaches its target and is switched off afterwards.
+/// A turn has 65536 steps (reference 3 and 5). The drive reaches its target and is off afterwards.
 #[test]
 fn a_drive_moves_to_a_position() {
     let bench = Bench::new();
     let simulated = Simulated::start(&bench, &["hiperdrive", "--listen", "127.0.0.1:0", "--hub", "4"]);
     let link = format!("enip:{}", simulated.place);
     let run = |arguments: &[&str]| bench.run(&[arguments, &["--link", &link]].concat());
-    // In the factory settings, the drives of a hub are not requested.
+    // With factory settings, no drive of a hub is requested.
     assert_eq!(run(&["write", "hiperdrive", "152", "1", "--drive", "2", "--yes"]).status, Some(0));
     let ran = run(&["move", "hiperdrive", "65536", "--drive", "2", "--yes", "--json"]);
     assert_eq!(ran.json(), json!({"drive": 2, "target": 65_536, "position": 65_536, "reached": true}));
     let ran = run(&["move", "hiperdrive", "-1000", "--drive", "2", "--yes", "--speed", "50", "--torque", "25"]);
     assert_eq!((ran.status, ran.out.as_str()), (Some(0), "drive 2 is at -1000\n"));
-    // 511 turns in each direction. 1000 of 65536 steps are 0.015 of a turn.
+    // The limits are ±511 turns, and 1000 of 65536 steps are 0.015 of a turn.
     let range = "drive 2 moves to -1000 (-0.02 turns), within -33488896 (-511.00 turns) to 33488896 (511.00 turns)\n";
     assert_eq!(ran.err, range);
-    // 0E30 or 2E30: the reference is found, and the drive is at standstill and not ready.
+    // The status word is 0E30 or 2E30: the reference is found, the drive is at standstill and not ready.
     let word = run(&["read", "hiperdrive", "105", "--drive", "2", "--json"]).json()["value"].as_u64().unwrap();
     assert_eq!(word & 0x007F, 0x0030, "{word:04X}");
     // The other drives have not moved.
@@ -30,7 +30,8 @@ fn a_drive_moves_to_a_position() {
     simulated.end("INT");
 }
 
-/// Status 2 means wrong usage. Nothing is opened, because there is no device at this address.
+/// Without consent, the command ends with status 2 for wrong usage. It opens no connection: there is no device at this
+/// address.
 #[test]
 fn without_consent_nothing_moves() {
     let bench = Bench::new();
@@ -50,7 +51,7 @@ fn without_consent_nothing_moves() {
     assert_eq!(bench.run(&["move", "interbus", "1", "--yes", "--link", "sim:"]).status, Some(2));
 }
 
-/// Each case results in status 1 and one clear sentence, and the drive has not moved.
+/// The command ends with status 1 and one clear sentence, and the drive has not moved.
 #[test]
 fn invalid_moves_are_refused() {
     let bench = Bench::new();
@@ -81,7 +82,7 @@ fn an_incomplete_move_reports_the_position() {
     late.assert_stderr(&["1 s", "--timeout", &position.to_string()]);
     assert!(late.took < Duration::from_secs(10), "{late:?}");
     run("sim:?s3=1", "5").assert_stderr(&["S3", "at 0"]);
-    // Reference 4: a following error is 8203h, which is 33283.
+    // A following error is 8203h, or 33283 (reference 4).
     let blocked = run("sim:?load=120", "5");
     blocked.assert_stderr(&["fault", "at 0", "0x8203"]);
     assert_eq!(blocked.json_with(1)["error"]["code"], 33_283);

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::support::Bench;
 
-/// Examples from hiperdrive.md 3, 6 and 9.
+/// The expected values come from sections 3, 6 and 9 of hiperdrive.md.
 #[test]
 fn golden_words_and_process_data_are_explained() {
     let bench = Bench::new();
@@ -56,8 +56,8 @@ fn golden_words_and_process_data_are_explained() {
         (&["2F 20 00 00 FC FF 00 00"], &["write -4 (reset the drives) to parameter 47"]),
         (&["79 50 00 00 48 44 41 33"], &["parameter 121 (drive name of drive 1) is \"HDA3\""]),
         (&["A6 20 00 00 5F 01 00 00"], &["write 351 (35.1 rpm)", "warning: it may be 5 to 350"]),
-        // Issue 21.9: a single word for a parameter with a double word, the opposite case, and data of a different
-        // length.
+        // A word is given for a parameter of double-word size, a double word for one of word size, and data of another
+        // length (issue 21.9).
         (
             &["6B 10 00 00 02 00 00 00", "--direction", "in"],
             &["parameter 107 (actual position of drive 1) is no value (2 bytes where its type has 4: 0x2)"],
@@ -78,7 +78,7 @@ fn golden_words_and_process_data_are_explained() {
             assert!(ran.out.contains(word), "{word}: {ran:?}");
         }
     }
-    // A hub with four drives: drive 3, at byte 16, reports 2A31 and −1.5 rpm, and the others are missing.
+    // A hub with four drives: drive 3 begins at byte 16 with 2A31 and −1.5 rpm. The others are missing.
     let hub = format!("{} 31 2A F1 FF 00 00 00 00 {}", "00 ".repeat(16), "00 ".repeat(8));
     let told = bench.run(&["decode", "hiperdrive", "--direction", "in", "--json", &hub]).json();
     let drives = &told["frames"][0]["readings"][0]["drives"];
@@ -87,7 +87,7 @@ fn golden_words_and_process_data_are_explained() {
     assert_eq!(drives[2], third);
 }
 
-/// Examples from hiperdrive.md 7 and 9.
+/// The expected values come from sections 7 and 9 of hiperdrive.md.
 #[test]
 fn golden_packets_are_explained() {
     let bench = Bench::new();

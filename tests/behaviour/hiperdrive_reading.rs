@@ -50,12 +50,13 @@ fn a_healthy_device_reports_no_errors() {
     assert!(text.out.contains("errors") && text.out.contains("Not ready (0x2A30)"), "{text:?}");
 }
 
-/// A limit above the other one is rejected by the device with 09. The device stores error 8501 for this (reference 4).
+/// If the lower limit is above the upper one, the device rejects the value with 09 and keeps 8501 as the drive's error
+/// (reference 4).
 #[test]
 fn current_errors_are_errors_and_past_ones_are_notes() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--hub", "4", "--set", "drives=0,1", "--set", "requested=1"]);
-    // 258 = 7FFFFFFFh.
+    // Parameter 258, the lower limit of drive 2, is set to 7FFFFFFFh.
     let refused = device.request(&[0x10, 3, 0x20, 0x66, 0x24, 1, 0x30, 0x9E, 0xFF, 0xFF, 0xFF, 0x7F]);
     assert_eq!(refused[..3], [0x90, 0, 9]);
     let told = device.ask(&bench, &["status", "hiperdrive"]).json();
@@ -65,19 +66,19 @@ fn current_errors_are_errors_and_past_ones_are_notes() {
     device.ask(&bench, &["do", "hiperdrive", "acknowledge", "--drive", "2", "--yes"]).json();
     let told = device.ask(&bench, &["status", "hiperdrive"]).json();
     assert_eq!((&told["ok"], &told["errors"]), (&json!(true), &json!([])), "{told}");
-    // The content of the buffer does not count as a current warning.
+    // The content of the error buffer is not a current warning.
     assert_eq!(told["warnings"], json!([]), "{told}");
     let text = bench.run(&["status", "hiperdrive", "--link", &device.url()]);
     let notes = text.out.lines().filter(|line| line.starts_with("note")).count();
     assert_eq!(notes, told["earlier"].as_array().unwrap().len(), "{text:?}");
 }
 
-/// Issue 26.7: the advice for an error is to write 0 to parameter 197, which has the effect of an acknowledgement.
+/// The message about an error advises to write 0 to parameter 197, which acknowledges the error (issue 26.7).
 #[test]
 fn writing_0_to_197_acknowledges_one_drive() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--hub", "4", "--set", "drives=1,1", "--set", "requested=1"]);
-    // 258 = 7FFFFFFFh.
+    // Parameter 258, the lower limit of drive 2, is set to 7FFFFFFFh.
     let refused = device.request(&[0x10, 3, 0x20, 0x66, 0x24, 1, 0x30, 0x9E, 0xFF, 0xFF, 0xFF, 0x7F]);
     assert_eq!(refused[..3], [0x90, 0, 9]);
     let status = |drive: &str| device.ask(&bench, &["status", "hiperdrive", "--drive", drive]).json();
@@ -88,14 +89,14 @@ fn writing_0_to_197_acknowledges_one_drive() {
     }
     device.ask(&bench, &["write", "hiperdrive", "197", "0", "--drive", "2", "--yes"]).json();
     assert_eq!(status("2")["ok"], json!(true));
-    // There is nothing left to acknowledge, so nothing is sent.
+    // No error is left to acknowledge, so nothing is sent.
     device.sets();
     device.ask(&bench, &["write", "hiperdrive", "297", "0", "--yes"]).assert_stderr(&["Drive 2 has no fault"]);
     assert!(device.sets().is_empty());
 }
 
-/// Issue 22.9: a restore to a device with the same serial number but another type of device or drive. The type is named
-/// and rejected without explicit permission.
+/// A device with the same serial number but another type, of the device or of its drive, is named in the message, and a
+/// restore onto it is rejected unless the user permits it explicitly (issue 22.9).
 #[test]
 fn a_profile_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -123,15 +124,15 @@ fn a_check_reports_each_fact_once() {
     assert_eq!(line.matches("good").count(), 1, "{line}");
 }
 
-/// Issue 21.10: a speed is in tenths of rpm only with the factory scale (manual 6.2). Nominal data may also be in
-/// tenths. A drive at standstill has speed 0 in any scale.
+/// A speed is in tenths of rpm only with the factory scale (manual 6.2). Nominal data may be in tenths. At standstill
+/// the speed is 0 in any scale (issue 21.10).
 #[test]
 fn units_are_those_of_the_manual() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &[]);
     let read = |number: &str| device.ask(&bench, &["read", "hiperdrive", number]).json();
     assert_eq!(read("106")["unit"], json!("0.1 rpm"));
-    // 162 = 100.
+    // Parameter 162 is set to 100.
     assert_eq!(device.request(&[0x10, 3, 0x20, 0x65, 0x24, 1, 0x30, 162, 100, 0])[..3], [0x90, 0, 0]);
     assert!(read("106").get("unit").is_none());
     let text = |number: &str| bench.run(&["read", "hiperdrive", number, "--link", &device.url()]).out;
@@ -139,7 +140,7 @@ fn units_are_those_of_the_manual() {
     assert_eq!((read("127")["value"].clone(), read("127").get("unit")), (json!("A25"), None));
 }
 
-/// At 65536 steps per turn, −1 is step 65535 of turn −1, and 163840 is 2.5 turns (reference 2).
+/// A turn has 65536 steps: position −1 is turn −1, step 65535, and 163840 is 2.5 turns (reference 2).
 #[test]
 fn a_position_has_signed_turns() {
     let bench = Bench::new();
@@ -201,7 +202,7 @@ fn a_saved_profile_is_human_readable() {
     let bench = Bench::new();
     let file = bench.file("hub.ron");
     let told = ask(&bench, HUB, &["save", "hiperdrive", "-o", &file]).json();
-    // 10 registers, and 13 for each drive: 152 to 166, 186 to 192, and 198.
+    // There are 10 registers of the device and 13 of each drive: 152 to 166, 186 to 192, and 198.
     assert_eq!((&told["parameters"], &told["drives"]), (&json!(36), &json!(2)), "{told}");
     let text = bench.read("hub.ron");
     for line in [
@@ -219,7 +220,7 @@ fn a_saved_profile_is_human_readable() {
         ask(&bench, HUB, &["verify", &file]).json(),
         json!({"equal": true, "differences": [], "compared": 36, "missing": []})
     );
-    // The position differs, which does not count as a difference.
+    // A changed position is not a difference.
     let moved = HUB.replace("requested=1", "requested=1&position=5000&supply=22");
     assert_eq!(ask(&bench, &moved, &["diff", &file]).json()["equal"], json!(true));
     let slower = HUB.replace("requested=1", "requested=1&speed=200");
@@ -229,14 +230,14 @@ fn a_saved_profile_is_human_readable() {
         {"item": "166 drive 3", "left": "350", "right": "200"},
     ]);
     assert_eq!(told["differences"], expected);
-    // One of the slots is now empty.
+    // One slot of the hub has become empty.
     let fewer = HUB.replace("1,0,1", "1,0,0");
     let told = ask(&bench, &fewer, &["verify", &file]).json_with(3);
     assert_eq!((&told["compared"], &told["missing"][0]), (&json!(23), &json!("152 drive 3")), "{told}");
 }
 
-/// Neither a set request nor a cyclic connection is used: only single (0E) and all (01) get-attribute requests are
-/// sent.
+/// Reading sends no set request and opens no cyclic connection. It sends only get attribute single (0E) and get
+/// attribute all (01).
 #[test]
 fn reading_writes_nothing() {
     let bench = Bench::new();
@@ -262,7 +263,7 @@ fn reading_writes_nothing() {
         let foreign: Vec<&String> =
             heard.iter().filter(|own| !own.starts_with("0E ") && !own.starts_with("01 ")).collect();
         assert!(foreign.is_empty(), "{words:?}: {foreign:?}");
-        // Without consent, nothing is opened.
+        // Without consent, no connection is opened.
         let asks = !matches!(words, ["restore", _] | ["write", ..]);
         assert_eq!((ran.status, heard.is_empty()), (Some(if asks { 0 } else { 2 }), !asks), "{words:?}: {ran:?}");
     }

@@ -1,6 +1,6 @@
-//! Drives must stop, and stay stopped, after any failure of the host, its connections or its window during a motion.
-//! The drive is a separate process and is observed over a separate connection. The limits are those required for
-//! safety, plus a second for a busy computer.
+//! Drives stop and remain stopped after any failure of the host, its connections or its window during a motion. The
+//! drive is a separate process, and the test observes it over a separate connection. The time limits are the safety
+//! limits plus one second for a busy computer.
 
 mod watched;
 mod wires;
@@ -22,16 +22,16 @@ use wires::{Transport, Wires};
 
 /// Additional time allowed for a busy computer.
 const BUSY: Duration = Duration::from_secs(1);
-/// Maximum time without a report from the user interface before the program stops the drive.
+/// Time after which the user interface counts as frozen if it has not reported.
 const FROZEN: Duration = Duration::from_millis(300);
-/// Packet interval that is slow enough for a busy computer.
+/// The requested packet interval, long enough for a busy computer.
 const RPI: &str = "rpi=50";
-/// Time in which the watchdog must stop the drive: eight intervals and the braking time.
+/// Eight packet intervals plus the braking time.
 const WATCHDOG: Duration = Duration::from_millis(500);
 const FAST: SpeedTorque = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
 const JOG: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FAST, outward: false };
 
-/// A drive that is observed over a separate connection.
+/// A virtual drive with a connection that observes it.
 struct Drive {
     bench: Bench,
     simulated: Simulated,
@@ -124,7 +124,7 @@ impl Host {
         let mut act = 0;
         while drive.actual().speed <= 100 {
             assert!(Instant::now() < until, "it does not move: {:?}", self.motion);
-            // A busy computer may have delayed the refreshes.
+            // A busy computer may have delayed the refreshes, so that the jog has already ended.
             let over = self.motion.snapshot().drives[0].ended.is_some_and(|(number, _)| number >= act);
             if act == 0 || over {
                 act = self.motion.request_motion(DriveNumber::FIRST, JOG);
@@ -148,7 +148,7 @@ fn a_frozen_window_stops_the_drive() {
     // No further reports are sent.
     drive.stops_within(FROZEN + WATCHDOG);
     assert_eq!(host.ended(), Some(ActionEnd::Stale));
-    // When the window responds again with the same button still pressed, nothing moves.
+    // When the window responds again and the button is still pressed, the drive does not move.
     let stood = drive.actual().position;
     host.holds(Duration::from_millis(500));
     assert_eq!(drive.actual().position, stood);
@@ -159,7 +159,7 @@ fn a_frozen_window_stops_the_drive() {
     assert_eq!(host.ended(), Some(ActionEnd::Stopped));
 }
 
-/// The window is closed, so the session is dropped.
+/// Closing the window drops the session, which stops the drive.
 #[test]
 fn closing_the_session_stops_the_drive() {
     let mut drive = Drive::start();
@@ -168,7 +168,7 @@ fn closing_the_session_stops_the_drive() {
     assert!(host.worker.close(Duration::from_secs(5)));
     drive.stops_within(Duration::ZERO);
     assert_eq!(drive.actual().status.to_u16() & 0x000F, 0, "off, and no fault: it was told");
-    // The drive is free, and another host may take control.
+    // The drive is released, so the next host may control it.
     let next = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     assert!(next.motion.is_open());
 }
@@ -225,7 +225,7 @@ fn cut_packet_wires_stop_the_drive() {
     }
 }
 
-/// While garbage is sent in both directions at full speed, a release still stops the drive.
+/// When garbage arrives in both directions at full speed, releasing the button still stops the drive.
 #[test]
 fn a_release_stops_the_drive_during_a_flood() {
     let mut drive = Drive::start();
@@ -241,7 +241,7 @@ fn a_release_stops_the_drive_during_a_flood() {
     assert!(figures.malformed > 0, "{figures:?}");
 }
 
-/// Starts the `move` command in a separate process.
+/// Starts the command `move` in a separate process.
 fn moving(drive: &mut Drive) -> Child {
     let link = format!("enip:{}?{RPI}", drive.simulated.place);
     let arguments = ["move", "hiperdrive", "30000000", "--yes", "--link", &link];
@@ -284,8 +284,8 @@ fn an_interrupt_stops_the_drive() {
     assert_eq!(drive.actual().status.to_u16() & 0x000F, 0, "off, and no fault");
 }
 
-/// Issue 21.1: after any signal that ends the command, even if it is sent twice, the drive is at standstill and
-/// switched off, and its watchdog reports no fault.
+/// After any signal that ends a command, even if it is sent twice, the drive is at standstill and off, and its watchdog
+/// does not report a fault (issue 21.1).
 #[test]
 fn terminating_signals_stop_the_drive() {
     for (name, times) in [("TERM", 1), ("HUP", 1), ("TERM", 2), ("INT", 2)] {

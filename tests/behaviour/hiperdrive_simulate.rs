@@ -1,4 +1,4 @@
-//! The `simulate hiperdrive` command, checked by independent clients: one written from the reference, and pycomm3.
+//! `simulate hiperdrive`, checked by foreign clients: one was written from the reference, the other is pycomm3.
 
 use super::support::{Bench, Simulated, foreign_host, foreign_host_with, pycomm3, python};
 
@@ -10,7 +10,7 @@ fn drives(bench: &Bench, arguments: &[&str]) -> Simulated {
     Simulated::start(bench, &[&["hiperdrive", "--listen", "127.0.0.1:0"], arguments].concat())
 }
 
-/// Runs steps and compares the output of the client with the expected output of each step.
+/// Runs the steps of the foreign client and checks its output after each step.
 #[track_caller]
 fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
     let (things, expected): (Vec<&str>, Vec<&str>) = walk.iter().copied().unzip();
@@ -19,8 +19,8 @@ fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
     assert_eq!(said, expected, "{pairs:?}");
 }
 
-/// Reference 4 and 7: limits of 511 turns of 65536 steps, which is 33488896, the category, and rejections with their
-/// codes.
+/// Checks the limits of 511 turns of 65536 steps, or 33488896, the category, and the rejections with their codes
+/// (reference 4 and 7).
 #[test]
 fn parameters_are_read_and_written() {
     let bench = Bench::new();
@@ -49,12 +49,13 @@ fn parameters_are_read_and_written() {
         ("end", "closed"),
     ];
     walk(&port.place, &[], &steps);
-    // The next client finds the drive in the state left by the first one.
+    // The next client finds the drive as the first one has left it.
     walk(&port.place, &[], &[("get:166", "200")]);
     port.end("INT");
 }
 
-/// Reference 3 and 9: words and their states, a move and back, and a hold-to-run motion that ends when it is released.
+/// Checks the control words and the states they lead to, a move to a target and back, and that a jog ends when the
+/// button is released (reference 3 and 9).
 #[test]
 fn a_drive_is_enabled_moved_and_jogged() {
     let bench = Bench::new();
@@ -82,7 +83,7 @@ fn a_drive_is_enabled_moved_and_jogged() {
     port.end("TERM");
 }
 
-/// The eighth drive of a hub, which is requested with parameter 852, and without parameter words.
+/// Moves the eighth drive of a hub, which parameter 852 requests, with process data that contain no parameter words.
 #[test]
 fn a_drive_of_a_hub_moves_alone() {
     let bench = Bench::new();
@@ -101,7 +102,7 @@ fn a_drive_of_a_hub_moves_alone() {
     port.end("INT");
 }
 
-/// Reference 7: if the master is lost, the motion ends within its time-out. Fault 8601, which is 34305, reports this.
+/// If the master is lost, the motion ends within its time-out, and fault 8601 (34305) reports it (reference 7).
 #[test]
 fn a_drive_stops_when_its_master_falls_silent() {
     let bench = Bench::new();
@@ -139,8 +140,7 @@ fn garbage_is_ignored() {
     port.end("INT");
 }
 
-/// Saved values are still present for the next client after a loss of power. After an interrupted save, half of them
-/// are.
+/// After a loss of power, the next client finds the saved values. If the save was interrupted, it finds half of them.
 #[test]
 fn a_save_is_interrupted_where_configured() {
     let bench = Bench::new();
@@ -198,7 +198,7 @@ fn impossible_simulations_are_refused() {
     bench.run(&["simulate", "hiperdrive", "--listen", "[::1]:0"]).fails(1, &["::1", "127.0.0.1:4001"]);
     let taken = drives(&bench, &[]);
     bench.run(&["simulate", "hiperdrive", "--listen", &taken.place]).fails(1, &["in use by another program"]);
-    // The port is free only for TCP.
+    // The port is used for TCP only, so it is still free for UDP.
     let datagrams = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     let place = datagrams.local_addr().unwrap().to_string();
     bench.run(&["simulate", "hiperdrive", "--listen", &place]).fails(1, &["in use by another program"]);

@@ -1,11 +1,11 @@
-//! Writing to virtual HIPERDRIVE drives, checked request by request at a proxy, and save by save.
+//! Writing to virtual HIPERDRIVE drives: a proxy checks each request and each save.
 
 use serde_json::{Value, json};
 
 use super::hiperdrive_tap::Tapped;
 use super::support::Bench;
 
-/// The request that saves all parameters: 47 = 1 (reference 9).
+/// The request that saves: parameter 47 is set to 1 (reference 9).
 const SAVE: &str = "10 03 20 64 24 01 30 2F 01 00";
 
 #[test]
@@ -41,7 +41,7 @@ fn volatile_parameters_are_not_saved() {
     let device = Tapped::start(&bench, &["--set", "hub=4", "--set", "drives=0,1", "--set", "requested=1"]);
     let told = device.ask(&bench, &["write", "hiperdrive", "170", "100", "--drive", "2", "--yes"]).json();
     assert_eq!((&told["item"], &told["write_cycles"]), (&json!("170 drive 2"), &json!(0)), "{told}");
-    // 270 is in class 66h.
+    // Parameter 270 is in class 66h.
     assert_eq!(device.sets(), ["10 03 20 66 24 01 30 AA 64 00 00 00"]);
 }
 
@@ -85,8 +85,8 @@ fn a_restore_writes_scale_then_limits_and_saves_once() {
     let again = device.ask(&bench, &["restore", &file, "--yes", "--with-mounting"]).json();
     assert_eq!((&again["written"], &again["unchanged"], &again["write_cycles"]), (&json!(0), &json!(7), &json!(0)));
     assert_eq!(device.sets(), Vec::<String>::new());
-    // Upwards past both limits, the upper one is written first (1000 lies between 500 and 2000, and between 600 and
-    // 5000).
+    // Both limits move up, past their old values, so the upper limit is written first (1000 lies between 500 and 2000,
+    // and between 600 and 5000).
     let up = bench.write("up.ron", r#"(schema: 1, device: "hiperdrive", parameters: {158: 1000, 160: 1001})"#);
     device.ask(&bench, &["restore", &up, "--yes"]).json();
     device.sets();
@@ -124,7 +124,7 @@ fn a_position_is_set_in_steps_of_64_and_saved() {
     ran.assert_stderr(&["100 becomes 128"]);
     assert_eq!(device.sets(), ["10 03 20 65 24 01 30 C6 80 00 00 00", SAVE]);
     assert_eq!(device.ask(&bench, &["position", "hiperdrive"]).json()["raw"], json!(128));
-    // −33 becomes −64.
+    // The value −33 becomes −64.
     device.ask(&bench, &["write", "hiperdrive", "198", "-33", "--yes"]).assert_stderr(&["-33 becomes -64"]);
     assert_eq!(device.ask(&bench, &["position", "hiperdrive"]).json()["raw"], json!(-64));
     device.sets();

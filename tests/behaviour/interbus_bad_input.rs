@@ -40,8 +40,8 @@ fn invalid_arguments_are_usage_errors() {
     bench.run(&["identify", "biss", "--link", "modbus:127.0.0.1:1"]).fails(2, &["modbus"]);
 }
 
-/// A value is rejected before anything is sent if nothing has to be read, and otherwise before anything is set. The
-/// message states both limits.
+/// The value is rejected before anything is sent if it can be checked without reading, otherwise before anything is
+/// set. The message names both limits.
 #[test]
 fn out_of_range_values_name_both_limits() {
     let bench = Bench::new();
@@ -75,7 +75,7 @@ fn out_of_range_values_name_both_limits() {
     assert!(told.iter().all(|line| !line.starts_with("STORE") && !line.starts_with("W 4")), "{told:?}");
 }
 
-/// A rejection by the encoder itself (reference 2), and the return to its mode.
+/// If the encoder rejects a value (reference 2), its error word is reported and the encoder is returned to its mode.
 #[test]
 fn a_refusal_is_reported_with_its_word_and_the_mode_restored() {
     let bench = Bench::new();

@@ -1,10 +1,10 @@
-//! INTERBUS without a device: decoding of process data words.
+//! INTERBUS without a device: decoding words of the process data.
 
 use serde_json::{Value, json};
 
 use super::support::Bench;
 
-/// Examples from interbus.md 5, 6.3 and 7.
+/// The expected values come from interbus.md 5, 6.3 and 7.
 #[test]
 fn golden_words_are_explained() {
     let bench = Bench::new();
@@ -60,7 +60,7 @@ fn json_has_every_reading() {
     assert_eq!(frames[0]["readings"][0], start);
     let position = json!(["position", "parameterisation", "read-out"]);
     assert_eq!((&frames[0]["readings"][1]["modes"], &frames[0]["readings"][1]["value"]), (&position, &json!(21)));
-    // No mode is given, so all modes are possible.
+    // A word that has this meaning in every mode lists no modes.
     assert_eq!(
         (&frames[1]["readings"][0]["direction"], &frames[1]["readings"][0]["modes"]),
         (&json!("in"), &json!([]))
@@ -85,7 +85,7 @@ fn illegal_and_invalid_words_are_refused() {
     let readings = told["frames"][0]["readings"].as_array().unwrap();
     let legal: Vec<&Value> = readings.iter().map(|reading| &reading["legal"]).collect();
     assert_eq!(legal, [&json!(false), &json!(true)], "{told}");
-    // The valid words of the same command are printed.
+    // Valid words are printed even if the same command contains invalid ones.
     let mixed = bench.run(&["decode", "interbus", "--direction", "out", "80000000", "10000000", "--json"]).json_with(1);
     let valid: Vec<&Value> = mixed["frames"].as_array().unwrap().iter().map(|frame| &frame["valid"]).collect();
     assert_eq!(valid, [&json!(true), &json!(false)]);

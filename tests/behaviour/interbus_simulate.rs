@@ -7,7 +7,7 @@ fn host_replies(place: &str, things: &[&str]) -> Vec<String> {
     foreign_host("interbus_master.py", place, things)
 }
 
-/// The worked example of reference 4: 5000 of 8192 steps of the disc are 155 of 255 steps, followed by the preset.
+/// The worked example of reference 4: 5000 of 8192 steps of the disc become 155 of 255 steps. The preset follows.
 const WORKED: [(&str, &str); 9] = [
     ("in", "00001388"),
     ("020000FF", "C20000FF"),
@@ -20,8 +20,8 @@ const WORKED: [(&str, &str); 9] = [
     ("00000000", "00000000"),
 ];
 
-/// The cams of reference 5 with 4096 steps per turn. At position 2500, cam 3 from 21 to 531 is off. Then it starts at
-/// 2001 and ends at 531, beyond the end of the range.
+/// Cams at 4096 steps per turn (reference 5). The position window shows position 2500. At first, cam 3 reaches from 21
+/// to 531 and is off there. Then it reaches from 2001 past the end of the range to 531.
 const CAMS: [(&str, &str); 21] = [
     ("20800001", "E0800001"),
     ("46000015", "C6000015"),
@@ -68,7 +68,7 @@ fn the_worked_and_cam_examples_match_the_reference() {
     let gear = ["steps=8192", "revolutions=1", "position=5000", "busy=20", "stale=2"];
     let port = virtual_gateway(&bench, &gear);
     walk(&port.place, &WORKED);
-    // The next client finds the encoder in the state left by the first one.
+    // The next client finds the encoder as the first one has left it.
     walk(&port.place, &[("in", "00000000"), ("20210001", "A00000FF"), ("00000000", "00000000")]);
     port.end("INT");
     let port = virtual_gateway(&bench, &["steps=4096", "revolutions=1", "position=5000", "busy=20", "stale=2"]);
@@ -76,7 +76,7 @@ fn the_worked_and_cam_examples_match_the_reference() {
     port.end("TERM");
 }
 
-/// Both were written from the reference, independently of each other.
+/// The virtual encoder and the foreign one were written independently from the reference.
 #[test]
 fn the_foreign_encoder_matches_the_reference() {
     let bench = Bench::new();
@@ -131,7 +131,8 @@ fn registers_unit_and_order_are_configurable_and_errors_are_exceptions() {
     port.end("INT");
 }
 
-/// An encoder that has lost its power is powered on again for the next client, without the value that it was storing.
+/// An encoder that has lost its power starts again with the next client, and does not have the value that it was
+/// storing.
 #[test]
 fn configured_faults_are_injected() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Writing to a foreign K3 encoder, checked word by word and store by store.
+//! Writing to a foreign K3 encoder: each word and each store is checked.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// Returns the words since the last call that set a value, with their effects.
+/// Returns the words that set a value, with their effects, since the previous call.
 fn written(encoder: &Foreign) -> Vec<String> {
     let reads = ["R", "W 2021", "W 2020", "W 2080", "W 80000000", "W 00000000"];
     encoder.requests().into_iter().filter(|line| !reads.iter().any(|begin| line.starts_with(begin))).collect()
@@ -49,7 +49,7 @@ fn profile(serial_number: &str, parameters: &str, programs: &str) -> String {
 
 const PARAMETERS: &str = r#"steps: 3600, revolutions: 1, direction: "cw", preset: 0, zero_shift: 0"#;
 
-/// The case of the issue: 64 cams and 8 masks are written to an encoder that already has 60 of the cams.
+/// Restores 64 cams and 8 masks onto an encoder that already has 60 of the cams.
 #[test]
 fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
     let bench = Bench::new();
@@ -77,7 +77,7 @@ fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
         {"item": "cam:8:1 start", "old": "108", "new": "0", "write_cycles": 0},
         {"item": "cam program 8", "old": null, "new": "stored", "write_cycles": 1},
     ]);
-    // An edge that already exists is omitted.
+    // Edges that already have the value are left out.
     let expected: Vec<&Value> = expected.as_array().unwrap().iter().filter(|own| own["old"] != own["new"]).collect();
     assert_eq!(dry["operations"].as_array().unwrap().iter().collect::<Vec<_>>(), expected);
     assert!(written(&encoder).is_empty());
@@ -87,7 +87,7 @@ fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
         (&json!(4), &json!(4), &json!(3)),
         "{told}"
     );
-    // Reference 5: 010 or 011, four bits for the cam, and 25 bits for the position.
+    // A word consists of 010 or 011, four bits for the cam and 25 bits for the position (reference 5).
     let words = [
         "W 40000014",
         "W 4E000DAC",
@@ -100,7 +100,7 @@ fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
     ];
     assert_eq!(written(&encoder), words);
     assert_eq!(ask(&bench, &encoder, &["verify", &file]).json()["equal"], json!(true));
-    // When the restore is repeated, nothing differs, and nothing is set or saved.
+    // When the restore is repeated, nothing differs, so nothing is set and no backup is stored.
     let again = ask(&bench, &encoder, &["restore", &file, "--yes"]).json();
     assert_eq!((&again["written"], &again["write_cycles"], &again["backup"]), (&json!(0), &json!(0), &Value::Null));
     // The backup is a profile of the changed values and restores them.
@@ -110,8 +110,8 @@ fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
     assert_eq!(written(&encoder).len(), 8);
 }
 
-/// Reference 3: a single parameterisation, in an order in which each number is valid. The preset is stored but not
-/// applied.
+/// All parameters are set in one parameterisation, in an order in which each intermediate value is valid. The preset is
+/// stored but not applied (reference 3).
 #[test]
 fn parameters_need_one_store_and_a_restore_triggers_no_preset() {
     let bench = Bench::new();
@@ -154,7 +154,8 @@ fn each_item_is_written_by_name() {
     assert!(written(&encoder).is_empty());
 }
 
-/// Reference 4: 00000000 → 40000000 → IN shows the preset → 00000000, once for each time that the preset is programmed.
+/// Triggering a preset sends 00000000, then 40000000 until IN shows the preset, then 00000000. It does so once for each
+/// time that the preset was programmed (reference 4).
 #[test]
 fn a_preset_is_programmed_and_triggered_at_standstill() {
     let bench = Bench::new();
@@ -184,7 +185,7 @@ fn the_default_is_experimental() {
     assert_eq!(written(&encoder)[..1], ["W 0E000000"]);
 }
 
-/// Issue 22.19: an encoder that sends an error word after returning to its mode has not recovered.
+/// If the encoder sends an error word after the return to its mode, the mode is not reported as restored (issue 22.19).
 #[test]
 fn restoring_the_mode_fails_if_the_encoder_sends_an_error() {
     let bench = Bench::new();
@@ -196,8 +197,8 @@ fn restoring_the_mode_fails_if_the_encoder_sends_an_error() {
     assert_eq!(ask(&bench, &encoder, &["do", "interbus", "lead-back"]).json()["done"], json!("lead-back"));
 }
 
-/// Issue 22.9: the profile of a multiturn encoder for an encoder that does not count turns. The type is named and
-/// rejected without explicit permission.
+/// A profile of a multiturn encoder is rejected for an encoder that counts no turns unless the user permits it
+/// explicitly. The message names the difference (issue 22.9).
 #[test]
 fn an_encoder_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -213,10 +214,10 @@ fn an_encoder_of_another_type_needs_a_separate_permission() {
     let dry = ask(&bench, &encoder, &[&restore[..], &["--dry-run"]].concat());
     assert!(dry.err.contains("multiturn") && dry.err.contains("single turn"), "{dry:?}");
     assert_eq!((dry.status, written(&encoder)), (Some(0), vec![]));
-    // `verify` also reports this.
+    // `verify` reports the difference, too.
     let ran = ask(&bench, &encoder, &["verify", &file]);
     assert!(ran.err.contains("single turn"), "{ran:?}");
-    // The mounting-specific values stay unchanged.
+    // The encoder keeps the values of its mounting.
     assert_eq!(ask(&bench, &encoder, &[&restore[..], &["--yes"]].concat()).json()["written"], json!(1));
     assert_eq!(written(&encoder), ["W 06000004", "STORE parameters"]);
 }
@@ -254,7 +255,8 @@ fn nothing_is_written_without_consent_or_to_another_encoder() {
     assert_eq!(ask(&bench, &encoder, &["identify", "interbus"]).json()["mode"], json!("K3"));
 }
 
-/// The case of the issue: warn from 150 stores, ask again above 200, and reject from 450 unless forced.
+/// A warning is printed from 150 stores on, beyond 200 the program asks again, and from 450 a write is rejected unless
+/// it is forced.
 #[test]
 fn the_stores_of_an_eeprom_are_counted() {
     let bench = Bench::new();
@@ -279,7 +281,7 @@ fn the_stores_of_an_eeprom_are_counted() {
     wear_to(200);
     let told = write(&[]);
     assert!(told.status == Some(0) && told.err.contains("201") && told.err.contains("specifies only 200"), "{told:?}");
-    // On a terminal, the program asks about the plan, and above 200 stores a second time.
+    // On a terminal, the program asks about the plan, and a second time beyond 200 stores.
     encoder.requests();
     let typed = ["write", "interbus", "zero-shift", "5", "--link", &encoder.url];
     for no in ["n\n", "y\nn\n"] {
@@ -295,7 +297,7 @@ fn the_stores_of_an_eeprom_are_counted() {
     let refused = write(&[]);
     refused.fails(1, &["449", "(1)", "450", "--force-wear"]);
     assert!(written(&encoder).is_empty());
-    // The same value again, because it was not written.
+    // The value is the same as before, because it was not written.
     let _ = write(&["--force-wear"]);
     assert_eq!(write(&["--force-wear"]).json()["write_cycles"], json!(1));
     assert_eq!(bench.logbook().write_cycles(&device).unwrap(), 450);

@@ -1,6 +1,6 @@
-//! The interface on which scripts rely: exit status and JSON of every command must match the recordings under
-//! `tests/fixtures/cli`, one file per kind of device. A recording contains its own list of commands: `$` begins a
-//! command, `=` states its status, and JSON follows. Text for users is not included.
+//! The interface that scripts rely on: the exit status and JSON output of every command, compared with the recordings
+//! under `tests/fixtures/cli`, one file per kind of device. A recording also lists the commands: a line with `$` begins
+//! one, `=` gives its exit status, and its JSON follows. Text for users is not recorded.
 //!
 //! `ENCODER_STUDIO_RECORD=1` rewrites the files. Use it only if the contract is meant to grow.
 
@@ -15,7 +15,7 @@ fn fixtures() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/cli")
 }
 
-/// Runs the commands of a recording in order, in a separate folder.
+/// Runs the commands of a recording in sequence in a separate folder and compares their output.
 fn assert_recorded(kind: &str) {
     let path = fixtures().join(format!("{kind}.txt"));
     let recorded = std::fs::read_to_string(&path).unwrap();
@@ -54,7 +54,7 @@ fn steady(value: Value) -> Value {
     match value {
         Value::Object(entries) => entries.into_iter().map(|(key, value)| steady_entry(key, value)).collect(),
         Value::Array(items) => items.into_iter().map(steady).collect(),
-        // A sentence with a measured time.
+        // The sentence contains a measured time.
         Value::String(text) if text.contains(" ms") => without_numbers(&text).into(),
         other => other,
     }
@@ -135,7 +135,8 @@ const LINKS: [&str; 18] = [
     "hiperdrive enip:none",
 ];
 
-/// The parameters of links and the settings of virtual devices, which users have in their scripts and settings.
+/// The recorded parameters of links and settings of virtual devices remain valid, because users have them in scripts
+/// and settings.
 #[test]
 fn links_accept_the_recorded_parameters() {
     let (path, bench) = (fixtures().join("links.txt"), Bench::new());

@@ -1,4 +1,5 @@
-//! The virtual sine/cosine source and the analysis: the results of the analysis must match the settings of the source.
+//! The virtual sine/cosine source together with the analysis: the analysis returns the values to which the source was
+//! set.
 
 use encoder_studio::analysis::SampleTime;
 use encoder_studio::analysis::diagnosis::{Diagnosis, FindingKind, Record, diagnose};
@@ -9,7 +10,7 @@ use encoder_studio::analysis::signal_analysis::{Analysis, AnalysisError};
 use encoder_studio::analysis::wiring::{Wire, Wires};
 use encoder_studio::sim::sine_cosine::{ReferenceLevel, Settings, Source};
 
-/// Returns one and a half seconds at one revolution per second with 512 periods each, sampled at 50 kHz.
+/// Returns 1.5 s of one revolution per second with 512 periods per revolution, sampled at 50 kHz.
 fn recorded(settings: Settings) -> (Vec<f64>, Wires) {
     let settings = Settings { periods: 512.0, rate_hz: 50_000.0, ..settings };
     let source = Source::new(settings.validate().unwrap(), SampleTime::ORIGIN);
@@ -45,7 +46,8 @@ fn the_parameters_are_recovered() {
         ..Settings::default()
     });
     let ellipse = analysis.unwrap().ellipse;
-    // 0.5 mV on 75 000 samples yields σ·√(2/n) = 2.6 µV. The limit is five times that, as a fraction of 0.5 V.
+    // Noise of 0.5 mV on 75 000 samples gives σ·√(2/n) = 2.6 µV. The limits are five times that, the relative ones as
+    // fractions of 0.5 V.
     near(ellipse.amplitude_v, 0.48, 1.3e-5);
     near(ellipse.offset_sine_v, 0.015, 1.3e-5);
     near(ellipse.offset_cosine_v, -0.01, 1.3e-5);
@@ -101,8 +103,8 @@ fn each_injected_fault_is_diagnosed() {
     }
 }
 
-/// An eccentricity of 100″ yields an integral deviation of 100″. An offset of 1 % yields ±0.573 electrical degrees,
-/// which is 4.03″ with 512 periods.
+/// An eccentricity of 100″ is an integral nonlinearity of 100″. An offset of 1 % causes ±0.573 electrical degrees,
+/// which are 4.03″ at 512 periods.
 #[test]
 fn eccentricity_is_integral_and_an_offset_differential_nonlinearity() {
     let settings = Settings { eccentricity_arcsec: 100.0, offset_sine_v: 0.005, noise_v: 0.0, ..Settings::default() };

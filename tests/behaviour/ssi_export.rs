@@ -133,7 +133,7 @@ fn the_exported_c_code_decodes_like_the_program() {
     }
 }
 
-/// `EXPECT=write` rewrites the file, which must be reviewed before it is committed.
+/// With `EXPECT=write`, the test writes the file again. Review it before committing it.
 #[test]
 fn the_exported_structured_text_matches_the_reviewed_file() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vectors/ssi_ahs36.st");
@@ -152,7 +152,7 @@ const REFERENCE: [(&str, u64, &str); 12] = [
     ("ahs36,st=12,err=following", 0x55E4, "2748 0 2748 0"),
     ("ahm36,code=gray", 0x0D9_3EEC, "4778587 291 10843 1"),
     ("afs60,st=13", 0x91A2, "4660 0 4660 0"),
-    // More than 32 clocks: 5A5h turns and 2ABCDh steps, twice, followed by a fault.
+    // Frames of more than 32 clocks: 5A5h turns and 2ABCDh steps for two families, then all ones, which is a fault.
     ("afm60", 0xB4B5_5E68, "378973133 1445 175053 1"),
     ("afm60s", 0xB4B5_5E68, "378973133 1445 175053 1"),
     ("afm60s", 0x1_FFFF_FFFF, "1073741823 4095 262143 0"),
@@ -167,8 +167,7 @@ fn decoders_of_32_bits(layout: &Layout) -> [(&'static str, Result<String, TooWid
     [("st", structured_text_32(layout, "title")), ("scl", scl_source(layout, "title"))]
 }
 
-/// Runs an exported 32-bit decoder in Python and returns its results for the frames, or `None` if Python is not
-/// installed.
+/// Runs an exported 32-bit decoder in Python on the frames and returns its results, or `None` if Python is missing.
 fn run_32(text: &str, frames: &[u64]) -> Option<Vec<String>> {
     let folder = tempfile::tempdir().unwrap();
     let source = folder.path().join("decoder.txt");
@@ -177,7 +176,7 @@ fn run_32(text: &str, frames: &[u64]) -> Option<Vec<String>> {
     let mut child = player.arg(&source).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut input = child.stdin.take().unwrap();
     let lines: String = frames.iter().map(|frame| format!("{frame:x}\n")).collect();
-    // It answers while reading, because the pipe cannot hold all of the input.
+    // The decoder answers while it is still reading, and a pipe cannot hold all of the data, so a thread writes them.
     let writer = std::thread::spawn(move || input.write_all(lines.as_bytes()));
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap().unwrap();
@@ -223,8 +222,7 @@ fn layouts_too_wide_for_32_bits_are_refused() {
     }
 }
 
-/// TIA Portal requires the following of an external source: a quoted name, a version, local variables with `#`, and
-/// named parameters.
+/// TIA Portal requires a quoted name, a version, local variables with `#`, and named parameters in an external source.
 #[test]
 fn scl_has_the_form_of_an_external_source() {
     let text = scl_source(&family("afm60,code=gray"), "Zuführung\n(* 2 *)").unwrap();

@@ -47,7 +47,7 @@ fn the_position_has_turns_steps_and_degrees() {
     }
 }
 
-/// The KH53 counts tenths of a millimetre and is at three quarters of 2^24.
+/// A KH53 counts tenths of a millimetre. The position is three quarters of 2^24.
 #[test]
 fn a_linear_encoder_reports_millimetres() {
     let bench = Bench::new();
@@ -82,8 +82,8 @@ fn error_bits_are_reported_on_appearance_and_counted() {
     assert!(good.out.contains("errors    none") && good.out.contains("step 196608"), "{good:?}");
 }
 
-/// Reference 6.7: all ones mean a fault for a safety encoder and a broken wire for any other. All zeros mean a stuck
-/// line.
+/// If all bits are ones, a safety encoder has a fault, and another encoder has a broken wire. If all bits are zeros,
+/// the line is stuck (reference 6.7).
 #[test]
 fn a_stuck_line_is_reported() {
     let bench = Bench::new();
@@ -105,8 +105,8 @@ fn a_stuck_line_is_reported() {
     assert!(said.contains("line stuck low: 1 time"), "{said}");
 }
 
-/// Words are read with the clock and pause of the link, or else of the profile, or else slowly. They are checked
-/// against the times of the encoder.
+/// Words are read with the clock and pause of the link. If it has none, those of the profile are used, and otherwise
+/// slow ones. The values are checked against the times of the encoder.
 #[test]
 fn clock_and_pause_are_those_of_the_link_or_the_profile() {
     let bench = Bench::new();

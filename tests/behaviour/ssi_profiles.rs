@@ -1,5 +1,5 @@
-//! Layouts of SSI encoders in files: they are stored, compared, and used wherever a layout can be specified. Families
-//! can be defined by the user.
+//! Layouts of SSI encoders in files: saving and comparing them, using them wherever a layout can be named, and families
+//! that the user defines.
 
 use std::fs;
 
@@ -36,7 +36,7 @@ fn a_layout_is_saved_and_used_like_its_family() {
         };
         assert_eq!(run(&file), run(spec));
     }
-    // Exporting and reimporting the layout yields the same text, as it does for another layout.
+    // Exporting the file gives its text again, and so does exporting the same layout from its specification.
     let exported = bench.run(&["ssi", "export", "--layout", &file, "--format", "profile"]);
     assert_eq!(exported.out, text);
     let again = bench.file("again.ron");
@@ -61,7 +61,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     }
     let source = bench.run(&["ssi", "export", "--layout", &file, "--format", "c"]).out;
     assert!(source.starts_with("/* SSI decoder: feeder\n"), "{source}");
-    // The profile defines how the encoder is read. Without a family, the general SSI times apply.
+    // The profile defines the clock and pause. Without a family, the general times of SSI apply.
     let general = bench.run(&["ssi", "export", "--layout", &file, "--format", "timing"]);
     assert!(general.out.contains("13 clocks, 130.00 µs"), "{general:?}");
     assert!(general.err.starts_with("The general SSI timing applies"), "{general:?}");
@@ -78,7 +78,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     assert!(faster.out.contains("13 clocks, 13.00 µs"), "{faster:?}");
 }
 
-/// The help lists the entries of a layout, each of which can be used in a file.
+/// Each entry of a layout that the help names can be used in a file.
 #[test]
 fn the_help_names_valid_entries() {
     let bench = Bench::new();
@@ -86,7 +86,7 @@ fn the_help_names_valid_entries() {
     let entry = |name: &str| {
         let at = help.find(&format!("{name}: ")).unwrap_or_else(|| panic!("{name} is not in\n{help}"));
         let value = &help[at..];
-        // Up to two spaces, after which the entry is explained, or the end of the line.
+        // The value ends at two blanks, after which the entry is explained, or at the end of the line.
         let end = value.find("  ").into_iter().chain(value.find('\n')).min().unwrap();
         value[..end].to_owned()
     };
@@ -133,7 +133,7 @@ fn ready_made_profiles_have_the_factory_settings_of_their_families() {
         let shipped = format!("{folder}/{key}.ron");
         assert_eq!(bench.run(&["diff", &shipped, &delivered]).status, Some(0), "{key}");
     }
-    // 12 bits of turns followed by 12 bits within the turn: 5A5h and 91Ah, and nothing else.
+    // The frame has 12 bits of turns (5A5h) followed by 12 bits within a turn (91Ah), and nothing else.
     let short = format!("{folder}/atm60-tree-24-bit-controller.ron");
     let words = ["ssi", "encode", "--json", "--layout", &short, "--turns", "0x5A5", "--steps", "0x91A"];
     assert_eq!(bench.run(&words).json(), json!({ "bits": "010110100101100100011010", "hex": "5A591A" }));
@@ -151,7 +151,7 @@ fn user_families_are_loaded_and_broken_ones_reported() {
     )"#;
     fs::write(folder.join("feeder.ron"), family).unwrap();
     let encoded = bench.run(&["ssi", "encode", "--layout", "feeder", "--position", "1", "--json"]);
-    // A 1 in Gray code, on clock 10 of 13.
+    // The value 1 in Gray code sets clock 10 of 13.
     assert_eq!((encoded.json()["bits"].clone(), encoded.err), (json!("0000000001000"), String::new()));
     fs::write(folder.join("broken.ron"), family.replace("codes: [gray]", "codes: [grey]")).unwrap();
     let told = bench.run(&["ssi", "encode", "--layout", "feeder", "--position", "1"]);

@@ -16,7 +16,7 @@ fn recording() -> Vec<(String, Option<u64>)> {
     lines.map(|(frame, meant)| (frame.to_owned(), meant.parse().ok())).collect()
 }
 
-/// Returns the export of a logic analyser, or `None` if Python is not installed.
+/// Returns the frames as an export of a logic analyser, or `None` if Python is missing.
 fn capture(analyser: &str, frames: &[(String, Option<u64>)]) -> Option<String> {
     let mut child =
         python("ssi_capture.py")?.arg(analyser).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
@@ -60,7 +60,7 @@ fn edges_of_a_logic_analyser_are_decoded_and_searched() {
         }
         let input = fed(&bench, &[&LAYOUT[..], &["-"]].concat(), &text);
         assert_eq!(positions(&input), read, "{analyser}");
-        // The search yields the same result as for the frames themselves.
+        // The search finds the same layout as in the frames themselves.
         let frames: String = rows[..count].iter().map(|(frame, _)| format!("{frame}\n")).collect();
         let frames = bench.run(&["ssi", "find", "--json", &bench.write("frames.txt", frames)]).json();
         assert_eq!(bench.run(&["ssi", "find", "--json", &path]).json(), frames, "{analyser}");
@@ -88,7 +88,7 @@ fn the_table_of_positions_is_read_again() {
     // The frame from section 8 of the reference together with a file.
     let both = bench.run(&[&LAYOUT[..], &["0x0D93EEC", &format!("@{path}")]].concat());
     assert_eq!((positions(&both)[0], positions(&both).len()), (Some(0x123 << 14 | 0x2A5B), 21));
-    // Twenty frames are not enough for a decision.
+    // Twenty frames are too few to decide.
     let found = bench.run(&["ssi", "find", "--json", "--clocks", "27", &path]);
     assert_eq!(serde_json::from_str::<Value>(&found.out).unwrap()["frames"], 20, "{found:?}");
     assert!(bench.run(&["ssi", "find", &path]).err.contains("--clocks N"), "a number has no leading zeros");
@@ -119,8 +119,7 @@ fn invalid_recordings_are_refused_with_line_and_remedy() {
     bench.run(&["ssi", "find", &huge]).fails(1, &["huge.csv", "16 MB", "shorter section"]);
 }
 
-/// Exports are passed on to other people, so they name a profile by its file name and not by its folder on this
-/// computer.
+/// An export is passed on to other people, so it names a profile by its file name without the folder on this computer.
 #[test]
 fn exports_have_no_path_of_this_computer() {
     let bench = Bench::new();

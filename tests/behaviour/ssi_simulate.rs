@@ -1,4 +1,4 @@
-//! The `simulate ssi` command, examined by an independent host and by the program's own.
+//! `simulate ssi`, tested by a host that is not part of this program, and by the program's own host.
 
 use serde_json::{Value, json};
 
@@ -9,8 +9,8 @@ fn host_replies(path: &str, actions: &[&str]) -> Vec<Value> {
     lines.iter().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// Checks a session according to bridge reference 2 to 4. The shaft is at turn 1234h, 270°, which is turn 234h of 4096,
-/// step 1800h of 8192, in Gray code.
+/// Checks bridge reference 2 to 4. The shaft is at turn 1234h and 270°, which is turn 234h of 4096 and step 1800h of
+/// 8192 in Gray code.
 fn examine(path: &str) {
     let actions =
         ["word", "hello", "ssi:25:1500000:30", "word", "ssi:27:400000:200", "word", "ssi:12:400000:200", "word"];
@@ -18,7 +18,7 @@ fn examine(path: &str) {
     assert_eq!((&said[0]["error"], &said[0]["op"]), (&json!(2), &json!(0x11)), "not configured");
     assert_eq!((&said[1]["version"], said[1]["capabilities"].as_u64().unwrap() & 1), (&json!(1), 1));
     assert_eq!((&said[2], &said[3]["raw"]), (&json!({"clock_hz": 1_500_000}), &json!("65D400")));
-    // Zeros follow the frame, or only its first bits are sent.
+    // With more clocks than bits, zeros follow the frame. With fewer, only its first bits are read.
     assert_eq!((&said[5]["raw"], &said[7]["raw"]), (&json!("1975000"), &json!("32E")));
     assert_eq!((&said[8]["error"], &said[9]["error"]), (&json!(2), &json!(2)));
     assert_eq!(said[10]["raw"], json!("32E"), "a setting that is refused changes nothing");
@@ -41,8 +41,8 @@ fn words_are_served_on_a_pseudoterminal_and_a_tcp_port() {
     assert!(!bench.path("adapter").is_symlink());
 }
 
-/// 20 000 words per second, none of which is missing. Each has its time and its position on a shaft that turns ten
-/// times per second. 81 920 steps per second are 4.096 per word.
+/// A stream of 20 000 words per second has no missing word. Each word has its time, and its position on a shaft that
+/// turns ten times per second: 81 920 steps per second are 4.096 steps per word.
 #[test]
 fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
     let bench = Bench::new();
@@ -59,10 +59,10 @@ fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
     }
     assert_eq!((&stream["period_us"], &stream["ended"]), (&json!(50), &json!(true)), "{stream}");
     assert_eq!((&stream["least_move"], &stream["greatest_move"]), (&json!(4), &json!(5)), "{stream}");
-    // On a busy computer, the host may start to count late. Even then, there is no gap in the counted words.
+    // On a busy computer, the host may start counting late, but no counted word is missing even then.
     assert!(stream["words"].as_u64() > Some(30_000), "{stream}");
     assert!(said[3]["raw"].is_string(), "single words again when the stream has ended");
-    // 25 clocks at 400 kHz are 62.5 µs, with a pause of 200 µs, rounded to whole microseconds.
+    // 25 clocks at 400 kHz take 62.5 µs. With the pause of 200 µs, the interval is rounded to whole microseconds.
     let slower = host_replies(&path, &["hello", "ssi:25:400000:200", "words:50:0.2:12,13,gray,0"]);
     assert_eq!((&slower[2]["period_us"], &slower[2]["gaps"]), (&json!(263), &json!(0)), "{}", slower[2]);
 }
@@ -92,7 +92,7 @@ fn the_encoder_follows_its_layout() {
     }
     let profile = bench.file("counting.ron");
     bench.run(&["save", "ssi", "--layout", "ahs36,err=none,preset=5,direction=ccw", "-o", &profile]);
-    // A quarter of 16384 steps backwards, and 5 more.
+    // The position is a quarter of 16384 steps backwards, plus 5.
     let said = with(&["--layout", &profile], &["ssi:14:1000000:30", "word"]);
     assert_eq!(said[1]["raw"], json!("1005"));
     let silent = with(&["--fault", "silent-after:2", "--seed", "3"], &["hello", "ssi:25:1000000:30", "word"]);

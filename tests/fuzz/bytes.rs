@@ -1,4 +1,4 @@
-//! Parsers of bytes from a wire.
+//! Parsers of bytes that devices and hosts send.
 
 use encoder_studio::bits::ByteOrder;
 use encoder_studio::buses::{bridge, ethernet_ip, ubicom};

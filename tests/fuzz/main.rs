@@ -1,6 +1,6 @@
-//! Damaged input for every parser of data from a device, a host or a file. No input may cause a panic, hang, or be read
-//! differently after it has been written again. `corpus` contains examples, most of them from the golden vectors. Each
-//! test reads these and a thousand random mutations of them.
+//! Damaged input for every parser of data from a device, a host or a file. No input makes a parser panic or hang, and
+//! everything that it reads is the same after it has been written and read again. The folder `corpus` has examples,
+//! most of them from the golden vectors. Each test reads the examples and a thousand random mutations of them.
 //!
 //! `ENCODER_STUDIO_FUZZ_SECONDS=600 cargo test --release --test fuzz -- --nocapture` runs each parser for that time. An
 //! input that fails is printed and should be added to the corpus.
@@ -18,9 +18,9 @@ use fastrand::Rng;
 
 use mutation::mutate;
 
-/// Number of random inputs if no time is given.
+/// Number of mutated inputs if no time is given.
 const ROUNDS: u64 = 1_000;
-/// Maximum time for one input, which is many times the longest usual duration.
+/// Maximum time for one input, many times as long as the largest one takes.
 const LIMIT: Duration = Duration::from_secs(5);
 
 /// Returns the examples of a file that contains one example per line in hexadecimal digits. `#` begins a comment.
@@ -34,7 +34,7 @@ fn hex_lines(text: &str) -> Vec<Vec<u8>> {
     lines.map(digits).filter(|line| !line.is_empty()).map(bytes).collect()
 }
 
-/// Feeds a parser with the examples and random mutations of them.
+/// Runs a parser on the examples and on random mutations of them.
 fn fuzz(name: &str, examples: &[Vec<u8>], parse: impl Fn(&[u8])) {
     assert!(!examples.is_empty(), "{name} has no examples");
     let tried = |input: &[u8]| {

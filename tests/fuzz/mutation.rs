@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 
-/// Values at the limits of fields, and characters that separate parts of texts.
+/// Values at the limits of fields, and characters that structure texts.
 const SPECIAL: &[&[u8]] = &[
     &[0],
     &[0xFF],

@@ -1,4 +1,4 @@
-//! The kind of device on the command line, for which this test binary runs itself in separate processes.
+//! The added kind of device on the command line. The test binary runs the program in separate processes.
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -8,7 +8,7 @@ use encoder_studio::cli::{Invocation, run as run_program};
 
 use super::desk::program;
 
-/// Environment variable with the arguments, one per line.
+/// The environment variable that passes the program's arguments, one per line.
 const ARGUMENTS: &str = "NEW_KIND_ARGUMENTS";
 
 /// Runs the program in a process created by [`start`]. Without arguments, the program requests the window.
@@ -23,7 +23,7 @@ fn the_program() {
     }
 }
 
-/// Starts the program with the given arguments in a separate folder.
+/// Starts the program with these arguments in a separate process and folder.
 fn start(home: &Path, arguments: &[&str]) -> Child {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(["--exact", "cli::the_program", "--nocapture"]).env(ARGUMENTS, arguments.join("\n"));

@@ -1,5 +1,5 @@
-//! A kind of device that is not part of the program: an encoder called Novo, which is registered from outside with one
-//! folder and one line. It uses only the interface available to all kinds.
+//! A kind of device that is not part of the program: an encoder called Novo. One folder and one line register it from
+//! outside, and it uses only the interface that other kinds use.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 

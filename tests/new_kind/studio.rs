@@ -46,7 +46,7 @@ fn the_kind_is_offered_and_connects_from_the_dialog() {
     assert_eq!((desk.shown().tab(), desk.shown().name().as_str()), (Encoder::TAB, "Novo · 77"));
 }
 
-/// A secret parameter does not appear in any message, name, setting or file.
+/// A secret parameter of a link appears in no message, name, setting or other file.
 #[test]
 fn a_secret_parameter_is_neither_shown_nor_kept() {
     let mut desk = Desk::connected("?serial=77&pin=4711");
@@ -57,7 +57,7 @@ fn a_secret_parameter_is_neither_shown_nor_kept() {
     let Stage::Ready(plan) = desk.until_stage(|stage| matches!(stage, Stage::Ready(_))) else { panic!("no plan") };
     desk.review(ReviewAction::Write(plan));
     desk.until_stage(|stage| matches!(stage, Stage::Failed { .. }));
-    // A value that the dialog rejects, and one in a link that no kind accepts.
+    // The value is rejected in the dialog, and in a link that no kind accepts.
     for action in [Connect::Open, Connect::Device(Encoder::TAB), Connect::Use("sim:?pin=47110".to_owned())] {
         desk.studio.handle_action(StudioAction::Connect(action));
     }
@@ -99,7 +99,7 @@ fn a_secret_parameter_is_neither_shown_nor_kept() {
 
 #[test]
 fn positions_are_polled_and_recorded() {
-    // One turn of 4096 steps per second.
+    // The shaft turns one turn, or 4096 steps, per second.
     let mut desk = Desk::connected("?rpm=60");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     let positions = |desk: &Desk| {
@@ -141,7 +141,7 @@ fn edits_are_undone_reviewed_written_and_restored() {
     assert_eq!(before, Body::new(NovoProfile { serial: 1001, values: DELIVERED }));
     assert_eq!(desk.encoder().read().unwrap().values, [100, 3, 0, 65535], "read back");
     assert!(!desk.shown().is_dirty() && !desk.shown().can_undo());
-    // The shaft is at 0, which is 100 steps below the zero point of 65536.
+    // The shaft is at 0, which is now reported as 100 steps below 65536.
     desk.command(DeviceCommand::ReadPosition);
     desk.until("the position from the new zero", |desk| desk.encoder().last.is_some_and(|own| own.1 == 65436));
 
@@ -156,7 +156,7 @@ fn edits_are_undone_reviewed_written_and_restored() {
 
 #[test]
 fn a_value_that_is_not_accepted_is_reported_and_stays_edited() {
-    // The second of two values, which are at 10h and 12h.
+    // The second of the two values to write, at 10h and 12h, cannot be changed.
     let mut desk = Desk::connected("?stuck=0x12");
     desk.set(0, 100);
     desk.set(2, 9);
@@ -186,7 +186,7 @@ fn a_profile_is_saved_and_restored_to_another_encoder_only_on_request() {
     desk.set(1, 7);
     desk.studio.handle_action(StudioAction::Save(profile));
     desk.until("it is saved again", |_| std::fs::read_to_string(&path).unwrap().contains("filter: 7"));
-    // One difference is written to the encoder from which the profile was read.
+    // The profile is written into the encoder from which it was read, so there is one difference.
     desk.studio.handle_action(StudioAction::Command(profile, DeviceCommand::WriteInto(id)));
     desk.until("the device is shown", |desk| desk.shown().id() == id);
     desk.write();
@@ -215,7 +215,7 @@ fn a_payload_of_another_kind_is_refused_and_reported() {
     assert_eq!(desk.shown().edit_count(), 1);
 }
 
-/// The window as displayed by the program.
+/// The window of the program.
 struct Shown(Window);
 
 impl App for Shown {

@@ -31,7 +31,7 @@ fn echo_is_detected_and_stripped() {
     }
 }
 
-/// If the echo setting is wrong, every answer is rejected, and none of its bytes is shown as a value.
+/// With a wrong echo setting, every reply is rejected, and none of its bytes is shown as a value.
 #[test]
 fn a_wrong_echo_setting_yields_errors_and_no_values() {
     for (echoes, setting) in [(true, Echo::Off), (false, Echo::On)] {

@@ -1,5 +1,4 @@
-//! Searching for encoders with unknown settings. All of them are found, using only 52h, and no byte is sent on a busy
-//! line.
+//! The search for encoders with unknown settings: all are found, only 52h is sent, and no byte is sent on a busy line.
 
 use std::time::Duration;
 
@@ -83,7 +82,8 @@ fn no_encoder_is_found_on_an_empty_line() {
     assert_eq!(desk.tap().sent.len(), 7 * 3 * 32);
 }
 
-/// An encoder that is switched on while the search waits is found during its window at factory settings.
+/// An encoder that is switched on while the search waits is found in the time during which it uses its factory
+/// settings.
 #[test]
 fn a_power_cycle_opens_the_factory_settings_window() {
     for (settings, one_encoder) in [(0xB5, true), (0x80, true), (0xE6, false)] {
@@ -118,10 +118,10 @@ fn through_a_device_server_each_encoder_is_found_once() {
     assert_eq!(desk.tap().sent.len(), 32, "each address once");
 }
 
-/// A cancelled search returns the encoders found so far, and the line format of the computer is restored.
+/// A cancelled search returns the encoders found so far and restores the line format of the computer.
 #[test]
 fn an_interrupted_search_reports_its_findings() {
-    // 40h is tried first, at the settings of the encoders.
+    // The search begins at the encoders' own settings, where address 40h is requested first.
     let mut desk = Desk::new("encoders=2&address=0x4A");
     for (questions, expected) in [(0, vec![]), (10, vec![]), (11, vec![0x4A]), (12, vec![0x4A, 0x4B])] {
         desk.tap().sent.clear();

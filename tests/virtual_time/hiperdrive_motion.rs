@@ -29,13 +29,14 @@ fn to(target: i32) -> MotionRequest {
     MotionRequest::Move { target, effort: FULL }
 }
 
-/// Returns the words that were sent, in order, without repetitions.
+/// Returns the control words that were sent, each once, in the order in which they were sent.
 fn words(bench: &mut Bench) -> String {
     let words: Vec<String> = bench.take_words().iter().map(|word| format!("{word:04X}")).collect();
     words.join(" ")
 }
 
-/// Reference 3: 0000, 0400, 0401, 0409, 0439, 0479, and for the next job 0439. At rest, bits 4 and 5 are clear.
+/// The words to a target are 0000, 0400, 0401, 0409, 0439 and 0479, and for the next move 0439. At rest, bits 4 and 5
+/// are clear (reference 3).
 #[test]
 fn the_published_words_move_to_a_target() {
     let mut bench = Bench::new();
@@ -55,7 +56,8 @@ fn the_published_words_move_to_a_target() {
     assert_eq!((words(&mut bench).as_str(), bench.status()), ("0409 0000", 0x2A30));
 }
 
-/// Reference 3: 1459 and 1419 clockwise, 1449 and 1409 counterclockwise, and out of speed mode through 0400.
+/// The words of a clockwise jog are 1459 and 1419, those of a counterclockwise one 1449 and 1409. Speed mode is left
+/// through 0400 (reference 3).
 #[test]
 fn a_jog_runs_while_it_is_held() {
     let mut bench = Bench::new();
@@ -91,7 +93,7 @@ fn a_jog_runs_while_it_is_held() {
     }
 }
 
-/// Even if the user's hand trembles, a jog never turns into a job.
+/// However often the button is pressed and released in quick succession, a jog never starts a move.
 #[test]
 fn repeated_jogs_never_start_a_job() {
     let mut bench = Bench::new();
@@ -126,12 +128,12 @@ fn a_job_can_be_paused_and_resumed() {
     bench.act(MotionRequest::Resume);
     assert_eq!(bench.until_over(), ActionEnd::Arrived);
     assert_eq!(bench.position(), 3 * TURN);
-    // There is now nothing to pause or resume.
+    // At this time, there is nothing to pause or resume.
     bench.act(MotionRequest::Pause);
     assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToPause));
     bench.act(MotionRequest::Resume);
     assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToResume));
-    // A waiting job is discarded when it is stopped.
+    // A move that waits to start is discarded if it is stopped.
     bench.act(to(0));
     bench.run(1000);
     bench.act(MotionRequest::Pause);
@@ -140,7 +142,7 @@ fn a_job_can_be_paused_and_resumed() {
     bench.run(300);
     bench.act(MotionRequest::Resume);
     assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToResume));
-    // A jog is ended rather than paused.
+    // A pause ends a jog instead of pausing it.
     bench.act(jog(Direction::Clockwise));
     bench.run(500);
     bench.act(MotionRequest::Pause);
@@ -148,7 +150,7 @@ fn a_job_can_be_paused_and_resumed() {
     assert_eq!(bench.man.phase(), Phase::Idle);
 }
 
-/// A request that is rejected by the program never reaches the drive.
+/// A request that the dead-man control rejects never reaches the drive.
 #[test]
 fn invalid_requests_are_refused() {
     let none = SpeedTorque { speed: Percent::NONE, ..FULL };
@@ -233,7 +235,7 @@ fn a_blocked_drive_ends_the_motion() {
     assert_eq!(bench.position(), TURN);
 }
 
-/// A run and its action end at the end of the range.
+/// A run ends at the end of the range, and so does its action.
 #[test]
 fn a_run_ends_at_the_end_of_the_range() {
     let mut bench = Bench::new();
@@ -242,12 +244,12 @@ fn a_run_ends_at_the_end_of_the_range() {
     assert_eq!(bench.until_over(), ActionEnd::RangeEnd);
     bench.run(500);
     assert_eq!((bench.position(), bench.status(), bench.man.phase()), (TURN, 0x2A31, Phase::Idle));
-    // Another run, with no range left.
+    // The run is started again where no range is left.
     bench.act(MotionRequest::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
     assert_eq!(bench.until_over(), ActionEnd::RangeEnd);
 }
 
-/// The switch S3 selects a drive, so the commands on the bus have no effect.
+/// While switch S3 points to a drive, commands on the bus have no effect.
 #[test]
 fn an_unresponsive_drive_is_reported() {
     let mut bench = Bench::new();
@@ -267,7 +269,7 @@ fn a_restarted_drive_does_not_resume_its_job() {
         let mut bench = Bench::new();
         bench.act(to(5 * TURN));
         bench.run(after);
-        // 47 = −4 resets the drives without closing the connection.
+        // 47 = −4 resets the drives, and the connection remains open.
         bench.write(47, -4);
         let ended = bench.until_over();
         assert!(matches!(ended, ActionEnd::Left(_) | ActionEnd::NoAnswer(_)), "{after} ms: {ended:?}");

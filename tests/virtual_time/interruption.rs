@@ -1,5 +1,5 @@
-//! A restore that is cancelled, cut off or interrupted by a power loss at every single transaction. The report must
-//! describe the content of the encoder, nothing else may have changed, and a second run must complete the restore.
+//! A restore that is cancelled, cut off, or interrupted by a power loss at each transaction. The report describes the
+//! content of the encoder, nothing else has changed, and a second run completes the restore.
 
 use encoder_studio::devices::hiperface::jobs::{Change, Committed, JobError, Prepared};
 use encoder_studio::devices::hiperface::procedures::Error;
@@ -10,8 +10,9 @@ use encoder_studio::link::CancelToken;
 
 use crate::support::{Desk, Fields, backup, bytes, restore_of};
 
-/// Returns an encoder with a write-protected field that has its own code, and the target profile. The profile has
-/// several runs in field 0, the protected field, a plain field, and a new field that will be protected.
+/// Returns an encoder with a write-protected field guarded by its own code, and the profile to restore. The profile
+/// changes several byte ranges in field 0, the protected field and a plain field, and creates a field that is to be
+/// protected.
 fn scene() -> (Desk, HiperfaceProfile) {
     let mut desk = Desk::new("codes=2:66");
     desk.remember_code(2, 0x66);
@@ -32,14 +33,14 @@ fn scene() -> (Desk, HiperfaceProfile) {
     (desk, wanted)
 }
 
-/// Returns the content of a memory after the first operations of the plan.
+/// Returns the memory that results from the first operations of the plan.
 fn applied(before: &Fields, ops: &[Op]) -> Fields {
     let mut fields = before.clone();
     for op in ops {
         match op {
             Op::Define { field, to, .. } => match fields.get_mut(usize::from(*field)) {
                 Some(entry) => entry.0 = to.byte(),
-                // The encoder has never been written at these addresses.
+                // The encoder has never written these bytes.
                 None => fields.push((to.byte(), vec![0xFF; to.size().bytes()])),
             },
             Op::Store { field, address, new, .. } => {
@@ -110,8 +111,8 @@ impl Ending<'_> {
         assert_eq!(interrupted.done.write_cycles, self.desk.wear() - self.worn_before, "{context}");
     }
 
-    /// Checks the result of a lost connection: the counted operations were executed, the one in progress may have been,
-    /// and a field that remains unlocked is named.
+    /// Checks after a lost connection that the counted operations were executed and the one in progress either was or
+    /// was not. A field that remains unlocked must be named.
     fn assert_cut_off_and_reported(&self, interrupted: &InterruptedWrite) {
         let Ending { context, .. } = self;
         let ops = &self.prepared.plan.ops;
@@ -154,7 +155,7 @@ fn assert_can_be_completed(desk: &Desk, wanted: &HiperfaceProfile, before: &Fiel
     assert_eq!(backwards.memory()[..before.len()], before[..]);
 }
 
-/// Executes the restore on a new copy of the scene. `disturb` is called when the plan is complete.
+/// Executes the restore on a new copy of the scene. `disturb` is called once the plan is complete.
 fn disturbed(
     scene: &(Desk, HiperfaceProfile),
     context: String,
@@ -209,7 +210,8 @@ fn cancelling_at_any_transaction_ends_cleanly() {
     assert!(steps > 12, "each operation is a transaction at least: {steps}");
 }
 
-/// If the encoder's queue contains a code, the reply to a write announces it. The write has taken place nevertheless.
+/// If a status code waits in the encoder's queue, the reply to a write announces it. The write was executed
+/// nevertheless.
 #[test]
 fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
     let scene = scene();
@@ -229,7 +231,8 @@ fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
     }
 }
 
-/// The reply to a write announces a warning during the restore, immediately followed by a cancellation.
+/// The reply to a write announces a warning, and the user cancels immediately afterwards. The write still counts as
+/// executed.
 #[test]
 fn a_warning_during_a_write_hides_no_operation() {
     let (original, wanted) = scene();
@@ -289,8 +292,8 @@ fn a_cut_at_any_transaction_is_reported() {
     }
 }
 
-/// Returns the number of frames that an encoder has received. It is determined as the lowest number after which the
-/// fault "silent" has occurred.
+/// Returns the number of frames that an encoder has received. It is the lowest number for which the fault "silent after
+/// this number of frames" has occurred.
 fn frames_so_far(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
     let is_silent = |frames: usize| {
         let mut probe = bus.clone();
@@ -303,7 +306,7 @@ fn frames_so_far(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
 #[test]
 fn power_lost_in_any_store_is_reported() {
     let (original, wanted) = scene();
-    // field 0: 3, field 1: 3, field 2: 1, field 4: 1
+    // Field 0 takes three stores, field 1 three, field 2 one and field 4 one.
     for store in 1..=8 {
         let mut desk = original.copied();
         desk.remember_code(2, 0x66);
@@ -316,8 +319,8 @@ fn power_lost_in_any_store_is_reported() {
         let error = desk.commit(&prepared).unwrap_err();
         let JobError::Interrupted { interrupted, backup: path, planned: 12, .. } = error else { panic!("{error:?}") };
         assert!(interrupted.cause.is_lost(), "store {store}: {interrupted:?}");
-        // Three stores to field 1, between unlocking and locking, and one to field 4, which has been created but not
-        // locked yet.
+        // Three stores go into field 1, between unlocking and locking. One goes into field 4, which is created but not
+        // yet locked.
         let expected = match store {
             4..=6 => vec![1],
             8 => vec![4],

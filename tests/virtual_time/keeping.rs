@@ -1,4 +1,4 @@
-//! The files of a write, and disks that reject them.
+//! The files of a write, and disks that cannot store them.
 
 use std::fs;
 
@@ -33,8 +33,8 @@ fn without_a_backup_nothing_is_written() {
     }
 }
 
-/// Issue 22.4: the number of previous write cycles is unknown. Only a forced write begins, and the missing records are
-/// reported.
+/// If the logbook cannot be read, the previous write cycles are not known. Only a forced write begins, and the missing
+/// records are reported (issue 22.4).
 #[test]
 fn a_broken_logbook_stops_an_unforced_write() {
     for garbage in [true, false] {
@@ -51,7 +51,7 @@ fn a_broken_logbook_stops_an_unforced_write() {
         assert!(matches!(error, JobError::NotStarted(NotStarted::WearUnknown { cost: 1 })), "{error:?}");
         assert_eq!(desk.wear(), 0);
         let done = desk.commit_by_force(&prepared).unwrap();
-        // Issue 30: a damaged file is renamed, and a new one is started.
+        // A damaged file is kept under another name, and a new one is created (issue 30).
         assert_eq!(done.logbook_warning.is_some(), !garbage);
         assert_eq!(desk.memory()[0].1[3], 0xEE);
         assert_eq!(done.written.verified, 1);
@@ -74,7 +74,7 @@ fn a_backup_is_a_profile_of_the_previous_state() {
     assert_eq!(desk.memory(), before);
 }
 
-/// No file contains an access code: the codes used here do not occur in any form.
+/// No file contains an access code. The codes used here do not occur in any form.
 #[test]
 fn no_access_code_is_stored() {
     let mut desk = Desk::new("codes=0:9D,2:66");

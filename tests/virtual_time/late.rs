@@ -58,8 +58,8 @@ impl ByteLink for Slow {
 #[test]
 fn a_late_reply_is_never_mistaken_for_the_next() {
     for delay in [0, 60, 110, 150, 300, 700] {
-        // At one turn per second, a position that is one request old is outside the range that the shaft has passed
-        // since.
+        // At one turn per second, the position of the previous request lies outside the range through which the shaft
+        // has turned since.
         let bus = Arc::new(Mutex::new(bus("rpm=60")));
         let clock = Arc::new(VirtualClock::default());
         let line = SimLink::connect(bus.clone(), clock.clone());

@@ -1,5 +1,5 @@
-//! Requests and replies that are lost one after another. Requests that only read are repeated, and those that change
-//! the encoder are never executed twice.
+//! Each request and each reply is lost in turn. Requests that read are repeated, and those that change the encoder are
+//! never executed twice.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use encoder_studio::worker::{Event, JobId};
 
 use crate::support::Desk;
 
-/// Executes a change repeatedly. In each run, another request or reply is lost.
+/// Executes a change repeatedly while each request and then each reply is lost in turn. `judge` checks the result.
 fn robbed(query: &str, change: &Change, setup: impl Fn(&mut Desk), judge: impl Fn(&mut Desk, &str)) {
     let mut frames = 0;
     for at in 0.. {
@@ -102,8 +102,8 @@ fn the_position_is_set_despite_lost_replies() {
     );
 }
 
-/// A position that equals the previous one does not prove that the tracks were synchronised, so this must not be
-/// reported.
+/// If the position equals the previous one, this does not prove that the tracks were aligned, so the alignment must not
+/// be reported.
 #[test]
 fn synchronising_in_place_is_not_assumed_done() {
     let mut desk = Desk::new("model=sel37");
@@ -119,7 +119,7 @@ fn synchronising_in_place_is_not_assumed_done() {
     }
 }
 
-/// After a failed job, the next one has five tries again.
+/// After a failed job, the next one can again try five times.
 #[test]
 fn each_job_has_its_full_number_of_tries() {
     let mut desk = Desk::new("");
@@ -150,8 +150,8 @@ fn a_silent_encoder_times_out_within_ten_seconds() {
     }
 }
 
-/// Issue 22.10: 50h removes a code from the encoder. Whichever reply is lost, each code is either returned or counted
-/// as possibly lost.
+/// Request 50h removes a code from the encoder. Whichever reply is lost, each code is returned or counted as possibly
+/// lost (issue 22.10).
 #[test]
 fn lost_status_codes_are_reported() {
     let queue = [StatusCode::TEMPERATURE, StatusCode::TOO_FAST, StatusCode::COUNTER_OVERFLOW];
@@ -178,7 +178,7 @@ fn lost_status_codes_are_reported() {
     assert!(counted > 0, "50h was among them");
 }
 
-/// Issue 22.10: a code can only be lost if 50h was sent.
+/// A code can only have been lost if 50h was sent (issue 22.10).
 #[test]
 fn unrequested_codes_are_not_reported_as_lost() {
     let mut desk = Desk::new("fault=silent-after:0");

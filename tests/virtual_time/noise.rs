@@ -1,5 +1,5 @@
-//! Noise on the line. Any value shown is correct, or there is an error. A wrong value may only result from a frame with
-//! undetectable damage, which must then be in the trace.
+//! Noise on the line: a value that is shown is right, or an error is reported. A wrong value may only result from a
+//! frame whose damage cannot be detected, and the trace then contains that frame.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, JobError, Value};
 use encoder_studio::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item};
@@ -9,7 +9,7 @@ use crate::support::{Desk, backup, bytes, exchanges, xor};
 
 const NOISE: [&str; 5] = ["drop:0.02", "flip:0.02", "drop:0.02,flip:0.02", "garbage:0.02", "flip:0.02,garbage:0.02"];
 
-/// Returns an encoder with the name plate and three fields of varied content, on a noisy line.
+/// Returns an encoder on a noisy line. Besides the name plate, it has three data fields with varied content.
 fn noisy_desk(seed: u8, noise: &str) -> Desk {
     let mut desk = Desk::new(&format!("seed={seed}&codes=2:66&position={}", u32::from(seed) * 64_123));
     desk.remember_code(2, 0x66);
@@ -29,7 +29,7 @@ fn set_noise(desk: &Desk, noise: &str) {
     desk.bus().set_faults(&noise.parse::<SimulatedFaults>().unwrap());
 }
 
-/// Returns whether the bytes are a valid 42h reply with this position.
+/// Returns whether the bytes are a valid reply to 42h with this position.
 fn is_position_reply(reply: &[u8], position: u32) -> bool {
     let [a, b, c, d] = position.to_be_bytes();
     reply.len() == 7 && reply[0] == 0x40 && reply[1] & 0x7F == 0x42 && reply[2..6] == [a, b, c, d] && xor(reply) == 0
@@ -67,12 +67,12 @@ fn a_position_is_correct_or_an_error_or_its_frame_was_valid() {
     }
     println!("positions: {read} read, {failed} errors, {wrong} wrong from undetectable frames");
     assert!(read > 3000, "{read} of 4000 read");
-    // Two bits are flipped at the same place in nine bytes, and the head does not count: 36 · 0.02² / 8 per frame, or
-    // 0.2 %.
+    // Damage is not detected if the same bit is inverted in two of nine bytes, not counting one in the head: 36 · 0.02²
+    // / 8 per frame, or 0.2 %.
     assert!(wrong * 100 < read, "{wrong} of {read} wrong");
 }
 
-/// Returns the byte of the field in a valid 4Ah reply.
+/// Returns byte `at` of the field from a valid reply to 4Ah.
 fn byte_of_reply(reply: &[u8], field: u8, at: usize) -> Option<u8> {
     let [0x40, command, f, start, count, data @ .., _] = reply else { return None };
     let right = command & 0x7F == 0x4A && *f == field && data.len() == usize::from(*count) && xor(reply) == 0;
@@ -122,7 +122,7 @@ fn a_field_is_correct_or_an_error_or_its_frames_were_valid() {
     assert!(wrong * 100 < read, "{wrong} of {read} wrong");
 }
 
-/// Checks that two saved profiles have the same content: identity, fields and counter.
+/// Compares the content of two saved profiles: identity, fields and counter.
 fn assert_same(got: &HiperfaceProfile, truth: &HiperfaceProfile, context: &str) {
     assert_eq!(got.identity, truth.identity, "{context}");
     assert_eq!(got.interface, truth.interface, "{context}");
@@ -133,7 +133,7 @@ fn assert_same(got: &HiperfaceProfile, truth: &HiperfaceProfile, context: &str) 
 #[test]
 fn a_save_is_correct_or_an_error() {
     let (mut saved, mut failed) = (0, 0);
-    // Little noise is the harder case, because the first damage may be undetectable.
+    // A low level of noise is harder to handle, because the first damage may be one that cannot be detected.
     for noise in ["drop:0.02", "flip:0.02", "drop:0.02,flip:0.02", "garbage:0.02", "flip:0.005", "drop:0.005"] {
         for seed in 0..60 {
             let mut desk = noisy_desk(seed, "");

@@ -44,7 +44,7 @@ fn a_changed_base_is_not_overwritten() {
     }
 }
 
-/// Two new encoders have the same memory, and only the serial number distinguishes them.
+/// Two new encoders have the same memory and differ only in their serial numbers.
 #[test]
 fn a_plan_applies_to_one_encoder() {
     let mut desk = Desk::new("serial=A1");
@@ -94,7 +94,8 @@ fn an_empty_plan_sends_nothing() {
     assert!(!desk.folder.path().join("data/backups").exists(), "no backup");
 }
 
-/// Every byte of every 4Bh differs from the previous one, and only the locations in the plan are written.
+/// Every byte that a request 4Bh writes differs from the byte that it replaces, and only places in the plan are
+/// written.
 #[test]
 fn only_differences_are_written_and_every_write_is_counted() {
     for seed in 0..20_u8 {

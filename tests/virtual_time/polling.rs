@@ -1,5 +1,5 @@
-//! Polling on the thread of a session: samples are taken while no job is running, jobs take precedence, and the end is
-//! reported once.
+//! Polling on the thread of a session: samples are taken while there is no job, jobs come first, and an end is reported
+//! once.
 
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -115,7 +115,8 @@ fn failed_polling_ends_and_is_reported_once() {
     assert!(matches!(bench.worker.events().recv_timeout(LONG), Ok(Event::PollFailed(_))), "once each time");
 }
 
-/// A job does not wait for five tries with a silent encoder, and polling continues after it.
+/// If the encoder does not answer, a job does not wait until a sample has been tried five times. Polling continues
+/// after the job.
 #[test]
 fn a_job_interrupts_the_retries_of_a_sample() {
     let mut bench = in_real_time("fault=silent-after:0");
@@ -133,7 +134,7 @@ fn a_job_interrupts_the_retries_of_a_sample() {
     assert!(matches!(told, Event::PollFailed(_)), "the sample that was due is tried again: {told:?}");
 }
 
-/// The report that there is no position also counts as a sample, unlike any other rejection.
+/// The report that there is no position is also a sample. Any other rejection is not.
 #[test]
 fn polling_continues_without_a_position() {
     let mut desk = Desk::new("rpm=9000");

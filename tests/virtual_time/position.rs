@@ -59,15 +59,14 @@ fn the_previous_position_is_recorded() {
     assert_eq!(entries[0].conclusion.as_ref().unwrap().cycles_spent, 1);
 }
 
-/// A shaft at standstill may jitter by one step. At zero, this step spans the complete range.
+/// The position of a shaft at rest varies by a step. At zero, that is the complete range of positions.
 #[test]
 fn setting_zero_may_dither() {
     for tenths in 1..=600 {
         let mut desk = Desk::new("");
         let prepared = desk.prepare(set(0, true)).unwrap();
         let now = desk.clock.now();
-        // With 4096 steps per turn, a step at 0.04/min takes 370 ms, which is about the time from the plan to the
-        // read-back.
+        // With 4096 steps per turn, a step takes 370 ms at 0.04 rpm, about the time from the plan to the read-back.
         desk.bus().encoder_mut(0).unwrap().set_rpm(now, -f64::from(tenths) / 10_000.0);
         let done = desk.commit(&prepared);
         let moved = matches!(done, Err(JobError::Device(Error::Moving { .. })));
@@ -82,7 +81,7 @@ fn only_a_kit_encoder_is_synchronised() {
         let error = Desk::new("").prepare(synchronise(kit)).unwrap_err();
         assert!(matches!(error, JobError::Device(Error::NotAKit { .. })), "{error:?}");
     }
-    // The extended label does not say that this is a kit encoder, so the user has to confirm it.
+    // The extended label does not show that the encoder is a kit encoder, so the user confirms it.
     assert!(Desk::new("model=sel37").prepare(synchronise(false)).is_err());
     let mut desk = Desk::new("model=sel37");
     desk.change(synchronise(true)).unwrap();
@@ -90,7 +89,7 @@ fn only_a_kit_encoder_is_synchronised() {
     assert_eq!(desk.bus().encoders()[0].position(desk.clock.now()), 0x40);
 }
 
-/// The time of a position is the time at which the encoder sampled it.
+/// A position has the time at which the encoder sampled it.
 #[test]
 fn a_position_has_its_sampling_time() {
     for query in ["rpm=3000", "rpm=-1200&fault=delay:60", "rpm=500&fault=delay:33&echo=on", "rpm=3000&pace=worst"] {
@@ -108,7 +107,8 @@ fn a_position_has_its_sampling_time() {
     }
 }
 
-/// Request, time-out, processing, reply and dead time form the complete cycle. The goal is 95 % of that rate.
+/// A complete cycle consists of request, time-out, processing, reply and dead time. The goal is 95 % of the resulting
+/// rate.
 #[test]
 fn polling_is_as_fast_as_the_protocol_allows() {
     for byte in [0xE0, 0xE4, 0xE5, 0xE6, 0xA6] {
@@ -123,8 +123,8 @@ fn polling_is_as_fast_as_the_protocol_allows() {
             desk.run(HiperfaceJob::Position(None)).unwrap();
         }
         let cycle = desk.clock.now().duration_since(before).as_secs_f64() / 100.0;
-        // A request of three characters and a reply of seven with 11 bits each, silence before and after the reply, and
-        // 10 ms of processing.
+        // The request has three characters and the reply seven, each of 11 bits. Silence precedes and follows the
+        // reply, and processing takes 10 ms.
         let silence = if settings.has_long_timeout() { 44.0 } else { 11.0 };
         let least = (10.0 * 11.0 + 2.0 * silence) / f64::from(settings.baud().unwrap().bits_per_second()) + 0.010;
         assert!(least >= cycle * 0.95, "{settings}: {cycle} s a cycle, {least} s needed");

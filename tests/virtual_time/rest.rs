@@ -14,7 +14,7 @@ fn rest(desk: &mut Desk) -> Result<RestPosition, JobError> {
     }
 }
 
-/// Three quarters of a period are counts 409 and 511, where 511.5 is 0 V and 1023 is 5 V.
+/// At three quarters of a period, the counts are 409 and 511. The scale has 511.5 at 0 V and 1023 at 5 V.
 #[test]
 fn both_channels_are_read_between_two_position_readings() {
     let mut desk = Desk::new("position=3224");
@@ -37,12 +37,13 @@ fn a_moving_shaft_or_a_missing_position_is_refused() {
     assert!(matches!(&error, JobError::Device(error) if error.is_rejection(StatusCode::TOO_FAST)), "{error:?}");
 }
 
-/// The shaft is slow enough to appear at standstill for two tenths of a second, but not for the complete reading.
+/// The shaft turns so slowly that it seems to be at rest for 0.2 s, but not during the complete reading.
 #[test]
 fn a_creeping_shaft_is_detected_at_the_end() {
     let mut desk = Desk::new("position=100");
     let now = desk.clock.now();
-    // 6.7 steps of 1/4096 turn per second: one while the shaft is monitored, and two more by the end.
+    // At 6.7 steps of 1/4096 turn per second, the shaft moves by one step while it is watched, and by two more until
+    // the end.
     desk.bus().encoder_mut(0).unwrap().set_rpm(now, 6.7 * 60.0 / 4096.0);
     let error = rest(&mut desk).unwrap_err();
     assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error:?}");

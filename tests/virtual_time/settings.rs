@@ -72,8 +72,8 @@ fn temporary_settings_apply_immediately_until_the_restart() {
     }
 }
 
-/// If the encoder's queue contains a code, the replies to 55h and 67h announce it, and the encoder already uses the new
-/// settings.
+/// If a status code waits in the encoder's queue, the replies to 55h and 67h announce it. The encoder has the new
+/// settings nevertheless.
 #[test]
 fn an_encoder_that_warns_while_changing_settings_is_followed() {
     let warn = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().queue_code(StatusCode::TEMPERATURE);
@@ -123,7 +123,7 @@ fn all_codes_of_the_start_are_read() {
     assert_eq!(codes, []);
 }
 
-/// Two encoders with the same address could never be told apart again.
+/// Two encoders at the same address could no longer be addressed separately.
 #[test]
 fn an_address_in_use_is_refused() {
     let mut desk = Desk::new("encoders=3");

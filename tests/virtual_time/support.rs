@@ -1,5 +1,5 @@
-//! Test support in virtual time: a session on a virtual line, a link between them with configurable faults, and a
-//! record of the data.
+//! Test support in virtual time: a session on a virtual line, a link with configurable faults between them, and a
+//! record of the transmitted data.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -22,17 +22,17 @@ use encoder_studio::store::{Store, read_text};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::Session;
 
-/// The reply margin of `sim:` links.
+/// The margin for late replies on `sim:` links.
 pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 
 /// The faults of a link, and a record of its bytes.
 #[derive(Default)]
 pub(crate) struct Tap {
-    /// Every frame that was passed to the link.
+    /// Every frame that was sent over the link.
     pub(crate) sent: Vec<Vec<u8>>,
-    /// Number of the frame from which on the link is lost, counted from 0.
+    /// From this frame on, counted from 0, the link is lost.
     pub(crate) lost_from: Option<usize>,
-    /// Number of the frame from which on nothing reaches the encoder.
+    /// From this frame on, no request reaches the encoder.
     pub(crate) deaf_from: Option<usize>,
     /// Number of the frame from which on no reply arrives.
     pub(crate) mute_from: Option<usize>,
@@ -40,11 +40,11 @@ pub(crate) struct Tap {
     pub(crate) swallow_request: Option<usize>,
     /// Number of a frame whose reply is lost.
     pub(crate) swallow_reply: Option<usize>,
-    /// Beginning of the requests whose replies are all damaged.
+    /// Every reply to a request that begins with these bytes is damaged.
     pub(crate) broken_to: Option<Vec<u8>>,
-    /// Beginning of the requests to which no reply arrives.
+    /// Every reply to a request that begins with these bytes is lost.
     pub(crate) mute_to: Option<Vec<u8>>,
-    /// Bytes from another sender.
+    /// Bytes from another sender on the line.
     pub(crate) foreign: VecDeque<u8>,
     /// Whether the link has a fixed speed, as with a device server.
     pub(crate) formatless: bool,
@@ -160,8 +160,7 @@ pub(crate) struct Desk {
     pub(crate) session: Session<Hiperface>,
 }
 
-/// Returns a folder for backups and the logbook. It is in memory if there is room for files, because thousands of such
-/// folders are created.
+/// Returns a folder for backups and the logbook. It is in memory if possible, because thousands of them are created.
 pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap()
 }
@@ -182,7 +181,7 @@ impl Desk {
         Self::at(bus(query), &VirtualClock::default(), station)
     }
 
-    /// Creates a desk with the given line at the time of `clock` or later.
+    /// Creates a desk with the given line. Its time is that of `clock`, or later.
     pub(crate) fn at(bus: Bus, clock: &VirtualClock, station: Station) -> Self {
         let own = Arc::new(VirtualClock::default());
         own.sleep_until(clock.now());
@@ -303,7 +302,7 @@ pub(crate) fn restore_of(profile: &HiperfaceProfile) -> Change {
     Change::Restore { profile: Box::new(profile.clone()), options: RestoreOptions::default() }
 }
 
-/// Returns the profile in a backup file.
+/// Returns the profile that a backup file contains.
 pub(crate) fn backup(path: &std::path::Path) -> HiperfaceProfile {
     ProfileDocument::parse(&read_text(path).unwrap(), program().studio.formats).unwrap().body.into_profile().unwrap()
 }
@@ -331,8 +330,8 @@ fn places_of_codes(command: u8) -> &'static [usize] {
     }
 }
 
-/// Checks that a request with a code is shown completely except for the code and the checksum, and that a shown answer
-/// is not the request itself.
+/// Checks that the trace shows a request with an access code completely except for the code and the checksum, and that
+/// it does not show the request itself as an answer.
 fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
     let shown = entry.bytes.to_string();
     let words: Vec<&str> = shown.split(' ').collect();
@@ -348,7 +347,7 @@ fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
             }
         }
         Direction::Received => {
-            // A byte that was read may have the value of the code, which is not a secret there.
+            // A byte that was read may have the same value as the code without revealing it.
             let can_leak = |sent: &&Vec<u8>| !(places_of_codes(sent[1]).is_empty() || sent[1] == 0x4A && sent[4] == 1);
             let Some(sent) = sent.filter(can_leak) else { return };
             let hex: Vec<String> = sent.iter().map(|byte| format!("{byte:02X}")).collect();

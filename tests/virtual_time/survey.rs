@@ -1,4 +1,4 @@
-//! All readable data of an encoder in a single job, and access codes that the user supplies later.
+//! One job that reads all data of an encoder, and access codes that the user enters later.
 
 use encoder_studio::analysis::check::Verdict;
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
@@ -31,7 +31,7 @@ fn a_survey_is_complete_and_reads_each_byte_once() {
     assert!(reading.position.is_some());
     assert_eq!(desk.tap().count(Command::ReadData), memory.len());
     assert_eq!(desk.wear(), 0);
-    // The geometry is still known, so a sample contains the position.
+    // The geometry is still known, so a sample has it.
     let sample = desk.session.take_sample().unwrap();
     assert!(matches!(&sample, PolledSample::Position(reading) if reading.position.is_some()), "{sample:?}");
     assert!(desk.session.station().codes_met.is_empty());
@@ -77,11 +77,11 @@ fn check(desk: &mut Desk) -> Vec<HiperfaceStepResult> {
     }
 }
 
-/// Issue 22.11: an unreadable field does not affect the rest, and line errors are counted.
+/// If a field cannot be read, the rest is still usable, and the errors of the line are counted (issue 22.11).
 #[test]
 fn one_unreadable_field_leaves_the_rest_usable() {
-    // 4Ah on data field 0 is damaged each time or receives no reply. In the last case, 4Ch receives none either, so not
-    // even the status of the field is known.
+    // The reply to 4Ah on data field 0 is damaged or missing each time. In the third case it is the reply to 4Ch, so
+    // that not even the field's status is known.
     let troubles: [(&str, bool, &[u8]); 3] =
         [("damaged", true, &[0x40, 0x4A, 0]), ("silent", false, &[0x40, 0x4A, 0]), ("status", false, &[0x40, 0x4C, 0])];
     for (label, is_broken, request) in troubles {
@@ -104,19 +104,19 @@ fn one_unreadable_field_leaves_the_rest_usable() {
         let quality = &seen.line;
         assert!(quality.has_errors() && quality.retries > 0, "{label}: {quality:?}");
         assert_eq!((quality.damaged > 0, quality.silent > 0), (is_broken, !is_broken), "{label}: {quality:?}");
-        // The device check is completed, and it names the field and the line.
+        // The device check completes, and names the field and the quality of the line.
         let lines = check(&mut desk);
         let of = |step| lines.iter().find(|line| line.step == step).unwrap();
         assert_eq!(of(CheckStep::DataFields).verdict, Verdict::Bad, "{label}");
         let names = |own: &CheckFinding| matches!(own, CheckFinding::FieldUnreadable { number: 0, .. });
         assert!(of(CheckStep::DataFields).findings.iter().any(names), "{label}");
         assert_eq!(of(CheckStep::Line).verdict, Verdict::Attention, "{label}");
-        // A file is saved completely or not at all.
+        // A save writes either a complete file or none.
         assert!(desk.save().is_err(), "{label}");
     }
 }
 
-/// An encoder that no longer answers differs from an encoder with an unreadable field.
+/// If the encoder no longer answers, this is not reported as a field that cannot be read.
 #[test]
 fn a_silent_encoder_ends_the_survey() {
     let mut desk = two_fields();
@@ -128,7 +128,7 @@ fn a_silent_encoder_ends_the_survey() {
     assert!(desk.run(HiperfaceJob::Survey).is_err());
 }
 
-/// Returns the virtual encoder's status codes in the logbook, newest reading first.
+/// Returns the status codes of the virtual encoder in the logbook, the latest reading first.
 fn noted(desk: &Desk) -> Vec<String> {
     let path = Store::at_root(desk.folder.path()).logbook_path();
     let key = DeviceKey {
@@ -149,8 +149,8 @@ fn noted(desk: &Desk) -> Vec<String> {
     }
 }
 
-/// Issue 22.10: 50h removes a code from the encoder, so it is recorded in the logbook before it is shown. This applies
-/// to every way of reading it, and even if the job that read it fails.
+/// Request 50h removes a code from the encoder. The code is therefore in the logbook before it is shown, whichever
+/// command reads it, and even if the job that read it fails (issue 22.10).
 #[test]
 fn a_status_code_that_was_read_is_logged() {
     let mut desk = Desk::new("");
@@ -170,7 +170,7 @@ fn a_status_code_that_was_read_is_logged() {
     assert!(desk.run(HiperfaceJob::Survey).is_err());
     assert_eq!(noted(&desk)[0], "20h singleturn position unreliable");
     assert_eq!(desk.session.station().codes_met, [StatusCode::new(0x20)], "it is told as well");
-    // Read with a sample. A code that remains is recorded once per minute, not with each sample.
+    // The sample reports the code. A code that remains is recorded once per minute, not with each sample.
     desk.tap().mute_from = None;
     for _ in 0..5 {
         report(&desk, &[StatusCode::TEMPERATURE]);

@@ -14,7 +14,7 @@ use encoder_studio::worker::{Event, JobId, Session, SubmitError, Worker};
 
 use crate::support::{MARGIN, Tap, TestLink, bus};
 
-/// A time limit longer than any test, to detect a thread that hangs.
+/// A time limit longer than any test takes, which reveals a hanging thread.
 pub(crate) const LONG: Duration = Duration::from_secs(60);
 
 pub(crate) struct Bench {
@@ -90,7 +90,7 @@ fn a_second_job_is_refused_and_a_stop_ends_a_search_immediately() {
     assert!(stopped.elapsed() < Duration::from_secs(1), "{:?}", stopped.elapsed());
     assert!(matches!(events.first(), Some(Event::Started(started)) if *started == id));
     assert!(matches!(events.last(), Some(Event::Finished(ended, _)) if *ended == id), "{events:?}");
-    // The earlier cancellation does not stop the next job.
+    // The earlier cancellation must not stop the next job.
     *bench.tap.lock().unwrap() = Tap::default();
     bench.worker.submit(HiperfaceJob::Status).unwrap();
     assert!(matches!(until_end(&bench.worker).last(), Some(Event::Failed(..))), "no encoder has address 40h at 9600");
@@ -110,8 +110,8 @@ fn each_job_starts_once_and_ends_once() {
     assert!(bench.worker.events().recv_timeout(Duration::from_millis(50)).is_err(), "and nothing comes after the end");
 }
 
-/// 672 progress events are not read. The job ends nevertheless, and its end is available as soon as the events are
-/// read.
+/// The job reports 672 steps of progress that nothing reads. It ends nevertheless, and its result can be read
+/// afterwards.
 #[test]
 fn a_job_ends_without_a_reader() {
     let mut bench = in_virtual_time("settings=0xE0");
@@ -133,7 +133,7 @@ fn a_job_ends_without_a_reader() {
             done = Some(progress.done);
         }
     }
-    // No outdated events follow the end of the job.
+    // No outdated events follow the end.
     let late = bench.worker.events().recv_timeout(Duration::from_millis(100));
     assert!(late.is_err(), "{late:?}");
 }
@@ -149,7 +149,7 @@ fn a_dropped_worker_ends_its_thread_even_during_a_job() {
         let (clock, events) = (Arc::downgrade(&bench.clock), bench.worker.events().clone());
         drop(bench);
         let dropped = Instant::now();
-        // The session is dropped, and with it the thread's last reference to the clock.
+        // Ending drops the session, which has the thread's last reference to the clock.
         while clock.upgrade().is_some() {
             assert!(dropped.elapsed() < Duration::from_secs(2), "the thread goes on");
             std::thread::sleep(Duration::from_millis(5));

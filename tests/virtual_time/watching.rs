@@ -1,5 +1,5 @@
-//! Watched values between the positions of a polled encoder: their order, rejections, jobs in between, and their end.
-//! Their timing is tested with the scheduler itself (`worker/poll_scheduler.rs`).
+//! Values that are watched while the position of an encoder is polled: their order, rejections, and jobs and ends in
+//! between. The tests of the scheduler itself check the times (`worker/poll_scheduler.rs`).
 
 use std::time::{Duration, Instant};
 
@@ -34,7 +34,7 @@ fn at(sample: &PolledSample) -> Moment {
     }
 }
 
-/// Returns `count` samples of a polled worker after a new list has taken effect, beginning with a position.
+/// Sets a new list of watched values and returns `count` samples after it takes effect, beginning with a position.
 fn course(
     worker: &Worker<Hiperface>,
     wished: &[WatchedQuantity],
@@ -42,7 +42,7 @@ fn course(
 ) -> Vec<Option<(WatchedQuantity, Option<i64>)>> {
     worker.poll(None);
     worker.watch_values(wished.iter().map(|what| (*what, ALWAYS)).collect());
-    // The requests in progress have been completed.
+    // By then, the requests in progress have ended.
     std::thread::sleep(Duration::from_millis(100));
     worker.samples().drain();
     worker.poll(BACK_TO_BACK);
@@ -65,7 +65,7 @@ fn watched_values_alternate_with_positions() {
         course(&bench.worker, &[TEMPERATURE, SINE, WatchedQuantity::Counter], 8),
         [None, temperature, None, sine, None, counter, None, temperature]
     );
-    // The request for channel 48h according to the reference.
+    // The request for channel 48h is the one in the reference.
     assert!(bench.tap.lock().unwrap().sent.iter().any(|frame| frame == &[0x40, 0x44, 0x48, 0x4C]));
     let times: Vec<Moment> = samples(&bench.worker, 50).iter().map(at).collect();
     assert!(times.is_sorted(), "{times:?}");
@@ -98,7 +98,8 @@ fn a_missing_channel_is_reported_once_and_polling_continues() {
     );
     assert_eq!(bench.worker.watched_values(), [(TEMPERATURE, ALWAYS)]);
     assert!(bench.worker.events().is_empty(), "it is told as a sample");
-    // With another value in the list, it is not requested again. After it has been removed and added, it is.
+    // When another value is added to the list, the rejected value is not requested again. After it has been removed and
+    // added, it is.
     course(&bench.worker, &[SINE, MISSING], 1);
     assert_eq!(bench.worker.watched_values(), [(SINE, ALWAYS)]);
     course(&bench.worker, &[], 1);
@@ -148,7 +149,7 @@ fn watching_continues_around_jobs() {
 
 #[test]
 fn a_lost_line_ends_polling_and_is_reported_once() {
-    // Five replies: the type label, position, temperature, position, temperature.
+    // The encoder sends five replies: type label, position, temperature, position, temperature.
     let bench = in_virtual_time("fault=silent-after:5");
     bench.worker.watch_values(vec![(TEMPERATURE, ALWAYS)]);
     bench.worker.poll(BACK_TO_BACK);
@@ -157,7 +158,7 @@ fn a_lost_line_ends_polling_and_is_reported_once() {
     assert!(matches!(**error, JobError::Device(Error::NoReply { .. })), "{error:?}");
     assert_eq!(bench.worker.polling_interval(), None);
     assert_eq!(bench.worker.samples().drain().0.len(), 4);
-    // The same during the request for a watched value.
+    // Here it falls silent during the request for a watched value.
     let bench = in_virtual_time("fault=silent-after:4");
     bench.worker.watch_values(vec![(TEMPERATURE, ALWAYS)]);
     bench.worker.poll(BACK_TO_BACK);

@@ -1,5 +1,6 @@
-//! Drives of a hub that do not obey: they ignore their limits, a target or a pause, or turn the wrong way. The device
-//! is written in Python, and its record shows the commands. The other drive must never move.
+//! Drives of a hub that do not obey the commands of the cyclic connection: they ignore their limits, a target or a
+//! pause, or turn the wrong way. The device is written in Python, and its record contains the commands. The other drive
+//! of the hub is never moved.
 
 use std::fs;
 use std::path::PathBuf;
@@ -16,7 +17,7 @@ use super::{FAST, Host, JOG};
 const TURN: i32 = 65_536;
 /// Steps per degree, rounded up.
 const DEGREE: i32 = 183;
-/// Number of packets that may be in transit when the first report shows the defect.
+/// Maximum number of packets that are already in transit when the first report shows the defect.
 const UNDER_WAY: usize = 2;
 
 fn third() -> DriveNumber {
@@ -52,7 +53,7 @@ impl Hub {
         self.host.motion.snapshot().drives.iter().find(|own| own.number == third()).unwrap().phase
     }
 
-    /// Waits for an action to end and returns how it ended.
+    /// Waits for the end of an action and returns how it ended.
     #[track_caller]
     fn until_over(&self, act: u64) -> ActionEnd {
         let until = Instant::now() + Duration::from_secs(20);
@@ -67,7 +68,8 @@ impl Hub {
         }
     }
 
-    /// Returns the record once the drive is at standstill.
+    /// Waits until the drive is at standstill. Returns its recorded packets, and how many of them came before the
+    /// defect was first reported.
     fn record(&mut self) -> (Vec<Packet>, usize) {
         let until = Instant::now() + Duration::from_secs(20);
         while self.host.motion.snapshot().drives.iter().any(|own| own.actual.status.state() == State::Moving) {
@@ -91,7 +93,7 @@ impl Hub {
         }
         assert!(packets.iter().all(|packet| packet.drive == 3 || !packet.moves), "the drive beside it was commanded");
         packets.retain(|packet| packet.drive == 3);
-        // Each packet has a line for each of the two drives.
+        // The record has one line per packet for each of the two drives.
         (packets, told.expect("it did what it was told") / 2)
     }
 }
@@ -100,7 +102,8 @@ fn moving(packets: &[Packet]) -> Vec<&Packet> {
     packets.iter().filter(|packet| packet.moves).collect()
 }
 
-/// Issue 21.4: a hub drive that ignores its limits receives no further motion command after the report that shows this.
+/// A drive of a hub that ignores its limits gets no further motion command after the report that shows the defect
+/// (issue 21.4).
 #[test]
 fn a_hub_drive_ignoring_its_limits_is_stopped() {
     let bench = Bench::new();
@@ -117,7 +120,7 @@ fn a_hub_drive_ignoring_its_limits_is_stopped() {
     assert!(after.len() <= UNDER_WAY, "{after:?}");
 }
 
-/// Issues 21.4 and 21.5: the drive turns the wrong way.
+/// A drive of a hub that turns the wrong way is stopped (issues 21.4 and 21.5).
 #[test]
 fn a_hub_drive_turning_the_wrong_way_is_stopped() {
     for wish in [JOG, MotionRequest::Move { target: 3 * TURN, effort: FAST }] {
@@ -132,7 +135,7 @@ fn a_hub_drive_turning_the_wrong_way_is_stopped() {
     }
 }
 
-/// Issue 21.5: the drive does not stop at its target.
+/// A drive of a hub that does not stop at its target is stopped (issue 21.5).
 #[test]
 fn a_hub_drive_passing_its_target_is_stopped() {
     let bench = Bench::new();
@@ -141,12 +144,12 @@ fn a_hub_drive_passing_its_target_is_stopped() {
     let ended = hub.until_over(act);
     assert!(matches!(ended, ActionEnd::WrongWay { position } if position > TURN), "{ended:?}");
     let (packets, _) = hub.record();
-    // The accuracy of the drive is ±2.5°, so three whole degrees are allowed at its target.
+    // The drive's accuracy is ±2.5°, so it may pass its target by three whole degrees.
     let past: Vec<&Packet> = moving(&packets).into_iter().filter(|own| own.position > TURN + 3 * DEGREE).collect();
     assert!(past.len() <= UNDER_WAY + 1, "{past:?}");
 }
 
-/// Issue 21.4: a drive that ignores a pause is stopped once it has moved on for longer than it takes to brake.
+/// A drive of a hub that ignores a pause is stopped once it has moved for longer than it needs to brake (issue 21.4).
 #[test]
 fn a_hub_drive_ignoring_a_pause_is_stopped() {
     let bench = Bench::new();
@@ -166,7 +169,7 @@ fn a_hub_drive_ignoring_a_pause_is_stopped() {
     hub.foreign.kill();
     let last = text.lines().rev().find(|line| line.starts_with("P ") && line.ends_with(" 3")).unwrap();
     let words: Vec<&str> = last.split(' ').collect();
-    // Bit 4 is 0: stop.
+    // Bit 4 is 0, which means stop.
     assert_eq!(u16::from_str_radix(words[3], 16).unwrap() & 0x0010, 0, "{last}");
     assert!(text.contains(" STAND"), "{last}");
 }

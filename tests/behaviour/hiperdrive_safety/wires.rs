@@ -1,5 +1,5 @@
-//! Connections between a host and a target that can be cut. This proxy forwards the stream and the packets. It replaces
-//! the packet ports when the connection is opened.
+//! A proxy between a host and a target, whose connections can be cut. It passes on the stream and the packets. When a
+//! connection is opened, the proxy replaces the packets' ports with its own.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream, UdpSocket};
@@ -23,10 +23,10 @@ pub(super) struct Wires {
 struct Shared {
     /// Both ends of the stream.
     streams: Mutex<Vec<TcpStream>>,
-    /// Sockets that receive the packets of the host and of the target.
+    /// Receive the packets of the host and those of the target.
     sockets: [UdpSocket; 2],
     cut: [AtomicBool; 2],
-    /// Port of the host's packets.
+    /// Port at which the host receives packets.
     host: AtomicU16,
     target: u16,
     end: AtomicBool,
@@ -40,7 +40,7 @@ pub(super) struct Flood {
 }
 
 impl Wires {
-    /// Creates the proxy to `host:port`.
+    /// Creates the proxy for a target at `host:port`.
     pub(super) fn to(target: &str) -> Self {
         let port = target.rsplit(':').next().unwrap().parse().unwrap();
         let socket = || {
@@ -118,7 +118,7 @@ impl Wires {
 }
 
 impl Flood {
-    /// Stops sending and returns the number of packets.
+    /// Stops sending and returns the number of packets sent.
     pub(super) fn end(self) -> u64 {
         self.end.store(true, Ordering::SeqCst);
         self.thread.join().unwrap();
@@ -134,8 +134,8 @@ impl Drop for Wires {
 }
 
 impl Shared {
-    /// Forwards a stream in which each frame arrives in one piece. The port in an address item of the given type is
-    /// replaced with that of a socket of the proxy.
+    /// Passes on a stream in which each frame arrives in one piece. The port in an address item of type `item` is
+    /// replaced with that of one of the proxy's sockets.
     fn pass_stream(&self, mut from: TcpStream, mut to: TcpStream, item: u16, ours: usize) {
         let mut buffer = [0; 4096];
         while let Ok(count) = from.read(&mut buffer) {
@@ -143,7 +143,7 @@ impl Shared {
                 break;
             }
             let bytes = &mut buffer[..count];
-            // Type and length of the item, and the address family, with the high byte first.
+            // The item's type and length, and the address family, whose high byte comes first.
             let [low, high] = item.to_le_bytes();
             let head = [low, high, 16, 0, 0, 2];
             if let Some(at) = bytes.windows(6).position(|window| window == head) {

@@ -1,4 +1,4 @@
-//! The static data of Novo encoders.
+//! The device type of Novo encoders: opening a session, the connection form, the review and the report.
 
 use encoder_studio::app::connect::form::{FormModel, NoFinder};
 use encoder_studio::app::report::{ReportContent, ReportContext};
@@ -94,7 +94,7 @@ impl DeviceType for Encoder {
     }
 }
 
-/// A connection form for the virtual encoder or for an encoder at a device server.
+/// The dialog's form for a link to the virtual encoder or to an encoder at a device server.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NovoForm {
     pub(crate) link: String,

@@ -1,5 +1,5 @@
-//! The bytes of a Novo encoder. `R` and an address request a word; `W`, an address and a word set one. The reply
-//! contains the word at that address, and the exclusive or of request and word.
+//! The bytes of a Novo encoder. `R` and an address request a word. `W`, an address and a word set it. The reply is the
+//! word at that address, followed by the exclusive or of all bytes of the request and the word.
 
 /// The name of the kind in profiles and on the command line.
 pub(crate) const KIND: &str = "novo";
@@ -9,7 +9,7 @@ pub(crate) const SERIAL: u8 = 0x01;
 pub(crate) const POSITION: u8 = 0x03;
 /// Address of the first of the [`ITEMS`].
 pub(crate) const FIRST: u8 = 0x10;
-/// Steps per turn.
+/// Number of steps per turn.
 pub(crate) const TURN: u16 = 4096;
 /// Names of the stored values. Each is a word, and the addresses are consecutive.
 pub(crate) const ITEMS: [&str; 4] = ["zero", "filter", "least", "greatest"];

@@ -1,4 +1,4 @@
-//! The virtual encoder.
+//! The virtual Novo encoder.
 
 use encoder_studio::cli::ServableDevice;
 use encoder_studio::expected::Quantity;
@@ -14,9 +14,9 @@ parameters! {
     struct Settings: ConfigError {
         serial: u16 = 1001, "serial" => WholeNumbers(Quantity::Number, 0..=65535);
         rpm: f64 = 0.0, "rpm" => RPM;
-        /// The address of a value that no longer changes.
+        /// Address of a value that can no longer be changed.
         stuck: Option<u8> = None, "stuck" => OptionalValue(WholeNumbers(Quantity::Address, 0..=255));
-        /// The PIN of a locked encoder, whose values cannot be changed.
+        /// PIN that locks the encoder: no value can be changed.
         pin: Option<u16> = None, secret "pin" => OptionalValue(WholeNumbers(Quantity::Number, 0..=9999));
     }
 }
@@ -30,7 +30,7 @@ pub(crate) struct Virtual {
 }
 
 impl Virtual {
-    /// Settings whose values are neither shown nor stored.
+    /// Names of the settings whose values are neither shown nor kept.
     pub(crate) const SECRETS: &'static [&'static str] = Settings::SECRETS;
 
     /// Parses the query of a link.

@@ -1,4 +1,4 @@
-//! Registers and position over an adapter: banks, checksums, stuck wires, and adapters that do not answer.
+//! Registers and position over an adapter: banks, checksums, stuck lines, and adapters that do not answer.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use encoder_studio::units::Moment;
 
 use super::support::{Bus, at};
 
-/// BiSS reference 2: 1234h turns and 18000h steps form the frame 024698000CF.
+/// The frame of 1234h turns and 18000h steps is 024698000CF (BiSS reference 2).
 #[test]
 fn registers_and_position_are_read() {
     let mut bus = Bus::new("temperature=25");
@@ -46,7 +46,7 @@ fn error_and_warning_are_read_with_the_position() {
     assert_eq!((reading.error, reading.warning, reading.is_valid()), (Some(true), Some(true), false));
 }
 
-/// Half a turn per second is 65536 steps.
+/// The shaft turns half a revolution, or 65536 steps, per second.
 #[test]
 fn a_position_has_the_time_of_its_sampling() {
     let mut bus = Bus::new("rpm=30&position=0");
@@ -80,7 +80,7 @@ fn a_bank_is_selected_again_only_if_it_may_have_changed() {
     assert_eq!(bus.count(Operation::BissRegisterWrite), 5);
 }
 
-/// The encoder has briefly lost its power, so its bank is 0 again.
+/// After a short loss of power, the encoder has bank 0 selected again.
 #[test]
 fn a_restart_is_detected_by_its_silence() {
     let mut bus = Bus::new("");
@@ -117,7 +117,7 @@ fn a_write_with_a_lost_reply_is_read_back_and_a_command_is_unclear() {
     }
     assert_eq!(bus.count(Operation::BissRegisterWrite), 2);
     let next = bus.tap().sent.len();
-    // The bank is selected, then the command is sent.
+    // The first request selects the bank, and the second is the command.
     bus.tap().swallow_reply = Some(next + 1);
     let error = bus.master().write(at("0x00:0x06"), 0x01).unwrap_err();
     assert!(matches!(error, Error::Unclear { value: 0x01, .. }), "{error}");
@@ -152,7 +152,7 @@ fn frames_with_wrong_checksums_are_counted_and_retried() {
     let mut bus = Bus::new("noise=0.15&seed=3");
     let (mut right, mut wrong) = (0, 0);
     for _ in 0..200 {
-        // A CRC of six bits detects any single flipped bit, and exactly one is flipped.
+        // A CRC of six bits detects every single inverted bit, and only one is inverted.
         let reading = bus.master().position().unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(reading.position(), 0x2469_8000);
         right += 1;
@@ -194,7 +194,7 @@ fn a_silent_adapter_is_asked_twice() {
     assert_eq!(error, Error::Adapter(AdapterError::Silent));
     assert_eq!(error.to_string(), "the adapter does not answer");
     assert_eq!(bus.tap().sent.len(), 2);
-    // 200 ms for each, and the margin.
+    // Two tries of 200 ms each, plus the margin.
     assert_eq!(bus.now(), Duration::from_millis(2 * 220));
     assert!(bus.tap().sent.iter().all(|bytes| bytes[0] == 0), "an empty packet goes before each");
 }
@@ -207,7 +207,7 @@ fn the_supply_is_switched_on_if_requested() {
     let mut bus = Bus::new("supply=switched");
     bus.station.supply = Some(Supply { millivolt: 5_000, measured: None });
     assert_eq!(bus.master().read(at("0x41")), Ok(0x02));
-    // 0.3 W (manual, chapter 2).
+    // The encoder needs 0.3 W (manual, chapter 2).
     assert_eq!(bus.station.supply, Some(Supply { millivolt: 5_000, measured: Some((5_000, 60)) }));
     let mut external = Bus::new("");
     external.station.supply = Some(Supply { millivolt: 5_000, measured: None });
@@ -215,7 +215,7 @@ fn the_supply_is_switched_on_if_requested() {
     assert_eq!(error.to_string(), "the adapter virtual adapter cannot supply an encoder");
 }
 
-/// Noise on the line to the adapter, not to the encoder. Packets have a CRC of 16 bits.
+/// The noise is on the line to the adapter, not on that of the encoder. Its packets have a CRC of 16 bits.
 #[test]
 fn a_noisy_wire_to_the_adapter_yields_correct_values_or_errors() {
     let (mut right, mut failed) = (0, 0);

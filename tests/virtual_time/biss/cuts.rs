@@ -1,6 +1,6 @@
-//! Every procedure, interrupted at every single exchange by a cut link, a power loss or a cancellation. The reported
-//! state of the encoder must be the actual one, the encoder must return to operation with the password cleared, and the
-//! procedure must then be executable.
+//! Every procedure is interrupted at each exchange: the link is cut, the encoder loses its power, or the user cancels.
+//! The reported state of the encoder must be its real one. Afterwards, the encoder can be returned to operation with
+//! the password cleared, and the procedure can be executed.
 
 use encoder_studio::devices::biss::jobs::{Change, JobError, Prepared};
 use encoder_studio::devices::biss::procedures::Error;
@@ -66,9 +66,9 @@ fn mounting() -> Change {
     Change::Guided { run, motor: MotorSource::Other }
 }
 
-/// The result of a commit that was disturbed.
+/// The result of an interrupted commit.
 enum Ended {
-    /// The change was completed.
+    /// The commit was completed.
     Done,
     /// The commit ended before the first operation, and nothing was written.
     Refused(Error),
@@ -76,12 +76,12 @@ enum Ended {
     Interrupted(Box<InterruptedWrite>),
 }
 
-/// Executes the change on a copy of the bench. `disturb` is called when the plan is complete.
+/// Executes the change on a copy of the bench. `disturb` is called once the plan is complete.
 fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Bench)) -> (Bench, Ended) {
     let mut bench = original.copied();
     disturb(&mut bench);
     let mut hands = TestOperator::on(&bench);
-    // The shortest test has the fewest exchanges.
+    // With this speed range, the test takes the fewest exchanges.
     hands.rpm = (500.0, 2000.0);
     let ended = match bench.commit(prepared, &mut hands).map_err(|error| *error) {
         Ok(_) => Ended::Done,
@@ -118,8 +118,8 @@ fn assert_can_return_to_operation(
     assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
 }
 
-/// Checks that the reported flash cycles are the actual ones, or one more if it is unknown whether the last one took
-/// place.
+/// Checks that the reported number of flash cycles is the real one, or one more if it is not known whether the last
+/// cycle took place.
 fn assert_cycles(told: &InterruptedWrite, spent: u32, context: &str) {
     let told = told.done.write_cycles;
     assert!(told == u64::from(spent) || told == u64::from(spent) + 1, "{context}: {told} told, {spent} spent");
@@ -163,12 +163,12 @@ fn cut_at_every_exchange(scene: &Scene, way: Transport) {
     }
 }
 
-/// Checks that every step in which anything is sent has been interrupted.
+/// Checks that the interruptions covered every step in which data are sent.
 fn assert_all_steps(prepared: &Prepared, hit: &[ProcedureStep], name: &str, context: &str) {
     let mut missed: Vec<ProcedureStep> = prepared.plan.ops.iter().flat_map(operation_steps).collect();
     if missed.contains(&ProcedureStep::Restart) && name != "lost" {
-        // An encoder that restarts does not have to answer. A missed command is detected when the encoder is searched
-        // for.
+        // An encoder that restarts does not answer, so a missed command is detected only when the program looks for the
+        // encoder.
         missed.retain(|step| !matches!(step, ProcedureStep::Save | ProcedureStep::Fire));
     }
     missed.retain(|step| !hit.contains(step));
@@ -233,7 +233,7 @@ fn power_lost_before_any_exchange_leaves_operation_mode() {
                     let running = Activity::Running(MotorRun::CalibrationClockwise);
                     let warned = told.end_state.standing.as_ref().is_some_and(|own| own.activity == running);
                     assert!(!lost || warned, "{context}: {told:?}");
-                    // The power is back, and the encoder is in operation.
+                    // The power has returned, and the encoder is in operation.
                     let mut again = bench.reconnected_knowing();
                     assert_eq!(again.return_to_operation().unwrap(), DeviceMode::OPERATION, "{context}");
                     assert_can_return_to_operation(&bench, scene, &told, &mut steps, &context);
@@ -243,7 +243,7 @@ fn power_lost_before_any_exchange_leaves_operation_mode() {
     }
 }
 
-/// The power is lost while the flash is being written.
+/// The encoder loses its power while it writes to its flash.
 #[test]
 fn power_lost_in_any_store_is_reported_and_recovered() {
     for scene in &SCENES {
@@ -264,7 +264,7 @@ fn power_lost_in_any_store_is_reported_and_recovered() {
     }
 }
 
-/// A cancellation at every exchange leaves the encoder in operation, and the reported values are those that were
+/// After a cancellation at any exchange, the encoder is in operation, and the report names the values that were
 /// written.
 #[test]
 fn cancelling_at_any_exchange_returns_to_operation() {

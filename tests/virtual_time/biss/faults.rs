@@ -1,4 +1,4 @@
-//! Surveys on a bad line over either connection. The result is correct or there is an error, and the job ends.
+//! Surveys on a noisy line over both kinds of connection: the job ends, and its result is either right or an error.
 
 use std::fs;
 use std::sync::{Arc, Mutex};
@@ -24,7 +24,7 @@ fn survey(bench: &mut Bench) -> Result<Survey, Error> {
     }
 }
 
-/// Returns the survey without the time of the position.
+/// Returns the survey without the time of its position.
 fn timeless(survey: Survey) -> Survey {
     let mut survey = survey;
     if let Some(reading) = &mut survey.status.position {
@@ -39,7 +39,7 @@ fn a_survey_over_a_bad_line_is_correct_or_an_error() {
     let (mut right, mut failed) = (0, 0);
     for way in WAYS {
         let truth = timeless(survey(&mut Bench::new(way, "")).unwrap());
-        // The line to an adapter is a cable of one metre, so a packet that is lost twice ends a job.
+        // The line to an adapter is a cable of one metre: the job ends if a packet is lost twice.
         let noises = match way {
             Transport::ConfigPin => ["drop:0.005", "flip:0.005", "garbage:0.005", "drop:0.02,flip:0.02,garbage:0.02"],
             Transport::Adapter => ["drop:0.0005", "flip:0.0005", "garbage:0.0005", "drop:0.005"],
@@ -82,7 +82,7 @@ fn echo_and_byte_order_do_not_change_read_values() {
     }
 }
 
-/// The link is cut at every hundredth exchange. The error is that of a silent device and appears within ten seconds.
+/// The line is cut at every hundredth exchange. The job reports within ten seconds that the encoder does not answer.
 #[test]
 fn silence_ends_a_survey_within_ten_seconds() {
     for way in WAYS {
@@ -117,7 +117,7 @@ fn cancelling_takes_effect_between_two_exchanges() {
     }
 }
 
-/// A recording answers like the encoder.
+/// A replayed recording gives the same answers as the encoder did.
 #[test]
 fn a_recording_of_either_interface_can_be_replayed() {
     for way in WAYS {

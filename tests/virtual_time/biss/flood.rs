@@ -1,4 +1,4 @@
-//! Noise at a high rate, during which memory and time must remain limited.
+//! When noise arrives at a high rate, the memory and time that a job uses remain limited.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -46,8 +46,8 @@ impl ByteLink for Flood {
     }
 }
 
-/// Issue 22.11: with noise on either connection, the trace keeps a limited number of bytes, and a job ends even if the
-/// noise does not.
+/// The trace keeps a limited number of noise bytes from either connection, and a job ends even if the noise does not
+/// (issue 22.11).
 #[test]
 fn a_flood_of_noise_takes_bounded_memory_and_time() {
     for (way, noise) in [
@@ -58,7 +58,7 @@ fn a_flood_of_noise_takes_bounded_memory_and_time() {
     ] {
         for lasts in [300, 900, 3_600_000] {
             let (clock, folder) = (Arc::<VirtualClock>::default(), folder());
-            // Invalid packets, each with an end byte.
+            // The noise consists of invalid packets that are properly terminated.
             let mut portion = [noise; 512];
             portion[511] = 0;
             let lasts = Duration::from_millis(lasts);

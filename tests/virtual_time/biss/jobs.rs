@@ -56,7 +56,7 @@ fn device_error(error: JobError) -> Error {
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// Values from the manual, appendix 9.1. The serial number is that of the simulator.
+/// The expected values are those of appendix 9.1 of the manual. The serial number is that of the virtual encoder.
 #[test]
 fn a_survey_over_both_interfaces_is_complete() {
     for way in WAYS {
@@ -105,7 +105,7 @@ fn a_survey_over_both_interfaces_is_complete() {
     }
 }
 
-/// Manual: errors and warnings exist since version 1.6.0, the filter since 1.1.0, and the preset since 1.2.0.
+/// The manual lists errors and warnings since firmware 1.6.0, the filter since 1.1.0 and the preset since 1.2.0.
 #[test]
 fn features_missing_in_older_firmware_are_absent() {
     let mut bench = Bench::new(Transport::Adapter, "firmware=1.0.9&errors=0x10");
@@ -130,7 +130,7 @@ fn status_and_position_identify_the_encoder_themselves() {
         let sent = bench.tap().sent.len();
         let reading = position(&mut bench);
         assert_eq!((reading.turns, reading.steps), (1, 1));
-        // Over the configuration pin, the error and warning registers are requested as well.
+        // Over the configuration pin, the registers of errors and warnings are read as well.
         let asked = if way == Transport::Adapter { 1 } else { 3 };
         assert_eq!(bench.tap().sent.len(), sent + asked, "{way:?}: known by now");
         assert_eq!((reading.error, reading.warning), (Some(false), Some(true)), "{way:?}");
@@ -157,7 +157,7 @@ fn registers_and_banks_are_read() {
     }
 }
 
-/// Manual 6.5: data must not be accessed while the motor runs.
+/// Data must not be accessed while the motor runs (manual 6.5).
 #[test]
 fn data_is_not_read_while_the_shaft_turns() {
     for way in WAYS {
@@ -196,8 +196,8 @@ fn everything_restorable_is_saved_over_both_interfaces() {
     }
 }
 
-/// Issue 22.15, reference 5.3: in mode 04, the data registers contain values that were written but not saved. They are
-/// reported, marked and not compared. Reading does not discard them, unlike the return to operation.
+/// In mode 04, the data registers show values that were written but not saved (reference 5.3). They are reported,
+/// marked and not compared. Reading does not return to operation, which would discard them (issue 22.15).
 #[test]
 fn unsaved_registers_are_marked_and_not_compared() {
     for way in WAYS {
@@ -266,8 +266,8 @@ fn a_save_over_a_noisy_line_is_correct_or_an_error() {
     assert!(saved > 9);
 }
 
-/// The description of another device from the same manufacturer does not apply. This is reported, and the data common
-/// to all encoders are shown.
+/// If the device ID belongs to another device of the same manufacturer, it is reported, and the data that every encoder
+/// has are shown.
 #[test]
 fn a_device_id_without_a_description_is_reported() {
     let [(_, kit), (_, unknown)] = Descriptions::BUILT_IN;
@@ -306,7 +306,7 @@ fn samples_and_watched_registers_are_read_one_by_one() {
         assert_eq!((reading.range.to_string().as_str(), reading.value), ("0x66", Ok(vec![75])));
         let refused = bench.session.watch_value(&"0x44:0x00".parse().unwrap()).unwrap();
         assert!(matches!(refused, WatchReply::Refused(PolledSample::Watched(_))), "{refused:?}");
-        // Manual 6.5: data must not be accessed while the shaft turns.
+        // Data must not be accessed while the shaft turns (manual 6.5).
         let sent = bench.tap().sent.len();
         let refused = bench.session.watch_value(&"0x24:0x10".parse().unwrap()).unwrap();
         let WatchReply::Refused(PolledSample::Watched(reading)) = refused else { panic!("{refused:?}") };
@@ -318,8 +318,8 @@ fn samples_and_watched_registers_are_read_one_by_one() {
     }
 }
 
-/// UBICOM reference 4: the word has no error and warning bits, so the registers are read once per second. A frame has
-/// both. Every position includes the errors and warnings.
+/// The word over the configuration pin has no error and warning bits, so each of the two registers is read once per
+/// second (UBICOM reference 4). A frame has both bits. Every position includes them.
 #[test]
 fn an_error_during_polling_marks_the_positions() {
     for way in WAYS {
@@ -345,7 +345,7 @@ fn an_error_during_polling_marks_the_positions() {
             last = sample(&mut bench);
         }
         assert_eq!(last, (Some(true), Some(false)), "{way:?}");
-        // A single reading reports it immediately.
+        // A single request reports the change at once.
         bench.encoder(|encoder, _| encoder.set_errors(ErrorRegister::default()));
         let BissOutput::Position(reading) = bench.run(BissJob::Position).unwrap() else { panic!() };
         assert_eq!((reading.error, reading.warning), (Some(false), Some(false)), "{way:?}");

@@ -1,5 +1,5 @@
 //! Registers and position over the configuration pin: echo, byte order, noise, silence, rejections, and writes whose
-//! answer is lost.
+//! reply is lost.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use encoder_studio::link::{CancelToken, Clock, Direction};
 
 use super::support::{Pin, at};
 
-/// UBICOM reference 6: temperature 75 is 25 °C, with 1234h turns and 18000h steps.
+/// Temperature 75 is 25 °C, and the position is 1234h turns and 18000h steps (UBICOM reference 6).
 #[test]
 fn registers_and_position_are_read_with_the_published_frames() {
     let mut pin = Pin::new("temperature=25");
@@ -29,8 +29,8 @@ fn registers_and_position_are_read_with_the_published_frames() {
     assert_eq!(pin.station.line.damaged, 0);
 }
 
-/// Half a turn per second, sampled when the encoder begins to answer, which is one millisecond after the seven bytes of
-/// the request.
+/// The shaft turns half a revolution per second. A position is sampled when the encoder begins to answer, one
+/// millisecond after the seven bytes of the request.
 #[test]
 fn a_position_has_the_time_of_its_first_bit() {
     let mut pin = Pin::new("rpm=30&position=0");
@@ -88,8 +88,8 @@ fn silence_is_reported_after_five_tries_in_time() {
     assert!(matches!(error, Error::NoReply { echo_heard: true, .. }), "{error}");
 }
 
-/// An encoder that answers otherwise is silent for a register that it does not have, such as those in bank 44h of the
-/// kit encoder.
+/// An encoder that answers other requests is silent if it does not have the register. The kit encoder does not have
+/// bank 44h.
 #[test]
 fn a_missing_register_is_distinguished_from_a_missing_encoder() {
     let mut pin = Pin::new("");
@@ -128,7 +128,8 @@ fn a_write_with_a_lost_reply_is_read_back() {
     }
 }
 
-/// The answer to the start of a Wiegand test is lost. The encoder cannot report whether it received the command.
+/// The command starts a Wiegand test. If its reply is lost, the encoder cannot report whether it received the command,
+/// so the command is not repeated.
 #[test]
 fn a_command_with_a_lost_reply_is_unclear_and_never_repeated() {
     for request_lost in [false, true] {
@@ -144,7 +145,7 @@ fn a_command_with_a_lost_reply_is_unclear_and_never_repeated() {
     }
 }
 
-/// The connection is lost during the write.
+/// If the connection is lost during a write, the result is not known.
 #[test]
 fn a_write_that_lost_its_wire_is_unclear() {
     let mut pin = Pin::new("");
@@ -178,8 +179,8 @@ fn cancelling_takes_effect_between_exchanges_and_not_in_a_shield() {
     assert_eq!(master.read(at("0x41")), Err(Error::Cancelled), "the shield ends");
 }
 
-/// An encoder is silent for five seconds during calibration. Without patience, this is an error. With patience, its
-/// status arrives.
+/// An encoder is silent for five seconds while it calibrates. A normal request returns an error, and one with a longer
+/// time limit returns the status.
 #[test]
 fn a_long_silence_is_tolerated_with_patience() {
     let mut pin = Pin::new("rpm=-500&calibration=7");
@@ -199,8 +200,8 @@ fn a_long_silence_is_tolerated_with_patience() {
     assert!((9.0..10.5).contains(&(dead.now() - from).as_secs_f64()), "patience has an end");
 }
 
-/// A value can only be wrong after two damaged frames with matching checksums. With confirmation, none is wrong in
-/// these runs.
+/// A wrong value is returned only if two damaged frames have matching checksums. With confirmation, no value in these
+/// runs is wrong.
 #[test]
 fn a_noisy_line_yields_correct_values_or_errors() {
     let (mut right, mut failed) = (0, 0);
@@ -242,7 +243,8 @@ fn writes_over_a_noisy_line_report_their_true_result() {
     }
 }
 
-/// A false start of a frame hides the following bytes until the frame ends. 20 ms of silence end it on both sides.
+/// A false beginning of a frame hides the following bytes until that frame ends. Both sides end it after 20 ms of
+/// silence.
 #[test]
 fn replies_are_read_again_after_garbage() {
     let mut pin = Pin::new("temperature=25");
@@ -254,7 +256,7 @@ fn replies_are_read_again_after_garbage() {
     assert!(pin.clock.now().duration_since(from) < Duration::from_secs(1));
 }
 
-/// Issue 22.11: damaged replies are counted, and the trace contains their bytes.
+/// Damaged replies are counted, and the trace contains their bytes (issue 22.11).
 #[test]
 fn damaged_replies_are_counted_and_reported() {
     let mut pin = Pin::new("");
@@ -264,7 +266,7 @@ fn damaged_replies_are_counted_and_reported() {
     assert!(matches!(error, Error::Damaged { .. }), "{error}");
     let quality = pin.station.line.quality.clone();
     assert_eq!((quality.damaged, quality.retries), (5, 4));
-    // The byte order of numbers was requested first.
+    // The byte order of numbers was requested before these replies.
     let shown = pin.shown(Direction::Received);
     assert!(shown.len() == 6 && shown.iter().all(|own| !own.contains('*')), "{shown:?}");
 }

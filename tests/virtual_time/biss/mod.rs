@@ -1,4 +1,4 @@
-//! A BiSS encoder on its line.
+//! A BiSS encoder in virtual time, at its configuration pin or at an adapter.
 
 mod adapter;
 mod cuts;

@@ -1,5 +1,5 @@
-//! The five procedures and the mounting on the virtual encoder: their steps, measurements, rejections and failures, and
-//! the return to operation with the password cleared in every case.
+//! The five procedures and the mounting run on the virtual encoder: their steps, measurements, rejections and failures.
+//! However a procedure ends, the encoder returns to operation with the password cleared.
 
 use std::time::Duration;
 
@@ -21,8 +21,8 @@ use super::support::{Bench, Transport, at};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// Checks that the reported steps match those listed before, in order, including the return to operation if there is
-/// one.
+/// Checks that the reported steps match the previously listed ones in order, including the return to operation if one
+/// is listed.
 #[track_caller]
 fn assert_steps(bench: &mut Bench, change: Change) -> TestOperator {
     let prepared = bench.prepare(change).unwrap();
@@ -40,7 +40,7 @@ fn assert_steps(bench: &mut Bench, change: Change) -> TestOperator {
     hands
 }
 
-/// Manual 6.4: counterclockwise first, about five seconds in each direction, saved automatically.
+/// Counterclockwise comes first. Each direction takes about 5 s, and the result is saved automatically (manual 6.4).
 #[test]
 fn a_calibration_runs_both_ways_and_costs_one_flash_cycle() {
     for way in WAYS {
@@ -74,7 +74,7 @@ fn a_calibration_runs_both_ways_and_costs_one_flash_cycle() {
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), calibration());
 }
 
-/// Manual 6.3: 515 revolutions at 1000 rpm take 30.9 s.
+/// The test takes 515 revolutions, which are 30.9 s at 1000 rpm (manual 6.3).
 #[test]
 fn a_wiegand_test_returns_results_and_saves_them_on_request() {
     for way in WAYS {
@@ -94,7 +94,7 @@ fn a_wiegand_test_returns_results_and_saves_them_on_request() {
             let took = bench.now() - from;
             assert!((2.0 * 30.9..75.0).contains(&took.as_secs_f64()), "{took:?}");
             assert_eq!(bench.mode_and_password(), IN_OPERATION);
-            // It takes effect after a restart.
+            // The value takes effect after a restart.
             bench.encoder(|encoder, now| encoder.power_cycle(now));
             bench.run(encoder_studio::devices::biss::jobs::BissJob::ReturnToOperation).unwrap();
             assert_eq!(bench.encoder_reads(at("0x00:0x12")), Some(if save { 58 } else { 0 }));
@@ -126,7 +126,7 @@ fn data_is_written_register_by_register_and_saved_once() {
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), data());
 }
 
-/// Manual 6.6: a new filter restarts the encoder.
+/// Selecting a filter restarts the encoder (manual 6.6).
 #[test]
 fn a_filter_is_selected_with_a_restart() {
     for way in WAYS {
@@ -142,7 +142,7 @@ fn a_filter_is_selected_with_a_restart() {
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), filter());
 }
 
-/// Manual 6.7: 270° is 18000h, and its registers are 00 80 01.
+/// 270° are 18000h, stored in the registers as 00 80 01 (manual 6.7).
 #[test]
 fn a_preset_is_stored_and_executed_with_two_restarts() {
     for way in WAYS {
@@ -259,7 +259,7 @@ fn cancelling_at_the_motor_leaves_the_encoder_in_operation() {
     }
 }
 
-/// No user is present. Unsuitable values are reported after a waiting time, and nothing has begun.
+/// Without a user, values that remain unsuitable are reported after the waiting time, and nothing is started.
 #[test]
 fn an_unattended_start_happens_when_ready_or_not_at_all() {
     let cases = [
@@ -279,7 +279,7 @@ fn an_unattended_start_happens_when_ready_or_not_at_all() {
         assert_eq!((bench.flash_cycles(), bench.mode_and_password()), (before, IN_OPERATION));
         assert!(bench.now() - from < Duration::from_secs(7), "{query}");
     }
-    // This motor reverses when the encoder waits for it.
+    // The motor reverses its direction when the encoder waits for it.
     let mut bench = Bench::new(Transport::ConfigPin, "rpm=-500&motor=reverse");
     let prepared = bench.prepare(calibration()).unwrap();
     let written = bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap().written;
@@ -303,7 +303,7 @@ fn an_unattended_start_happens_when_ready_or_not_at_all() {
     }
 }
 
-/// Manual 6.4: the possible errors in the status of the calibration. In the second run, the table is lost.
+/// The possible errors in the calibration's status (manual 6.4). The second run loses the table.
 #[test]
 fn a_failed_calibration_reports_the_reason() {
     // Speed and direction change after the start of the run. Variation and temperature are set from the beginning.
@@ -340,7 +340,7 @@ fn a_failed_calibration_reports_the_reason() {
         let lost = run == MotorRun::CalibrationClockwise;
         assert_eq!((bench.flash_cycles(), told.done.write_cycles), (before, u64::from(lost)));
         assert_eq!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()), !lost);
-        // No backup contains the table.
+        // No backup contains the calibration table.
         assert_eq!(words, ["write.interrupted", "biss_left.at", "biss_left.operation", "write.backup_calibration"]);
         let again = bench.prepare(calibration()).unwrap();
         assert_eq!(
@@ -351,7 +351,7 @@ fn a_failed_calibration_reports_the_reason() {
     }
 }
 
-/// Errors that the encoder itself detects although the measured values were valid immediately before.
+/// The encoder itself detects these errors although the measured values were suitable just before.
 #[test]
 fn the_encoder_decides_on_direction_speed_and_temperature() {
     type Spoil = fn(&mut encoder_studio::devices::biss::sim::Encoder, encoder_studio::units::Moment);
@@ -380,7 +380,7 @@ fn the_encoder_decides_on_direction_speed_and_temperature() {
         assert_eq!(interrupted(*error).cause, Failure::Calibration { run, status });
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
     }
-    // A Wiegand sensor without pulses, and a motor that continues to turn.
+    // One case has a Wiegand sensor without pulses, the other a motor that continues to turn.
     let mut dead = Bench::new(Transport::ConfigPin, "pulses=0,0");
     let told = interrupted(dead.change(wiegand_test(true)).unwrap_err());
     let (run, status) = (MotorRun::WiegandClockwise, WiegandStatus::Failed);
@@ -405,7 +405,7 @@ fn the_encoder_decides_on_direction_speed_and_temperature() {
 
 #[test]
 fn a_run_that_never_ends_times_out() {
-    // The motor stops, so the revolutions are never completed.
+    // The motor stops, so the number of revolutions is never reached.
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(wiegand_test(false)).unwrap();
     let mut hands = TestOperator::on(&bench);
@@ -443,7 +443,7 @@ fn impossible_procedures_are_refused_beforehand() {
         let error = Bench::new(Transport::ConfigPin, query).prepare(data()).unwrap_err();
         assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error}");
     }
-    // The shaft starts to turn between the plan and its execution.
+    // The shaft begins to turn after the plan was made and before it is executed.
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(data()).unwrap();
     bench.motor().set_rpm(100.0);
@@ -452,7 +452,7 @@ fn impossible_procedures_are_refused_beforehand() {
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
 }
 
-/// An old firmware version has a single filter, and its register has no meaning.
+/// Old firmware has only one filter, and the filter register has no meaning. Calibration works nevertheless.
 #[test]
 fn an_encoder_without_a_choice_of_filter_is_calibrated() {
     let mut bench = Bench::new(Transport::ConfigPin, "firmware=1.0.0");
@@ -486,7 +486,7 @@ fn an_encoder_left_in_a_mode_is_first_returned_to_operation() {
     assert_eq!(bench.return_to_operation().unwrap(), DeviceMode::OPERATION);
 }
 
-/// A clockwise run started by another host is allowed to finish, because leaving it would lose the table.
+/// A clockwise calibration run that another host has started may finish, because ending it would lose the table.
 #[test]
 fn the_return_to_operation_waits_for_a_calibration() {
     for silent in ["on", "off"] {
@@ -507,7 +507,7 @@ fn the_return_to_operation_waits_for_a_calibration() {
     }
 }
 
-/// Start was pressed twice for the motor data. The second press does not answer the same question for the OEM data.
+/// If the start of the motor data is confirmed twice, the second answer does not start the OEM data.
 #[test]
 fn a_duplicated_answer_does_not_start_the_next_operation() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -539,7 +539,7 @@ fn a_duplicated_answer_does_not_start_the_next_operation() {
     assert_eq!((bench.flash_bank(0x04)[0x10], bench.flash_bank(0x24)[0x10]), (0x5A, 0));
 }
 
-/// The status of an earlier run is neither the end nor the failure of the current one.
+/// The status left by an earlier run is not taken for the end or failure of this one.
 #[test]
 fn the_status_of_an_earlier_run_is_ignored() {
     for silent in ["on", "off"] {

@@ -35,7 +35,7 @@ fn stand(query: &str) -> Stand {
     stand_with(query, None)
 }
 
-/// Creates a stand like [`stand`], with the encoder supplied by the adapter.
+/// Returns the same as [`stand`], but the adapter supplies the encoder.
 fn stand_with(query: &str, supply: Option<Supply>) -> Stand {
     stand_at(query, supply, 2_000_000)
 }
@@ -181,7 +181,7 @@ fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
     assert!(matches!(stand.session.take_sample(), Err(JobError::Device(Error::Link(error))) if error.is_lost()));
 }
 
-/// 43 bits at 1 MHz, 7 µs for the acknowledgement and 20 µs of time-out add up to 70 µs.
+/// At 1 MHz, 43 bits, 7 µs for the acknowledgement and 20 µs for the time-out add up to 70 µs.
 #[test]
 fn a_clock_too_slow_for_the_interval_is_reported() {
     for (clock_hz, period_ns, is_limited) in [(1_000_000, 70_000, true), (2_000_000, 50_000, false)] {
@@ -192,7 +192,7 @@ fn a_clock_too_slow_for_the_interval_is_reported() {
     }
 }
 
-/// A reset ends the stream and clears the supply and the clock. A job or the next sample detects this and continues.
+/// A reset ends the stream and clears supply and clock. The next job or sample detects it and continues.
 #[test]
 fn an_adapter_reset_while_streaming_is_configured_again() {
     let query = "supply=switched&rpm=60";

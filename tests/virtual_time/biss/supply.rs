@@ -1,4 +1,4 @@
-//! Issue 22.16: the supply that an adapter provides for the encoder, and its state after a session.
+//! The supply that an adapter provides for the encoder: whether it is on or off after a session (issue 22.16).
 
 use std::time::Duration;
 
@@ -29,8 +29,8 @@ fn the_supply_is_switched_off_unless_found_on_or_kept() {
     }
 }
 
-/// Issue 22.16: the same for streamed signals. A supply that was switched on for them is switched off, and one that was
-/// already on stays on.
+/// A supply that was switched on to stream signals is switched off again, and one that was on before stays on (issue
+/// 22.16).
 #[test]
 fn streaming_signals_restores_the_supply() {
     let volts = SupplyVoltage { least: 4_750, given: 5_000, greatest: 12_500 };
@@ -44,7 +44,7 @@ fn streaming_signals_restores_the_supply() {
     assert!(bench.stream_signals(None) && has_power(&bench));
 }
 
-/// A session that makes no requests, or whose link does not control the supply, switches nothing.
+/// A session that sends no requests, or whose link does not control the supply, leaves the supply unchanged.
 #[test]
 fn a_session_switches_off_only_its_own_supply() {
     let mut bench = Bench::supplied(On);
@@ -57,7 +57,8 @@ fn a_session_switches_off_only_its_own_supply() {
     assert!(has_power(&bench));
 }
 
-/// A store is completed before the power is switched off. An encoder in a mode set by another host keeps its power.
+/// The power is switched off only after a store is complete. An encoder that another host has put into a mode keeps its
+/// power.
 #[test]
 fn power_is_not_cut_during_a_store_or_a_mode() {
     let mut bench = Bench::supplied(AsFound);
@@ -74,7 +75,8 @@ fn power_is_not_cut_during_a_store_or_a_mode() {
     assert!(has_power(&bench), "it may calibrate");
 }
 
-/// Issue 22.16: the encoder is silent from the beginning, so it may be calibrating since an earlier session.
+/// An encoder that never answers keeps its power, because it may still perform a calibration that an earlier session
+/// started (issue 22.16).
 #[test]
 fn an_encoder_that_never_answers_keeps_its_power() {
     let mut bench = Bench::supplied_at("line=open", AsFound);
@@ -87,7 +89,8 @@ fn an_encoder_that_never_answers_keeps_its_power() {
     assert!(has_power(&bench), "that it may be cut off is not said by a link");
 }
 
-/// At any interruption of a write, an encoder that could not be returned to operation keeps its power until it is.
+/// If a write is interrupted at any point and the encoder cannot be returned to operation, it keeps its power until the
+/// return succeeds.
 #[test]
 fn an_encoder_that_could_not_be_returned_to_operation_keeps_its_power() {
     let mut whole = Bench::supplied(AsFound);

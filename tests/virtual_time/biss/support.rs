@@ -24,12 +24,12 @@ use encoder_studio::worker::{Event, JobId, Progress, Session};
 use crate::faults::{FaultyLink, Schedule};
 use crate::support::{MARGIN, Tap, TestLink, folder};
 
-/// The configuration pin of an encoder, and its host.
+/// An encoder at its configuration pin, together with its host.
 pub(crate) type Pin = Rig<UbicomPort>;
-/// An encoder at an adapter, and its host.
+/// An encoder at an adapter, together with its host.
 pub(crate) type Bus = Rig<Adapter>;
 
-/// A virtual device and the host side of its line.
+/// A virtual device, together with the host side of its line.
 pub(crate) struct Rig<D> {
     pub(crate) device: Arc<Mutex<D>>,
     pub(crate) clock: Arc<VirtualClock>,
@@ -51,14 +51,14 @@ pub(crate) fn at(text: &str) -> RegisterAddress {
 }
 
 impl Pin {
-    /// Creates a known encoder from the query of a `sim:` link.
+    /// Creates an encoder of a known type from the query of a `sim:` link.
     pub(crate) fn new(query: &str) -> Self {
         Self::with(UbicomPort::new(&Config::from_pairs(&pairs(query)).unwrap()), Transport::ConfigPin)
     }
 }
 
 impl Bus {
-    /// Creates a known encoder behind an adapter from the query of a `sim:` link.
+    /// Creates an encoder of a known type behind an adapter from the query of a `sim:` link.
     pub(crate) fn new(query: &str) -> Self {
         Self::with(Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap(), Transport::Adapter)
     }
@@ -92,7 +92,7 @@ impl<D: ByteDevice + 'static> Rig<D> {
         Master::new(ctx, &mut self.station)
     }
 
-    /// Adds bytes from another sender to the line.
+    /// Sends bytes of another sender on the line.
     pub(crate) fn link_send(&mut self, bytes: &[u8]) {
         self.link.send(bytes).unwrap();
     }
@@ -116,7 +116,7 @@ impl<D: ByteDevice + 'static> Rig<D> {
     }
 }
 
-/// A handle to the encoder of a bench.
+/// Access to the encoder of a bench while a job runs.
 pub(crate) struct Handle {
     end: End,
     clock: Arc<VirtualClock>,
@@ -132,7 +132,7 @@ impl Handle {
     }
 }
 
-/// A session with a virtual encoder.
+/// A virtual encoder with a session, over either kind of connection.
 pub(crate) struct Bench {
     pub(crate) clock: Arc<VirtualClock>,
     pub(crate) session: Session<Biss>,
@@ -155,7 +155,7 @@ impl Bench {
         Self::made(way, query, store, folder)
     }
 
-    /// Creates a bench that uses the given store.
+    /// Creates a bench whose session uses the given store.
     pub(crate) fn in_store(way: Transport, query: &str, store: Store) -> Self {
         Self::made(way, query, store, folder())
     }
@@ -210,7 +210,7 @@ impl Bench {
         Self::plugged(self.end.clone(), self.session.station().transport, self.clock.clone(), store, folder)
     }
 
-    /// Creates a bench with an adapter that can switch the encoder's supply, which is initially off.
+    /// Creates a bench with an adapter that can switch the encoder's supply. The supply is off at first.
     pub(crate) fn supplied(after: SupplyAfterSession) -> Self {
         Self::supplied_at("", after)
     }
@@ -238,8 +238,8 @@ impl Bench {
         has_power
     }
 
-    /// Reconnects like [`reconnected`](Self::reconnected), with the supply switched on again and the given setting for
-    /// its end.
+    /// Returns the same as [`reconnected`](Self::reconnected), with the supply switched on again and the given setting
+    /// for the end of the session.
     pub(crate) fn supplied_again(&self, after: SupplyAfterSession) -> Self {
         Self::with_supply(self.end.clone(), after, self.clock.clone(), self.folder.clone())
     }
@@ -257,7 +257,7 @@ impl Bench {
         Self::with_station(end, station, clock, store, folder)
     }
 
-    /// Reconnects like [`reconnected`](Self::reconnected), with the identity already known.
+    /// Returns the same as [`reconnected`](Self::reconnected), in a session that already knows the identity.
     pub(crate) fn reconnected_knowing(&self) -> Bench {
         let known = self.session.station();
         let mut station = Station::new(known.transport, MARGIN);
@@ -293,33 +293,33 @@ impl Bench {
         bench
     }
 
-    /// Calls a function with the encoder.
+    /// Calls a function with the encoder and the current time.
     pub(crate) fn encoder<T>(&self, look: impl FnOnce(&mut Encoder, Moment) -> T) -> T {
         self.handle().with(look)
     }
 
-    /// Returns a handle to the tap, to change it while a job runs.
+    /// Returns the tap of the link, so that its faults can be changed while a job runs.
     pub(crate) fn tap_handle(&self) -> Arc<Mutex<Tap>> {
         self.tap.clone()
     }
 
-    /// Returns a counter of the frames sent, for use while a job runs.
+    /// Returns a function that counts the sent frames, also while a job runs.
     pub(crate) fn counter(&self) -> impl Fn() -> usize + use<> {
         let tap = self.tap.clone();
         move || tap.lock().unwrap().sent.len()
     }
 
-    /// Returns a handle to the encoder, to inspect it while a job runs.
+    /// Returns access to the encoder while a job runs.
     pub(crate) fn handle(&self) -> Handle {
         Handle { end: self.end.clone(), clock: self.clock.clone() }
     }
 
-    /// Waits until the given time after the start.
+    /// Advances the clock to the given time since the start.
     pub(crate) fn clock_to(&self, elapsed: Duration) {
         self.clock.sleep_until(Moment::from_elapsed(elapsed));
     }
 
-    /// Runs a job. Also returns the reported operations of a plan.
+    /// Runs a job and returns the operations of its plan that were reported.
     pub(crate) fn run_watched(
         &mut self,
         job: BissJob,
@@ -357,7 +357,7 @@ impl Bench {
         self.session.motor().unwrap()
     }
 
-    /// Returns a register, read directly from the encoder.
+    /// Returns the value of a register, read directly in the encoder.
     pub(crate) fn encoder_reads(&self, address: RegisterAddress) -> Option<u8> {
         self.encoder(|encoder, now| encoder.read(now, address))
     }

@@ -1,4 +1,4 @@
-//! An encoder without a description in the program, at an adapter. It has no data sheet, and its frames have other
+//! An encoder at an adapter that the program has no description of: it has no data sheet, and its frames have other
 //! widths.
 
 use std::collections::BTreeMap;
@@ -128,7 +128,8 @@ fn at_rest_no_frame_is_found_and_the_survey_still_works() {
     assert!(matches!(error, Error::WrongWidths { data_bits: 35, crc_bits: 6, .. }), "{error}");
 }
 
-/// Issue 22.20: the user specifies turns and steps, even at standstill. 14 bits of steps are 16384 per turn.
+/// The user gives the numbers of turns and steps, also for a shaft at rest. 14 bits of steps are 16384 steps per turn
+/// (issue 22.20).
 #[test]
 fn a_given_frame_converts_positions_to_angles() {
     let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
@@ -138,7 +139,7 @@ fn a_given_frame_converts_positions_to_angles() {
     assert_eq!((identity.multiturn_bits(), identity.singleturn_bits()), (Some(0), Some(14)));
     let reading = rig.master().position().unwrap();
     assert_eq!((reading.steps, reading.angle_degrees()), (100, Some(100.0 * 360.0 / 16384.0)));
-    // A kit encoder itself reports its frame.
+    // A kit encoder reports its frame format itself.
     let mut kit = Bus::new("");
     kit.station.given = Layout::new(0, 14, true, true, None).ok();
     let identity = device::identify(&mut kit.master(), &Descriptions::built_in()).unwrap();

@@ -1,5 +1,5 @@
-//! BiSS: data, filter, preset, calibration and Wiegand test, over the configuration pin and over an adapter, with a
-//! user at the motor.
+//! BiSS: changes of data, filter and preset, calibration and Wiegand test, over the configuration pin and over an
+//! adapter, with a user who controls the motor.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -26,7 +26,7 @@ fn state(encoder: &Handle) -> State {
     })
 }
 
-/// A planned change of an encoder with its intermediate states.
+/// A planned change of an encoder with the states that it passes through.
 struct Case {
     name: String,
     change: fn() -> Change,
@@ -34,13 +34,13 @@ struct Case {
     prepared: Prepared,
     requests: usize,
     course: Vec<State>,
-    /// Whether the calibration table is lost if the change is interrupted.
+    /// Whether an interruption of the change loses the calibration table.
     loses_table: bool,
 }
 
 fn hands(bench: &Bench) -> TestOperator {
     let mut hands = TestOperator::on(bench);
-    // The shortest test has the fewest exchanges.
+    // With this speed range, the test takes the fewest exchanges.
     hands.rpm = (500.0, 2000.0);
     hands
 }
@@ -77,7 +77,7 @@ fn case(name: &str, way: Transport, change: fn() -> Change) -> Case {
     }
 }
 
-/// Returns whether each byte of a preset is from the old or the new preset.
+/// Returns whether each byte of a preset equals the byte of the old or of the new preset.
 fn consists_of(preset: PresetValue, old: PresetValue, new: PresetValue) -> bool {
     let bytes = |own: PresetValue| [own.singleturn().to_le_bytes(), own.multiturn().to_le_bytes()].concat();
     bytes(preset).iter().zip(bytes(old).iter().zip(bytes(new))).all(|(own, (old, new))| own == old || *own == new)
@@ -102,7 +102,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
             let told = interrupted.to_string();
             let mut course = case.course.clone();
             if case.loses_table {
-                // A calibration that is interrupted has no valid table.
+                // An interrupted calibration leaves no valid table.
                 course.extend(
                     case.course.iter().map(|(data, preset, filter, _)| (data.clone(), *preset, *filter, false)),
                 );

@@ -36,7 +36,7 @@ fn state(stand: &Stand) -> State {
     WRITTEN.iter().map(|own| stand.target.with_station(|station| station.read(now, number(*own))).unwrap()).collect()
 }
 
-/// Returns a session over a link that is initially intact, and the schedule of its faults.
+/// Returns a session over a link that has no faults yet, and the faults to be scheduled for it.
 fn session() -> (Stand, Arc<Mutex<Schedule>>) {
     let (target, clock) = device();
     let schedule = Arc::<Mutex<Schedule>>::default();
@@ -66,7 +66,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
     stand.clock.sleep_until(stand.clock.now() + Duration::from_secs(10));
     let left = state(&stand);
     let end = match ended {
-        // After a loss of power, only the saved values remain.
+        // After a loss of power, the device has only the values that were saved.
         Ok(_) => {
             assert!(left == case.after || loses_power, "{context}: {left:?}");
             End::Done

@@ -58,7 +58,7 @@ impl State {
     }
 }
 
-/// A planned change of an encoder with its intermediate states.
+/// A planned change of an encoder with the states that it passes through.
 struct Case {
     name: &'static str,
     bus: Bus,
@@ -103,7 +103,7 @@ impl Rig {
         Rig { bus, clock, schedule, folder, session }
     }
 
-    /// Returns a new session over an intact link.
+    /// Returns a new session over a link without faults.
     fn reconnected(&self, station: Station) -> Self {
         Self::plugged(self.bus.clone(), self.clock.clone(), self.folder.clone(), station, Schedule::default())
     }
@@ -171,7 +171,7 @@ fn changes(desk: &mut Desk) -> Vec<(&'static str, Change)> {
     ]
 }
 
-/// Plans a change and executes it without faults to determine its intermediate states.
+/// Plans a change, and executes it without faults to record its states.
 fn case(desk: &mut Desk, name: &'static str, change: Change) -> Case {
     let prepared = desk.prepare(change.clone()).unwrap();
     let (bus, station) = (desk.bus().clone(), desk.session.station().clone());
@@ -180,7 +180,7 @@ fn case(desk: &mut Desk, name: &'static str, change: Change) -> Case {
     rig.commit(prepared.clone()).unwrap_or_else(|error| panic!("{name}: {error}"));
     let requests = rig.schedule.lock().unwrap().sent;
     let after = rig.state();
-    // The connection is lost from each request on, to determine the states in between.
+    // Losing the link from each request on gives the states in between.
     for at in 0..requests {
         let faults = [(at, super::Fault::Lost)].into();
         let mut cut = Rig::new(bus.clone(), &desk.clock, station.clone(), Schedule::with(faults));

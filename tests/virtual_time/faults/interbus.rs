@@ -1,5 +1,5 @@
-//! INTERBUS over a gateway: parameters, cams and masks, start-up mode and preset. Modbus/TCP neither damages nor
-//! inserts bytes, so replies are lost or late, the link falls silent or ends, or the encoder loses its power.
+//! INTERBUS: parameters, cams and masks, start-up mode and preset, over a gateway. Modbus/TCP neither damages nor
+//! inserts bytes. Replies are therefore lost or late, the link falls silent or ends, and the encoder loses its power.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -41,7 +41,7 @@ impl Rig {
         Rig { gateway, clock, schedule, folder, session }
     }
 
-    /// Opens a new session over an intact link, as in another run of the program.
+    /// Opens a new session over a link without faults, like another run of the program.
     fn reconnect(&mut self) {
         self.schedule = Arc::default();
         self.session = session(&self.gateway, &self.clock, &self.schedule, &self.folder);
@@ -90,7 +90,7 @@ fn session(
     Session::for_gateway(Box::new(link), clock.clone(), station(""), store, Some(gateway.shaft_motor()))
 }
 
-/// A change with its intermediate states and the number of its requests.
+/// A change with the states that it passes through and the number of its requests.
 struct Case {
     name: &'static str,
     change: Change,
@@ -122,8 +122,8 @@ fn changes() -> Vec<(&'static str, Change)> {
     ]
 }
 
-/// Executes a change without faults to determine its intermediate states. At each request, the encoder may be cut off,
-/// or lose its power together with all values that have not been stored.
+/// Executes a change without faults to record its states. At each request, the connection to the encoder may be cut, or
+/// the encoder may lose its power and with it the values that are not stored.
 fn case(name: &'static str, change: Change) -> Case {
     let mut rig = Rig::new();
     let job = rig.commit_job(change.clone()).unwrap();
@@ -149,9 +149,9 @@ fn case(name: &'static str, change: Change) -> Case {
     Case { name, change, requests, course }
 }
 
-/// Asserts that the encoder has stored a state of the plan. If it lost its power, it may also have lost some of the
-/// values that were set but not stored, and stored the others. In this case, each value is either an old or a new one,
-/// and the error names a value that is not the wanted one.
+/// Asserts that the encoder stored a state of the plan. After a loss of power, it may have stored only some of the
+/// values that were set. Each value is then an old or a new one, and the error names a value that differs from the
+/// planned one.
 fn assert_partly_stored(stored: &Memory, case: &Case, interrupted: &InterruptedWrite, context: &str) {
     if case.course.iter().any(|(state, ..)| state == stored) {
         return;

@@ -1,4 +1,4 @@
-//! A link with faults at selected requests, between a session and a virtual line.
+//! A link between a session and a virtual line that has faults at chosen requests.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex};
@@ -27,11 +27,11 @@ pub(crate) enum Fault {
     CutReply(usize),
     /// These bytes arrive before the reply.
     Garbage(Vec<u8>),
-    /// The reply to the preceding request arrives again before the actual reply.
+    /// The reply to the preceding request arrives again before the reply to this one.
     StaleReply,
     /// The request itself arrives before the reply.
     Echo,
-    /// The reply is late by this time.
+    /// The reply arrives later by this time.
     LateReply(Duration),
     /// From this request on, nothing arrives in either direction.
     Silence,
@@ -45,7 +45,7 @@ pub(crate) enum Fault {
 #[derive(Default)]
 pub(crate) struct Schedule {
     pub(crate) faults: BTreeMap<usize, Fault>,
-    /// Number of requests passed to the link.
+    /// Number of requests sent over the link.
     pub(crate) sent: usize,
     /// Callback before each request is sent.
     on_request: Option<Box<dyn FnMut() + Send>>,

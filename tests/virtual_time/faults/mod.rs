@@ -1,6 +1,6 @@
-//! Fault campaign: random faults on the line at any request of any operation that writes, one or two per run. After
-//! each run, no value may be wrong, the device must be in a state of the plan, and a second run must complete the
-//! change.
+//! A fault campaign: in each run, one or two pseudo-random faults occur on the line at any request of any operation
+//! that writes. After the run, no value is wrong, the device has one of the states of the plan, and a second run
+//! completes the change.
 //!
 //! `ENCODER_STUDIO_FAULT_RUNS` sets the total number of runs of all kinds. `ENCODER_STUDIO_FAULT_SEED` repeats a single
 //! run of each kind.
@@ -24,14 +24,14 @@ pub(crate) use self::link::{Fault, FaultyLink, Schedule};
 /// Total number of runs of all kinds if no number is given.
 const RUNS: u64 = 4_000;
 
-/// The result of a run.
+/// The way in which a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The operation was executed despite the faults.
+    /// The operation was completed in spite of the faults.
     Done,
     /// The operation was interrupted, and a second run completed it.
     Interrupted,
-    /// Nothing had been written.
+    /// The operation ended before anything was written.
     NotStarted,
 }
 
@@ -80,8 +80,8 @@ impl Drop for Named<'_> {
     }
 }
 
-/// Returns one or two random faults among the given number of requests. `usual` is the usual reply time; a late reply
-/// takes about ten times as long. On a stream, bytes are neither damaged nor inserted.
+/// Returns one or two faults at random requests below `requests`. `usual` is the usual time of a reply, and a late
+/// reply takes about ten times as long. On a stream, bytes are neither damaged nor inserted.
 pub(crate) fn any_faults(rng: &mut Rng, requests: usize, usual: Duration, is_stream: bool) -> BTreeMap<usize, Fault> {
     let count = rng.usize(1..=2);
     (0..count).map(|_| (rng.usize(0..requests.max(1)), any_fault(rng, usual, is_stream))).collect()

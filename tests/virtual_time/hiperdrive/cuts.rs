@@ -1,5 +1,5 @@
-//! The connection is cut at every request. The report and the written values are checked, and everything must end in
-//! time.
+//! The connection is cut at every request: the report and the written values are checked, and every job ends within the
+//! time limit.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -13,7 +13,7 @@ use encoder_studio::link::CancelToken;
 use super::support::{Stand, drive, image};
 use crate::support::Tap;
 
-/// Maximum time until a command gives up on a device.
+/// Maximum time until a command gives up waiting for a device.
 const LIMIT: Duration = Duration::from_secs(10);
 
 /// A fault of the connection at a request.
@@ -56,7 +56,7 @@ fn a_single_loss_is_retried_and_nothing_is_set_twice() {
                     assert_eq!((done.written.verified, done.written.write_cycles), (3, 1), "{at}");
                     assert_eq!((stand.value(24), stand.value(166), stand.value(186)), (7, 200, 30), "{at}");
                 }
-                // A save is never sent twice, so whether it was executed is unknown.
+                // A save is never sent twice, so it is not known whether it was executed.
                 Err(JobError::Interrupted { interrupted, backup, .. }) => {
                     assert_eq!(interrupted.uncertain_write().as_deref(), Some("47"), "{at}: {interrupted}");
                     assert!(backup.exists() && interrupted.done.write_cycles == 1, "{at}");
@@ -105,7 +105,7 @@ fn an_interrupted_write_ends_in_time_and_reports_progress() {
     }
 }
 
-/// Executes a change once for each of its requests and cancels it at that request. Passes each result to `look`.
+/// Executes a change with a cancellation at each of its requests in turn, and passes each result to `look`.
 fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &str, &InterruptedWrite)) {
     for at in 0.. {
         let mut stand = Stand::new("");
@@ -120,7 +120,7 @@ fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &
                 assert_eq!((&interrupted.cause, interrupted.uncertain_write()), (&Error::Cancelled, None), "{at}");
                 look(&stand, &format!("request {at}"), &interrupted);
             }
-            // After the last operation, there is nothing to cancel.
+            // After the last operation, nothing is left to cancel.
             Ok(done) => {
                 assert_eq!(stand.value(47), 0, "{at}");
                 if stand.tap().sent.len() <= number {
@@ -144,8 +144,8 @@ fn cancelling_takes_effect_between_two_operations() {
     assert_eq!(seen.into_iter().collect::<Vec<_>>(), [1, 2, 3]);
 }
 
-/// 400 steps per turn instead of 65536 (reference 5), and limits of ten turns. With half of the change, positions would
-/// match neither scale. The maximum speed is written in between.
+/// The change sets 400 steps per turn instead of 65536 (reference 5), and limits of ten turns. If only the scale or
+/// only the limits were written, the limits would be at other positions. The maximum speed is written between them.
 #[test]
 fn cancelling_never_separates_a_scale_from_its_limits() {
     const PLACE: [(u16, i64); 4] = [(154, 400), (156, 256), (158, -4_000), (160, 4_000)];

@@ -53,9 +53,9 @@ fn a_hub_is_surveyed_with_its_connected_drives() {
         "152 of a hub is 0 from the factory"
     );
     let value = |own: u16| survey.values.get(&number(own));
-    // Parameters of the device and of drives 1 and 3, and none of an empty slot.
+    // The result has parameters of the device and of drives 1 and 3, but none of an empty slot.
     assert_eq!((value(166), value(366)), (Some(&Value::Number(350)), Some(&Value::Number(350))));
-    // An HDA70 turns 16000 times in each direction, with 65536 steps per turn.
+    // An HDA70 has a range of 16000 turns of 65536 steps in either direction.
     assert_eq!(value(360), Some(&Value::Number(1_048_576_000)));
     assert_eq!((value(258), value(199), value(299)), (None, None, None));
     assert_eq!(survey.network.address_switch(), AddressSwitch::parse(17));
@@ -99,7 +99,7 @@ fn status_reports_states_errors_and_temperatures_of_all_drives() {
     assert!(first.requested && second.faults == 1);
 }
 
-/// A recording is played back by the same jobs, even with different session and request numbers.
+/// The same jobs can be run on a recording, whatever numbers the sessions and requests have.
 #[test]
 fn a_recorded_trace_replays_the_devices_replies() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&serial=4711");
@@ -140,8 +140,7 @@ fn positions_of_the_watched_drive_are_read() {
     assert_eq!(position(&mut stand).drive, drive(2));
 }
 
-/// Parameters 11 and 119 (reference 4) are each read with one request. They do not exist for a drive that is not
-/// present.
+/// Parameters 11 and 119 (reference 4) are each read by one request. A drive that does not exist has no temperature.
 #[test]
 fn temperatures_are_watched_by_one_request_each() {
     let mut stand = Stand::new("hub=4&drives=1,1");
@@ -193,8 +192,8 @@ fn the_check_has_a_line_for_each_possible_fault() {
     assert!(of(CheckStep::Range(drive(1))).findings.contains(&CheckFinding::Within(65536)));
 }
 
-/// Reading the parameters one after another takes seconds if replies are slow. Each one is reported, and empty slots
-/// count as done.
+/// Reading the parameters one by one takes seconds if replies are slow, so progress is reported for each of them. Empty
+/// slots count as done.
 #[test]
 fn progress_is_reported_for_each_request() {
     let mut stand = Stand::new("hub=4&drives=1,0,1");

@@ -1,5 +1,4 @@
-//! Drives at an adapter or a hub over EtherNet/IP: sessions and requests, reading and writing, and every way in which
-//! they can end.
+//! Drives at an adapter or a hub over EtherNet/IP: sessions and requests, reading, writing, and how jobs end.
 
 mod cuts;
 mod jobs;

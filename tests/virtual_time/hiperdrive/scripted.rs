@@ -1,4 +1,4 @@
-//! A target scripted by the test: golden bytes of the reference (section 9), and all faults of a device's answer.
+//! A target scripted by the test: published bytes of the reference (section 9), and every fault of an answer.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
@@ -12,7 +12,7 @@ use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::support::{drive, number};
 
-/// The reaction of the target to a request.
+/// How the target reacts to a request.
 enum Act {
     /// A CIP reply in a frame with the context of the request.
     Reply(&'static str),
@@ -20,13 +20,13 @@ enum Act {
     Status(u32),
     /// A reply whose number differs from that of the request, like a reply to an earlier one.
     Stale(&'static str),
-    /// No answer.
+    /// No answer is sent.
     Silence,
-    /// These bytes are sent.
+    /// These bytes are sent unchanged.
     Bytes(&'static str),
 }
 
-/// A target that sends the answers of a list.
+/// A target whose reactions are given by a list.
 #[derive(Default)]
 struct Script {
     acts: VecDeque<Act>,
@@ -44,7 +44,7 @@ fn bytes(text: &str) -> Vec<u8> {
     text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
 }
 
-/// The reply of the reference to RegisterSession, with session 12345678.
+/// The reply to RegisterSession from the reference, with session 12345678.
 const REGISTERED: &str = "65 00 04 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 01 00 00 00";
 
 fn frame(context: &[u8], status: u32, cip: &[u8]) -> Vec<u8> {
@@ -92,7 +92,7 @@ impl ByteLink for Wire {
         if script.answers.is_empty() {
             self.clock.sleep_until(until);
         }
-        // In portions of any size.
+        // The bytes arrive in small portions.
         let count = script.answers.len().min(7);
         into.extend(script.answers.drain(..count));
         Ok(())
@@ -146,7 +146,7 @@ impl Desk {
     }
 }
 
-/// Returns a frame with its context set to 0.
+/// Returns a frame in which the context is set to 0.
 fn without_context(frame: &[u8]) -> Vec<u8> {
     let mut frame = frame.to_vec();
     frame[12..20].fill(0);
@@ -206,7 +206,7 @@ fn values_have_their_type_and_sign() {
         (119, "8E 00 00 00 F6", Value::Number(-10)),
         (11, "8E 00 00 00 1F 00", Value::Number(31)),
         (11, "8E 00 00 00 F6 FF", Value::Number(-10)),
-        // Issue 21.9: 186 has 16 bits (manual 6.2).
+        // Parameter 186 has 16 bits (manual 6.2, issue 21.9).
         (186, "8E 00 00 00 FF 00", Value::Number(255)),
         (188, "8E 00 00 00 FD", Value::Number(253)),
         (24, "8E 00 00 00 FF FF FF FF", Value::Number(4_294_967_295)),
@@ -219,13 +219,12 @@ fn values_have_their_type_and_sign() {
     }
 }
 
-/// Issue 21.9: if the length of a number differs from that of its type, it is rejected with both lengths, for every
-/// request.
+/// A number of another length than its type is rejected in every reply, and the message has both lengths (issue 21.9).
 #[test]
 fn a_number_of_another_length_is_refused_with_both_lengths() {
     const REPLIES: [&str; 5] =
         ["8E 00 00 00", "8E 00 00 00 01", "8E 00 00 00 01 00", "8E 00 00 00 01 00 00", "8E 00 00 00 01 00 00 00"];
-    // Number of bits according to the manual's table (6.2).
+    // The numbers of bits are those of the manual's table (6.2).
     for (own, length) in
         [(11, 2), (47, 2), (107, 4), (108, 2), (119, 1), (152, 1), (158, 4), (182, 2), (186, 2), (188, 1), (190, 4)]
     {
@@ -247,12 +246,11 @@ fn a_number_of_another_length_is_refused_with_both_lengths() {
         error.to_string(),
         "parameter 107 (actual position) has the wrong length (bytes received: 2, expected: 4)"
     );
-    // The limits of a drive must not be read from a partial number.
+    // The rules of a drive must not be read from a truncated number.
     let replies = ["8E 00 00 00 01", "8E 00 00 00 00 01", "8E 00 00 00 01 00", "8E 00 00 00 00 FF"].map(Act::Reply);
     let error = Desk::with(replies).ask(|master| read_rules(master, drive(1))).unwrap_err();
     assert_eq!(error.to_string(), "parameter 158 (lower limit) has the wrong length (bytes received: 2, expected: 4)");
-    // A partial number is not used as the reason for a rejection either: 120 with one byte does not prove that the slot
-    // is empty.
+    // Nor is it the reason of a rejection: parameter 120 with one byte does not prove that a slot is empty.
     let refused =
         Desk::with(["8E 00 0C 00", "8E 00 00 00 00", "8E 00 00 00 01"].map(Act::Reply)).read(258).unwrap_err();
     assert!(matches!(refused, Error::Refused { .. }), "{refused}");
@@ -265,7 +263,7 @@ fn a_refusal_is_reported_with_its_parameter_name() {
     let refusal = error.as_refusal().unwrap();
     assert_eq!(refusal.status, GeneralStatus::new(5));
     assert_eq!(error.to_string(), "reading parameter 13 (category): 0x05 path unknown");
-    // For a drive, its existence is read as well. 0 in parameter 120 means that it does not exist.
+    // For a drive, the program also reads whether it exists: parameter 120 is 0 if it does not.
     let mut desk = Desk::with([Act::Reply("8E 00 0C 00"), Act::Reply("8E 00 00 00 00 00")]);
     assert_eq!(desk.read(258), Err(Error::NoDrive { drive: drive(2) }));
     // Parameter 152 states whether the drive is requested.
@@ -288,7 +286,7 @@ fn unknown_and_write_only_parameters_are_not_read() {
 #[test]
 fn damaged_frames_are_retried_and_silence_times_out() {
     for broken in [
-        // A length that no frame has, a frame without its end, and an invalid message.
+        // A length that no frame can have, a truncated frame, and an invalid message.
         "6F 00 FF FF 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",
         "6F 00 18 00 78 56",
         "55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA",
@@ -304,7 +302,7 @@ fn damaged_frames_are_retried_and_silence_times_out() {
     assert!(error.is_lost() && desk.clock.now() < Moment::from_elapsed(Duration::from_secs(10)));
 }
 
-/// Repeated requests to a silent device do not delay other work.
+/// Repeated requests to a device that does not answer do not delay other work.
 #[test]
 fn reading_the_limits_of_a_drive_can_be_cancelled() {
     let mut desk = Desk::with([]);
@@ -312,7 +310,7 @@ fn reading_the_limits_of_a_drive_can_be_cancelled() {
     cancel.request();
     assert_eq!(desk.ask_until(cancel.clone(), |master| read_rules(master, drive(1))), Err(Error::Cancelled));
     assert_eq!(desk.clock.now(), Moment::START, "nothing was waited for");
-    // After a write, the current state is known.
+    // After a write, the state must become known, so this reading ignores the cancellation.
     let ended = desk.ask_until(cancel, |master| master.run_uncancellable(|master| read_rules(master, drive(1))));
     assert!(matches!(ended, Err(Error::NoReply { .. })), "{ended:?}");
 }
@@ -344,7 +342,7 @@ fn a_cyclic_connection_is_opened_as_in_the_reference() {
     let opened = desk.ask(|master| master.forward_open(Topology::Adapter, 0x1234)).unwrap();
     let (own, beside) = cip(&desk.sent()[1], OPEN);
     assert_eq!(own, flat(OPEN));
-    // The target address of packets to the host: item 8001 with its port, in network byte order.
+    // Item 8001 gives the target address of packets to the host, with the port in network byte order.
     assert_eq!(beside, bytes("01 80 10 00 00 02 12 34 00 00 00 00 00 00 00 00 00 00 00 00"));
     assert_eq!((opened.to_target_id, opened.to_originator_id), (0x0002_0001, 0x0001_0001));
     assert_eq!((opened.to_target_interval, opened.timeout), (Duration::from_millis(10), Duration::from_millis(80)));
@@ -380,7 +378,7 @@ fn a_refused_connection_is_requested_with_other_parameters() {
         assert_eq!(words(&desk), asked, "{label}");
         assert_eq!(opened.layout.pkw, asked.last().unwrap().0 == 0x4816, "{label}");
     }
-    // Five drives with eight bytes each, and parameter words: a hub for four, with 40 bytes.
+    // A hub for four drives with parameter words has five times eight bytes of data: 40 bytes.
     let mut desk = Desk::with([Act::Reply(OPENED)]);
     desk.ask(|master| master.forward_open(Topology::Hub4, 1)).unwrap();
     assert_eq!(words(&desk), [(0x482E, 0x482A)]);
@@ -400,7 +398,7 @@ fn another_master_is_reported_and_nothing_is_retried() {
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
     let remedy = error.as_refusal().unwrap().remedy();
     assert_eq!(remedy, Some("request a longer interval"));
-    // A lost reply may belong to a connection that is open, so it is not opened twice.
+    // If a reply is lost, its connection may be open, so it is not opened again.
     let mut desk = Desk::with([]);
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
     assert_eq!(error, Error::NoReply { requested: RequestedItem::Open, tries: 1, late: None });
@@ -410,7 +408,7 @@ fn another_master_is_reported_and_nothing_is_retried() {
 
 #[test]
 fn a_connection_with_a_slow_interval_is_closed() {
-    // 50 ms in each direction although 10 ms were requested: C350h.
+    // The device uses 50 ms (C350h) in each direction although 10 ms were requested.
     let slow = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 50 C3 00 00 10 27 00 00 00 00";
     let mut desk = Desk::with([Act::Reply(slow), Act::Reply("CE 00 00 00 01 00 34 12 CD AB 00 00 00 00")]);
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();

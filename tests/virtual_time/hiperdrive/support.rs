@@ -50,7 +50,7 @@ impl Stand {
         Stand::at(Target::new(&Config::from_pairs(&pairs).unwrap()), Arc::new(VirtualClock::default()))
     }
 
-    /// Creates another session with a device.
+    /// Creates another session with the same device.
     pub(crate) fn at(target: Target, clock: Arc<VirtualClock>) -> Self {
         let tap = Arc::<Mutex<Tap>>::default();
         let connection = target.connect_from(Ipv4Addr::UNSPECIFIED);
@@ -120,7 +120,7 @@ impl Stand {
     /// Makes the path of the logbook unusable.
     pub(crate) fn block_logbook(&self) {
         let path = Store::at_root(self.folder.path()).logbook_path();
-        // A connection may already be recorded.
+        // The logbook may already exist because the connection was recorded.
         let _ = std::fs::remove_file(&path);
         std::fs::create_dir_all(path).unwrap();
     }
@@ -134,7 +134,7 @@ impl Stand {
         }
     }
 
-    /// Returns the requests to objects in order.
+    /// Returns the requests to objects in the order in which they were sent.
     pub(crate) fn requests(&self) -> Vec<Request> {
         let tap = self.tap();
         let frames = tap.sent.iter().map(|bytes| Frame::parse(bytes).unwrap());

@@ -1,5 +1,4 @@
-//! Writing: exactly the planned values are written, each is read back, and all are saved once. Rejections are reported
-//! with their reasons.
+//! Writing: exactly the planned values are set, each is read back, and one save follows. Rejections name their reasons.
 
 use encoder_studio::devices::hiperdrive::jobs::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
@@ -28,7 +27,7 @@ fn differences_are_written_read_back_and_saved_once() {
     let done = stand.change(Change::Write(image(&[(24, 7), (166, 200), (188, 1)]))).unwrap();
     assert_eq!((done.written.ops, done.written.written, done.written.verified), (3, 2, 2));
     assert_eq!(done.written.write_cycles, 1);
-    // 188 is already 1.
+    // Parameter 188 is already 1.
     let sets = stand.sets();
     assert_eq!(sets, [(24, vec![7, 0, 0, 0]), (166, vec![200, 0]), (47, vec![1, 0])]);
     assert_eq!((stand.value(24), stand.value(166), stand.value(47)), (7, 200, 0), "it waits until it is saved");
@@ -47,8 +46,8 @@ fn differences_are_written_read_back_and_saved_once() {
     );
 }
 
-/// Issue 22.4: there is no known limit of saves, but they are counted. If they cannot be counted, only a forced write
-/// is executed.
+/// The number of saves has no known limit, but saves are counted. If they cannot be counted, a write is executed only
+/// if it is forced (issue 22.4).
 #[test]
 fn a_device_with_uncountable_saves_is_written_only_by_force() {
     let mut stand = Stand::new("serial=42");
@@ -66,7 +65,7 @@ fn trial_values_are_not_saved() {
     let mut stand = Stand::new("");
     let done = stand.change(Change::Try(image(&[(166, 100), (170, 640)]))).unwrap();
     assert_eq!((done.written.write_cycles, stand.value(166), stand.value(170)), (0, 100, 640));
-    // Issue 21.6 (d): a recall applies to the adapter's own parameters.
+    // A recall applies to the adapter's own parameters (issue 21.6 d).
     stand.change(Change::Do(Service::Recall)).unwrap();
     assert_eq!(stand.value(166), 100);
     let now = stand.clock.now();
@@ -76,7 +75,8 @@ fn trial_values_are_not_saved() {
 
 #[test]
 fn limits_are_written_in_the_order_the_drive_accepts() {
-    // From ±511 turns to a range far above, then back below. In the second case, the other limit is written first.
+    // The limits move from ±511 turns to a range far above, and then back below, where the other limit must be written
+    // first.
     let mut stand = Stand::new("position=655360");
     stand.change(Change::Write(image(&[(158, 600_000), (160, 700_000)]))).unwrap();
     assert_eq!((stand.value(158), stand.value(160)), (600_000, 700_000));
@@ -130,13 +130,13 @@ fn out_of_range_values_name_both_limits_of_host_and_device() {
     let mut stand = Stand::new("position=65536");
     let refused = stand.prepare(Change::Write(image(&[(166, 400)]))).unwrap_err();
     assert_eq!(refused.to_string(), "parameter 166 (maximum speed) cannot be 400 (allowed: 5 to 350)");
-    // The drive has turned in the meantime. The plan does not include its position, and the device rejects the request.
+    // The drive has turned since the plan was made, so the device rejects the request.
     let prepared = stand.prepare(Change::Write(image(&[(158, 60_000)]))).unwrap();
     let now = stand.clock.now();
     stand.target.with_station(|station| station.write(now, number(198), &Value::Number(640))).unwrap();
     let error = device_error(stand.commit(prepared));
     let Error::Refuses(out) = &error else { panic!("{error}") };
-    // 512 turns of 65536 steps.
+    // The limit is 512 turns of 65536 steps.
     assert_eq!(out.range, ParameterRange::Within(-33_554_432, 640), "no lower limit above the position");
     assert_eq!(error.to_string(), "parameter 158 (lower limit) cannot be 60000 (allowed: -33554432 to 640)");
 }
@@ -177,8 +177,9 @@ fn services_wait_for_completion() {
     assert_eq!((prepared.kind, prepared.plan.write_cycles()), (ChangeKind::Service(Service::FactoryAll), 1));
 }
 
-/// Issue 21.8: the manual allows 2 s for an adapter and 8 s for a hub to answer 47 = −4 (6.2). The program waits for
-/// that time, sends the request once, and does not use it to measure the speed of the network.
+/// The manual allows a device to take 2 s with an adapter and 8 s with a hub before it answers 47 = −4 (6.2). The
+/// program waits for that time, sends the request once, and does not use it to measure the speed of the network (issue
+/// 21.8).
 #[test]
 fn a_presence_test_may_take_the_time_of_the_manual() {
     for (query, ms) in [("reset=2000", 2000), ("hub=4&reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
@@ -193,11 +194,11 @@ fn a_presence_test_may_take_the_time_of_the_manual() {
     }
 }
 
-/// Issue 21.8: if a reply is slower than the manual allows, or a connection falls silent, the command ends in time
-/// (CLI.md: within 10 s). The request is sent once, and the report states that the result is unknown.
+/// If the reply takes longer than the manual allows, or the connection falls silent meanwhile, the job ends in time
+/// (CLI.md: within 10 s). The request is sent once, and the report says that its result is not known (issue 21.8).
 #[test]
 fn an_unanswered_presence_test_times_out() {
-    // The number of frames before it.
+    // The number of frames that are sent before the request.
     let mut whole = Stand::new("hub=8");
     whole.change(Change::Do(Service::Reset)).unwrap();
     let is_set = |frame: &Vec<u8>| frame.ends_with(&[0x10, 3, 0x20, 0x64, 0x24, 1, 0x30, 47, 0xFC, 0xFF]);

@@ -1,5 +1,5 @@
-//! Random sessions of a user with a drive, thousands of steps long, with all kinds of faults: the drive fails, ignores
-//! its limits, turns the wrong way or is turned by hand, another master writes limits, or lines are cut.
+//! Random sessions of a user with a drive, thousands of steps long, with all faults in between: the drive fails,
+//! ignores its limits, turns the wrong way or is turned by hand, another master writes limits, and connections are cut.
 //!
 //! A word that commands motion may be sent only after a fresh action of the user, in its direction and within the
 //! limits. A model that is independent of the dead-man control checks this ([`Model`]).
@@ -74,8 +74,8 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
     }
 }
 
-/// Issue 21.14: bench and model check each word. This test checks that after the last request for motion the drive
-/// stops within the time needed for escalation and braking, and remains stopped.
+/// The bench and the model check each word. This test checks that after the last request for motion the drive stops
+/// within the time for the escalating stop words and for braking, and remains stopped (issue 21.14).
 #[test]
 fn any_session_ends_at_a_standstill() {
     let mut moved = 0u64;

@@ -13,7 +13,7 @@ use encoder_studio::devices::hiperdrive::sim::{SpindleLoad, Station, StationConf
 use encoder_studio::units::Moment;
 
 pub(super) const INTERVAL: Duration = Duration::from_millis(10);
-/// Time-out of the connection: eight intervals.
+/// Watchdog time of the connection: eight intervals.
 const TIMEOUT: Duration = Duration::from_millis(80);
 
 /// A drive with its dead-man control. The intent is refreshed unless `absent` is set.
@@ -23,15 +23,15 @@ pub(super) struct Bench {
     pub(super) now: Moment,
     pub(super) intent: MotionIntent,
     pub(super) permit: Permit,
-    /// Whether the intent is no longer refreshed.
+    /// Whether the user's intent is no longer refreshed.
     pub(super) absent: bool,
-    /// Whether nothing reaches the drive.
+    /// Whether no words reach the drive.
     pub(super) cut_out: bool,
-    /// Whether no reports arrive.
+    /// Whether no reports of the drive arrive.
     pub(super) cut_back: bool,
     /// Delay of reports in cycles.
     pub(super) late: usize,
-    /// Reports of a drive that moves independently of its commands, as if a jog were running.
+    /// Reports that replace those of the drive, as if it moved without a command, as in a jog.
     pub(super) heard: Option<ActualValues>,
     reports: VecDeque<ActualValues>,
     words: Vec<u16>,
@@ -135,7 +135,8 @@ impl Bench {
         actual.speed != 0 || actual.status.state() == State::Moving
     }
 
-    /// Returns the words sent since the last call without repetitions, beginning with the one that was on the wire.
+    /// Returns the words sent since the previous call, each once, beginning with the word that was in effect at that
+    /// call.
     pub(super) fn take_words(&mut self) -> Vec<u16> {
         let last = self.words.last().copied();
         std::mem::replace(&mut self.words, last.into_iter().collect())
@@ -156,7 +157,7 @@ impl Bench {
         self.station.write(self.now, number, &Value::Number(value)).unwrap();
     }
 
-    /// Restarts the drives (47 = −4) while the connection stays open. Requests are rejected during the restart.
+    /// Restarts the drives with 47 = −4 while the connection remains open. Words are rejected during the restart.
     pub(super) fn reset(&mut self) {
         let _ = self.station.write(self.now, ParameterNumber::SAVE, &Value::Number(-4));
     }

@@ -1,5 +1,5 @@
-//! All ways in which a motion can end. The stop word is sent in the same call, and the stop escalates while the drive
-//! continues to move.
+//! Every event that ends a motion: the stop word is sent by the same call, and stronger stop words follow while the
+//! drive still moves.
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
     ActionEnd, MotionLock, MotionRequest, Phase, StopLevel, TargetState,
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use super::bench::Bench;
 use super::{TURN, jog, to};
 
-/// An event during a motion.
+/// An event that ends a motion.
 type Cause = fn(&mut Bench);
 
 const CAUSES: [(&str, Cause, ActionEnd); 7] = [
@@ -56,7 +56,7 @@ const CAUSES: [(&str, Cause, ActionEnd); 7] = [
 fn each_cause_stops_in_the_same_way() {
     for wish in [to(9 * TURN), jog(Direction::Clockwise), jog(Direction::Counterclockwise)] {
         for (label, cause, ended) in CAUSES {
-            // From the first word of the motion on.
+            // The event occurs at various times after the first word of the motion.
             for after in (10..150).step_by(10).chain([900]) {
                 let mut bench = Bench::new();
                 bench.act(wish);
@@ -92,7 +92,7 @@ fn a_stale_intent_stops_the_drive() {
         let stood = bench.position();
         bench.run(2000);
         assert_eq!(bench.position(), stood, "the same act begins again");
-        // Also an action that froze before it could begin.
+        // The same applies to an action whose refreshes stop before it could begin.
         bench.act(MotionRequest::Lead(TargetState::Off));
         bench.until_over();
         bench.act(wish);
@@ -107,7 +107,7 @@ fn a_stale_intent_stops_the_drive() {
     }
 }
 
-/// The drive continues to report motion, so the stop escalates every 200 ms.
+/// If the drive continues to report motion, the next stronger stop word follows after every 200 ms.
 #[test]
 fn a_drive_that_does_not_stop_escalates_the_stop() {
     for (wish, stop) in [(to(9 * TURN), "0469"), (jog(Direction::Clockwise), "1419")] {
@@ -180,7 +180,7 @@ fn a_new_connection_moves_nothing() {
     bench.run(3000);
     assert_eq!((bench.position(), super::words(&mut bench).ends_with("0000")), (stood, true));
     assert_eq!(bench.man.last_setpoint().target, stood);
-    // The master was lost, which is a fault that must be acknowledged.
+    // The loss of the master is a fault that must be acknowledged.
     bench.act(MotionRequest::Acknowledge);
     assert_eq!(bench.until_over(), ActionEnd::Done);
     bench.act(to(0));

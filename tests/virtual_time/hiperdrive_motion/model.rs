@@ -1,4 +1,5 @@
-//! An independent record of the user's requests. A word that commands motion must correspond to an action in it.
+//! A record of the user's requests, independent of the dead-man control: every word that commands motion must belong to
+//! an action in it.
 
 use std::time::Duration;
 
@@ -6,7 +7,7 @@ use encoder_studio::devices::hiperdrive::procedures::dead_man::{ActionEnd, Motio
 use encoder_studio::devices::hiperdrive::protocol::{ActualValues, Direction, RunEnd, Setpoint, StatusBit};
 use encoder_studio::units::Moment;
 
-/// Issue 21.14: the actions as the user made them, without the bookkeeping of the dead-man control.
+/// The actions as the user made them, without the records of the dead-man control (issue 21.14).
 pub(super) struct Model {
     live: Option<Live>,
     limits: (i32, i32),
@@ -17,13 +18,13 @@ struct Live {
     number: u64,
     wish: MotionRequest,
     said: Moment,
-    /// Target of a job, set by the first word that commanded it.
+    /// Target of a move, set when the first word commands it.
     target: Option<i32>,
     /// Whether the drive has been within its limits since the action.
     was_inside: bool,
 }
 
-/// The command in a word, according to the bits of the reference (3): bit 3 enables, and bit 12 selects speed mode.
+/// What a word commands, according to its bits in reference 3: bit 3 enables, bit 12 selects speed mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Commands {
     Nothing,
@@ -64,7 +65,7 @@ impl Model {
     pub(super) fn act(&mut self, number: u64, wish: MotionRequest, now: Moment) {
         let is_job = |live: &Live| matches!(live.wish, MotionRequest::Move { .. } | MotionRequest::Step { .. });
         match wish {
-            // These continue a job and begin nothing.
+            // These requests continue a move but do not begin one.
             MotionRequest::Pause | MotionRequest::Resume => {
                 self.live = self.live.take().filter(is_job).map(|live| Live { number, said: now, ..live });
             }
@@ -94,7 +95,7 @@ impl Model {
         self.limits = limits;
     }
 
-    /// Returns the distance outside the limits, positive beyond the upper limit and negative beyond the lower one.
+    /// Returns the distance beyond the limits: positive above the upper limit, negative below the lower one.
     fn outside(&self, position: i32) -> i64 {
         let (low, high) = self.limits;
         let (position, low, high) = (i64::from(position), i64::from(low), i64::from(high));
@@ -150,7 +151,7 @@ impl Model {
     }
 }
 
-/// Returns whether a job is within a degree of its target, which lies within the limits.
+/// Returns whether a move is within a degree of its target and the target lies within the limits.
 fn is_arriving(commands: Commands, live: &Live, heard: ActualValues) -> bool {
     let near = |target: i32| (i64::from(heard.position) - i64::from(target)).abs() <= DEGREE;
     commands == Commands::Job && live.target.is_some_and(near)

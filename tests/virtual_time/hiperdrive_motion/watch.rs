@@ -26,7 +26,7 @@ fn run(direction: Direction, end: RunEnd) -> MotionRequest {
     MotionRequest::Run { direction, end, effort: FULL }
 }
 
-/// Returns a drive with a defect and limits of ±1 turn.
+/// Returns a drive with the given defect, whose limits are ±1 turn.
 fn bench(defect: Option<DriveDefect>) -> Bench {
     let mut bench = Bench::new();
     bench.write(158, LIMITS.0.into());
@@ -36,14 +36,14 @@ fn bench(defect: Option<DriveDefect>) -> Bench {
     bench
 }
 
-/// Returns a drive at rest that is outside its limits by a number of steps: above the upper limit, or below the lower
-/// one if the number is negative.
+/// Returns a drive at rest outside its limits. `beyond` is the number of steps above the upper limit if it is positive,
+/// or below the lower one if it is negative.
 fn bench_outside(beyond: i32, defect: Option<DriveDefect>) -> Bench {
     let mut bench = bench(None);
     bench.act(to(if beyond > 0 { TURN } else { -TURN }));
     assert_eq!(bench.until_over(), ActionEnd::Arrived);
     bench.run(100);
-    // The limits change, as if another master had written them.
+    // The values of the limits change, as they do when another master writes them.
     let (low, high) = if beyond > 0 { (-TURN, TURN - beyond) } else { (-TURN - beyond, TURN) };
     bench.permit = Permit::for_range(low, high);
     bench.load(SpindleLoad { defect, ..SpindleLoad::default() });
@@ -68,8 +68,8 @@ fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
     panic!("it is never stopped: {:?}", bench.man.phase());
 }
 
-/// Issue 21.4: the packet after a report that shows a position beyond a limit does not command motion, even though the
-/// drive continues to move.
+/// The packet after the report that shows a position beyond a limit commands no motion, even though the drive continues
+/// (issue 21.4).
 #[test]
 fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
     for effort in [SpeedTorque::DEFAULT_JOG, FULL] {
@@ -93,7 +93,7 @@ fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
     }
 }
 
-/// Issue 21.4: status bit 15 also ends a run, even if the position is within the limits that were read.
+/// Status bit 15 also ends a run, even if the position is within the limits that the program read (issue 21.4).
 #[test]
 fn bit_15_ends_a_run() {
     let mut bench = bench(Some(DriveDefect::RunsOn));
@@ -103,7 +103,7 @@ fn bit_15_ends_a_run() {
     assert_eq!((intervals, bench.man.last_end().unwrap().1), (0, ActionEnd::Beyond { position }));
 }
 
-/// Issue 21.4, case *endless run*: a run that ignores the limits is not checked against them.
+/// A run that ignores the limits is not checked against them (issue 21.4, case *endless run*).
 #[test]
 fn an_endless_run_is_not_monitored() {
     let mut bench = bench(None);
@@ -113,7 +113,7 @@ fn an_endless_run_is_not_monitored() {
     assert!(bench.position() > 2 * TURN && matches!(bench.man.phase(), Phase::Moving(_)), "{:?}", bench.man.last_end());
 }
 
-/// Issue 21.4, case *unread limits*: a motion is stopped with the next packet.
+/// If the limits become unknown, a motion is stopped with the next packet (issue 21.4, case *unread limits*).
 #[test]
 fn a_run_ends_when_its_limits_become_unknown() {
     let mut bench = bench(None);
@@ -124,8 +124,8 @@ fn a_run_ends_when_its_limits_become_unknown() {
     assert!(matches!(bench.man.last_end(), Some((_, ActionEnd::Locked(_)))), "{:?}", bench.man.last_end());
 }
 
-/// Issue 21.4, case *already outside*: motion inward is allowed, and motion further outward is rejected before anything
-/// is sent.
+/// From outside the limits, only inward motion is allowed. A request to move further outward is rejected before
+/// anything is sent (issue 21.4, case *already outside*).
 #[test]
 fn from_outside_only_inward_motion_is_allowed() {
     for (beyond, inward, outward) in [
@@ -153,15 +153,15 @@ fn from_outside_only_inward_motion_is_allowed() {
             let (low, high) = bench.permit.limits.unwrap();
             assert!((low..=high).contains(&bench.position()), "{wish:?}: it is back in");
         }
-        // A move to a target within the limits also leads inward.
+        // A move to a target within the limits is also inward motion.
         let mut bench = bench_outside(beyond, None);
         bench.act(to(0));
         assert_eq!(bench.until_over(), ActionEnd::Arrived);
     }
 }
 
-/// Issue 21.4: if a drive reports with status bit 15 that it is outside although its position is well inside, the
-/// inward direction is unknown. Nothing moves unless it was permitted for one press.
+/// If status bit 15 reports that a drive is outside its limits although its position is well inside, the inward
+/// direction is not known. Nothing moves except what the user permitted for one press of the button (issue 21.4).
 #[test]
 fn outside_by_bit_15_alone_only_permitted_motion_starts() {
     let ways = [Direction::Clockwise, Direction::Counterclockwise];
@@ -183,7 +183,7 @@ fn outside_by_bit_15_alone_only_permitted_motion_starts() {
         bench.run(1500);
         assert!(bench.position().abs() > 1000 && matches!(bench.man.phase(), Phase::Moving(_)), "{way:?}");
         assert_eq!((bench.man.last_setpoint().speed.get(), bench.man.last_setpoint().torque.get()), (10, 25));
-        // If its position is beyond the limits, it is stopped like any other drive.
+        // A drive whose position is beyond the limits is stopped like any other.
         bench.permit = Permit::for_range(-bench.position().abs(), bench.position().abs());
         bench.run(30);
         assert!(matches!(bench.man.last_end(), Some((_, ActionEnd::Beyond { .. }))), "{:?}", bench.man.last_end());
@@ -200,12 +200,12 @@ fn outside_by_bit_15_alone_only_permitted_motion_starts() {
     }
 }
 
-/// Issue 21.4: motion outward that is permitted for one press is slow and weak, whatever is requested, and applies only
-/// to that press.
+/// If the user permits outward motion for one press of the button, the motion is slow and weak, whatever is requested,
+/// and it ends with that press (issue 21.4).
 #[test]
 fn outward_motion_can_be_permitted_for_one_press() {
     let mut bench = bench_outside(5000, None);
-    // The drive's own limit leaves room.
+    // The drive's own limit is further outside than the permitted one.
     bench.write(160, (2 * TURN).into());
     let stood = bench.position();
     bench.act(jog(Direction::Clockwise, FULL, true));
@@ -216,14 +216,14 @@ fn outward_motion_can_be_permitted_for_one_press() {
     bench.run(500);
     bench.act(jog(Direction::Clockwise, FULL, false));
     assert!(matches!(bench.until_over(), ActionEnd::Refused(MotionRefusal::Outward { .. })));
-    // An unnecessary permission has no effect, because inside the limits these apply.
+    // The permission is not needed here: from inside, the limits apply.
     let mut bench = super::watch::bench(Some(DriveDefect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, true));
     assert_eq!(intervals_past(&mut bench, TURN).0, 0);
 }
 
-/// Issue 21.4: a drive that counts in the opposite direction moves outward instead of inward. It is stopped within one
-/// degree.
+/// A drive that counts in the opposite direction moves outward instead of inward, and is stopped within a degree (issue
+/// 21.4).
 #[test]
 fn inward_motion_that_leads_outward_is_stopped() {
     let mut bench = bench_outside(5000, Some(DriveDefect::Reversed));
@@ -232,14 +232,15 @@ fn inward_motion_that_leads_outward_is_stopped() {
     bench.act(jog(Direction::Counterclockwise, SpeedTorque::DEFAULT_JOG, false));
     let ActionEnd::WrongWay { position } = bench.until_over() else { panic!("{:?}", bench.man.last_end()) };
     assert!(position > stood + DEGREE && position <= stood + DEGREE + INTERVAL_AT_FULL_SPEED / 10 + 1, "{position}");
-    // With permission, the other direction leads inward.
+    // With permission, the other direction moves the drive inward.
     bench.run(500);
     bench.act(jog(Direction::Clockwise, SpeedTorque::DEFAULT_JOG, true));
     bench.run(1500);
     assert!(bench.position() < stood);
 }
 
-/// Issue 21.4, case *overrun while braking*: the stop continues and keeps its reason.
+/// If the drive passes a limit while it brakes, the stop continues and keeps its reason (issue 21.4, case *overrun
+/// while braking*).
 #[test]
 fn an_overrun_while_braking_keeps_the_stop_reason() {
     let mut bench = bench(Some(DriveDefect::RunsOn));
@@ -256,7 +257,7 @@ fn an_overrun_while_braking_keeps_the_stop_reason() {
     assert!(!bench.moves());
 }
 
-/// Issue 21.5: a move in the wrong direction is stopped when a report shows more than one degree.
+/// A move in the wrong direction is stopped with the report that shows more than a degree of it (issue 21.5).
 #[test]
 fn a_move_in_the_wrong_direction_is_stopped_immediately() {
     for target in [TURN / 2, -TURN / 2] {
@@ -269,7 +270,7 @@ fn a_move_in_the_wrong_direction_is_stopped_immediately() {
     }
 }
 
-/// Issue 21.5: a jog in the wrong direction is stopped when a report shows more than one degree.
+/// A jog in the wrong direction is stopped with the report that shows more than a degree of it (issue 21.5).
 #[test]
 fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
     for (direction, sign) in [(Direction::Clockwise, 1), (Direction::Counterclockwise, -1)] {
@@ -282,14 +283,14 @@ fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
     }
 }
 
-/// Issue 21.5: a move that does not stop at its target is stopped there. If the target is a limit, it is stopped beyond
-/// that limit.
+/// A move that does not stop at its target is stopped there. If the target is a limit, it is stopped beyond that limit
+/// (issue 21.5).
 #[test]
 fn a_move_that_passes_its_target_is_stopped() {
     for target in [TURN / 2, TURN, -TURN] {
         let mut bench = bench(Some(DriveDefect::RunsOn));
         bench.act(to(target));
-        // The accuracy is 2.5°, so three whole degrees are allowed at a target, but only one beyond a limit.
+        // The drive's accuracy is 2.5°, so it may pass its target by three whole degrees, but a limit only by one.
         let degrees = if target.abs() == TURN { 1 } else { 3 };
         let (intervals, position) = intervals_past(&mut bench, target + target.signum() * degrees * DEGREE);
         assert_eq!(intervals, 0, "{target}: stopped at {position}");

@@ -1,5 +1,5 @@
-//! The connection is cut at every request. The report and the state of the encoder are checked, and everything must end
-//! in time.
+//! The connection is cut at every request: the report and the state of the encoder are checked, and every job ends
+//! within the time limit.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use super::support::{Stand, program};
 use crate::support::Tap;
 
 const QUERY: &str = "steps=3600&revolutions=1&serial=5&cams=demo&program=2";
-/// Maximum time until a command gives up on a gateway.
+/// Maximum time until a command gives up waiting for a gateway.
 const LIMIT: Duration = Duration::from_secs(12);
 
 /// A fault of the connection at a request.
@@ -127,7 +127,7 @@ fn an_interrupted_write_ends_in_time_and_reports_the_possible_state() {
                                 "{at}: {interrupted}"
                             );
                         }
-                        // The last word that it received was normal running.
+                        // The last word that the encoder received was that of normal operation.
                         EndState::AsFound => assert_eq!((out, mode), (0, StartupMode::Cams(program(2))), "{at}"),
                     }
                 }
@@ -163,8 +163,8 @@ fn a_faulty_gateway_is_tolerated() {
     assert!(matches!(stand.run(InterbusJob::Survey), Ok(InterbusOutput::Surveyed(_))));
 }
 
-/// Issue 22.6: reading is cut off while a cam program is selected, and nothing more can be sent. The next run returns
-/// the encoder to its earlier mode, not to the program in which it was left.
+/// Reading is cut off while a cam program is selected, and nothing more can be sent. The next run returns the encoder
+/// to its earlier mode, not to the program in which it was left (issue 22.6).
 #[test]
 fn the_next_run_restores_the_mode_after_an_interrupted_cam_read() {
     let save = || InterbusJob::Save { programs: true };
@@ -183,7 +183,7 @@ fn the_next_run_restores_the_mode_after_an_interrupted_cam_read() {
             away += usize::from(stand.left().1 != found);
             stand.run_again();
             match stand.run(InterbusJob::Identify) {
-                // If the encoder was left in the echo of a selection, the user has to confirm that no other master uses
+                // The encoder still shows the echo of a selection, so the user has to confirm that no other master uses
                 // it.
                 Err(JobError::Device(Error::NotRunning { .. })) => {
                     stand.run(InterbusJob::RestoreMode).unwrap();
@@ -191,7 +191,7 @@ fn the_next_run_restores_the_mode_after_an_interrupted_cam_read() {
                 ended => assert!(ended.is_ok(), "{at}: {ended:?}"),
             }
             assert_eq!(stand.left(), (0, found), "{at}");
-            // This happens only once, because a program selected later is the choice of another master.
+            // The mode is restored only once: a program selected later is the choice of another master.
             let chosen = StartupMode::Cams(program(4));
             stand.run(InterbusJob::Select(chosen)).unwrap();
             stand.run_again();
@@ -202,7 +202,7 @@ fn the_next_run_restores_the_mode_after_an_interrupted_cam_read() {
     }
 }
 
-/// Issue 22.6: a mode that was not set by a run of the program is the choice of another master.
+/// A mode that no run of the program has set is the choice of another master, and is kept (issue 22.6).
 #[test]
 fn a_mode_chosen_by_another_master_is_kept() {
     let query = "steps=3600&revolutions=1&serial=77&cams=demo";

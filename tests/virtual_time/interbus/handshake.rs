@@ -22,7 +22,7 @@ const RUN: u32 = 0x8000_0000;
 fn reading_back(script: Script) -> Script {
     let value = |number: u32, value: u32| (0x2021_0000 + number, [0xA000_0000 | value]);
     [value(1, 255), value(2, 1), value(3, 3), value(4, 0)].iter().fold(script, |script, (out, words)| {
-        // Once for the read-back and once for the gear.
+        // The values are read once to check them and once for the gear.
         script.on(*out, words).on(*out, words)
     })
 }
@@ -32,7 +32,7 @@ fn worked_example() -> Vec<Op> {
     parameters(&[(Steps, 255), (Turns, 1), (Direction, 3), (Preset, 0)])
 }
 
-/// Reference 4, "Worked example": old echoes come first, and each word waits for its own echo.
+/// In the worked example of reference 4, old echoes arrive first, and each word waits for its own echo.
 #[test]
 fn the_worked_example_is_sent_word_by_word() {
     let script = Script::new()
@@ -48,7 +48,8 @@ fn the_worked_example_is_sent_word_by_word() {
     assert_eq!(sent.last(), Some(&0));
 }
 
-/// Echoes of the same code with other data, busy words, and an echo that disappears in the next cycle do not count.
+/// The first answers are echoes of the same code with other data, busy words, and an echo that disappears in the next
+/// cycle.
 #[test]
 fn only_a_stable_exact_echo_counts() {
     let cases: [(&str, &[u32]); 6] = [
@@ -70,7 +71,8 @@ fn only_a_stable_exact_echo_counts() {
     }
 }
 
-/// Reference 2: each error word at each word of the worked example, followed by `80000000` and `00000000`.
+/// Each error word of reference 2 occurs at each word of the worked example. The program then sends `80000000` and
+/// `00000000`.
 #[test]
 fn an_error_at_any_step_is_reported_and_the_mode_restored() {
     let words = [0x0200_00FF, 0x0400_0001, 0x0600_0003, 0x0800_0000, RUN];
@@ -89,7 +91,7 @@ fn an_error_at_any_step_is_reported_and_the_mode_restored() {
             assert_eq!(interrupted.end_state, EndState::AsFound, "{interrupted}");
             assert_eq!((interrupted.done.ops, interrupted.done.write_cycles), (0, 1), "a store may have been spent");
             assert_eq!(interrupted.unfinished.unwrap().affected_items().len(), 4);
-            // The words up to this one, followed by the return.
+            // The words up to the rejected one were sent, followed by the return to the mode.
             assert_eq!(sent[..=at], words[..=at], "{sent:08X?}");
             assert!(sent[1 + at..].contains(&0) && sent.contains(&RUN), "{sent:08X?}");
             assert_eq!(sent.last(), Some(&0));
@@ -103,24 +105,24 @@ fn an_edge_beyond_the_range_is_refused_by_the_encoder() {
     let (ended, _, sent) = carry_out(script, cams(7, 0x15, 0x20, 0x80));
     let interrupted = ended.unwrap_err();
     assert!(interrupted.cause.to_string().contains("start or stop of a cam beyond the measuring range"));
-    // It also returns to position mode.
+    // The encoder is also returned to position mode.
     assert!(sent.ends_with(&[0x2080_0000, RUN, 0, 0x2021_0009, 0]), "{sent:08X?}");
 }
 
-/// Reference 5: the start of cam 0 at 0 has the busy word as its echo, so the echo must be stable for longer.
+/// If the start of cam 0 is 0, its echo equals the busy word, so it must be stable for longer (reference 5).
 #[test]
 fn an_echo_equal_to_the_busy_word_must_last_longer() {
     let (ended, steps, sent) = carry_out(Script::new(), cams(0, 0, 0, 1));
-    // The script reads back 0 for everything, so the mask was not accepted.
+    // The script returns 0 for every read-out, so the mask counts as not accepted.
     let interrupted = ended.unwrap_err();
     assert!(matches!(&interrupted.cause, Error::NotTaken { item, wanted: 1, reads: 0 } if item == "cam-mask:1"));
     let cam = [0x4000_0000, 0x2020_0010, 0, 0x6000_0000, 0x2020_0020, 0, 0x2040_0001];
     assert!(sent.windows(7).any(|own| own == cam), "{sent:08X?}");
     let start = steps.iter().position(|step| step.out == 0x4000_0000).unwrap();
     let stop = steps.iter().position(|step| step.out == 0x6000_0000).unwrap();
-    // Half of the patience.
+    // The time is half the time limit.
     assert!(steps[stop].at.duration_since(steps[start].at).as_millis() >= 1000);
-    // The encoder was actually busy for 600 ms and then rejects the word.
+    // Here the encoder is really busy for 600 ms, and then rejects the word.
     let busy: Vec<u32> = std::iter::repeat_n(0xC000_0000, 120).chain([0x9800_0004]).collect();
     let interrupted = carry_out(Script::new().on(0x4000_0000, &busy), cams(0, 0, 0, 1)).0.unwrap_err();
     assert!(matches!(interrupted.cause, Error::Refused { sent, .. } if sent.emit() == 0x4000_0000), "{interrupted}");
@@ -139,24 +141,27 @@ fn a_word_is_stable_by_time_and_not_by_read_count() {
     }
 }
 
-/// Issue 22.2: manual 5.3, "Encoder sends old confirmation": such an echo may belong to an earlier word, have other
-/// data than sent, have the manufacturer's bit set, and be late. It does not prove that there is another master.
+/// An old confirmation may belong to an earlier word, have other data than those sent, have the manufacturer's bit, and
+/// arrive late (manual 5.3, "Encoder sends old confirmation"). It does not prove that there is another master (issue
+/// 22.2).
 #[test]
 fn a_stale_echo_is_skipped() {
-    // 0.4 to 0.8 s at 5 ms per read. C2000100 from the example was never sent.
+    // The old confirmation lasts 0.4 to 0.8 s at 5 ms per reading. The program never sent C2000100, the word of the
+    // manual's example.
     for (stale, looks) in [(0xC200_0100, 80), (0xC200_0100, 160), (0xE200_00FF, 160), (0xC600_0004, 120)] {
         let old: Vec<u32> = std::iter::repeat_n(stale, looks).chain([0xC800_0000]).collect();
         let script = reading_back(Script::new().on(STEPS, &[0xC000_0000, 0xC200_00FF]).on(0x0800_0000, &old));
         let (ended, ..) = carry_out(script, parameters(&[(Parameter::Steps, 255), (Parameter::Preset, 0)]));
         assert_eq!(ended.unwrap().verified, 2, "{stale:08X}");
-        // While a value is being requested.
+        // The old confirmation arrives while a value is requested.
         let old: Vec<u32> = std::iter::repeat_n(stale, looks).chain([0xA000_0003]).collect();
         let identity = identify(&mut Master::for_job(Script::new().on(0x2021_0000, &old), &mut station("")));
         assert_eq!(identity.unwrap().serial_number, "3", "{stale:08X}");
     }
 }
 
-/// Issue 22.2: an echo that remains is named after the time-out, without claiming that there is another master.
+/// After the time-out, the message names an echo that does not disappear, without claiming that another master sent it
+/// (issue 22.2).
 #[test]
 fn a_persistent_echo_is_named_after_the_timeout() {
     let (ended, ..) = carry_out(Script::new().on(STEPS, &[0xC600_0004]), worked_example());
@@ -166,8 +171,8 @@ fn a_persistent_echo_is_named_after_the_timeout() {
     assert_eq!(cause.to_string(), expected);
 }
 
-/// Issue 22.1, reference 6.11a: the processing word may contain the sent data (manual 10.4, X). An encoder that is busy
-/// for `busy` milliseconds and then rejects the word has not accepted it.
+/// The processing word may contain the sent data (manual 10.4, X; reference 6.11a). An encoder that is busy for `busy`
+/// milliseconds and then rejects the word had not accepted it (issue 22.1).
 #[test]
 fn a_processing_word_with_the_data_sent_is_no_echo_of_cam_0() {
     for (word, echo) in
@@ -189,7 +194,7 @@ fn a_processing_word_with_the_data_sent_is_no_echo_of_cam_0() {
     }
 }
 
-/// Returns a script with cam 0 of program 1 from 15h to 20h, as it reads before the program is left and again after
+/// Adds the answers for cam 0 of program 1, from 15h to 20h, when it is read before the program is left and again after
 /// `80000000`.
 fn reading_cams(script: Script) -> Script {
     [(0x2020_0010, 0xA000_0015), (0x2020_0020, 0xA000_0020)]
@@ -197,8 +202,8 @@ fn reading_cams(script: Script) -> Script {
         .fold(script, |script, (out, value)| script.on(*out, &[*value]).on(*out, &[*value]))
 }
 
-/// Issue 22.1: a word that was acknowledged but not accepted is sent again before `80000000` stores it, and its echo is
-/// watched for longer each time. If it is never accepted, no operation is reported as done.
+/// A word that was acknowledged but not accepted is sent again before `80000000` stores the program, and observed for
+/// longer each time. If it is never accepted, no operation is reported as done (issue 22.1).
 #[test]
 fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
     let script = reading_cams(
@@ -213,22 +218,22 @@ fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
     let start = [0x4000_0015, 0x2020_0010];
     let expected = [&start[..], &start, &start, &[0x6000_0020, 0x2020_0020, 0x2040_0001]].concat();
     assert_eq!(own, expected, "{sent:08X?}");
-    // Steps are reported when they change, from the word itself to the question after it.
+    // A step is reported when it changes. The times are those from the word itself to the question after it.
     let watched: Vec<u128> = steps
         .windows(2)
         .filter(|pair| pair[0].out == 0x4000_0015)
         .map(|pair| pair[1].at.duration_since(pair[0].at).as_millis())
         .collect();
     assert!(watched.len() == 3 && watched[0] >= 100 && watched[1] >= 200 && watched[2] >= 400, "{watched:?}");
-    // The encoder never accepts it.
+    // In this case, the encoder never accepts the word.
     let never = (0..9).fold(Script::new(), |script, _| script.on(0x2020_0010, &[0xA000_0007]));
     let interrupted = carry_out(never, cams(0, 0x15, 0x20, 1)).0.unwrap_err();
     assert_eq!(interrupted.cause.to_string(), "cam:1:0 start: 21 was written, but 7 was read back");
     assert_eq!((interrupted.done.ops, interrupted.done.write_cycles), (0, 1), "leading back may store what was set");
 }
 
-/// Modbus application protocol 1.1b3, chapter 7: with exceptions 01 to 03, nothing was written. With any other, the
-/// gateway may have passed the word on.
+/// With exception codes 01 to 03, nothing was written. With any other code, the gateway may have passed the word on
+/// (Modbus application protocol 1.1b3, chapter 7).
 #[test]
 fn the_mode_is_restored_after_a_word_that_may_have_been_written() {
     for (code, wrote) in [(0x02, false), (0x04, true), (0x06, true), (0x0B, true), (0x0B, false)] {
@@ -241,7 +246,7 @@ fn the_mode_is_restored_after_a_word_that_may_have_been_written() {
         assert_eq!(sent.contains(&STEPS), wrote, "{sent:08X?}");
         assert!(sent.ends_with(&[RUN, 0]), "{code:02X}: {sent:08X?}");
     }
-    // The very first word, after which the encoder may show a value.
+    // If the first word is rejected, the encoder may already show a value.
     let script = Script { refuses: Some((0x2021_0009, 0x0B, true)), ..Script::new() };
     let (sent, mut station) = (script.sent.clone(), station(""));
     assert!(matches!(identify(&mut Master::for_job(script, &mut station)), Err(Error::Exception { .. })));
@@ -266,7 +271,7 @@ fn a_preset_is_triggered_until_the_position_matches() {
     assert!(ended.is_ok() && sent.ends_with(&[0x4000_0000, 0]), "{sent:08X?}");
     let at = |out| steps.iter().filter(|step| step.out == out).map(|step| step.at).next_back().unwrap();
     assert!(at(0).duration_since(at(0x4000_0000)).as_millis() >= 95);
-    // An encoder that does not accept it stays two steps away, so the word is reported.
+    // An encoder that does not accept the preset stays two steps away. The report names the word.
     let interrupted = carry_out(Script::new().on(0x4000_0000, &[POSITION]), fire()).0.unwrap_err();
     let missing =
         Error::TimeOut { awaited: ExpectedWord::Preset, sent: 0x4000_0000, input: POSITION, milliseconds: 2000 };
@@ -279,7 +284,7 @@ fn cam_words_are_sent_only_in_a_confirmed_mode() {
     let (_, _, sent) = carry_out(Script::new(), cams(3, 15, 213, 8));
     let first = sent.iter().position(|word| *word == 0x4600_000F).unwrap();
     assert_eq!(sent[first - 5..first], [0x2080_0001, RUN, 0, 0x2021_0009, 0], "{sent:08X?}");
-    // An encoder that stays in position mode receives none of these words.
+    // If the encoder stays in position mode, none of these words is sent.
     let stays = Script::new().on(0x2021_0009, &[0xA000_0001]);
     let stays = (0..9).fold(stays, |script, _| script.on(0x2021_0009, &[0xA000_0001]));
     let (ended, _, sent) = carry_out(stays, cams(3, 15, 213, 8));
@@ -307,7 +312,7 @@ fn a_missing_echo_position_or_value_is_reported_with_its_words() {
         let interrupted = ended.unwrap_err();
         let expected = Error::TimeOut { awaited, sent: word, input: 0xC000_0000, milliseconds: 2000 };
         match &interrupted.cause {
-            // `80000000` does not return it either, because that word is already on OUT.
+            // `80000000` does not return the encoder to its mode either, because the word is already on OUT.
             Error::ModeNotRestored { cause, standing } => {
                 assert_eq!((**cause == expected, standing.out, standing.parameterising), (true, RUN, true));
             }
@@ -355,8 +360,7 @@ fn an_encoder_that_would_leave_its_mode_is_kept_in_it() {
     assert_eq!(sent.lock().unwrap().last(), Some(&RUN));
 }
 
-/// The value requested by a question about a cam may remain after `00000000`, because bit 16 is clear in the question
-/// as well.
+/// The value requested for a cam may remain after `00000000`. Bit 16 is also clear in the request.
 #[test]
 fn cam_read_outs_are_ended_with_run_if_needed() {
     let script = Script { normal_keeps_values: true, ..Script::new() }
@@ -372,7 +376,7 @@ fn cam_read_outs_are_ended_with_run_if_needed() {
     assert!(sent.windows(4).any(|own| own == [0x2020_0013, 0, RUN, 0]), "{sent:08X?}");
 }
 
-/// Only the question about the mode is sent before an encoder has reported its mode.
+/// Before the encoder has reported its mode, only the question about the mode is sent.
 #[test]
 fn words_with_another_meaning_in_the_current_mode_are_not_sent() {
     let script = Script::in_mode(0x55);

@@ -13,7 +13,7 @@ use super::support::{Stand, cam, gateway, program, station};
 
 const K3: StartupMode = StartupMode::K3;
 
-/// A quarter of a turn of 4096 steps.
+/// An encoder with 4096 steps per turn, at a quarter of a turn.
 const QUARTER: &str = "steps=4096&revolutions=1&position=2048&serial=123456";
 
 #[test]
@@ -81,7 +81,7 @@ fn a_survey_reads_every_read_out() {
     assert_eq!(stand.left(), (0, K3));
 }
 
-/// The value of a read-out looks like the previous one, which has to disappear first, however long it remains.
+/// The value of a read-out looks like the previous one, which must disappear first, however long it remains.
 #[test]
 fn stale_values_and_busy_words_are_ignored() {
     for query in ["stale=3", "stale=30", "busy=200&stale=5", "stale=3&busy=900"] {
@@ -276,7 +276,7 @@ fn the_device_check_reports_faults() {
     let lines = checked(&mut stand);
     assert_eq!(verdict(&lines, CheckStep::InputWord), Some(Verdict::Attention), "{lines:?}");
     assert_eq!((verdict(&lines, CheckStep::Handshake), stand.sent()), (None, vec![]), "whoever reads is not disturbed");
-    // This is not a K3 encoder, so OUT does not change anything.
+    // The encoder is not a K3, so OUT has no effect.
     let mut stand = Stand::new("class=K2&position=77");
     let lines = checked(&mut stand);
     assert_eq!(verdict(&lines, CheckStep::Handshake), Some(Verdict::Bad), "{lines:?}");
@@ -287,7 +287,7 @@ fn the_device_check_reports_faults() {
     }
 }
 
-/// A recording is played back by the same jobs, even with different request numbers.
+/// The same jobs can be run on a recording, whatever numbers the requests have.
 #[test]
 fn a_recorded_trace_replays_the_encoders_replies() {
     let mut stand = Stand::new("steps=3600&revolutions=1&serial=4711");

@@ -1,4 +1,4 @@
-//! A K3 encoder at its gateway: the handshake, reading and writing, and every way in which they can end.
+//! A K3 encoder at its gateway: the handshake, reading, writing, and how jobs end.
 
 mod cuts;
 mod handshake;

@@ -1,4 +1,4 @@
-//! Process data that answer word by word as scripted by a test.
+//! Process data whose answers a test defines word by word.
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex};
@@ -21,23 +21,23 @@ use encoder_studio::worker::commit::write_plan;
 
 use super::support::{program, station};
 
-/// The position on IN if the script specifies nothing else.
+/// The position that the encoder returns if the script defines nothing else.
 pub(crate) const POSITION: u32 = 1234;
 
-/// An encoder that acknowledges every word immediately, except for the words of the script. For each of these, the
-/// script lists the IN words cycle by cycle, and the last one remains. The value of a read-out remains until `00000000`
-/// or `80000000`.
+/// An encoder that acknowledges every word at once, except for those in the script: for each of these, it returns the
+/// given IN words cycle by cycle, and the last one from then on. The value of a read-out remains until `00000000` or
+/// `80000000`.
 #[derive(Default)]
 pub(crate) struct Script {
     /// Answers by OUT word. If there are several lists, the first one is used the first time the word is written.
     pub(crate) answers: HashMap<u32, VecDeque<Vec<u32>>>,
-    /// OUT as returned by the gateway, if it differs from the written word.
+    /// The OUT word that the gateway returns if it is not the written one.
     pub(crate) output: Option<u32>,
     /// Whether `00000000` ends cam mode and velocity mode.
     pub(crate) normal_ends_modes: bool,
-    /// Whether `00000000` does not end the reading of cams.
+    /// Whether a requested cam value remains after `00000000`.
     pub(crate) normal_keeps_values: bool,
-    /// All words that were written, without repetitions.
+    /// Every word that was written, without immediate repetitions.
     pub(crate) sent: Arc<Mutex<Vec<u32>>>,
     pub(crate) mode: u32,
     pub(crate) out: u32,
@@ -46,7 +46,8 @@ pub(crate) struct Script {
     pub(crate) now: Duration,
     /// Interval between two reads of IN.
     pub(crate) pace: Duration,
-    /// A word that the gateway rejects the first time, the exception, and whether the word was written nevertheless.
+    /// A word that the gateway rejects with this exception code the first time that it is written, and whether the word
+    /// was written nevertheless.
     pub(crate) refuses: Option<(u32, u8, bool)>,
 }
 
@@ -140,7 +141,7 @@ impl ProcessData for Script {
     }
 }
 
-/// Returns the identity of the scripted encoder.
+/// Returns the identity of the encoder that a script represents.
 pub(crate) fn identity() -> Identity {
     Identity {
         serial_number: "3".to_owned(),
@@ -180,7 +181,7 @@ pub(crate) fn carry_out(
     let ended: Result<Committed, JobError> = {
         let master = Master::for_job(script, &mut station).with_reporter(|step| steps.push(step));
         let mut write = EncoderWriter { master, identity: &commit.prepared.identity };
-        // Without the words that read values again.
+        // The words that read values back are left out.
         let begins = &mut |at: Progress<&Op>| {
             if at.done == 0 {
                 sent.lock().unwrap().clear()
@@ -197,13 +198,13 @@ pub(crate) fn carry_out(
     (ended, steps, sent)
 }
 
-/// Returns the operations for one parameterisation with the given changes.
+/// Returns the operations that set the parameters in one parameterisation.
 pub(crate) fn parameters(changes: &[(Parameter, u32)]) -> Vec<Op> {
     let change = |(parameter, to): &(Parameter, u32)| ParameterChange { parameter: *parameter, from: 0, to: *to };
     vec![Op::Parameterise(changes.iter().map(change).collect())]
 }
 
-/// Returns the operations for program 1 with both edges of a cam, and its mask.
+/// Returns the operations that set both edges of a cam of program 1, and the mask.
 pub(crate) fn cams(cam: u8, start: u32, stop: u32, mask: u8) -> Vec<Op> {
     let change = |edge, to: u32| CamChange {
         cam: CamNumber::new(cam).unwrap(),

@@ -37,7 +37,7 @@ pub(crate) fn station(query: &str) -> Station {
 }
 
 impl Stand {
-    /// Creates an encoder from the query of a `sim:` link.
+    /// Creates a gateway with an encoder from the query of a `sim:` link.
     pub(crate) fn new(query: &str) -> Self {
         Stand::with(gateway(query), station(""))
     }
@@ -138,7 +138,7 @@ impl Stand {
             .collect()
     }
 
-    /// Returns the encoder's OUT word, and the mode in which it would start.
+    /// Returns the OUT word that the encoder has received and the mode in which it would start.
     pub(crate) fn left(&self) -> (u32, StartupMode) {
         self.gateway.with_encoder(|encoder| (encoder.out_word(), encoder.startup_mode()))
     }

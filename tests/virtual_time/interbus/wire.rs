@@ -16,7 +16,7 @@ use super::support::station;
 /// The bytes sent after a request, each group with its delay in milliseconds.
 type Answer = Vec<(u64, Vec<u8>)>;
 
-/// A gateway whose answer a test computes from each request and its number, counted from 0.
+/// A gateway whose answers are calculated by a function of the test from each request and its number, beginning with 0.
 struct Gateway<F> {
     clock: Arc<VirtualClock>,
     answer: F,
@@ -61,7 +61,7 @@ impl<F: FnMut(usize, &[u8]) -> Answer + Send> ByteLink for Gateway<F> {
     }
 }
 
-/// Returns the reply to a request, with the request's number.
+/// Returns a reply to a request, with the number of that request.
 fn reply(request: &[u8], body: &[u8]) -> Vec<u8> {
     let length = u16::try_from(body.len()).unwrap().to_be_bytes();
     [&request[..2], &[0, 0], &length, body].concat()
@@ -72,7 +72,7 @@ fn registers(request: &[u8], word: u32) -> Vec<u8> {
     reply(request, &[&[request[6], request[7], 4][..], &word.to_be_bytes()].concat())
 }
 
-/// The result, the requests, and the elapsed time.
+/// The result of a call, the requests that it sent, and the time that it took.
 type Seen<T> = (Result<T, Error>, Vec<Vec<u8>>, Duration);
 
 fn with<T>(
@@ -137,7 +137,7 @@ fn a_late_reply_is_not_mistaken_for_the_next() {
     let (ended, requests, _) = read("", answer);
     assert_eq!((ended.unwrap().word, requests.len()), (2, 2));
     assert_ne!(requests[0][..2], requests[1][..2]);
-    // In one piece with the correct reply after it.
+    // The late reply arrives together with the right one.
     let answer = |number: usize, request: &[u8]| match number {
         0 => vec![],
         _ => {
@@ -180,7 +180,7 @@ fn a_refusal_is_reported_with_its_cause() {
         assert_eq!(requests.len(), tries, "{text}");
         assert!(took < Duration::from_secs(12));
     }
-    // A gateway that was busy once, and then answers.
+    // A gateway that was busy once answers the next request.
     let (ended, requests, _) = read("", |number, request| match number {
         0 | 1 => vec![(2, reply(request, &[1, 0x84, 6]))],
         _ => vec![(2, registers(request, 5))],
@@ -220,7 +220,7 @@ fn a_silent_or_endless_gateway_times_out() {
     assert_eq!(ended.unwrap_err(), Error::NoReply { requested: RequestedItem::Input { register: 0 }, tries: 3 });
     assert_eq!(requests.len(), 3);
     assert!(took < Duration::from_secs(12), "{took:?}");
-    // The gateway hangs after a while. The return to the mode must then end soon as well.
+    // The gateway hangs after a while. Returning to the mode then also ends soon.
     for answered in 0..40 {
         let answer = move |number: usize, request: &[u8]| match (number < answered, request[7]) {
             (false, _) => vec![],

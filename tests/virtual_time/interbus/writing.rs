@@ -1,5 +1,4 @@
-//! Writing: only differences are written, each is read back, and each operation has one store. Rejections occur before
-//! any write.
+//! Writing: only differences, each read back, with one store per operation; and rejections before any write.
 
 use std::path::Path;
 use std::time::Duration;
@@ -42,7 +41,7 @@ fn edited(stand: &mut Stand, programs: &[u8], edit: impl FnOnce(&mut Image)) -> 
     Change::Write(Box::new(wanted))
 }
 
-/// Returns the words that set a value, without questions and normal running.
+/// Returns the words that set a value, without questions and the words of normal operation.
 fn setting(stand: &Stand) -> Vec<u32> {
     let questions = |word: &u32| matches!(word >> 16, 0x2020 | 0x2021);
     stand.sent().into_iter().filter(|word| *word != 0 && !questions(word)).collect()
@@ -63,7 +62,7 @@ fn parameters_are_set_in_one_parameterisation_with_one_store() {
         let done = stand.commit(prepared).unwrap();
         assert_eq!((done.written.ops, done.written.written, done.written.verified), (1, 3, 3));
         assert_eq!((done.written.write_cycles, stand.stores()), (1, before + 1));
-        // 20 000 = 4E20h, which is within range only after 4 turns have been set.
+        // 20 000 (4E20h) is possible only after 4 turns are set.
         assert_eq!(setting(&stand), [0x0400_0004, 0x0200_4E20, 0x0800_4E1F, 0x8000_0000]);
         assert_eq!(stand.left(), (0, StartupMode::K3));
         let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
@@ -78,7 +77,7 @@ fn parameters_are_set_in_one_parameterisation_with_one_store() {
     }
 }
 
-/// The criterion of the issue for the words sent: of 64 cams, four differ, in two programs.
+/// Of 64 cams, four differ, in two programs. The number of words is the one that the issue demands.
 #[test]
 fn only_changed_edges_are_sent_and_a_program_needs_one_store() {
     let all: Vec<u8> = (1..=8).collect();
@@ -98,7 +97,7 @@ fn only_changed_edges_are_sent_and_a_program_needs_one_store() {
         let done = stand.commit(prepared).unwrap();
         assert_eq!((done.written.ops, done.written.written, done.written.verified), (2, 5, 5), "{faults}");
         assert_eq!((done.written.write_cycles, stand.stores()), (2, before + 2), "{faults}");
-        // Only edges: 010 and 011 in front. 40000000 could be a preset elsewhere.
+        // Only edges are sent: their words begin with 010 or 011. In another mode, 40000000 would set a preset.
         let edges = setting(&stand).into_iter().filter(|word| matches!(word >> 29, 0b010 | 0b011)).count();
         assert_eq!(edges, 8, "{faults}");
         assert_eq!(stand.left(), (0, found), "{faults}");
@@ -198,7 +197,7 @@ fn a_restore_writes_differences_and_keeps_another_encoders_mounting() {
 #[test]
 fn a_change_since_the_plan_stops_the_write() {
     let moment = |stand: &Stand| stand.clock.now();
-    // Another master sets the preset (08000001) and returns to normal running.
+    // Another master sets the preset with 08000001 and returns to normal operation.
     let mut stand = Stand::new(SCALED);
     let change = edited(&mut stand, &[], |wanted| wanted.parameters.zero_shift = 5);
     let prepared = stand.prepare(change);
@@ -207,7 +206,7 @@ fn a_change_since_the_plan_stops_the_write() {
     let error = stand.commit(prepared).unwrap_err();
     assert_eq!(error.to_string(), "preset has changed since the plan was made");
     assert_eq!(stand.left(), (0, StartupMode::K3));
-    // Or another master changes the mask of a program.
+    // Here it changes the mask of a program.
     let change = edited(&mut stand, &[4], |wanted| {
         assert!(wanted.set_value(Item::CamMask(program(4)), ItemValue::Mask(0xFF)));
     });
@@ -246,7 +245,7 @@ fn a_worn_eeprom_is_written_only_by_force() {
         let ended = stand.run(job(false));
         let is_refused = match seen {
             Some(_) => matches!(ended, Err(JobError::NotStarted(NotStarted::Worn { .. }))),
-            // Issue 22.4: an unknown count is not 0.
+            // An unknown number of stores is not treated as 0 (issue 22.4).
             None => matches!(ended, Err(JobError::NotStarted(NotStarted::WearUnknown { cost: 1 }))),
         };
         assert_eq!(is_refused, refused, "{seen:?}: {ended:?}");
@@ -280,8 +279,8 @@ fn the_logbook_counts_stores_by_serial_number() {
     assert!(history.iter().all(|entry| entry.planned_cycles == 1 && entry.backup.as_deref().is_some_and(Path::exists)));
 }
 
-/// Issue 22.3: an encoder may store a program when it is left (manual 5.4.4), whether or not it was changed. Each
-/// program selected for reading counts once. The store of a changed program belongs to the write.
+/// An encoder may store a program when it is left, changed or not (manual 5.4.4), so each program selected for reading
+/// counts as one store. The store of a changed one belongs to the write (issue 22.3).
 #[test]
 fn reading_programs_counts_as_stores() {
     let mut stand = Stand::new(SCALED);
@@ -298,13 +297,13 @@ fn reading_programs_counts_as_stores() {
     assert_eq!(prepared.cycles_seen, Some(CycleCount::complete(5)));
     let done = stand.commit(prepared).unwrap();
     assert_eq!((done.written.write_cycles, stand.stores() - before, stand.counted()), (1, 1, 7));
-    // The original program is left as well.
+    // The program that was selected at first is left as well.
     let mut stand = Stand::new(&format!("{SCALED}&program=4"));
     stand.programs(&[6]);
     assert_eq!(stand.counted(), 2);
     stand.programs(&[4]);
     assert_eq!(stand.counted(), 2);
-    // Parameters that another master has partly set are stored by the return to the mode.
+    // Parameters that another master has partly set are stored when the mode is restored.
     let now = stand.clock.now();
     stand.gateway.with_encoder(|encoder| encoder.write(now, 0x2040_0011));
     stand.run(InterbusJob::RestoreMode).unwrap();
@@ -383,11 +382,11 @@ fn an_operation_reports_its_changes() {
         }
     });
     assert!(matches!(ended, Event::Finished(..)));
-    // First the set value, then the applied one.
+    // The preset is set first and applied afterwards.
     assert_eq!(told, [(0, 2, "preset".to_owned()), (1, 2, "position".to_owned())]);
 }
 
-/// The shaft is already close to the preset, and the encoder first returns old words and then the preset.
+/// The position is already close to the preset. The encoder returns old words first, and the preset afterwards.
 #[test]
 fn a_preset_near_the_shafts_position_is_set_to_the_step() {
     for (preset, faults) in [(102, "stale=6"), (98, "stale=6&busy=60"), (101, "stale=6"), (102, "stale=0")] {

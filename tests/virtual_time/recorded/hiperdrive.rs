@@ -1,4 +1,4 @@
-//! Writes to a HIPERDRIVE adapter or hub.
+//! Recorded writes to a HIPERDRIVE adapter or hub.
 
 use encoder_studio::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, JobError};
 use encoder_studio::devices::hiperdrive::procedures::Error;

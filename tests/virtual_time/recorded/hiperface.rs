@@ -1,4 +1,4 @@
-//! Writes to a HIPERFACE encoder.
+//! Recorded writes to a HIPERFACE encoder.
 
 use encoder_studio::devices::hiperface::jobs::{Change, JobError};
 use encoder_studio::devices::hiperface::procedures::Error;
@@ -14,7 +14,7 @@ fn status(byte: u8) -> DataFieldStatus {
     DataFieldStatus::from_byte(byte)
 }
 
-/// Returns an encoder with four fields, one of them write-protected with its own code.
+/// Returns an encoder with four fields, one of which is write-protected and guarded by its own code.
 fn scene() -> Desk {
     let mut desk = Desk::new("codes=2:66&position=4096");
     desk.remember_code(2, 0x66);
@@ -27,8 +27,8 @@ fn scene() -> Desk {
     desk
 }
 
-/// Returns a profile to restore: several runs in field 0, the protected field, a plain field, and a new field that will
-/// be protected.
+/// Returns a profile that changes several byte ranges in field 0, the protected field and a plain field, and creates a
+/// new field.
 fn wanted(desk: &mut Desk) -> HiperfaceProfile {
     let mut wanted = desk.save().unwrap();
     for (field, places) in [(0, vec![2, 3, 9, 30]), (1, vec![0, 7, 15]), (2, vec![5])] {

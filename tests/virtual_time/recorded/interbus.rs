@@ -1,4 +1,4 @@
-//! Writes to an INTERBUS encoder at a gateway.
+//! Recorded writes to an INTERBUS encoder at a gateway.
 
 use encoder_studio::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput, JobError};
 use encoder_studio::devices::interbus::procedures::Error;

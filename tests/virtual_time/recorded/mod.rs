@@ -1,7 +1,6 @@
-//! The data of a write, and of every interruption of it, which must match the recordings under `tests/fixtures/wire`
-//! byte for byte. There is one file per kind of write. A recording contains the complete write. For each interruption,
-//! it contains the number of lines that equal the complete write, the number of further lines, a checksum of all lines,
-//! and the result.
+//! The bytes that each kind of write sends, and each interruption of that write, compared with the recordings under
+//! `tests/fixtures/wire`. Each file shows the complete write. For each interruption it has the number of lines that
+//! equal those of the complete write, the number of lines after them, a checksum of all lines, and the result.
 //!
 //! `ENCODER_STUDIO_RECORD=1` rewrites the files. Use it only if the data are meant to change, and commit the difference
 //! with the change.
@@ -20,7 +19,7 @@ use encoder_studio::worker::{Device, Session};
 
 use crate::support::Tap;
 
-/// A prepared write, with the handles that interrupt it.
+/// A prepared write, and what is needed to interrupt it.
 struct Ready {
     tap: Arc<Mutex<Tap>>,
     cancel: CancelToken,
@@ -32,7 +31,7 @@ struct Ready {
 /// Frames as shown by the trace, with masked access codes.
 type Lines = Arc<Mutex<Vec<String>>>;
 
-/// Records all further frames of the session. Also returns the token that cancels it.
+/// Records every frame of the session from now on. Also returns the token that cancels its job.
 fn listen<D: Device>(session: &mut Session<D>) -> (Lines, CancelToken) {
     let lines = Lines::default();
     let kept = lines.clone();
@@ -45,10 +44,10 @@ fn listen<D: Device>(session: &mut Session<D>) -> (Lines, CancelToken) {
     (lines, cancel)
 }
 
-/// A function that interrupts a write at the frame with the given number.
+/// A way to interrupt a write at the frame with this number.
 type EarlyEnd = fn(&mut Tap, &CancelToken, usize);
 
-/// The ways to interrupt a write at one of the frames sent.
+/// The ways to interrupt a write at one of the sent frames, with their names in the recordings.
 const EARLY: [(&str, EarlyEnd); 3] = [
     ("cancelled", |tap, cancel, at| tap.cancel_at = Some((at, cancel.clone()))),
     ("lost", |tap, _, at| tap.lost_from = Some(at)),
@@ -63,8 +62,8 @@ impl Ready {
     }
 }
 
-/// Runs a write without and with interruptions, and compares the result with the recording. `points` lists the numbers
-/// of the frames at which to interrupt the write, counted from 0. `None` means all frames.
+/// Compares a write, and the same write interrupted at the sent frames `points` (counted from 0, or every frame if
+/// `None`), with the recording.
 fn compare(name: &str, points: Option<&[usize]>, ready: &mut dyn FnMut() -> Ready) {
     let undisturbed = ready();
     let (tap, first) = (undisturbed.tap.clone(), undisturbed.tap.lock().unwrap().sent.len());

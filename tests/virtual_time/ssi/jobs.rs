@@ -1,4 +1,4 @@
-//! The identity of the adapter, the settings for words, and a single word.
+//! The identity of the adapter, its settings for reading words, and reading a single word.
 
 use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::buses::bridge::protocol::{Capabilities, Operation};
@@ -31,15 +31,15 @@ fn hello_reports_the_adapter_and_the_word_settings() {
     assert_eq!((identity.hello.name.as_str(), identity.hello.firmware.as_str()), ("virtual adapter", "1.0"));
     assert!(identity.hello.capabilities.contains(Capabilities::SSI));
     assert_eq!(identity.asking, ClockSettings { clocks: 25, clock_hz: 700_000, pause_us: 200 });
-    // 60 MHz divided by 86 is the nearest clock below the requested one.
+    // The nearest clock below is 60 MHz divided by 86.
     assert_eq!(identity.clock_hz, 697_674);
-    // 300 mW at 12 V.
+    // The encoder takes 300 mW at 12 V.
     assert_eq!(identity.supply, Some(Supply { millivolt: 12_000, measured: Some((12_000, 25)) }));
     // Known data are not requested again.
     assert_eq!(hello(&mut stand), identity);
     let counts = [Operation::Hello, Operation::Supply, Operation::SsiConfig].map(|own| stand.count(own));
     assert_eq!(counts, [1, 1, 1]);
-    // Issue 22.16: a supply that was switched on is switched off at the end.
+    // A supply that the session has switched on is switched off at its end (issue 22.16).
     stand.session.restore_state();
     assert_eq!(stand.count(Operation::Supply), 2);
 }
@@ -68,7 +68,7 @@ fn a_word_is_read_with_the_requested_clocks() {
     assert_eq!(configured, [25, 27, 13]);
 }
 
-/// If the adapter rejects a setting, everything stays unchanged.
+/// If the adapter rejects a setting, the previous settings remain.
 #[test]
 fn a_refused_setting_keeps_the_previous_one() {
     let mut stand = Stand::quick("rpm=60");

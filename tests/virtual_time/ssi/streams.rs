@@ -1,5 +1,5 @@
-//! Repeated words. They are requested if there is time for this and streamed otherwise. The stream is ended before any
-//! other request.
+//! Repeated readings of words: each word is requested if there is enough time, otherwise the adapter streams them. The
+//! stream is ended before any other request.
 
 use std::time::Duration;
 
@@ -15,7 +15,8 @@ use super::support::{QUICK, Stand};
 use crate::biss::support::pairs;
 
 const FAST: Duration = Duration::from_micros(50);
-/// A turn of the ATM60 has 8192 steps, so 50 revolutions per second are 20.48 steps per word of 50 µs.
+/// Settings of an ATM60 at 50 revolutions per second. A turn has 8192 steps, so the shaft moves 20.48 steps per word of
+/// 50 µs.
 const TURNING: &str = "ssi=atm60,code=binary&rpm=3000&position=0";
 
 /// Checks that numbers and times are continuous, and that the position follows the shaft.
@@ -90,7 +91,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
     assert_eq!(stand.sample().period_ns, 100_000, "another pace is another stream");
 }
 
-/// A stream that was requested continues, with the new width from its first word on.
+/// When the settings change, the stream continues, and has the new width from its first word on.
 #[test]
 fn changed_settings_apply_to_a_running_stream() {
     let mut stand = Stand::quick(TURNING);
@@ -156,7 +157,7 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
     }
 }
 
-/// With single requests, the next one detects the reset.
+/// With single requests, a reset is detected by the next request.
 #[test]
 fn an_adapter_reset_between_two_words_is_configured_again() {
     let query = "supply=switched&rpm=60";

@@ -1,4 +1,4 @@
-//! Test support: a desk with the virtual SSI encoder at an adapter.
+//! Test support: a virtual SSI encoder at a virtual adapter, with a session.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -16,7 +16,7 @@ use encoder_studio::worker::Session;
 use crate::biss::support::pairs;
 use crate::support::{MARGIN, Tap, TestLink};
 
-/// 25 clocks in 16.67 µs and a pause of 30 µs, so a word takes less than 50 µs.
+/// Settings for words in less than 50 µs: 25 clocks in 16.67 µs and a pause of 30 µs.
 pub(crate) const QUICK: ClockSettings = ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 30 };
 
 pub(crate) struct Stand {
@@ -34,7 +34,7 @@ impl Stand {
         Self::before(link, adapter)
     }
 
-    /// Creates a session with an adapter that supplies 20 000 words per second.
+    /// Creates a session whose clock and pause allow 20 000 words per second.
     pub(crate) fn quick(query: &str) -> Self {
         Self::new("clock=1500000&pause=30", query)
     }
@@ -82,7 +82,7 @@ impl Stand {
         (0..1000).map(|_| bytes(1)).sum()
     }
 
-    /// Returns the requests of an operation.
+    /// Returns the sent requests of an operation.
     pub(crate) fn requests(&self, operation: Operation) -> Vec<Packet> {
         let mut receiver = Receiver::default();
         self.tap.lock().unwrap().sent.iter().for_each(|bytes| receiver.push(bytes));
