@@ -107,7 +107,7 @@ fn a_wiegand_test_returns_results_and_saves_them_on_request() {
     assert!(!report.result.is_passed(), "5.3 V is not above 5.3 V");
 }
 
-/// Manual 6.5: data are written register by register and saved once.
+/// Data are written register by register and saved once (manual 6.5).
 #[test]
 fn data_is_written_register_by_register_and_saved_once() {
     for way in WAYS {

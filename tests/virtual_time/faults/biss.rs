@@ -126,7 +126,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
             End::NotStarted
         }
     };
-    // The line is intact again. The encoder is returned to operation, and the change is completed.
+    // The line works again. The encoder is returned to operation, and the change is completed.
     let mut again = bench.reconnected();
     again.motor().set_rpm(0.0);
     again.return_to_operation().unwrap_or_else(|error| panic!("{context}: {error}"));

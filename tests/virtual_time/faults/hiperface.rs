@@ -246,7 +246,7 @@ fn run(cases: &[Case], truth: &HiperfaceProfile, rng: &mut Rng) -> End {
             End::NotStarted
         }
     };
-    // The line is intact again. The same session or a new one completes the change or reports why it cannot.
+    // The line works again. The same session or a new one completes the change or reports why it cannot.
     let mut again = rig.reconnected(case.station.clone());
     match again.prepare(case.change.clone()) {
         Ok(prepared) => {

@@ -1,7 +1,7 @@
 //! Random sessions of a user with a drive, thousands of steps long, with all faults in between: the drive fails,
 //! ignores its limits, turns the wrong way or is turned by hand, another master writes limits, and connections are cut.
 //!
-//! A word that commands motion may be sent only after a fresh action of the user, in its direction and within the
+//! A word that commands motion may be sent only after a new action of the user, in its direction and within the
 //! limits. A model that is independent of the dead-man control checks this ([`Model`]).
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Permit;

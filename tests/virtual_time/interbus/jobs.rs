@@ -132,7 +132,7 @@ fn a_selected_mode_is_kept() {
         let output = stand.run(InterbusJob::Select(mode)).unwrap();
         assert!(matches!(output, InterbusOutput::Selected(own) if own == mode), "{mode:?}");
         assert_eq!(stand.left(), (0, mode));
-        // Requests in between do not change this.
+        // Requests in between do not change the mode.
         stand.run(InterbusJob::Identify).unwrap();
         assert_eq!(stand.left(), (0, mode));
         let reading = stand.session.take_sample().unwrap();
