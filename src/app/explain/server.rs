@@ -23,6 +23,7 @@ pub fn server_error_text(error: &ServerError) -> Text {
         ServerErrorKind::DiskFull => of_server("server.disk_full"),
         ServerErrorKind::Newer { found, known } => of_server("server.newer").with("found", found).with("known", known),
         ServerErrorKind::Older { found, known } => of_server("server.older").with("found", found).with("known", known),
+        ServerErrorKind::OtherServer => of_server("server.other_server"),
         ServerErrorKind::Local(error) => of_server("server.local").with_text("why", logbook_problem(error)),
         ServerErrorKind::Database { what, .. } => of_server("server.other").with_text("why", literal_text(what)),
     }

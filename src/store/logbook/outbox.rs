@@ -44,14 +44,6 @@ pub(super) struct Rows {
     pub results: Vec<ResultRow>,
 }
 
-/// Rows that wait to be sent, in their order.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Waiting {
-    /// Numbers in the outbox.
-    numbers: Vec<i64>,
-    pub rows: Rows,
-}
-
 /// Numbers of the last event and the last result of the server that are in the local file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Marks {
@@ -98,38 +90,42 @@ pub(super) fn count_waiting(database: &Connection) -> rusqlite::Result<u64> {
     database.query_row(sql, [], |row| row.get(0).and_then(super::schema::parse_cycles))
 }
 
-/// Returns the first rows that wait.
-pub(super) fn first_waiting(database: &Connection, limit: u32) -> rusqlite::Result<Waiting> {
-    let mut waiting = Waiting::default();
-    let mut outbox = database.prepare_cached("SELECT id, uid, is_result FROM outbox ORDER BY id LIMIT ?1")?;
+/// Returns the first rows that wait. A result comes with its event, which the server may have lost.
+pub(super) fn first_waiting(database: &Connection, limit: u32) -> rusqlite::Result<Rows> {
+    let mut waiting = Rows::default();
+    let mut outbox = database.prepare_cached("SELECT uid, is_result FROM outbox ORDER BY id LIMIT ?1")?;
     let mut event = database.prepare_cached(
         "SELECT uid, at, what, kind, device_type, serial_number, is_virtual, description, items, planned_cycles, backup,
                 bench, user, version, asset, undoes FROM event WHERE uid = ?1",
     )?;
     let mut result =
         database.prepare_cached("SELECT event, at, outcome, failure, cycles_spent FROM result WHERE event = ?1")?;
-    let rows = outbox.query_map([limit], |row| Ok((row.get(0)?, row.get::<_, String>(1)?, row.get(2)?)))?;
+    let rows = outbox.query_map([limit], |row| Ok((row.get::<_, String>(0)?, row.get(1)?)))?;
     for row in rows {
-        let (number, uid, is_result) = row?;
-        waiting.numbers.push(number);
+        let (uid, is_result) = row?;
+        waiting.events.push(event.query_row([&uid], read_event)?);
         if is_result {
-            waiting.rows.results.push(result.query_row([uid], read_result)?);
-        } else {
-            waiting.rows.events.push(event.query_row([uid], read_event)?);
+            waiting.results.push(result.query_row([&uid], read_result)?);
         }
     }
     Ok(waiting)
 }
 
 /// Adds rows of the server to the local file, removes from the outbox what the server has, and records up to which
-/// number its rows are in the local file. Returns how many events and results are new.
+/// number its rows are in the local file. Returns how many events and results are new. If another program has begun to
+/// use another server with this file, nothing is changed and `None` is returned.
 pub(super) fn adopt(
     database: &mut Connection,
+    identity: &str,
     received: &Rows,
-    sent: &Waiting,
+    sent: &Rows,
     marks: Marks,
-) -> rusqlite::Result<usize> {
+) -> rusqlite::Result<Option<usize>> {
     let transaction = database.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    let is_own = transaction.query_row("SELECT identity = ?1 FROM server", [identity], |row| row.get(0)).optional()?;
+    if is_own != Some(true) {
+        return Ok(None);
+    }
     let mut new = 0;
     {
         let mut remove = transaction.prepare_cached("DELETE FROM outbox WHERE uid = ?1 AND is_result = ?2")?;
@@ -145,15 +141,17 @@ pub(super) fn adopt(
             new += add_result(&transaction, row)?;
             remove.execute((&row.event, true))?;
         }
-        let mut remove = transaction.prepare_cached("DELETE FROM outbox WHERE id = ?1")?;
-        for number in &sent.numbers {
-            remove.execute([number])?;
+        for row in &sent.events {
+            remove.execute((&row.uid, false))?;
+        }
+        for row in &sent.results {
+            remove.execute((&row.event, true))?;
         }
         let sql = "UPDATE server SET event = max(event, ?1), result = max(result, ?2)";
         transaction.execute(sql, (marks.event, marks.result))?;
     }
     transaction.commit()?;
-    Ok(new)
+    Ok(Some(new))
 }
 
 /// Returns whether the local logbook can show a row.
@@ -228,4 +226,77 @@ fn read_result(row: &rusqlite::Row<'_>) -> rusqlite::Result<ResultRow> {
         failure: row.get(3)?,
         cycles_spent: row.get(4)?,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::{DeviceKey, EntryId, Event, Intent, Logbook, Outcome};
+
+    const SERVER: &str = "server";
+
+    /// Two programs with the same local file.
+    struct TwoPrograms {
+        _root: tempfile::TempDir,
+        logbook: Logbook,
+        one: Connection,
+        two: Connection,
+    }
+
+    fn two_programs() -> TwoPrograms {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("logbook.sqlite");
+        let logbook = Logbook::open(&path).unwrap();
+        let [mut one, two] = [(); 2].map(|()| Connection::open(&path).unwrap());
+        begin(&mut one, SERVER, Marks::default()).unwrap();
+        TwoPrograms { _root: root, logbook, one, two }
+    }
+
+    fn device() -> DeviceKey {
+        DeviceKey::new("hiperface", "37h", "GB1", false)
+    }
+
+    fn intend(logbook: &mut Logbook) -> EntryId {
+        let intent =
+            Intent { kind: EntryKind::Write, items: Vec::new(), planned_cycles: 1, backup: None, undoes: None };
+        logbook.record_intent(Timestamp::UNIX_EPOCH, &device(), &intent).unwrap()
+    }
+
+    fn acknowledge(database: &mut Connection, sent: &Rows) -> Option<usize> {
+        adopt(database, SERVER, &Rows::default(), sent, Marks::default()).unwrap()
+    }
+
+    #[test]
+    fn an_entry_waits_until_it_was_sent_even_if_it_has_the_number_of_one_that_was() {
+        let TwoPrograms { _root, mut logbook, mut one, mut two } = two_programs();
+        logbook.record(Timestamp::UNIX_EPOCH, &device(), &Event::new(EntryKind::Note, "first")).unwrap();
+        let by_both = [&one, &two].map(|database| first_waiting(database, 9).unwrap());
+        assert_eq!(acknowledge(&mut two, &by_both[1]), Some(0));
+        // The outbox is empty, so SQLite gives the number of the first entry to the second.
+        logbook.record(Timestamp::UNIX_EPOCH, &device(), &Event::new(EntryKind::Note, "second")).unwrap();
+        assert_eq!(acknowledge(&mut one, &by_both[0]), Some(0));
+        let waiting = first_waiting(&one, 9).unwrap().events;
+        assert_eq!(waiting.iter().map(|row| row.description.as_str()).collect::<Vec<_>>(), ["second"]);
+    }
+
+    #[test]
+    fn a_reply_of_one_server_leaves_the_entries_for_another_alone() {
+        let TwoPrograms { _root, mut logbook, mut one, mut two } = two_programs();
+        intend(&mut logbook);
+        let sent = first_waiting(&one, 9).unwrap();
+        begin(&mut two, "another server", Marks::default()).unwrap();
+        assert_eq!(acknowledge(&mut one, &sent), None);
+        assert_eq!(count_waiting(&two), Ok(1));
+    }
+
+    #[test]
+    fn a_result_is_sent_with_its_event() {
+        let TwoPrograms { _root, mut logbook, mut one, .. } = two_programs();
+        let entry = intend(&mut logbook);
+        let sent = first_waiting(&one, 9).unwrap();
+        acknowledge(&mut one, &sent);
+        logbook.record_outcome(entry, Timestamp::UNIX_EPOCH, Outcome::Done, 1).unwrap();
+        let waiting = first_waiting(&one, 9).unwrap();
+        assert_eq!((waiting.events, waiting.results.len()), (sent.events, 1));
+    }
 }

@@ -62,6 +62,9 @@ pub enum ServerErrorKind {
     /// The tables are those of an older version, and this user may not change them.
     #[error("the server uses the older schema {found}, and the user of the database may not update it to {known}")]
     Older { found: i64, known: i64 },
+    /// Another program on this computer has begun to send the same entries to another server.
+    #[error("another program on this computer uses another logbook server")]
+    OtherServer,
     /// The logbook of this computer cannot be used.
     #[error(transparent)]
     Local(LogbookError),

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use tokio_postgres::{Client as Postgres, GenericClient, IsolationLevel, Row};
 
-use super::super::outbox::{self, EventRow, Marks, ResultRow, Rows, Waiting};
+use super::super::outbox::{self, EventRow, Marks, ResultRow, Rows};
 use super::super::{LogbookErrorKind, schema as local_schema};
 use super::client::Client;
 use super::error::ServerErrorKind;
@@ -43,20 +43,22 @@ pub(super) fn transfer(client: &mut Client, identity: &str, path: &Path) -> Resu
         if rows.is_empty() {
             break;
         }
-        done.received += outbox::adopt(&mut database, &rows, &Waiting::default(), marks).map_err(sqlite)?;
+        let adopted = outbox::adopt(&mut database, identity, &rows, &Rows::default(), marks).map_err(sqlite)?;
+        done.received += adopted.ok_or(ServerErrorKind::OtherServer)?;
         if rows.events.len().max(rows.results.len()) < RECEIVED {
             break;
         }
     }
     loop {
         let waiting = outbox::first_waiting(&database, SENT).map_err(sqlite)?;
-        if waiting.rows.is_empty() {
+        if waiting.is_empty() {
             return Ok(done);
         }
-        let (rows, after) = client.run(async |postgres| send(postgres, &waiting.rows, marks).await)?;
+        let (rows, after) = client.run(async |postgres| send(postgres, &waiting, marks).await)?;
         marks = after;
-        done.received += outbox::adopt(&mut database, &rows, &waiting, marks).map_err(sqlite)?;
-        done.sent += waiting.rows.events.len() + waiting.rows.results.len();
+        let adopted = outbox::adopt(&mut database, identity, &rows, &waiting, marks).map_err(sqlite)?;
+        done.received += adopted.ok_or(ServerErrorKind::OtherServer)?;
+        done.sent += waiting.events.len() + waiting.results.len();
     }
 }
 

@@ -27,13 +27,13 @@ fn a_logbook_of_schema_5_keeps_its_entries_and_links_new_ones() {
     assert_eq!((&write.uid, write.undoes, write.undone_by), (&EntryUid("aa".to_owned()), None, None));
     assert_eq!(logbook.count_waiting(), Ok(1));
     let waiting = outbox::first_waiting(&logbook.database, 9).unwrap();
-    assert_eq!((waiting.rows.events[0].undoes.as_deref(), waiting.rows.results.len()), (None, 1));
+    assert_eq!((waiting.events[0].undoes.as_deref(), waiting.results.len()), (None, 1));
     let undo = Intent { undoes: Some(write.uid), ..intent("field:1@3+2", 1, None) };
     let undo = logbook.record_intent(at(0), &device("1"), &undo).unwrap();
     logbook.record_outcome(undo, at(1), Outcome::Done, 1).unwrap();
     assert_eq!(logbook.entry(EntryId(1)).unwrap().unwrap().undone_by, Some(LinkedEntry { id: undo, at: at(0) }));
     let sent = outbox::first_waiting(&logbook.database, 9).unwrap();
-    assert_eq!(sent.rows.events[1].undoes.as_deref(), Some("aa"), "other benches know it too");
+    assert_eq!(sent.events[1].undoes.as_deref(), Some("aa"), "other benches know it too");
 }
 
 #[test]
