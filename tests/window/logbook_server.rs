@@ -41,6 +41,10 @@ fn the_server_is_entered_tested_and_saved() {
     screen.act(Action::Server(ServerAction::Test { address: CLOSED.to_owned(), password: None }));
     screen.until("the test has ended", |studio| outcome(studio).is_some());
     assert!(matches!(outcome(screen.studio()), Some(Err(why)) if why.id() == "server.unreachable"));
+    // A part of this password could be taken for the host.
+    let ambiguous = "postgres://bench:k3/y@127.0.0.1:1/logs".to_owned();
+    screen.act(Action::Server(ServerAction::Save { address: ambiguous, password: None }));
+    assert!(matches!(outcome(screen.studio()), Some(Err(why)) if why.id() == "server.ambiguous_address"));
     assert_eq!(screen.studio().settings.logbook, "", "nothing is saved yet");
     // The window goes on without the server, and says so.
     screen.act(Action::Server(ServerAction::Save { address: CLOSED.to_owned(), password: None }));

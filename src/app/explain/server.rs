@@ -50,7 +50,10 @@ pub fn other_holder_text(holder: &OtherHolder) -> Text {
 pub fn server_address_error_text(error: &ServerAddressError) -> Text {
     match error {
         ServerAddressError::NotAnAddress => Text::new("server.not_an_address"),
+        ServerAddressError::Ambiguous => Text::new("server.ambiguous_address"),
+        ServerAddressError::UnknownParameter { name } => Text::new("server.unknown_parameter").with("name", name),
         ServerAddressError::ContainsPassword => Text::new("server.contains_password"),
+        ServerAddressError::SettingsUnreadable => Text::new("server.settings_unread"),
         ServerAddressError::UnknownEncryption { found } => Text::new("server.encryption_mode").with("found", found),
     }
 }

@@ -9,6 +9,24 @@ use tokio_postgres::config::Host;
 
 const DEFAULT_PORT: u16 = 5432;
 
+const PASSWORD: &str = "password";
+
+/// Parameters of TLS. The client knows only some modes and no file of certificates.
+const TLS_PARAMETERS: [&str; 2] = ["sslmode", "sslrootcert"];
+
+/// Parameters of an address, apart from a password. Others could name another host or hide a password.
+const PARAMETERS: [&str; 9] = [
+    "sslmode",
+    "sslrootcert",
+    "channel_binding",
+    "host",
+    "port",
+    "user",
+    "dbname",
+    "target_session_attrs",
+    "load_balance_hosts",
+];
+
 /// Address of a PostgreSQL database: `postgres://USER@HOST:PORT/DATABASE`, without a password.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ServerAddress {
@@ -38,11 +56,19 @@ pub enum ServerAddressError {
     /// The text does not begin with `postgres://`, or does not name a host.
     #[error("the address is not of the form postgres://USER@HOST/DATABASE")]
     NotAnAddress,
+    /// A name or a password contains a character that separates the parts of an address.
+    #[error("the address contains one of the characters @ / ? within a name or a password")]
+    Ambiguous,
+    #[error("the parameter {name} is not supported")]
+    UnknownParameter { name: String },
     /// The address contains a password where it would be stored in a file.
     #[error("the address contains a password")]
     ContainsPassword,
     #[error("sslmode={found} is not supported")]
     UnknownEncryption { found: String },
+    /// The settings cannot be read, so they may name a server.
+    #[error("the settings cannot be read")]
+    SettingsUnreadable,
 }
 
 impl ServerAddress {
@@ -64,28 +90,32 @@ impl ServerAddress {
     /// Returns an error if the text is not an address.
     pub fn from_environment(text: &str) -> Result<Self, ServerAddressError> {
         let text = text.trim();
-        if !["postgres://", "postgresql://"].iter().any(|scheme| text.starts_with(scheme)) {
+        let schemes = ["postgres://", "postgresql://"];
+        let scheme = schemes.into_iter().find(|scheme| text.starts_with(scheme));
+        let (Some(scheme), Some((_, rest))) = (scheme, text.split_once("://")) else {
             return Err(ServerAddressError::NotAnAddress);
+        };
+        // The client takes everything before the first @ as the user and the password, even a / or ?.
+        let (account, rest) = rest.split_once('@').map_or((None, rest), |(account, rest)| (Some(account), rest));
+        if rest.contains('@') || account.is_some_and(|account| account.contains(['/', '?'])) {
+            return Err(ServerAddressError::Ambiguous);
         }
-        let (base, query) = text.split_once('?').unwrap_or((text, ""));
-        let parameter = |name: &str| {
-            let own = |pair: &&str| pair.split_once('=').is_some_and(|(key, _)| key == name);
-            query.split('&').find(own).and_then(|pair| pair.split_once('=')).map(|(_, value)| value.to_owned())
-        };
-        let without = |names: &[&str]| {
-            let is_kept =
-                |pair: &&str| !pair.is_empty() && !names.contains(&pair.split('=').next().unwrap_or_default());
-            let kept: Vec<&str> = query.split('&').filter(is_kept).collect();
-            if kept.is_empty() { String::new() } else { format!("?{}", kept.join("&")) }
-        };
-        // The client knows only some modes and no file of certificates.
-        let parsed = format!("{base}{}", without(&["sslmode", "sslrootcert"])).parse();
+        let (place, query) = rest.split_once('?').unwrap_or((rest, ""));
+        let pairs =
+            query.split('&').filter(|pair| !pair.is_empty()).map(|pair| pair.split_once('=').unwrap_or((pair, "")));
+        let pairs: Vec<(&str, &str)> = pairs.collect();
+        if let Some((name, _)) = pairs.iter().find(|(name, _)| *name != PASSWORD && !PARAMETERS.contains(name)) {
+            return Err(ServerAddressError::UnknownParameter { name: (*name).to_owned() });
+        }
+        let parameter = |name: &str| pairs.iter().find(|(own, _)| *own == name).map(|(_, value)| *value);
+        let parsed =
+            join(scheme, account, place, pairs.iter().filter(|(name, _)| !TLS_PARAMETERS.contains(name))).parse();
         let config: Config = parsed.map_err(|_| ServerAddressError::NotAnAddress)?;
         if config.get_hosts().is_empty() {
             return Err(ServerAddressError::NotAnAddress);
         }
         let authorities = parameter("sslrootcert").map(PathBuf::from);
-        let encryption = match parameter("sslmode").as_deref() {
+        let encryption = match parameter("sslmode") {
             Some("disable") => Encryption::Off,
             Some("require" | "verify-ca" | "verify-full") => Encryption::Verified(authorities),
             Some(found) => return Err(ServerAddressError::UnknownEncryption { found: found.to_owned() }),
@@ -93,7 +123,8 @@ impl ServerAddress {
             None => Encryption::Verified(authorities),
         };
         let password = config.get_password().map(|bytes| Password(String::from_utf8_lossy(bytes).into_owned()));
-        let text = format!("{}{}", without_password(base), without(&["password"]));
+        let user = account.map(|account| account.split_once(':').map_or(account, |(user, _)| user));
+        let text = join(scheme, user, place, pairs.iter().filter(|(name, _)| *name != PASSWORD));
         Ok(ServerAddress { text, config, encryption, password })
     }
 
@@ -167,13 +198,17 @@ fn is_local_host(host: &Host) -> bool {
     }
 }
 
-/// Returns the part of an address before its parameters, without the password of the user.
-fn without_password(base: &str) -> String {
-    let Some((scheme, rest)) = base.split_once("://") else { return base.to_owned() };
-    let (authority, path) = rest.find('/').map_or((rest, ""), |at| rest.split_at(at));
-    let Some((user, host)) = authority.rsplit_once('@') else { return base.to_owned() };
-    let user = user.split(':').next().unwrap_or_default();
-    format!("{scheme}://{user}@{host}{path}")
+/// Joins the parts of an address.
+fn join<'p>(
+    scheme: &str,
+    account: Option<&str>,
+    place: &str,
+    parameters: impl Iterator<Item = &'p (&'p str, &'p str)>,
+) -> String {
+    let account = account.map(|account| format!("{account}@")).unwrap_or_default();
+    let parameters: Vec<String> = parameters.map(|(name, value)| format!("{name}={value}")).collect();
+    let query = if parameters.is_empty() { String::new() } else { format!("?{}", parameters.join("&")) };
+    format!("{scheme}{account}{place}{query}")
 }
 
 #[cfg(test)]
@@ -199,6 +234,40 @@ mod tests {
         }
         let plain = ServerAddress::from_setting(" postgresql://bench@db.plant/logs ").unwrap();
         assert_eq!((plain.name().as_str(), plain.password), ("db.plant/logs", None));
+    }
+
+    /// Any character in a password either has a clear meaning or makes the address invalid.
+    #[test]
+    fn no_character_of_a_password_is_taken_for_another_part_of_the_address() {
+        let printable = || (0x21..0x7fu8).map(char::from);
+        for (first, second) in printable().flat_map(|first| printable().map(move |second| (first, second))) {
+            let given = format!("postgres://bench:k{first}3{second}y@db.plant/logs");
+            match ServerAddress::from_environment(&given) {
+                Ok(address) => {
+                    let shown = format!("{address} {} {address:?}", address.name());
+                    assert!(shown.starts_with("postgres://bench@db.plant/logs db.plant/logs "), "{given}: {shown}");
+                    assert!(address.has_password() && !shown.contains(&format!("k{first}3")), "{given}: {shown}");
+                }
+                Err(error) => {
+                    assert!([first, second].iter().any(|own| ['@', '/', '?'].contains(own)), "{given}: {error}");
+                    assert_eq!(error, ServerAddressError::Ambiguous, "{given}");
+                }
+            }
+        }
+        let escaped = ServerAddress::from_environment("postgres://bench:p%40%2F%3Fw@db.plant/logs").unwrap();
+        assert_eq!(escaped.password.unwrap().reveal(), "p@/?w");
+    }
+
+    #[test]
+    fn a_parameter_neither_hides_a_password_nor_names_another_host() {
+        for name in ["passwor%64", "options", "hostaddr"] {
+            let unknown = ServerAddressError::UnknownParameter { name: name.to_owned() };
+            let text = format!("postgres://localhost/x?sslmode=disable&{name}=10.0.0.5");
+            assert_eq!(ServerAddress::from_environment(&text), Err(unknown));
+        }
+        let text = "postgres://localhost/x?host=db.plant&target_session_attrs=read-write";
+        let address = ServerAddress::from_setting(text).unwrap();
+        assert_eq!((address.to_string().as_str(), address.encryption), (text, Encryption::Verified(None)));
     }
 
     #[test]
