@@ -8,7 +8,7 @@ mod tests;
 mod undo;
 
 use std::hash::Hash;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use jiff::Timestamp;
@@ -239,20 +239,25 @@ pub fn is_incomplete(seen: Option<CycleCount>, cost: u64, limit: u64) -> bool {
 /// Returns the write cycles recorded for a device in the logbook, after asking other benches for theirs. Returns `None`
 /// if the logbook cannot be read.
 pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<CycleCount> {
-    store.logbook_server().transfer_unless_away(&store.logbook_path(), SERVER_TIMEOUT);
-    known_cycles(store, device)
+    let path = store.logbook_path();
+    let transferred = store.logbook_server().transfer_unless_away(&path, SERVER_TIMEOUT);
+    count_cycles(&path, device, transferred.is_none_or(|result| result.is_ok()))
 }
 
 /// Returns the write cycles recorded for a device in the local file. Returns `None` if the file cannot be read, or if
 /// an earlier file was damaged and is still there.
 pub fn known_cycles(store: &Store, device: &DeviceKey) -> Option<CycleCount> {
-    let (path, server) = (store.logbook_path(), store.logbook_server());
-    let is_complete = !server.is_set() || server.contact().is_reached;
+    let server = store.logbook_server();
+    count_cycles(&store.logbook_path(), device, !server.is_set() || server.contact().is_reached)
+}
+
+/// Counts the write cycles in the local file. `is_complete` means that it has the entries of all benches.
+fn count_cycles(path: &Path, device: &DeviceKey, is_complete: bool) -> Option<CycleCount> {
     if matches!(path.try_exists(), Ok(false)) {
         return Some(CycleCount { seen: 0, is_complete });
     }
     let read = |logbook: Logbook| Ok((logbook.write_cycles(device)?, logbook.damaged_file()?));
-    match Logbook::open(&path).and_then(read) {
+    match Logbook::open(path).and_then(read) {
         // The damaged file may contain any number of write cycles, until the user has dealt with it.
         Ok((_, Some(damaged))) if damaged.exists() => None,
         Ok((seen, damaged)) => Some(CycleCount { seen, is_complete: is_complete && damaged.is_none() }),
