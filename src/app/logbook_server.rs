@@ -11,7 +11,7 @@ use super::logbook::LOGBOOK_TAB;
 use super::studio::Studio;
 use super::tasks::ActionMailbox;
 use super::{Settings, Severity, explain};
-use crate::store::{Contact, Logbook, ServerAddress, ServerAddressError, Store};
+use crate::store::{Contact, Logbook, ServerAddress, ServerAddressError, ServerError, ServerErrorKind, Store};
 
 /// Environment variable that names the server instead of the settings.
 const VARIABLE: &str = "ENCODER_STUDIO_LOGBOOK";
@@ -20,16 +20,22 @@ const VARIABLE: &str = "ENCODER_STUDIO_LOGBOOK";
 const SEND_INTERVAL: Duration = Duration::from_secs(1);
 /// Interval at which the thread asks for entries of other benches.
 const RECEIVE_INTERVAL: Duration = Duration::from_secs(10);
-/// Maximum time for each request to the server.
-const TIMEOUT: Duration = Duration::from_secs(5);
+/// Maximum time for an exchange. The first one copies all entries of other benches. A silent server is noticed earlier.
+const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Returns the server that the environment or else the settings name, or `None` if there is none.
-pub fn server_address(settings: &Settings) -> Option<Result<ServerAddress, ServerAddressError>> {
+pub(super) fn server_address(settings: &Settings) -> Option<Result<ServerAddress, ServerAddressError>> {
     match given_server() {
         Some(address) => Some(ServerAddress::from_environment(&address)),
         None if settings.logbook.trim().is_empty() => None,
         None => Some(ServerAddress::from_setting(&settings.logbook)),
     }
+}
+
+/// Returns the server while the settings cannot be read: that of the environment, or one that counts as away.
+pub(super) fn server_address_without_settings() -> Option<Result<ServerAddress, ServerAddressError>> {
+    let unknown = || Err(ServerAddressError::SettingsUnreadable);
+    Some(given_server().map_or_else(unknown, |address| ServerAddress::from_environment(&address)))
 }
 
 fn given_server() -> Option<String> {
@@ -115,7 +121,11 @@ impl Studio {
             self.logbook.mark_stale();
         }
         let contact = self.logbook.exchange().contact.clone();
-        if let Some(problem) = contact.problem.filter(|_| before.contact.problem.is_none()) {
+        // Settings that cannot be read have been reported already.
+        let is_told =
+            |own: &ServerError| own.problem == ServerErrorKind::Address(ServerAddressError::SettingsUnreadable);
+        let is_new = |own: &ServerError| before.contact.problem.is_none() && !is_told(own);
+        if let Some(problem) = contact.problem.filter(is_new) {
             let text = vec![explain::server_error_text(&problem)];
             // The page of the logbook shows it beside its entries.
             if self.settings.tab == LOGBOOK_TAB {

@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use serde::de::{MapAccess, Visitor};
+use ron::error::SpannedError;
+use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Language;
@@ -85,9 +86,12 @@ impl Settings {
 
     const LINKS: usize = 12;
 
-    /// Parses settings, or returns `None` if the text is not in the form that [`emit`](Self::emit) writes.
-    pub fn parse(text: &str) -> Option<Self> {
-        ron::from_str(text).ok()
+    /// Parses settings.
+    ///
+    /// # Errors
+    /// Returns the place of the first error if the text is not in the form that [`emit`](Self::emit) writes.
+    pub fn parse(text: &str) -> Result<Self, SpannedError> {
+        ron::from_str(text)
     }
 
     /// Returns the readable part of a file that [`parse`](Self::parse) rejects. Entries are read one by one, so an
@@ -122,7 +126,15 @@ impl Settings {
             values_alone: entry!(values_alone: bool, usual.values_alone),
             company: entry!(company: Option<String>, usual.company),
             company_logo: entry!(company_logo: Option<String>, usual.company_logo),
-            user_name: entry!(user_name: UserName, usual.user_name),
+            user_name: {
+                #[derive(Deserialize)]
+                struct Own {
+                    #[serde(default)]
+                    user_name: UserName,
+                }
+                // The rules of the plant may forbid names.
+                ron::from_str::<Own>(text).map_or(UserName::Off, |own| own.user_name)
+            },
             logbook: entry!(logbook: String, usual.logbook),
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
@@ -179,10 +191,24 @@ impl Settings {
         self.drives = from.drives.clone();
     }
 
-    /// Returns the settings in a file, as far as they are readable, for the command line. Without a file, the defaults
-    /// apply.
-    pub fn of_file(text: &str) -> Self {
-        Settings::parse(text).unwrap_or_else(|| Settings::parse_partial(text))
+    /// Returns the first name in a valid file that is not that of a setting. It may be misspelt, or of a newer version.
+    pub(super) fn unknown_name(text: &str) -> Option<String> {
+        let ron::Value::Map(entries) = ron::from_str(text).ok()? else { return None };
+        let known = setting_names();
+        entries.keys().find_map(|key| match key {
+            ron::Value::String(name) if !known.contains(&name.as_str()) => Some(name.clone()),
+            _ => None,
+        })
+    }
+
+    /// Returns whether the address of the server can be read in a file, or is not in it.
+    pub(super) fn is_logbook_readable(text: &str) -> bool {
+        #[derive(Deserialize)]
+        struct Own {
+            #[serde(default, rename = "logbook")]
+            _logbook: String,
+        }
+        ron::from_str::<Own>(text).is_ok()
     }
 
     pub fn emit(&self) -> String {
@@ -217,6 +243,37 @@ impl Settings {
             links.truncate(Self::LINKS);
         });
     }
+}
+
+/// Returns the names of the settings in a file.
+fn setting_names() -> &'static [&'static str] {
+    /// Takes the names of the fields that a structure expects.
+    struct FieldNames<'n>(&'n mut &'static [&'static str]);
+    impl<'de> Deserializer<'de> for FieldNames<'_> {
+        type Error = serde::de::value::Error;
+
+        fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Self::Error> {
+            Err(Self::Error::custom("only the names are of interest"))
+        }
+
+        fn deserialize_struct<V: Visitor<'de>>(
+            self,
+            _: &'static str,
+            fields: &'static [&'static str],
+            visitor: V,
+        ) -> Result<V::Value, Self::Error> {
+            *self.0 = fields;
+            self.deserialize_any(visitor)
+        }
+
+        serde::forward_to_deserialize_any! {
+            bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct
+            newtype_struct seq tuple tuple_struct map enum identifier ignored_any
+        }
+    }
+    let mut names: &[&str] = &[];
+    let _ = Settings::deserialize(FieldNames(&mut names));
+    names
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {

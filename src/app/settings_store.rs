@@ -14,10 +14,11 @@ use jiff::Zoned;
 
 use super::action::{Action, TaskResult};
 use super::kinds::KindRegistry;
-use super::logbook_server::server_address;
+use super::logbook_server::{server_address, server_address_without_settings};
 use super::services::Services;
 use super::{Settings, Severity, Text, explain};
-use crate::store::{FileError, FileErrorKind, read_text, update_text};
+use crate::profile::find_location;
+use crate::store::{FileError, FileErrorKind, ServerAddress, ServerAddressError, UserName, read_text, update_text};
 
 /// Maximum time to wait for the settings at the start of the program.
 const START_TIMEOUT: Duration = Duration::from_millis(300);
@@ -55,6 +56,17 @@ pub enum LoadedSettings {
     },
     /// The file cannot be read at all.
     Unreadable(FileError),
+}
+
+/// Settings as a command uses them. It never changes the file.
+#[derive(Debug)]
+pub struct CommandSettings {
+    /// The readable settings. Without a readable rule for the name of the user, it is left out.
+    pub settings: Settings,
+    /// The server of the logbook. Unless it can be read, it counts as a server that is away.
+    pub server: Option<Result<ServerAddress, ServerAddressError>>,
+    /// Reason why the file cannot be read completely.
+    pub problem: Option<Text>,
 }
 
 #[derive(Debug)]
@@ -122,6 +134,8 @@ impl SettingsStore {
             LoadedSettings::Unreadable(error) => {
                 let text = Text::new("session.settings_unread").with_text("why", explain::file_error_text(&error));
                 services.notify(Severity::Warning, vec![text], None);
+                UserName::Off.apply();
+                services.world.store.logbook_server().set_address(server_address_without_settings());
                 return;
             }
         };
@@ -230,6 +244,46 @@ impl SettingsStore {
     }
 }
 
+impl CommandSettings {
+    /// Reads the settings for a command.
+    pub fn read(path: &Path) -> Self {
+        match read_text(path) {
+            Ok(text) => Self::parse(path, &text),
+            Err(FileError { problem: FileErrorKind::NotFound | FileErrorKind::NoFolder, .. }) => {
+                let settings = Settings::default();
+                CommandSettings { server: server_address(&settings), settings, problem: None }
+            }
+            Err(error) => CommandSettings {
+                settings: Settings::parse_partial(""),
+                server: server_address_without_settings(),
+                problem: Some(Text::new("settings.unread").with_text("why", explain::file_error_text(&error))),
+            },
+        }
+    }
+
+    fn parse(path: &Path, text: &str) -> Self {
+        let error = match Settings::parse(text) {
+            Ok(settings) => {
+                let problem = Settings::unknown_name(text).map(|name| {
+                    let (line, column) = find_location(text, &name).unwrap_or((1, 1));
+                    let why =
+                        explain::syntax_error_text(line, column, Text::new("settings.unknown").with("name", name));
+                    Text::new("settings.broken").with("path", path.display()).with_text("why", why)
+                });
+                return CommandSettings { server: server_address(&settings), settings, problem };
+            }
+            Err(error) => error,
+        };
+        let settings = Settings::parse_partial(text);
+        let is_readable = Settings::is_logbook_readable(text);
+        let server = if is_readable { server_address(&settings) } else { server_address_without_settings() };
+        let place = error.span.start;
+        let why = explain::syntax_error_text(place.line, place.col, explain::literal_text(&error.code));
+        let problem = Text::new("settings.broken").with("path", path.display()).with_text("why", why);
+        CommandSettings { settings, server, problem: Some(problem) }
+    }
+}
+
 /// Reads the settings. An invalid file is copied to another name in the same folder.
 fn read(path: PathBuf, kinds: KindRegistry) -> LoadedSettings {
     match parse_settings(read_text(&path), kinds) {
@@ -250,15 +304,17 @@ fn parse_settings(text: Result<String, FileError>, kinds: KindRegistry) -> Resul
     match text {
         Ok(text) => {
             let (mut settings, is_whole) = match Settings::parse(&text) {
-                Some(settings) => (settings, true),
-                None => (Settings::parse_partial(&text), false),
+                Ok(settings) => (settings, true),
+                Err(_) => (Settings::parse_partial(&text), false),
             };
             settings.replace_unknown_tab(kinds);
             Ok(Some((settings, is_whole)))
         }
         Err(FileError { problem: FileErrorKind::NotFound, .. }) => Ok(None),
         Err(FileError { problem: FileErrorKind::NotUtf8 { .. } | FileErrorKind::TooLarge { .. }, .. }) => {
-            Ok(Some((Settings::initial(kinds), false)))
+            let mut settings = Settings::initial(kinds);
+            settings.user_name = UserName::Off;
+            Ok(Some((settings, false)))
         }
         Err(error) => Err(error),
     }

@@ -14,11 +14,11 @@ use super::runner::to_failure;
 use super::user_store::{exchange_entries, user_store};
 use super::{Failure, Result, Success};
 use crate::app::report::{ReportContext, ReportFormat, ReportRequest, company, current_time_text, file_name};
-use crate::app::{Language, Settings, explain};
+use crate::app::{CommandSettings, Language, explain};
 use crate::link::LinkUrl;
 use crate::profile::Body;
 use crate::report::Report;
-use crate::store::{read_text, write_atomically};
+use crate::store::write_atomically;
 
 pub(super) fn report(common: &CommonArgs, output: &Output, arguments: &ReportArgs) -> Result {
     let file = &arguments.file;
@@ -46,7 +46,7 @@ pub(super) fn report(common: &CommonArgs, output: &Output, arguments: &ReportArg
             request.create(output.kinds(), &store).map_err(|why| to_failure(&why))?
         }
     };
-    let settings = read_text(&store.settings_path()).map(|text| Settings::of_file(&text)).unwrap_or_default();
+    let CommandSettings { settings, .. } = CommandSettings::read(&store.settings_path());
     let report = Report { company: company(&settings).map_err(|why| to_failure(&why))?, ..report };
     let printed = current_time_text(&Zoned::now(), context.language);
     let bytes = format.render(&report, &printed).map_err(|why| to_failure(&why))?;

@@ -1,25 +1,31 @@
 //! The files of the user, and the server of the logbook that the settings or the environment name.
 
+use std::sync::Once;
 use std::time::Duration;
 
 use super::Result;
 use super::args::CommonArgs;
-use super::output::Output;
+use super::output::{Output, write_stderr};
 use super::runner::to_failure;
-use crate::app::{Settings, Text, explain, server_address};
-use crate::store::{Logbook, Store, read_text};
+use crate::app::{CommandSettings, Text, explain};
+use crate::store::{Logbook, ServerAddressError, ServerErrorKind, Store};
 
 /// Maximum time for each request to the server of the logbook.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
+
+/// A command may read its settings several times.
+static SETTINGS_REPORTED: Once = Once::new();
 
 /// Returns the files of the user. Entries carry the user's name as the settings demand, and are shared over the server
 /// that they name.
 pub(super) fn user_store(common: &CommonArgs) -> Result<Store> {
     let store = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?;
-    let settings =
-        read_text(&store.settings_path()).map_or_else(|_| Settings::default(), |text| Settings::of_file(&text));
+    let CommandSettings { settings, server, problem } = CommandSettings::read(&store.settings_path());
+    if let Some(problem) = problem {
+        SETTINGS_REPORTED.call_once(|| write_stderr(&format!("{}\n", problem.terminal_text())));
+    }
     settings.user_name.apply();
-    common.server.set_address(server_address(&settings));
+    common.server.set_address(server);
     Ok(store.with_server(common.server.clone()))
 }
 
@@ -47,8 +53,9 @@ pub(super) fn finish_entries(common: &CommonArgs, output: &Output) {
     }
     if let Some(problem) = common.server.contact().problem {
         output.print_message(&explain::server_error_text(&problem).terminal_text());
+        let is_known = problem.problem != ServerErrorKind::Address(ServerAddressError::SettingsUnreadable);
         let count = waiting();
-        if count > 0 {
+        if count > 0 && is_known {
             output.print_message(&Text::new("server.waiting").with("count", count).terminal_text());
         }
     }

@@ -7,7 +7,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 
 /// Returns the line and column of an entry's name, counted from 1. Returns `None` if there is no entry at `path`, for
 /// example `fields[2].status`.
-pub(super) fn find_location(text: &str, path: &str) -> Option<(usize, usize)> {
+pub(crate) fn find_location(text: &str, path: &str) -> Option<(usize, usize)> {
     let sought = EntrySearch { path: String::new(), wanted: path };
     let found = ron::Options::default().from_str_seed(text, sought).err()?;
     if found.code != ron::Error::Message(FOUND_MESSAGE.to_owned()) {

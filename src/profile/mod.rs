@@ -31,6 +31,7 @@ pub use cause::Cause;
 pub use changed_item::ChangedItem;
 pub use difference::{Comparison, Difference};
 pub use document::{ProfileDocument, SCHEMA};
+pub(crate) use entry_location::find_location;
 pub use error::{ProfileError, SyntaxErrorKind};
 pub use mounting::MountingMark;
 pub use plan::{Consent, Operation, Plan, PlanId};

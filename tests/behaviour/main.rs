@@ -23,6 +23,7 @@ mod cli_log;
 mod cli_offline;
 mod cli_ports;
 mod cli_position;
+mod cli_settings;
 mod cli_simulate;
 mod cli_ssi;
 mod cli_status;

@@ -3,6 +3,7 @@
 use std::fs;
 
 use encoder_studio::app::{Action, ColorScheme, Language, Settings, Severity};
+use encoder_studio::store::UserName;
 
 use crate::support::{Desk, OTHER_PORT, PORT};
 
@@ -11,7 +12,7 @@ fn kept(desk: &mut Desk) {
     let path = desk.outside.store().settings_path();
     desk.until("the settings are kept", |studio| {
         let text = fs::read_to_string(&path).unwrap_or_default();
-        Settings::parse(&text).as_ref() == Some(&studio.settings)
+        Settings::parse(&text).as_ref() == Ok(&studio.settings)
     });
 }
 
@@ -75,6 +76,8 @@ fn broken_settings_are_reported_and_kept_until_a_change() {
         let language = if broken.starts_with(b"(") { Language::German } else { Language::English };
         let mut expected = Settings::initial(encoder_studio::kinds::program().studio);
         expected.language = language;
+        // Unless the file says how the user is named in the logbook, the name is left out.
+        expected.user_name = if broken.starts_with(b"(") { UserName::Full } else { UserName::Off };
         assert_eq!(desk.studio.settings, expected);
         assert_eq!(fs::read(&path).unwrap(), broken);
         desk.act(Action::SetTheme(ColorScheme::Light));
@@ -93,6 +96,7 @@ fn unreadable_settings_are_not_overwritten() {
     desk.act(Action::SetTheme(ColorScheme::Light));
     desk.settle();
     assert!(path.is_dir());
+    assert!(desk.studio.server_exchange().is_some(), "the settings may name a server of the logbook");
     assert_eq!(desk.notice_ids(Severity::Warning).len(), 1);
 }
 

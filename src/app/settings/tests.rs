@@ -10,10 +10,10 @@ fn settings_round_trip_and_unknown_ones_are_ignored() {
     let mut settings = Settings { theme: ColorScheme::Light, language: Language::German, ..Settings::default() };
     settings.use_link(HIPERFACE, "serial:/dev/ttyUSB0");
     settings.layout = Some("(tiles: {})".to_owned());
-    assert_eq!(Settings::parse(&settings.emit()), Some(settings));
-    assert_eq!(Settings::parse("(theme: Light, colour: 7)").map(|s| s.theme), Some(ColorScheme::Light));
-    assert_eq!(Settings::parse("(theme: Mauve)"), None);
-    assert_eq!(Settings::parse(""), None);
+    assert_eq!(Settings::parse(&settings.emit()), Ok(settings));
+    assert_eq!(Settings::parse("(theme: Light, colour: 7)").map(|s| s.theme), Ok(ColorScheme::Light));
+    assert!(Settings::parse("(theme: Mauve)").is_err());
+    assert!(Settings::parse("").is_err());
 }
 
 #[test]
@@ -21,11 +21,33 @@ fn readable_parts_of_broken_settings_are_kept() {
     let mut settings = Settings { theme: ColorScheme::Light, size: Some((1500, 900)), ..Settings::default() };
     settings.use_link(HIPERFACE, "serial:/dev/ttyUSB0");
     let broken = settings.emit().replace("tab: First", "tab: 7");
-    assert_eq!(Settings::parse(&broken), None);
+    assert!(Settings::parse(&broken).is_err());
     assert_eq!(Settings::parse_partial(&broken), settings);
     assert_eq!(Settings::parse_partial("(theme: Light, links: 7)").theme, ColorScheme::Light);
     assert_eq!(Settings::parse_partial("(links: [\"sim:\"])").links_of(Tab::default()), ["sim:"], "from before");
     assert!(Settings::parse_partial("no settings").links_of(HIPERFACE).is_empty());
+}
+
+#[test]
+fn an_unknown_name_is_found() {
+    let all = Settings { lower_open: true, company: Some("x".into()), logbook: "x".into(), ..Settings::default() };
+    assert_eq!(Settings::unknown_name(&all.emit()), None);
+    assert_eq!(Settings::unknown_name("(theme: Light, logbok: \"\")").as_deref(), Some("logbok"));
+    assert_eq!(Settings::unknown_name("(theme: "), None);
+}
+
+/// A name must not get into the logbook because the rule about names cannot be read.
+#[test]
+fn without_a_readable_rule_the_user_is_not_named() {
+    for (text, expected) in [
+        ("(theme: Mauve)", UserName::Full),
+        ("(theme: Mauve, user_name: Initials)", UserName::Initials),
+        ("(theme: Mauve, user_name: Of)", UserName::Off),
+        ("(user_name: Initials", UserName::Off),
+        ("", UserName::Off),
+    ] {
+        assert_eq!(Settings::parse_partial(text).user_name, expected, "{text}");
+    }
 }
 
 /// A tab that belongs to a different version of the program is unknown here, but its entries are kept.
@@ -118,7 +140,7 @@ fn changes_are_merged_and_marks_only_tighten() {
 #[test]
 fn marks_are_read_from_a_broken_entry() {
     let broken = "(drives: {\"HUB-4 7\": (measure: Cubits, unconfirmed: [1], marks: {1: 2})})";
-    assert_eq!(Settings::parse(broken), None);
+    assert!(Settings::parse(broken).is_err());
     assert_eq!(Settings::parse_partial(broken), with_drives("unconfirmed: [1], marks: {1: 2}"));
 }
 

@@ -1,0 +1,76 @@
+//! Settings that a command cannot read completely.
+
+use serde_json::Value;
+
+use super::postgres::Postgres;
+use super::support::Bench;
+
+const IDENTIFY: [&str; 4] = ["identify", "hiperface", "--link", "sim:"];
+/// The memory of this encoder wears out quickly.
+const WRITE: [&str; 7] = ["write", "interbus", "preset", "7", "--yes", "--link", "sim:"];
+
+fn bench_with(settings: &str) -> Bench {
+    let bench = Bench::new();
+    std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
+    bench.write("config/encoder-studio/settings.ron", settings);
+    bench
+}
+
+fn user_of_the_last_entry(bench: &Bench) -> Value {
+    bench.run(&["log", "--json", "--limit", "1"]).json()["user"].clone()
+}
+
+#[test]
+fn broken_settings_are_named_with_the_place_and_count_as_a_server_that_is_away() {
+    let bench = bench_with("(\n    user_name: Initials,\n    logbook: postgres,\n)");
+    let ran = bench.run(&IDENTIFY);
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    for words in
+        ["settings.ron could not be read completely: line 3, column ", "not known whether the logbook is shared"]
+    {
+        assert_eq!(ran.err.matches(words).count(), 1, "{words}: {ran:?}");
+    }
+    assert_ne!(user_of_the_last_entry(&bench), Value::Null, "the rule about names can be read");
+    bench.run(&WRITE).fails(1, &["at least 0 of", "--force-wear"]);
+    assert_eq!(bench.run(&[&WRITE[..], &["--force-wear"]].concat()).status, Some(0));
+}
+
+#[test]
+fn without_a_readable_rule_the_user_is_not_named() {
+    let bench = bench_with("(user_name: Initials");
+    let ran = bench.run(&IDENTIFY);
+    assert!(ran.status == Some(0) && ran.err.contains("line 1, column "), "{ran:?}");
+    assert_eq!(user_of_the_last_entry(&bench), Value::Null);
+    // A folder in its place cannot be read at all.
+    let bench = Bench::new();
+    std::fs::create_dir_all(bench.path("config/encoder-studio/settings.ron")).unwrap();
+    let ran = bench.run(&IDENTIFY);
+    assert!(ran.status == Some(0) && ran.err.contains("The settings could not be read."), "{ran:?}");
+    assert_eq!(user_of_the_last_entry(&bench), Value::Null);
+    bench.run(&WRITE).fails(1, &["at least 0 of"]);
+}
+
+#[test]
+fn a_misspelt_setting_is_named_with_its_place() {
+    let bench = bench_with("(theme: Dark,\n  logbok: \"postgres://db.plant/logs\")");
+    let ran = bench.run(&IDENTIFY);
+    assert!(ran.status == Some(0) && ran.err.contains("line 2, column 3: logbok is not a setting"), "{ran:?}");
+}
+
+/// A setting that does not concern the logbook is named and otherwise ignored.
+#[test]
+fn another_broken_setting_does_not_matter_to_a_write() {
+    let bench = bench_with("(theme: Pink)");
+    let ran = bench.run(&WRITE);
+    assert!(ran.status == Some(0) && ran.err.contains("line 1, column ") && ran.err.contains("Pink"), "{ran:?}");
+    assert!(!ran.err.contains("shared"), "{ran:?}");
+}
+
+#[test]
+fn the_server_of_the_environment_is_used_without_readable_settings() {
+    let Some(server) = Postgres::start() else { return };
+    let bench = bench_with("(");
+    let ran = bench.run_with_server(&server.url(), &WRITE);
+    assert!(ran.status == Some(0) && !ran.err.contains("shared"), "{ran:?}");
+    assert_eq!(server.sql("SELECT what FROM event ORDER BY id"), ["connected", "write"]);
+}
