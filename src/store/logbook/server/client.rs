@@ -17,6 +17,11 @@ use super::error::{ServerErrorKind, UnreachableCause};
 
 const DEFAULT_PORT: u16 = 5432;
 
+/// Limits in the server, for a program that was suspended or lost its network and holds a lock. They are longer than
+/// any request of this program takes.
+const SESSION_OPTIONS: &str = "-c idle_in_transaction_session_timeout=6s -c statement_timeout=30s \
+    -c tcp_keepalives_idle=30 -c tcp_keepalives_interval=10";
+
 /// A connection to a server.
 pub(super) struct Client {
     runtime: OwnRuntime,
@@ -37,7 +42,7 @@ impl Client {
         let runtime = OwnRuntime::new()?;
         let mut config = address.config.clone();
         // Without a password, the server rejects an empty one, which needs no other treatment.
-        config.password(password.map_or("", Password::reveal)).application_name("encoder-studio");
+        config.password(password.map_or("", Password::reveal)).application_name("encoder-studio").options(SESSION_OPTIONS);
         let connected = runtime.run(limit, async {
             check_host(&config).await?;
             match &address.encryption {

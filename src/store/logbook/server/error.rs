@@ -134,6 +134,8 @@ impl From<tokio_postgres::Error> for ServerErrorKind {
                 code if *code == SqlState::INVALID_CATALOG_NAME => ServerErrorKind::NoDatabase,
                 code if *code == SqlState::INSUFFICIENT_PRIVILEGE => ServerErrorKind::NoRights { what },
                 code if *code == SqlState::DISK_FULL => ServerErrorKind::DiskFull,
+                code if *code == SqlState::QUERY_CANCELED => ServerErrorKind::NoReply,
+                code if *code == SqlState::IDLE_IN_TRANSACTION_SESSION_TIMEOUT => ServerErrorKind::NoReply,
                 code if NOT_RUNNING.contains(&code.code()) => {
                     ServerErrorKind::Unreachable { why: UnreachableCause::Other(what) }
                 }
