@@ -1,21 +1,22 @@
 //! Several benches share a logbook on a PostgreSQL server, which may be away, be killed, or refuse them.
 
-use std::io::{BufRead, BufReader};
 use std::net::TcpListener;
-use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
-use encoder_studio::store::{DeviceKey, EntryFilter, EntryKind, Event, Intent, Logbook, Outcome, ServerAddress, Store};
-use jiff::Timestamp;
+use encoder_studio::store::{DeviceKey, Store};
 use serde_json::Value;
 
 use super::postgres::{PASSWORD, Postgres};
 use super::support::{Bench, Ran, Simulated};
 
 const WRITE: [&str; 7] = ["write", "hiperface", "field:0@3+2", "C0FF", "--yes", "--link", "sim:"];
-const LIMIT: Duration = Duration::from_secs(5);
+pub(crate) const LIMIT: Duration = Duration::from_secs(5);
+
+/// A device that is not virtual.
+pub(crate) fn device() -> DeviceKey {
+    DeviceKey::new("hiperface", "37h", "GB1", false)
+}
 
 /// Returns the entries that `log` prints, oldest first.
 fn entries(ran: &Ran) -> Vec<Value> {
@@ -125,13 +126,8 @@ fn quickly_wearing_memories_need_a_permit_while_the_server_is_unreachable() {
 #[test]
 fn benches_that_hold_the_same_device_are_told_of_each_other() {
     let Some(server) = Postgres::start() else { return };
-    let address = format!("postgres://bench:{PASSWORD}@127.0.0.1:{}/logs", server.port);
     let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    let [one, two] = [one.path(), two.path()].map(|root| {
-        let store = Store::at_root(root);
-        store.logbook_server().set_address(Some(ServerAddress::from_environment(&address)));
-        store
-    });
+    let [one, two] = [one.path(), two.path()].map(|root| server.store_at(root));
     let others = |store: &Store| {
         store.logbook_server().transfer(&store.logbook_path(), LIMIT).unwrap().unwrap();
         store.logbook_server().contact().others.into_iter().map(|other| other.device).collect::<Vec<_>>()
@@ -196,6 +192,10 @@ fn each_problem_of_the_server_is_explained_and_work_goes_on() {
     check(&format!("{url}?sslmode=verify-full"), PASSWORD, &["encrypted connection", "sslrootcert"]);
     check(&format!("{url}?sslmode=prefer"), PASSWORD, &["sslmode=prefer", "verify-full"]);
     check("mysql://db.plant/logs", PASSWORD, &["postgres://USER@HOST/DATABASE"]);
+    for account in ["bench:wr0ng/x", "bench:wr0ng?x", "bench:x@wr0ng"] {
+        check(&format!("postgres://{account}@127.0.0.1:{port}/logs"), "", &["%40, %2F and %3F"]);
+    }
+    check(&format!("{url}?hostaddr=10.0.0.5"), PASSWORD, &["hostaddr", "not supported"]);
     server.sql("CREATE ROLE guest LOGIN PASSWORD 'k3y-of-the-bench'");
     check(&format!("postgres://guest@127.0.0.1:{port}/logs"), PASSWORD, &["lacks a right", "schema public"]);
     // The tables, then a newer and an older schema.
@@ -224,7 +224,11 @@ fn each_problem_of_the_server_is_explained_and_work_goes_on() {
     assert_eq!((count("hold"), count("event")), (0, written + 2));
     assert_eq!(server.sql("SELECT schema FROM logbook"), ["3"]);
     assert_eq!(server.sql("SELECT count(*) FROM event WHERE undoes IS NOT NULL"), ["0"]);
-    assert!(!bench.everything_kept().contains(PASSWORD));
+    server.sql("ALTER ROLE bench PASSWORD 'k3y@/?:%'");
+    check(&url.replace('@', ":k3y%40%2F%3F%3A%25@"), "", &[]);
+    assert_eq!(count("event"), written + 4, "this password was accepted");
+    let kept = bench.everything_kept();
+    assert!(!kept.contains("k3y") && !kept.contains("wr0ng"), "{kept}");
 }
 
 /// A password in the setting is refused, and neither used nor repeated.
@@ -307,104 +311,4 @@ fn a_connection_is_encrypted_and_the_certificate_is_checked() {
     // Another name than that in the certificate.
     let ran = bench.run_with_server(&url(&ca).replace("127.0.0.1", "localhost"), &WRITE);
     assert!(ran.status == Some(0) && ran.err.contains("encrypted connection"), "{ran:?}");
-}
-
-const WRITES: usize = 500;
-
-fn device() -> DeviceKey {
-    DeviceKey::new("hiperface", "37h", "GB1", false)
-}
-
-/// The part of the next test that runs in a separate process: it records entries as fast as it can, prints each one
-/// that is acknowledged, and sends them at the same time.
-#[test]
-#[ignore = "is started by another test"]
-fn writer() {
-    let Ok(root) = std::env::var("WRITER_ROOT") else { return };
-    let (store, name) = (Store::at_root(Path::new(&root)), std::env::var("WRITER_NAME").unwrap());
-    let address = ServerAddress::from_environment(&std::env::var("WRITER_SERVER").unwrap());
-    store.logbook_server().set_address(Some(address));
-    let sender = store.clone();
-    std::thread::spawn(move || {
-        loop {
-            sender.logbook_server().transfer(&sender.logbook_path(), LIMIT);
-            sleep(Duration::from_millis(5));
-        }
-    });
-    let mut logbook = Logbook::open(&store.logbook_path()).unwrap();
-    for number in 1..=WRITES {
-        let description = format!("{name} {number}");
-        if number % 5 == 0 {
-            let items = vec![encoder_studio::profile::ChangedItem::new(&description, None, None)];
-            let intent = Intent { kind: EntryKind::Write, items, planned_cycles: 2, backup: None, undoes: None };
-            let id = logbook.record_intent(Timestamp::now(), &device(), &intent).unwrap();
-            logbook.record_outcome(id, Timestamp::now(), Outcome::Done, 1).unwrap();
-        } else {
-            logbook.record(Timestamp::now(), &device(), &Event::new(EntryKind::Note, description)).unwrap();
-        }
-        println!("acknowledged {number}");
-        sleep(Duration::from_millis(2));
-    }
-    let deadline = Instant::now() + Duration::from_secs(60);
-    while logbook.count_waiting().unwrap() > 0 && Instant::now() < deadline {
-        sleep(Duration::from_millis(20));
-    }
-    println!("waiting {}", logbook.count_waiting().unwrap());
-}
-
-fn start_writer(root: &Path, name: &str, server: &Postgres) -> Child {
-    Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "logbook_server::writer", "--ignored", "--nocapture"])
-        .envs([("WRITER_ROOT", root.to_str().unwrap()), ("WRITER_NAME", name), ("WRITER_SERVER", &server.url())])
-        .env("PGPASSWORD", PASSWORD)
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap()
-}
-
-/// Issue 30: PostgreSQL is killed in the middle of 1,000 writes of two programs at once, and restarted.
-#[test]
-fn every_acknowledged_entry_arrives_exactly_once_and_in_order() {
-    let Some(mut server) = Postgres::start() else { return };
-    let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    let roots = [one.path(), two.path()];
-    let mut writers = [start_writer(roots[0], "a", &server), start_writer(roots[1], "b", &server)];
-    let outputs = writers.each_mut().map(|writer| BufReader::new(writer.stdout.take().unwrap()).lines());
-    let readers = outputs.map(|mut lines| {
-        let first = lines.by_ref().map(Result::unwrap).find(|line| *line == format!("acknowledged {}", WRITES / 2));
-        assert!(first.is_some());
-        std::thread::spawn(move || lines.map(Result::unwrap).collect::<Vec<_>>())
-    });
-    let before: usize = server.sql("SELECT count(*) FROM event")[0].parse().unwrap();
-    server.kill();
-    sleep(Duration::from_secs(1));
-    server.run(&[]);
-    for (reader, mut writer) in readers.into_iter().zip(writers) {
-        let lines = reader.join().unwrap();
-        assert!(lines.iter().any(|line| line == "waiting 0"), "{lines:?}");
-        assert!(lines.iter().any(|line| *line == format!("acknowledged {WRITES}")));
-        assert!(writer.wait().unwrap().success());
-    }
-    assert!((1..2 * WRITES).contains(&before), "killed in the middle: {before}");
-    let expected = |name: &str| (1..=WRITES).map(|number| format!("{name} {number}")).collect::<Vec<_>>();
-    let on_server = server.sql("SELECT description FROM event ORDER BY id");
-    assert_eq!(on_server.len(), 2 * WRITES);
-    assert_eq!(server.sql("SELECT count(*) FROM result"), [(2 * WRITES / 5).to_string()]);
-    for root in roots {
-        let store = Store::at_root(root);
-        let address = format!("postgres://bench:{PASSWORD}@127.0.0.1:{}/logs", server.port);
-        store.logbook_server().set_address(Some(ServerAddress::from_environment(&address)));
-        store.logbook_server().transfer(&store.logbook_path(), LIMIT).unwrap().unwrap();
-        let logbook = Logbook::open(&store.logbook_path()).unwrap();
-        let entries = logbook.entries(&EntryFilter::default(), 10_000).unwrap();
-        let local: Vec<String> = entries.into_iter().rev().map(|entry| entry.description).collect();
-        for (place, found) in [("server", &on_server), ("file", &local)] {
-            assert_eq!(found.len(), 2 * WRITES, "{place}");
-            for name in ["a", "b"] {
-                let own: Vec<String> = found.iter().filter(|text| text.starts_with(name)).cloned().collect();
-                assert_eq!(own, expected(name), "{place}");
-            }
-        }
-        assert_eq!(logbook.write_cycles(&device()), Ok(2 * WRITES as u64 / 5));
-    }
 }

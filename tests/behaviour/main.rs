@@ -46,6 +46,7 @@ mod interbus_reading;
 mod interbus_simulate;
 mod interbus_writing;
 mod logbook_server;
+mod logbook_transfer;
 mod postgres;
 mod recorded;
 mod report;

@@ -7,6 +7,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use encoder_studio::store::{ServerAddress, Store};
 use tempfile::TempDir;
 
 use super::support::{Bench, skip};
@@ -95,6 +96,29 @@ impl Postgres {
     /// Returns the address of the database, without a password.
     pub(crate) fn url(&self) -> String {
         format!("postgres://bench@127.0.0.1:{}/logs", self.port)
+    }
+
+    /// Returns a store that shares its logbook over this server.
+    pub(crate) fn store_at(&self, root: &Path) -> Store {
+        let store = Store::at_root(root);
+        let address = self.url().replace('@', &format!(":{PASSWORD}@"));
+        store.logbook_server().set_address(Some(ServerAddress::from_environment(&address)));
+        store
+    }
+
+    /// Starts SQL as the administrator.
+    pub(crate) fn start_sql(&self, sql: &str) -> Child {
+        self.psql("logs", sql).spawn().unwrap()
+    }
+
+    /// Waits until a query returns one row with this text.
+    #[track_caller]
+    pub(crate) fn until(&self, sql: &str, expected: &str) {
+        let deadline = Instant::now() + Duration::from_secs(30);
+        while self.sql(sql) != [expected] {
+            assert!(Instant::now() < deadline, "{sql}: {expected}");
+            sleep(Duration::from_millis(20));
+        }
     }
 
     /// Executes SQL as the administrator, and returns a line for each row.
