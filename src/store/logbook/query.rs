@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use jiff::Timestamp;
 use rusqlite::types::Type;
 use rusqlite::{Connection, OptionalExtension, Params, Row, named_params};
 
@@ -158,7 +159,33 @@ pub(super) fn items_json(items: &[ChangedItem]) -> String {
     serde_json::to_string(items).unwrap_or_else(|_| "[]".to_owned())
 }
 
+/// Returns the entry in a row. An entry that this version cannot read says so, because it must not hide the others.
 fn read_entry(database: &Connection, row: &Row<'_>) -> rusqlite::Result<Entry> {
+    read_valid_entry(database, row).or_else(|error| {
+        let why = match error {
+            rusqlite::Error::FromSqlConversionFailure(_, _, why) => why.to_string(),
+            error => error.to_string(),
+        };
+        Ok(Entry {
+            id: EntryId(row.get("id")?),
+            uid: EntryUid(row.get("uid")?),
+            undoes: None,
+            undone_by: None,
+            kind: EntryKind::parse(&row.get::<_, String>("what")?).unwrap_or(EntryKind::Note),
+            at: schema::parse_time(&row.get::<_, String>("at")?).unwrap_or(Timestamp::UNIX_EPOCH),
+            device: read_device(row)?,
+            asset: row.get("asset_then")?,
+            description: format!("unreadable entry ({why}): {}", row.get::<_, String>("description")?),
+            items: Vec::new(),
+            planned_cycles: row.get("planned_cycles").and_then(schema::parse_cycles)?,
+            backup: None,
+            origin: read_origin(row)?,
+            conclusion: None,
+        })
+    })
+}
+
+fn read_valid_entry(database: &Connection, row: &Row<'_>) -> rusqlite::Result<Entry> {
     let kind = row.get("what").and_then(|word: String| {
         EntryKind::parse(&word).ok_or_else(|| invalid_column(format!("{word:?} is not a kind of entry").into()))
     })?;
@@ -178,7 +205,7 @@ fn read_entry(database: &Connection, row: &Row<'_>) -> rusqlite::Result<Entry> {
             .and_then(|text: String| serde_json::from_str(&text).map_err(|error| invalid_column(Box::new(error))))?,
         planned_cycles: row.get("planned_cycles").and_then(schema::parse_cycles)?,
         backup: row.get::<_, Option<String>>("backup")?.map(PathBuf::from),
-        origin: Origin { bench: row.get("bench")?, user: row.get("user")?, version: row.get("version")? },
+        origin: read_origin(row)?,
         conclusion: read_conclusion(row)?,
     })
 }
@@ -190,6 +217,10 @@ fn read_device(row: &Row<'_>) -> rusqlite::Result<DeviceKey> {
         serial_number: row.get("serial_number")?,
         is_virtual: row.get("is_virtual")?,
     })
+}
+
+fn read_origin(row: &Row<'_>) -> rusqlite::Result<Origin> {
+    Ok(Origin { bench: row.get("bench")?, user: row.get("user")?, version: row.get("version")? })
 }
 
 fn invalid_column(why: Box<dyn std::error::Error + Send + Sync>) -> rusqlite::Error {
@@ -209,4 +240,38 @@ fn read_conclusion(row: &Row<'_>) -> rusqlite::Result<Option<WriteResult>> {
         outcome,
         cycles_spent: row.get("cycles_spent").and_then(schema::parse_cycles)?,
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::{Event, Intent, Logbook};
+
+    /// A row may have been changed by another tool, or received by a version that did not check it.
+    #[test]
+    fn an_unreadable_row_does_not_hide_the_others() {
+        for change in [
+            "UPDATE event SET at = 'yesterday' WHERE id = 1",
+            "UPDATE event SET what = 'dance' WHERE id = 1",
+            "UPDATE event SET items = '[7]' WHERE id = 1",
+            "INSERT INTO result SELECT uid, 'yesterday', 'done', NULL, 1 FROM event WHERE id = 1",
+        ] {
+            let root = tempfile::tempdir().unwrap();
+            let path = root.path().join("logbook.sqlite");
+            let device = DeviceKey::new("hiperface", "37h", "GB1", false);
+            let mut logbook = Logbook::open(&path).unwrap();
+            let items = vec![ChangedItem::new("field 0", None, None)];
+            let intent = Intent { kind: EntryKind::Write, items, planned_cycles: 3, backup: None, undoes: None };
+            logbook.record_intent(Timestamp::UNIX_EPOCH, &device, &intent).unwrap();
+            logbook.record(Timestamp::UNIX_EPOCH, &device, &Event::new(EntryKind::Note, "whole")).unwrap();
+            Connection::open(&path).unwrap().execute(change, []).unwrap();
+            let entries = logbook.entries(&EntryFilter::default(), 9).unwrap();
+            let descriptions: Vec<&str> = entries.iter().map(|entry| entry.description.as_str()).collect();
+            assert_eq!(descriptions.len(), 2, "{change}");
+            assert!(descriptions.contains(&"whole"), "{change}: {descriptions:?}");
+            let of_unreadable = |text: &&&str| text.starts_with("unreadable entry (") && text.ends_with("): field 0");
+            assert_eq!(descriptions.iter().filter(of_unreadable).count(), 1, "{change}: {descriptions:?}");
+            assert!(logbook.write_cycles(&device).is_ok(), "{change}");
+        }
+    }
 }

@@ -231,16 +231,6 @@ fn a_damaged_logbook_is_kept_and_a_new_one_is_begun() {
 }
 
 #[test]
-fn an_invalid_value_is_reported_as_damage() {
-    let (_root, path) = place();
-    let mut logbook = Logbook::open(&path).unwrap();
-    logbook.record_intent(at(0), &device("1"), &intent("x", 1, None)).unwrap();
-    Connection::open(&path).unwrap().execute("UPDATE event SET at = 'yesterday'", []).unwrap();
-    assert!(matches!(problem(logbook.history(&device("1"), 1)), LogbookErrorKind::Damaged { .. }));
-    assert_eq!(logbook.write_cycles(&device("1")), Ok(1));
-}
-
-#[test]
 fn a_logbook_without_a_folder_is_an_error() {
     let (root, path) = place();
     fs::create_dir_all(&path).unwrap();
