@@ -9,7 +9,7 @@ use super::studio::Studio;
 use super::{Severity, Text, explain};
 use crate::store::{KeyringError, LogbookServer, Password, ServerAddress, ServerError};
 
-/// Maximum time for each request of a test.
+/// Maximum time for a test.
 const TEST_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// The open form.

@@ -8,9 +8,9 @@ use super::args::CommonArgs;
 use super::output::{Output, write_stderr};
 use super::runner::to_failure;
 use crate::app::{CommandSettings, Text, explain};
-use crate::store::{Logbook, ServerAddressError, ServerErrorKind, Store};
+use crate::store::{Logbook, LogbookServer, ServerAddressError, ServerErrorKind, Store};
 
-/// Maximum time for each request to the server of the logbook.
+/// Maximum time for an exchange with the server of the logbook.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A command may read its settings several times.

@@ -23,7 +23,7 @@ use crate::profile::{
 };
 use crate::store::{DeviceKey, EntryId, EntryKind, EntryUid, FileError, Intent, Logbook, LogbookError, Outcome, Store};
 
-/// Maximum time for each request to the server of the logbook, before the write cycles of this computer have to do.
+/// Maximum time for an exchange with the server of the logbook, before the write cycles of this computer have to do.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Greatest limit of write cycles of a memory that wears out quickly. With such a limit, the write cycles that the

@@ -55,6 +55,11 @@ impl Rows {
     pub(super) fn is_empty(&self) -> bool {
         self.events.is_empty() && self.results.is_empty()
     }
+
+    /// Returns the number of events or of results, whichever is greater.
+    pub(super) fn largest_count(&self) -> usize {
+        self.events.len().max(self.results.len())
+    }
 }
 
 /// Prepares the local file for a server. If it is another one than the last, or has lost rows, all local rows are to be
@@ -91,7 +96,7 @@ pub(super) fn count_waiting(database: &Connection) -> rusqlite::Result<u64> {
 }
 
 /// Returns the first rows that wait. A result comes with its event, which the server may have lost.
-pub(super) fn first_waiting(database: &Connection, limit: u32) -> rusqlite::Result<Rows> {
+pub(super) fn first_waiting(database: &Connection, limit: usize) -> rusqlite::Result<Rows> {
     let mut waiting = Rows::default();
     let mut outbox = database.prepare_cached("SELECT uid, is_result FROM outbox ORDER BY id LIMIT ?1")?;
     let mut event = database.prepare_cached(
@@ -100,7 +105,7 @@ pub(super) fn first_waiting(database: &Connection, limit: u32) -> rusqlite::Resu
     )?;
     let mut result =
         database.prepare_cached("SELECT event, at, outcome, failure, cycles_spent FROM result WHERE event = ?1")?;
-    let rows = outbox.query_map([limit], |row| Ok((row.get::<_, String>(0)?, row.get(1)?)))?;
+    let rows = outbox.query_map([limit as i64], |row| Ok((row.get::<_, String>(0)?, row.get(1)?)))?;
     for row in rows {
         let (uid, is_result) = row?;
         waiting.events.push(event.query_row([&uid], read_event)?);
@@ -138,8 +143,12 @@ pub(super) fn adopt(
             }
         }
         for row in &received.results {
-            new += add_result(&transaction, row)?;
-            remove.execute((&row.event, true))?;
+            if row.at.parse::<Timestamp>().is_ok() {
+                new += add_result(&transaction, row)?;
+                remove.execute((&row.event, true))?;
+            } else {
+                tracing::warn!("the result of entry {} of the logbook server is not valid and is left out", row.event);
+            }
         }
         for row in &sent.events {
             remove.execute((&row.uid, false))?;
@@ -287,6 +296,27 @@ mod tests {
         begin(&mut two, "another server", Marks::default()).unwrap();
         assert_eq!(acknowledge(&mut one, &sent), None);
         assert_eq!(count_waiting(&two), Ok(1));
+    }
+
+    /// Its write cycles count as planned, and the entry can be read.
+    #[test]
+    fn an_invalid_result_of_the_server_is_left_out() {
+        let TwoPrograms { _root, mut logbook, mut one, .. } = two_programs();
+        intend(&mut logbook);
+        let event = first_waiting(&one, 9).unwrap().events.remove(0).uid;
+        let result = |at: &str| ResultRow {
+            event: event.clone(),
+            at: at.to_owned(),
+            outcome: "done".to_owned(),
+            failure: None,
+            cycles_spent: 7,
+        };
+        for (at, cycles) in [("yesterday", 1), ("2026-11-01T08:00:00Z", 7)] {
+            let received = Rows { events: Vec::new(), results: vec![result(at)] };
+            adopt(&mut one, SERVER, &received, &Rows::default(), Marks::default()).unwrap();
+            assert_eq!(logbook.write_cycles(&device()), Ok(cycles), "{at}");
+            assert_eq!(logbook.history(&device(), 9).unwrap()[0].conclusion.is_some(), cycles == 7, "{at}");
+        }
     }
 
     #[test]

@@ -1,8 +1,9 @@
-//! A connection to the server of the logbook. Each request has a time limit. A connection that fails is not used again.
+//! A connection to the server of the logbook. Each request has a time limit, and all of them have a common one. A
+//! connection that fails is not used again.
 
 use std::future::Future;
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rustls::pki_types::CertificateDer;
 use rustls::pki_types::pem::PemObject as _;
@@ -17,6 +18,9 @@ use super::error::{ServerErrorKind, UnreachableCause};
 
 const DEFAULT_PORT: u16 = 5432;
 
+/// Maximum time for a request, however long all of them may take.
+const REQUEST_TIMEOUT: Duration = Duration::from_secs(5);
+
 /// Limits in the server, for a program that was suspended or lost its network and holds a lock. They are longer than
 /// any request of this program takes.
 const SESSION_OPTIONS: &str = "-c idle_in_transaction_session_timeout=6s -c statement_timeout=30s \
@@ -25,7 +29,7 @@ const SESSION_OPTIONS: &str = "-c idle_in_transaction_session_timeout=6s -c stat
 /// A connection to a server.
 pub(super) struct Client {
     runtime: OwnRuntime,
-    limit: Duration,
+    deadline: Instant,
     pub(super) postgres: tokio_postgres::Client,
 }
 
@@ -33,17 +37,20 @@ pub(super) struct Client {
 struct OwnRuntime(Option<Runtime>);
 
 impl Client {
-    /// Connects to a server. The limit applies to the connection and to each later request.
+    /// Connects to a server. The deadline applies to the connection and to all later requests.
     pub(super) fn connect(
         address: &ServerAddress,
         password: Option<&Password>,
-        limit: Duration,
+        deadline: Instant,
     ) -> Result<Self, ServerErrorKind> {
         let runtime = OwnRuntime::new()?;
         let mut config = address.config.clone();
         // Without a password, the server rejects an empty one, which needs no other treatment.
-        config.password(password.map_or("", Password::reveal)).application_name("encoder-studio").options(SESSION_OPTIONS);
-        let connected = runtime.run(limit, async {
+        config
+            .password(password.map_or("", Password::reveal))
+            .application_name("encoder-studio")
+            .options(SESSION_OPTIONS);
+        let connected = runtime.run(deadline, async {
             check_host(&config).await?;
             match &address.encryption {
                 Encryption::Off => {
@@ -64,10 +71,10 @@ impl Client {
             ServerErrorKind::WrongPassword if password.is_none() => ServerErrorKind::PasswordMissing,
             problem => problem,
         })?;
-        Ok(Client { runtime, limit, postgres })
+        Ok(Client { runtime, deadline, postgres })
     }
 
-    /// Performs requests, all of them within the time limit.
+    /// Performs requests, all of them within the time limit of one.
     pub(super) fn run<'c, T, F>(
         &'c mut self,
         requests: impl FnOnce(&'c mut tokio_postgres::Client) -> F,
@@ -75,11 +82,15 @@ impl Client {
     where
         F: Future<Output = Result<T, ServerErrorKind>>,
     {
-        self.runtime.run(self.limit, requests(&mut self.postgres))
+        self.runtime.run(self.deadline, requests(&mut self.postgres))
     }
 
-    pub(super) fn set_limit(&mut self, limit: Duration) {
-        self.limit = limit;
+    pub(super) fn set_deadline(&mut self, deadline: Instant) {
+        self.deadline = deadline;
+    }
+
+    pub(super) fn time_left(&self) -> Duration {
+        self.deadline.saturating_duration_since(Instant::now())
     }
 }
 
@@ -93,10 +104,11 @@ impl OwnRuntime {
 
     fn run<T>(
         &self,
-        limit: Duration,
+        deadline: Instant,
         work: impl Future<Output = Result<T, ServerErrorKind>>,
     ) -> Result<T, ServerErrorKind> {
         let Some(runtime) = &self.0 else { return Err(ServerErrorKind::NoReply) };
+        let limit = deadline.saturating_duration_since(Instant::now()).min(REQUEST_TIMEOUT);
         runtime.block_on(async { tokio::time::timeout(limit, work).await.unwrap_or(Err(ServerErrorKind::NoReply)) })
     }
 }

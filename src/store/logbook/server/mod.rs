@@ -50,14 +50,14 @@ struct State {
     failed: Option<(Instant, ServerError)>,
     /// Devices that are connected to this program.
     held: Vec<DeviceKey>,
+    /// Whether the server has a hold of this program.
+    is_announced: bool,
 }
 
 struct Connection {
     client: Client,
     address: ServerAddress,
     identity: String,
-    /// Whether the server has a hold of this program.
-    holds: bool,
 }
 
 /// Whether the server could be used.
@@ -74,8 +74,10 @@ pub struct Contact {
 }
 
 impl LogbookServer {
-    /// Sets the server, or uses none. An invalid address counts as a server that is away.
+    /// Sets the server, or uses none. An invalid address counts as a server that is away. The keyring may be asked again,
+    /// because the user may have changed it.
     pub fn set_address(&self, address: Option<Result<ServerAddress, ServerAddressError>>) {
+        keyring::allow_request();
         let mut state = self.state();
         if state.address != address {
             *state = State { address, held: std::mem::take(&mut state.held), ..State::default() };
@@ -88,7 +90,8 @@ impl LogbookServer {
     /// # Errors
     /// Returns an error if the server cannot be used.
     pub fn test(address: &ServerAddress, limit: Duration) -> Result<Option<u64>, ServerError> {
-        let connected = Connection::connect(address, limit);
+        keyring::allow_request();
+        let connected = Connection::connect(address, Instant::now() + limit);
         connected
             .and_then(|mut client| schema::count_entries(&mut client))
             .map_err(|problem| problem.into_error(&address.name()))
@@ -99,15 +102,21 @@ impl LogbookServer {
         self.state().address.is_some()
     }
 
+    /// Returns whether the server has the announcement of a device that is connected to this program.
+    pub fn is_announced(&self) -> bool {
+        self.state().is_announced
+    }
+
     pub fn contact(&self) -> Contact {
         self.state().contact.clone()
     }
 
-    /// Sends the entries of the local file to the server and receives those of other benches. Each request to the
-    /// server may take as long as `limit`. Returns `None` if no server is set.
+    /// Sends the entries of the local file to the server and receives those of other benches. This may take as long as
+    /// `limit`. Returns `None` if no server is set.
     ///
     /// # Errors
-    /// Returns an error if the server or the local file cannot be used. Entries that were not sent are sent the next time.
+    /// Returns an error if the server or the local file cannot be used. What was sent and received until then is kept, and
+    /// the rest follows the next time.
     pub fn transfer(&self, path: &Path, limit: Duration) -> Option<Result<Transferred, ServerError>> {
         let address = self.state().address.clone()?;
         let address = match address {
@@ -118,27 +127,34 @@ impl LogbookServer {
                 return Some(failed);
             }
         };
-        let began = Instant::now();
+        let deadline = Instant::now() + limit;
         let mut connection = loop {
             match self.0.connection.try_lock() {
                 Ok(connection) => break connection,
                 Err(TryLockError::Poisoned(poisoned)) => break poisoned.into_inner(),
-                Err(TryLockError::WouldBlock) if began.elapsed() > limit => {
+                Err(TryLockError::WouldBlock) if Instant::now() > deadline => {
                     return Some(Err(ServerErrorKind::NoReply.into_error(&address.name())));
                 }
                 Err(TryLockError::WouldBlock) => thread::sleep(RETRY),
             }
         };
-        let held = self.state().held.clone();
-        let result = transfer_over(&mut connection, &address, path, &held, limit);
+        let (held, is_announced) = {
+            let state = self.state();
+            (state.held.clone(), state.is_announced)
+        };
+        let announced = (is_announced || !held.is_empty()).then_some(held.as_slice());
+        let result = transfer_over(&mut connection, &address, path, announced, deadline);
         let result = result.map_err(|problem| problem.into_error(&address.name()));
         let (result, others) = match result {
-            Ok((done, others)) => (Ok(done), others),
-            Err(error) => (Err(error), Vec::new()),
+            Ok((done, others)) => {
+                self.state().is_announced = !held.is_empty();
+                (Ok(done), others)
+            }
+            Err(error) => {
+                *connection = None;
+                (Err(error), Vec::new())
+            }
         };
-        if result.is_err() {
-            *connection = None;
-        }
         self.note(Some(&address), &result, others);
         Some(result)
     }
@@ -192,44 +208,46 @@ fn program() -> &'static str {
     NAME.get_or_init(|| format!("{:032x}", fastrand::u128(..)))
 }
 
+/// Transfers entries, and announces which devices this program holds unless this is `None`.
 fn transfer_over(
     connection: &mut Option<Connection>,
     address: &ServerAddress,
     path: &Path,
-    held: &[DeviceKey],
-    limit: Duration,
+    held: Option<&[DeviceKey]>,
+    deadline: Instant,
 ) -> Result<(Transferred, Vec<OtherHolder>), ServerErrorKind> {
     let usable = connection.take().filter(|own| own.address == *address && !own.client.postgres.is_closed());
     let open = match usable {
         Some(open) => open,
-        None => Connection::open(address, limit)?,
+        None => Connection::open(address, deadline)?,
     };
-    let Connection { client, identity, holds, .. } = connection.insert(open);
-    client.set_limit(limit);
+    let Connection { client, identity, .. } = connection.insert(open);
+    client.set_deadline(deadline);
     let done = transfer::transfer(client, identity, path)?;
-    if held.is_empty() && !*holds {
-        return Ok((done, Vec::new()));
-    }
-    let others = hold::renew(client, program(), held)?;
-    *holds = !held.is_empty();
-    Ok((done, others))
+    let others = held.map(|held| hold::renew(client, program(), held)).transpose()?;
+    Ok((done, others.unwrap_or_default()))
 }
 
 impl Connection {
-    fn open(address: &ServerAddress, limit: Duration) -> Result<Self, ServerErrorKind> {
-        let mut client = Self::connect(address, limit)?;
+    fn open(address: &ServerAddress, deadline: Instant) -> Result<Self, ServerErrorKind> {
+        let mut client = Self::connect(address, deadline)?;
         let identity = schema::prepare(&mut client)?;
-        Ok(Connection { client, address: address.clone(), identity, holds: false })
+        Ok(Connection { client, address: address.clone(), identity })
     }
 
-    fn connect(address: &ServerAddress, limit: Duration) -> Result<Client, ServerErrorKind> {
+    /// Connects with the password that is known. The keyring is asked only if the server requires one.
+    fn connect(address: &ServerAddress, deadline: Instant) -> Result<Client, ServerErrorKind> {
         let known = address.password.clone().or_else(Password::from_environment);
-        // Without a keyring, the server says whether it requires a password.
-        let password = known.or_else(|| {
-            let found = keyring::password(address);
-            found.inspect_err(|error| tracing::debug!("{error}")).ok().flatten()
-        });
-        Client::connect(address, password.as_ref(), limit)
+        let known = known.or_else(|| keyring::known_password(address));
+        match Client::connect(address, known.as_ref(), deadline) {
+            Err(ServerErrorKind::PasswordMissing) => {
+                let found = keyring::password(address, deadline);
+                let found = found.inspect_err(|error| tracing::debug!("{error}")).ok().flatten();
+                let password = found.ok_or(ServerErrorKind::PasswordMissing)?;
+                Client::connect(address, Some(&password), deadline)
+            }
+            result => result,
+        }
     }
 }
 

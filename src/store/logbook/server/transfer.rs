@@ -3,8 +3,12 @@
 //!
 //! A row that was sent twice, because the connection was lost before the reply, is ignored the second time: its `uid`
 //! is unique. Rows are sent in the order in which they were recorded.
+//!
+//! What was received or sent is kept if a later request fails. The first requests are small, so that a slow network makes
+//! progress, too.
 
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use tokio_postgres::{Client as Postgres, GenericClient, IsolationLevel, Row};
 
@@ -15,10 +19,13 @@ use super::error::ServerErrorKind;
 use super::schema;
 use crate::store::logbook::LOCK_TIMEOUT;
 
-/// Number of rows that are received in one request.
+/// Number of rows in the first request of a transfer. A quick request is followed by one with twice as many rows.
+const FIRST: usize = 100;
+const QUICK: Duration = Duration::from_millis(300);
+/// Maximum number of rows that are received in one request.
 const RECEIVED: usize = 5_000;
-/// Number of rows that are sent in one transaction.
-const SENT: u32 = 1_000;
+/// Maximum number of rows that are sent in one transaction, during which other benches wait.
+const SENT: usize = 1_000;
 
 /// Number of rows that were copied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,32 +40,30 @@ pub struct Transferred {
 pub(super) fn transfer(client: &mut Client, identity: &str, path: &Path) -> Result<Transferred, ServerErrorKind> {
     let local = |problem: LogbookErrorKind| ServerErrorKind::Local(problem.into_error(path));
     let sqlite = |error: rusqlite::Error| local(error.into());
-    let mut database = local_schema::open(path, LOCK_TIMEOUT).map_err(local)?;
+    let mut database = local_schema::open(path, client.time_left().min(LOCK_TIMEOUT)).map_err(local)?;
     let last = client.run(async |postgres| last_numbers(postgres).await)?;
     let mut marks = outbox::begin(&mut database, identity, last).map_err(sqlite)?;
-    let mut done = Transferred::default();
+    let (mut done, mut size) = (Transferred::default(), FIRST);
     loop {
-        let (rows, after) = client.run(async |postgres| receive(postgres, marks).await)?;
-        marks = after;
-        if rows.is_empty() {
-            break;
-        }
-        let adopted = outbox::adopt(&mut database, identity, &rows, &Rows::default(), marks).map_err(sqlite)?;
-        done.received += adopted.ok_or(ServerErrorKind::OtherServer)?;
-        if rows.events.len().max(rows.results.len()) < RECEIVED {
-            break;
-        }
-    }
-    loop {
-        let waiting = outbox::first_waiting(&database, SENT).map_err(sqlite)?;
-        if waiting.is_empty() {
-            return Ok(done);
-        }
-        let (rows, after) = client.run(async |postgres| send(postgres, &waiting, marks).await)?;
+        let began = Instant::now();
+        let waiting = outbox::first_waiting(&database, size.min(SENT)).map_err(sqlite)?;
+        let (rows, after) = client.run(async |postgres| {
+            if waiting.is_empty() {
+                receive(postgres, marks, size).await
+            } else {
+                send(postgres, &waiting, marks, size).await
+            }
+        })?;
         marks = after;
         let adopted = outbox::adopt(&mut database, identity, &rows, &waiting, marks).map_err(sqlite)?;
         done.received += adopted.ok_or(ServerErrorKind::OtherServer)?;
         done.sent += waiting.events.len() + waiting.results.len();
+        if waiting.is_empty() && rows.largest_count() < size {
+            return Ok(done);
+        }
+        if began.elapsed() < QUICK {
+            size = (2 * size).min(RECEIVED);
+        }
     }
 }
 
@@ -68,17 +73,21 @@ async fn last_numbers(client: &impl GenericClient) -> Result<Marks, ServerErrorK
     Ok(Marks { event: row.try_get(0)?, result: row.try_get(1)? })
 }
 
-/// Receives the next rows of the server. A result never comes before its event, because both are read at one moment.
-async fn receive(postgres: &mut Postgres, after: Marks) -> Result<(Rows, Marks), ServerErrorKind> {
+/// Receives the next rows of the server, at most `size` events and results. A result never comes before its event, because both are read at one moment.
+async fn receive(postgres: &mut Postgres, after: Marks, size: usize) -> Result<(Rows, Marks), ServerErrorKind> {
     let builder = postgres.build_transaction().isolation_level(IsolationLevel::RepeatableRead).read_only(true);
     let transaction = builder.start().await?;
-    let rows = rows_after(&transaction, after).await?;
+    let rows = rows_after(&transaction, after, size).await?;
     transaction.commit().await?;
     Ok(rows)
 }
 
-async fn rows_after(client: &impl GenericClient, after: Marks) -> Result<(Rows, Marks), ServerErrorKind> {
-    let limit = RECEIVED as i64;
+async fn rows_after(
+    client: &impl GenericClient,
+    after: Marks,
+    size: usize,
+) -> Result<(Rows, Marks), ServerErrorKind> {
+    let limit = size as i64;
     let sql = r#"SELECT id, uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
                         planned_cycles, backup, bench, "user", version, asset,
                         undoes
@@ -88,7 +97,7 @@ async fn rows_after(client: &impl GenericClient, after: Marks) -> Result<(Rows, 
         marks.event = row.try_get(0)?;
         rows.events.push(read_event(&row)?);
     }
-    if rows.events.len() < RECEIVED {
+    if rows.events.len() < size {
         let sql = "SELECT id, event, at, outcome, failure, cycles_spent FROM result WHERE id > $1 ORDER BY id LIMIT $2";
         for row in client.query(sql, &[&after.result, &limit]).await? {
             marks.result = row.try_get(0)?;
@@ -98,15 +107,20 @@ async fn rows_after(client: &impl GenericClient, after: Marks) -> Result<(Rows, 
     Ok((rows, marks))
 }
 
-/// Adds rows, and receives the rows that other benches have added since. Returns the marks after both.
-async fn send(postgres: &mut Postgres, own: &Rows, after: Marks) -> Result<(Rows, Marks), ServerErrorKind> {
+/// Adds rows, and receives the next rows of the server. Returns the marks after both.
+async fn send(
+    postgres: &mut Postgres,
+    own: &Rows,
+    after: Marks,
+    size: usize,
+) -> Result<(Rows, Marks), ServerErrorKind> {
     let transaction = postgres.transaction().await?;
     schema::lock(&transaction).await?;
-    let (rows, mut marks) = rows_after(&transaction, after).await?;
+    let (rows, mut marks) = rows_after(&transaction, after, size).await?;
     add_events(&transaction, &own.events).await?;
     add_results(&transaction, &own.results).await?;
     // All rows up to the own ones are known now, unless there are more than one request returns.
-    if rows.events.len().max(rows.results.len()) < RECEIVED {
+    if rows.largest_count() < size {
         marks = last_numbers(&transaction).await?;
     }
     transaction.commit().await?;
