@@ -6,7 +6,8 @@ use std::path::Path;
 use super::args::ConsentArgs;
 use super::output::{Output, write_stderr};
 use super::plan::print_undo;
-use super::runner::{CliDevice, JobFailure};
+use super::runner::{CliDevice, JobFailure, Runner};
+use super::user_store::{exchange_entries, report_other_holders};
 use super::{Failure, Result};
 use crate::profile::Consent;
 use crate::worker::commit::{ApprovedPlan, PlannedWrite};
@@ -28,20 +29,26 @@ pub(crate) fn can_prompt() -> bool {
 
 /// Shows the plan and all other points that require consent. Asks about each of them unless the command line has
 /// already consented. Returns the approved plan.
-pub fn confirm_plan<P: PlannedWrite>(
+pub fn confirm_plan<D: CliDevice, P: PlannedWrite>(
+    runner: &Runner<D>,
     output: &Output,
     consent: &ConsentArgs,
     prepared: P,
     shown: &[&str],
 ) -> Result<ApprovedPlan<P>> {
-    for (at, text) in shown.iter().enumerate().filter(|_| !consent.yes) {
-        output.print_message(text.trim_end());
-        if at == 0 {
-            print_undo(output, &prepared);
+    if !consent.yes {
+        report_other_holders(runner.store.logbook_server(), output);
+        for (at, text) in shown.iter().enumerate() {
+            output.print_message(text.trim_end());
+            if at == 0 {
+                print_undo(output, &prepared);
+            }
+            if !ask_yes_no("Write? [y/N] ") {
+                return Err(Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()]));
+            }
         }
-        if !ask_yes_no("Write? [y/N] ") {
-            return Err(Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()]));
-        }
+        // Other benches may have forgotten the device while the user was thinking.
+        exchange_entries(&runner.store);
     }
     let granted = Consent::to(prepared.plan().id());
     Ok(ApprovedPlan { prepared, consent: granted, force_wear: consent.force_wear, undoes: consent.undoes.clone() })

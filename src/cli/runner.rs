@@ -20,6 +20,7 @@ use super::{Failure, Result};
 use crate::app::session::Kind;
 use crate::app::{Text, TypeMap, explain};
 use crate::link::{LinkError, LinkUrl, write_entry, write_header};
+use crate::store::Store;
 use crate::worker::{Device, Event, OpenError, Session, Worker};
 
 /// A device on which the command line can run jobs.
@@ -66,6 +67,8 @@ pub trait CliDevice: Kind {
 
 pub struct Runner<D: CliDevice> {
     worker: Worker<D>,
+    /// Files of the user.
+    pub(super) store: Store,
     /// Whether Ctrl-C was pressed. This is independent of the worker's cancellation flag, which applies to a single
     /// job.
     interrupted: Arc<AtomicBool>,
@@ -109,7 +112,7 @@ impl<D: CliDevice> Runner<D> {
             return Err(Failure::Usage(common.commands.option_rejection("--only-master", D::COMMANDS.name())));
         }
         let store = user_store(common)?;
-        let mut session = D::open(url, store).map_err(|error| match error {
+        let mut session = D::open(url, store.clone()).map_err(|error| match error {
             OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open_error_text(&error).terminal_text()),
             error => to_failure(&D::open_error(&error)),
         })?;
@@ -134,7 +137,7 @@ impl<D: CliDevice> Runner<D> {
             stop_handle.stop();
         })
         .map_err(|error| Failure::Failed(vec![format!("Could not install the Ctrl-C handler: {error}.")]))?;
-        Ok(Runner { worker, interrupted, patience, remarks: Vec::new(), kept })
+        Ok(Runner { worker, store, interrupted, patience, remarks: Vec::new(), kept })
     }
 
     pub fn run(&mut self, job: D::Job) -> Result<D::Output> {

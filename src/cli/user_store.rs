@@ -15,6 +15,8 @@ const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A command may read its settings several times.
 static SETTINGS_REPORTED: Once = Once::new();
+/// A command names other holders before its question or at its end.
+static HOLDERS_REPORTED: Once = Once::new();
 
 /// Returns the files of the user. Entries carry the user's name as the settings demand, and are shared over the server
 /// that they name.
@@ -35,6 +37,19 @@ pub(super) fn exchange_entries(store: &Store) {
     store.logbook_server().transfer_unless_away(&store.logbook_path(), SERVER_TIMEOUT);
 }
 
+/// Names the other programs that hold the device of this command, the first time that there are any.
+pub(super) fn report_other_holders(server: &LogbookServer, output: &Output) {
+    let others = server.contact().others;
+    if others.is_empty() {
+        return;
+    }
+    HOLDERS_REPORTED.call_once(|| {
+        for holder in others {
+            output.print_message(&explain::other_holder_text(&holder).terminal_text());
+        }
+    });
+}
+
 /// Sends the entries that the command has recorded, and reports a server that is away. The command does not fail.
 pub(super) fn finish_entries(common: &CommonArgs, output: &Output) {
     common.log.complete();
@@ -42,13 +57,11 @@ pub(super) fn finish_entries(common: &CommonArgs, output: &Output) {
         return;
     }
     let Ok(store) = Store::for_user() else { return };
-    for holder in common.server.contact().others {
-        output.print_message(&explain::other_holder_text(&holder).terminal_text());
-    }
+    report_other_holders(&common.server, output);
     common.log.release_device();
     let path = store.logbook_path();
     let waiting = || Logbook::open(&path).and_then(|logbook| logbook.count_waiting()).unwrap_or(0);
-    if waiting() > 0 {
+    if waiting() > 0 || common.server.is_announced() {
         exchange_entries(&store.with_server(common.server.clone()));
     }
     if let Some(problem) = common.server.contact().problem {

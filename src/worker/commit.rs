@@ -15,7 +15,7 @@ use jiff::Timestamp;
 
 pub use undo::Undo;
 
-use super::{JobError, Progress};
+use super::{JobError, Progress, SessionLog};
 pub use crate::analysis::check::CycleCount;
 use crate::profile::{
     Body, ChangedItem, ConfirmedPlan, Consent, InterruptedWriteOf, Operation, OperationError, Plan, ProfileDocument,
@@ -236,9 +236,10 @@ pub fn is_incomplete(seen: Option<CycleCount>, cost: u64, limit: u64) -> bool {
     matches!(check_wear(seen, cost, limit, false), Err(NotStarted::WearIncomplete { .. }))
 }
 
-/// Returns the write cycles recorded for a device in the logbook, after asking other benches for theirs. Returns `None`
-/// if the logbook cannot be read.
-pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<CycleCount> {
+/// Returns the write cycles recorded for a device in the logbook, after asking other benches for theirs and announcing
+/// the device to them. Returns `None` if the logbook cannot be read.
+pub fn cycles_seen(log: &SessionLog, store: &Store, device: &DeviceKey) -> Option<CycleCount> {
+    log.record_identity(store, device);
     let path = store.logbook_path();
     let transferred = store.logbook_server().transfer_unless_away(&path, SERVER_TIMEOUT);
     count_cycles(&path, device, transferred.is_none_or(|result| result.is_ok()))

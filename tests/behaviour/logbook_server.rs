@@ -1,6 +1,7 @@
 //! Several benches share a logbook on a PostgreSQL server, which may be away, be killed, or refuse them.
 
 use std::net::TcpListener;
+use std::os::unix::net::UnixListener;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
@@ -146,6 +147,55 @@ fn benches_that_hold_the_same_device_are_told_of_each_other() {
     // A program that was killed counts as gone after half a minute.
     server.sql("UPDATE hold SET until = now() - interval '1 second'");
     assert_eq!(others(&one), []);
+}
+
+#[test]
+fn a_command_announces_its_device_and_is_told_of_other_programs() {
+    let Some(server) = Postgres::start() else { return };
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&[]) else { return };
+    let run = |words: &[&str]| {
+        let ran = bench.run_with_server(&server.url(), &[words, &["--link", &encoder.url]].concat());
+        assert_eq!(ran.status, Some(0), "{ran:?}");
+        assert_eq!(server.sql("SELECT count(*) FROM hold WHERE program <> 'other'"), ["0"], "it is withdrawn");
+        ran.err.matches("also connected to a program on bench 2").count()
+    };
+    let write = ["do", "hiperface", "increment-counter", "--yes"];
+    let report = ["report", "hiperface", "--force", "-o", &bench.file("r.html")];
+    for command in [&write[..], &report, &report] {
+        assert_eq!(run(command), 0, "{command:?}");
+    }
+    server.sql(
+        "INSERT INTO hold SELECT DISTINCT 'other', kind, device_type, serial_number, 'bench 2', NULL::text,
+             now() + interval '1 hour' FROM event",
+    );
+    for command in [&write[..], &report] {
+        assert_eq!(run(command), 1, "{command:?}");
+    }
+}
+
+/// A locked keyring asks the user, who may not be there.
+#[test]
+fn the_keyring_is_asked_once_and_only_for_a_password_that_the_server_requires() {
+    let Some(server) = Postgres::start() else { return };
+    let bench = Bench::new();
+    let bus = UnixListener::bind(bench.path("bus")).unwrap();
+    bus.set_nonblocking(true).unwrap();
+    let run = |url: &str, password: Option<&str>| {
+        let mut command = bench.program(&WRITE);
+        command.env("ENCODER_STUDIO_LOGBOOK", url).env_remove("PGPASSWORD");
+        command.env("DBUS_SESSION_BUS_ADDRESS", format!("unix:path={}", bench.file("bus")));
+        command.envs(password.map(|password| ("PGPASSWORD", password)));
+        let ran = super::support::finish(command);
+        assert_eq!(ran.status, Some(0), "{ran:?}");
+        (std::iter::from_fn(|| bus.accept().ok()).count(), ran)
+    };
+    let (asked, ran) = run(&server.url(), None);
+    assert!(ran.err.contains("requires a password"), "{ran:?}");
+    assert_eq!(asked, 1, "{ran:?}");
+    assert!(ran.took < Duration::from_secs(5), "{ran:?}");
+    assert_eq!(run(&server.url(), Some(PASSWORD)).0, 0);
+    assert_eq!(run("postgres://bench@127.0.0.1:1/logs", None).0, 0, "the server is away");
 }
 
 /// A server that accepts connections but says nothing delays a command by seconds, not for ever.

@@ -1,17 +1,20 @@
 //! Programs that exchange entries with a PostgreSQL server at the same time, on several computers and on one.
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{Shutdown, TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use encoder_studio::store::{EntryFilter, EntryKind, Event, Intent, Logbook, Outcome, ServerAddress, Store};
+use encoder_studio::worker::SessionLog;
 use encoder_studio::worker::commit::{CycleCount, cycles_seen};
 use jiff::Timestamp;
 
 use super::logbook_server::{LIMIT, device};
 use super::postgres::{PASSWORD, Postgres};
+use super::support::signal;
 
 const WRITES: usize = 500;
 
@@ -123,13 +126,13 @@ fn write_cycles_are_incomplete_while_another_thread_waits_for_the_server() {
     let Some(server) = Postgres::start() else { return };
     let root = tempfile::tempdir().unwrap();
     let store = server.store_at(root.path());
-    assert_eq!(cycles_seen(&store, &device()), Some(CycleCount::complete(0)));
+    assert_eq!(cycles_seen(&SessionLog::default(), &store, &device()), Some(CycleCount::complete(0)));
     let mut locked = server.start_sql("BEGIN; LOCK TABLE event; SELECT pg_sleep(60)");
     server.until("SELECT count(*) FROM pg_locks WHERE mode = 'AccessExclusiveLock' AND granted", "1");
     let other = store.clone();
     let thread = std::thread::spawn(move || other.logbook_server().transfer(&other.logbook_path(), LIMIT));
     server.until("SELECT count(*) FROM pg_locks WHERE NOT granted", "1");
-    let seen = cycles_seen(&store, &device());
+    let seen = cycles_seen(&SessionLog::default(), &store, &device());
     assert!(store.logbook_server().contact().is_reached, "the other thread has not noticed it yet");
     assert_eq!(seen, Some(CycleCount { seen: 0, is_complete: false }));
     locked.kill().unwrap();
@@ -150,8 +153,7 @@ fn a_suspended_program_does_not_keep_others_from_the_server() {
     );
     let mut writer = start_writer(one.path(), "a", &server);
     server.until("SELECT count(*) FROM pg_stat_activity WHERE wait_event = 'PgSleep'", "1");
-    let signal = |name: &str, pid: u32| Command::new("kill").args([name, &pid.to_string()]).status().unwrap();
-    assert!(signal("-STOP", writer.id()).success());
+    signal(&writer, "STOP");
     server.until("SELECT count(*) FROM pg_stat_activity WHERE state = 'idle in transaction'", "1");
     let deadline = Instant::now() + Duration::from_secs(20);
     Logbook::open(&store.logbook_path())
@@ -163,4 +165,63 @@ fn a_suspended_program_does_not_keep_others_from_the_server() {
     }
     writer.kill().unwrap();
     writer.wait().unwrap();
+}
+
+/// Starts a network between the programs and a server, through which this many bytes a second are received.
+fn slow_network(server: &Postgres, bytes_per_second: usize) -> u16 {
+    let (listener, port) = (TcpListener::bind("127.0.0.1:0").unwrap(), server.port);
+    let own_port = listener.local_addr().unwrap().port();
+    std::thread::spawn(move || {
+        for client in listener.incoming() {
+            let (mut client, mut server) = (client.unwrap(), TcpStream::connect(("127.0.0.1", port)).unwrap());
+            let (mut requests, mut place) = (client.try_clone().unwrap(), server.try_clone().unwrap());
+            std::thread::spawn(move || std::io::copy(&mut requests, &mut place));
+            std::thread::spawn(move || {
+                let mut part = vec![0; bytes_per_second / 50];
+                while let Ok(length @ 1..) = server.read(&mut part) {
+                    if client.write_all(&part[..length]).is_err() {
+                        break;
+                    }
+                    sleep(Duration::from_millis(20));
+                }
+                let _ = client.shutdown(Shutdown::Both);
+            });
+        }
+    });
+    own_port
+}
+
+#[test]
+fn a_slow_network_delays_entries_but_not_for_ever() {
+    const LIMIT: Duration = Duration::from_secs(2);
+    const ENTRIES: usize = 3_000;
+    let Some(server) = Postgres::start() else { return };
+    let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let near = server.store_at(two.path());
+    near.logbook_server().transfer(&near.logbook_path(), LIMIT).unwrap().unwrap();
+    server.sql(&format!(
+        "INSERT INTO event (uid, at, what, kind, device_type, serial_number, is_virtual, description, bench, version)
+         SELECT i, '2026-11-01T08:00:00Z', 'note', 'hiperface', '37h', 'GB1', 0, repeat('x', 200), 'bench 2', '1'
+         FROM generate_series(1, {ENTRIES}) AS i"
+    ));
+    let store = Store::at_root(one.path());
+    let address = format!("postgres://bench:{PASSWORD}@127.0.0.1:{}/logs", slow_network(&server, 200_000));
+    store.logbook_server().set_address(Some(ServerAddress::from_environment(&address)));
+    let mut logbook = Logbook::open(&store.logbook_path()).unwrap();
+    logbook.record(Timestamp::now(), &device(), &Event::new(EntryKind::Note, "own")).unwrap();
+    let mut attempts = 0;
+    loop {
+        let began = Instant::now();
+        let result = store.logbook_server().transfer(&store.logbook_path(), LIMIT).unwrap();
+        assert!(began.elapsed() < LIMIT + Duration::from_secs(1), "{:?}", began.elapsed());
+        attempts += 1;
+        // The entry of this bench does not wait for those of the others.
+        assert_eq!(server.sql("SELECT count(*) FROM event WHERE description = 'own'"), ["1"], "{attempts}");
+        if result.is_ok() {
+            break;
+        }
+        assert!(attempts < 10, "{result:?}");
+    }
+    assert!(attempts > 1, "the network is not slow");
+    assert_eq!(logbook.entries(&EntryFilter::default(), 10_000).unwrap().len(), ENTRIES + 1);
 }

@@ -203,7 +203,7 @@ fn every_write_takes_all_steps_in_order() {
         let mut spy = Spy::new(&Store::at_root(root.path()), refuses, ends_early);
         let ended = write(&mut spy, &confirm_plan(Some(CycleCount::complete(seen)), &[1, 2], false));
         assert_eq!(spy.steps, steps, "{label}");
-        assert_eq!(cycles_seen(&spy.store, &device()), Some(CycleCount::complete(spent)), "{label}");
+        assert_eq!(known_cycles(&spy.store, &device()), Some(CycleCount::complete(spent)), "{label}");
         match ended {
             Ok(done) => assert!(label == "done" && done.written.verified == 2 && done.logbook_warning.is_none()),
             Err(JobError::Interrupted { interrupted, backup, planned: 2, kind: 'k' }) => {
@@ -251,7 +251,7 @@ fn an_unusable_logbook_prevents_a_write() {
     let root = tempfile::tempdir().unwrap();
     let store = Store::at_root(root.path());
     std::fs::create_dir_all(store.logbook_path()).unwrap();
-    let seen = cycles_seen(&store, &device());
+    let seen = known_cycles(&store, &device());
     assert_eq!(seen, None);
     let write = |plain: &mut Plain, agreed| -> Result<_, WritePlanError<Prepared, Plain, ()>> {
         write_plan(&store, true, &agreed, plain, &mut |_| {})

@@ -64,7 +64,7 @@ impl ProfileCommands for NovoCommands {
         let left = UnrestoredItems { unchanged, missing: Vec::new(), redo: Vec::new() };
         write_restore(common, output, restore, prepared, &shown, &left, |prepared| {
             check_wear::<Novo>(&restore.consent, &prepared)?;
-            let agreed = confirm_plan(output, &restore.consent, prepared, &[&shown.text])?;
+            let agreed = confirm_plan(&runner, output, &restore.consent, prepared, &[&shown.text])?;
             let written = result_of!(runner.run(Job::Commit(Box::new(agreed)))?, Came::Committed(written) => *written);
             Ok(plan::WriteSummary::from_commit(output, written))
         })

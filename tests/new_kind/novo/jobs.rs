@@ -134,7 +134,7 @@ impl Novo {
         if let Some(profile) = change.restored.filter(|own| *own != now.serial && !change.options.allow_other_device) {
             return Err(Error::OtherDevice { profile, device: now.serial });
         }
-        let seen = cycles_seen(&context.store, &device_key(now.serial, context.is_virtual));
+        let seen = cycles_seen(&context.log(), &context.store, &device_key(now.serial, context.is_virtual));
         Ok(Prepared { serial: now.serial, plan: plan(&now, &change.values), seen })
     }
 }

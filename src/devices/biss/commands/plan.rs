@@ -46,7 +46,7 @@ pub(super) fn commit_plan(
         output.print_message(&wear.terminal_text());
     }
     let text = plan_report(&prepared).text;
-    let agreed = confirm_plan(output, consent, prepared, &[&text])?;
+    let agreed = confirm_plan(runner, output, consent, prepared, &[&text])?;
     let commit = Commit { agreed, attendance: OperatorPresence::Unattended(UnattendedOperator { patience }) };
     let committed =
         result_of!(runner.run(BissJob::Commit(Box::new(commit)))?, BissOutput::Committed(committed) => *committed);

@@ -132,9 +132,9 @@ impl Device for Biss {
                 BissOutput::Status(Box::new(read_status(&mut self.create_master(context))?))
             }
             BissJob::Check => {
-                let (store, is_virtual) = (context.store.clone(), context.is_virtual);
+                let (log, store, is_virtual) = (context.log(), context.store.clone(), context.is_virtual);
                 let wear = |identity: &Identity| MemoryWear {
-                    seen: cycles_seen(&store, &device_key(identity, is_virtual)),
+                    seen: cycles_seen(&log, &store, &device_key(identity, is_virtual)),
                     warning: WEAR_WARNING,
                     limit: WEAR_LIMIT,
                 };

@@ -47,7 +47,7 @@ pub(super) fn prepare_plan(
             restore_from_plan(plan_mounting(&description, &state, run, *motor)?)
         }
     };
-    let cycles_seen = cycles_seen(&context.store, &device_key(&identity, context.is_virtual));
+    let cycles_seen = cycles_seen(&context.log(), &context.store, &device_key(&identity, context.is_virtual));
     let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;
     let (unsaved, other_type) = match change {
         Change::Restore { profile, .. } => {

@@ -55,7 +55,7 @@ pub(super) fn commit_plan(
         ));
     }
     let text = plan_report(&prepared).text;
-    let agreed = confirm_plan(output, consent, prepared, &[&text])?;
+    let agreed = confirm_plan(runner, output, consent, prepared, &[&text])?;
     let committed = result_of!(runner.run(HiperdriveJob::Commit(Box::new(agreed)))?, HiperdriveOutput::Committed(committed) => *committed);
     Ok(WriteSummary::from_commit(output, committed))
 }

@@ -17,7 +17,7 @@ pub(super) fn prepare_plan(
     change: &Change,
     tell: ProgressSink<'_>,
 ) -> Result<Prepared, JobError> {
-    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
+    let (log, store, is_virtual) = (context.log(), context.store.clone(), context.is_virtual);
     let mut master = device.create_master(context);
     let report = &mut |done, total, number| {
         tell(JobReport::Progress(Progress { done, total, step: JobStep::Parameter(number) }));
@@ -73,7 +73,7 @@ pub(super) fn prepare_plan(
             (identity, state.image, restore_from_plan(plan))
         }
     };
-    let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
+    let cycles_seen = cycles_seen(&log, &store, &device_key(&identity, is_virtual));
     let other_types = match change {
         Change::Restore { profile, .. } => type_differences(&profile.identity, &identity.profile()),
         _ => Vec::new(),

@@ -115,7 +115,7 @@ pub(super) fn commit_plan(
     }
     check_wear::<Hiperface>(consent, &prepared)?;
     let text = plan_text(&prepared);
-    let agreed = confirm_plan(output, consent, prepared, &[&text])?;
+    let agreed = confirm_plan(runner, output, consent, prepared, &[&text])?;
     let committed = result_of!(runner.run(HiperfaceJob::Commit(Box::new(agreed)))?, HiperfaceOutput::Committed(committed) => committed);
     Ok(WriteSummary::from_commit(output, committed))
 }

@@ -111,7 +111,8 @@ pub(super) fn prepare_plan(
             plan_scalar(memory.fields, SingleValue::Counter(from), Some(Op::IncrementCounter { from }))
         }
     };
-    prepared.cycles_seen = cycles_seen(&context.store, &device_key(&prepared.identity, context.is_virtual));
+    prepared.cycles_seen =
+        cycles_seen(&context.log(), &context.store, &device_key(&prepared.identity, context.is_virtual));
     Ok(prepared)
 }
 

@@ -64,7 +64,7 @@ pub(super) fn commit_plan(
         // Stores above the manufacturer's limit require a second confirmation.
         texts.push(wear_text);
     }
-    let agreed = confirm_plan(output, consent, prepared, &texts)?;
+    let agreed = confirm_plan(runner, output, consent, prepared, &texts)?;
     let committed = result_of!(runner.run(InterbusJob::Commit(Box::new(agreed)))?, InterbusOutput::Committed(committed) => *committed);
     Ok(WriteSummary::from_commit(output, committed))
 }

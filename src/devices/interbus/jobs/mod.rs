@@ -129,9 +129,9 @@ impl Device for Interbus {
                 self.run_reading_job(context, tell, |master, _| Ok(Out::Status(Box::new(read_status(master)?))))
             }
             InterbusJob::Check => {
-                let (store, is_virtual) = (context.store.clone(), context.is_virtual);
+                let (log, store, is_virtual) = (context.log(), context.store.clone(), context.is_virtual);
                 let wear = |identity: &Identity| Limits {
-                    seen: cycles_seen(&store, &device_key(identity, is_virtual)),
+                    seen: cycles_seen(&log, &store, &device_key(identity, is_virtual)),
                     warning: WEAR_WARNING,
                     limit: WEAR_LIMIT,
                 };

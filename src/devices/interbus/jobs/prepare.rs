@@ -16,7 +16,7 @@ pub(super) fn prepare_plan(
     change: &Change,
     tell: ProgressSink<'_>,
 ) -> Result<Prepared, JobError> {
-    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
+    let (log, store, is_virtual) = (context.log(), context.store.clone(), context.is_virtual);
     let tell = std::cell::RefCell::new(tell);
     let mut master =
         encoder.create_master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
@@ -56,7 +56,7 @@ pub(super) fn prepare_plan(
             restore_from_plan(plan_default(&device.image.parameters))
         }
     };
-    let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
+    let cycles_seen = cycles_seen(&log, &store, &device_key(&identity, is_virtual));
     let other_type = match change {
         Change::Restore { profile, .. } => other_type(&profile.identity, &identity.profile()),
         _ => None,
