@@ -306,6 +306,26 @@ fn an_empty_server_receives_all_entries_again() {
     server.sql("DELETE FROM result WHERE id = (SELECT max(id) FROM result)");
     bench.run_with_server(&server.url(), &["log"]);
     assert_eq!(server.sql("SELECT count(*) FROM result"), ["2"]);
+    // Since then, another bench has added more rows than were lost, with the same numbers.
+    let number = |sql: &str| server.sql(sql)[0].parse::<u32>().unwrap();
+    let (event, result) = (number("SELECT max(id) FROM event"), number("SELECT max(id) FROM result"));
+    server.sql(&format!(
+        "DELETE FROM result WHERE id = {result};
+         DELETE FROM event WHERE id = {event};
+         INSERT INTO event (id, uid, at, what, kind, device_type, serial_number, is_virtual, description, bench, version)
+             OVERRIDING SYSTEM VALUE
+             SELECT {event} + i, 'new ' || i, at, 'write', kind, device_type, serial_number, 0, 'new', 'bench 2', '1'
+             FROM event, generate_series(0, 4) AS i WHERE id = (SELECT min(id) FROM event);
+         INSERT INTO result (id, event, at, outcome, cycles_spent) OVERRIDING SYSTEM VALUE
+             SELECT {result} + id - {event}, uid, at, 'done', 1 FROM event WHERE description = 'new';
+         ALTER TABLE event ALTER COLUMN id RESTART WITH {};
+         ALTER TABLE result ALTER COLUMN id RESTART WITH {}",
+        event + 5,
+        result + 5
+    ));
+    let log = bench.run_with_server(&server.url(), &["log", "--json"]);
+    assert_eq!(entries(&log).len(), 9);
+    assert_eq!((number("SELECT count(*) FROM event"), number("SELECT count(*) FROM result")), (9, 7));
 }
 
 #[test]

@@ -44,11 +44,20 @@ pub(super) struct Rows {
     pub results: Vec<ResultRow>,
 }
 
-/// Numbers of the last event and the last result of the server that are in the local file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// The last event and the last result of the server that are in the local file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Marks {
-    pub event: i64,
-    pub result: i64,
+    pub event: Mark,
+    pub result: Mark,
+}
+
+/// A row of the server. The default stands for the place before the first row.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Mark {
+    /// Number of the row on the server.
+    pub number: i64,
+    /// Uid of the event. A server that was restored from a backup gives the numbers of lost rows to other rows.
+    pub uid: String,
 }
 
 impl Rows {
@@ -62,30 +71,28 @@ impl Rows {
     }
 }
 
-/// Prepares the local file for a server. If it is another one than the last, or has lost rows, all local rows are to be
-/// sent again, and those that the server has are ignored there. `last` are the last numbers of the server.
-pub(super) fn begin(database: &mut Connection, identity: &str, last: Marks) -> rusqlite::Result<Marks> {
+/// Returns up to where the rows of a server are in the local file, or `None` if it was used with another server.
+pub(super) fn marks(database: &Connection, identity: &str) -> rusqlite::Result<Option<Marks>> {
+    let sql = "SELECT event, event_uid, result, result_uid FROM server WHERE identity = ?1";
+    let read = |row: &rusqlite::Row<'_>| {
+        let event = Mark { number: row.get(0)?, uid: row.get(1)? };
+        Ok(Marks { event, result: Mark { number: row.get(2)?, uid: row.get(3)? } })
+    };
+    database.query_row(sql, [identity], read).optional()
+}
+
+/// Prepares the local file for another server, or for one that has lost rows: all local rows are to be sent, and those
+/// that the server has are ignored there.
+pub(super) fn begin(database: &mut Connection, identity: &str) -> rusqlite::Result<()> {
     let transaction = database.transaction_with_behavior(TransactionBehavior::Immediate)?;
-    let known = transaction
-        .query_row("SELECT identity, event, result FROM server", [], |row| {
-            Ok((row.get::<_, String>(0)?, Marks { event: row.get(1)?, result: row.get(2)? }))
-        })
-        .optional()?;
-    if let Some((own, marks)) = known
-        && own == identity
-        && marks.event <= last.event
-        && marks.result <= last.result
-    {
-        return Ok(marks);
-    }
-    transaction.execute("INSERT OR REPLACE INTO server VALUES (1, ?1, 0, 0)", [identity])?;
+    let sql = "INSERT OR REPLACE INTO server (id, identity, event, result) VALUES (1, ?1, 0, 0)";
+    transaction.execute(sql, [identity])?;
     transaction.execute_batch(
         "DELETE FROM outbox;
          INSERT INTO outbox (uid, is_result) SELECT uid, 0 FROM event ORDER BY id;
          INSERT INTO outbox (uid, is_result) SELECT event, 1 FROM result ORDER BY rowid;",
     )?;
-    transaction.commit()?;
-    Ok(Marks::default())
+    transaction.commit()
 }
 
 /// Returns the number of entries that the server does not have yet. Before the first contact, these are all entries.
@@ -116,15 +123,15 @@ pub(super) fn first_waiting(database: &Connection, limit: usize) -> rusqlite::Re
     Ok(waiting)
 }
 
-/// Adds rows of the server to the local file, removes from the outbox what the server has, and records up to which
-/// number its rows are in the local file. Returns how many events and results are new. If another program has begun to
+/// Adds the rows of the server between two marks to the local file, removes from the outbox what the server has, and
+/// records the new marks unless another program has begun again meanwhile. Returns how many events and results are new. If another program has begun to
 /// use another server with this file, nothing is changed and `None` is returned.
 pub(super) fn adopt(
     database: &mut Connection,
     identity: &str,
     received: &Rows,
     sent: &Rows,
-    marks: Marks,
+    [before, after]: [&Marks; 2],
 ) -> rusqlite::Result<Option<usize>> {
     let transaction = database.transaction_with_behavior(TransactionBehavior::Immediate)?;
     let is_own = transaction.query_row("SELECT identity = ?1 FROM server", [identity], |row| row.get(0)).optional()?;
@@ -156,8 +163,10 @@ pub(super) fn adopt(
         for row in &sent.results {
             remove.execute((&row.event, true))?;
         }
-        let sql = "UPDATE server SET event = max(event, ?1), result = max(result, ?2)";
-        transaction.execute(sql, (marks.event, marks.result))?;
+        let sql = "UPDATE server SET event = ?1, event_uid = ?2 WHERE event BETWEEN ?3 AND ?1";
+        transaction.execute(sql, (after.event.number, &after.event.uid, before.event.number))?;
+        let sql = "UPDATE server SET result = ?1, result_uid = ?2 WHERE result BETWEEN ?3 AND ?1";
+        transaction.execute(sql, (after.result.number, &after.result.uid, before.result.number))?;
     }
     transaction.commit()?;
     Ok(Some(new))
@@ -257,7 +266,7 @@ mod tests {
         let path = root.path().join("logbook.sqlite");
         let logbook = Logbook::open(&path).unwrap();
         let [mut one, two] = [(); 2].map(|()| Connection::open(&path).unwrap());
-        begin(&mut one, SERVER, Marks::default()).unwrap();
+        begin(&mut one, SERVER).unwrap();
         TwoPrograms { _root: root, logbook, one, two }
     }
 
@@ -272,7 +281,7 @@ mod tests {
     }
 
     fn acknowledge(database: &mut Connection, sent: &Rows) -> Option<usize> {
-        adopt(database, SERVER, &Rows::default(), sent, Marks::default()).unwrap()
+        adopt(database, SERVER, &Rows::default(), sent, [&Marks::default(); 2]).unwrap()
     }
 
     #[test]
@@ -293,9 +302,29 @@ mod tests {
         let TwoPrograms { _root, mut logbook, mut one, mut two } = two_programs();
         intend(&mut logbook);
         let sent = first_waiting(&one, 9).unwrap();
-        begin(&mut two, "another server", Marks::default()).unwrap();
+        begin(&mut two, "another server").unwrap();
         assert_eq!(acknowledge(&mut one, &sent), None);
         assert_eq!(count_waiting(&two), Ok(1));
+    }
+
+    /// One program finds that the server has lost rows, while another one is receiving.
+    #[test]
+    fn rows_after_a_new_beginning_are_received_from_the_first_one() {
+        let TwoPrograms { _root, mut one, mut two, .. } = two_programs();
+        let at = |number: i64| {
+            let mark = || Mark { number, uid: number.to_string() };
+            Marks { event: mark(), result: mark() }
+        };
+        let mut receive = |from: &Marks, to: &Marks| {
+            adopt(&mut one, SERVER, &Rows::default(), &Rows::default(), [from, to]).unwrap();
+            marks(&one, SERVER).unwrap()
+        };
+        assert_eq!(receive(&Marks::default(), &at(5)), Some(at(5)));
+        begin(&mut two, SERVER).unwrap();
+        assert_eq!(receive(&at(5), &at(8)), Some(Marks::default()));
+        assert_eq!(receive(&Marks::default(), &at(8)), Some(at(8)));
+        assert_eq!(receive(&at(5), &at(7)), Some(at(8)), "a slower program");
+        assert_eq!(marks(&one, "another server").unwrap(), None);
     }
 
     /// Its write cycles count as planned, and the entry can be read.
@@ -313,7 +342,7 @@ mod tests {
         };
         for (at, cycles) in [("yesterday", 1), ("2026-11-01T08:00:00Z", 7)] {
             let received = Rows { events: Vec::new(), results: vec![result(at)] };
-            adopt(&mut one, SERVER, &received, &Rows::default(), Marks::default()).unwrap();
+            adopt(&mut one, SERVER, &received, &Rows::default(), [&Marks::default(); 2]).unwrap();
             assert_eq!(logbook.write_cycles(&device()), Ok(cycles), "{at}");
             assert_eq!(logbook.history(&device(), 9).unwrap()[0].conclusion.is_some(), cycles == 7, "{at}");
         }

@@ -164,7 +164,8 @@ fn read_entry(database: &Connection, row: &Row<'_>) -> rusqlite::Result<Entry> {
     read_valid_entry(database, row).or_else(|error| {
         let why = match error {
             rusqlite::Error::FromSqlConversionFailure(_, _, why) => why.to_string(),
-            error => error.to_string(),
+            rusqlite::Error::IntegralValueOutOfRange(..) => error.to_string(),
+            error => return Err(error),
         };
         Ok(Entry {
             id: EntryId(row.get("id")?),

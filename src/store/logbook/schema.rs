@@ -13,7 +13,7 @@ use crate::store::files::create_folder;
 
 /// Migrations from each schema to the next. Existing migrations must never change, because logbooks created by them
 /// exist.
-pub(super) const STEPS: [&str; 6] = [
+pub(super) const STEPS: [&str; 7] = [
     "
     CREATE TABLE entry (
         id             INTEGER PRIMARY KEY,
@@ -137,6 +137,11 @@ pub(super) const STEPS: [&str; 6] = [
     "
     ALTER TABLE event ADD COLUMN undoes TEXT; -- uid of the event that this one undoes
     CREATE INDEX event_undoes ON event (undoes) WHERE undoes IS NOT NULL;
+",
+    // Uids of the events of the last rows of the server. Without them, all rows are sent once more.
+    "
+    ALTER TABLE server ADD COLUMN event_uid TEXT NOT NULL DEFAULT '';
+    ALTER TABLE server ADD COLUMN result_uid TEXT NOT NULL DEFAULT '';
 ",
 ];
 

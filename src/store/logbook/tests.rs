@@ -415,3 +415,20 @@ fn notes_are_entries_of_a_device_without_a_write() {
     assert_eq!(logbook.write_cycles(&own), Ok(1));
     assert_eq!(logbook.devices().unwrap(), [own, simulated]);
 }
+
+/// The server may have lost rows that this version did not notice.
+#[test]
+fn a_logbook_of_schema_6_does_not_know_which_rows_the_server_has() {
+    let (_root, path) = place();
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    let old = Connection::open(&path).unwrap();
+    for step in &schema::STEPS[..6] {
+        old.execute_batch(step).unwrap();
+    }
+    old.execute_batch("INSERT INTO server VALUES (1, 'plant', 7, 3); PRAGMA user_version = 6").unwrap();
+    drop(old);
+    let logbook = Logbook::open(&path).unwrap();
+    let unknown = |number| outbox::Mark { number, uid: String::new() };
+    let expected = outbox::Marks { event: unknown(7), result: unknown(3) };
+    assert_eq!(outbox::marks(&logbook.database, "plant"), Ok(Some(expected)));
+}

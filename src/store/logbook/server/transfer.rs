@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use tokio_postgres::{Client as Postgres, GenericClient, IsolationLevel, Row};
 
-use super::super::outbox::{self, EventRow, Marks, ResultRow, Rows};
+use super::super::outbox::{self, EventRow, Mark, Marks, ResultRow, Rows};
 use super::super::{LogbookErrorKind, schema as local_schema};
 use super::client::Client;
 use super::error::ServerErrorKind;
@@ -41,22 +41,28 @@ pub(super) fn transfer(client: &mut Client, identity: &str, path: &Path) -> Resu
     let local = |problem: LogbookErrorKind| ServerErrorKind::Local(problem.into_error(path));
     let sqlite = |error: rusqlite::Error| local(error.into());
     let mut database = local_schema::open(path, client.time_left().min(LOCK_TIMEOUT)).map_err(local)?;
-    let last = client.run(async |postgres| last_numbers(postgres).await)?;
-    let mut marks = outbox::begin(&mut database, identity, last).map_err(sqlite)?;
+    let known = outbox::marks(&database, identity).map_err(sqlite)?;
+    let mut marks = match known {
+        Some(marks) if client.run(async |postgres| has_rows(postgres, &marks).await)? => marks,
+        _ => {
+            outbox::begin(&mut database, identity).map_err(sqlite)?;
+            Marks::default()
+        }
+    };
     let (mut done, mut size) = (Transferred::default(), FIRST);
     loop {
         let began = Instant::now();
         let waiting = outbox::first_waiting(&database, size.min(SENT)).map_err(sqlite)?;
         let (rows, after) = client.run(async |postgres| {
             if waiting.is_empty() {
-                receive(postgres, marks, size).await
+                receive(postgres, &marks, size).await
             } else {
-                send(postgres, &waiting, marks, size).await
+                send(postgres, &waiting, &marks, size).await
             }
         })?;
-        marks = after;
-        let adopted = outbox::adopt(&mut database, identity, &rows, &waiting, marks).map_err(sqlite)?;
+        let adopted = outbox::adopt(&mut database, identity, &rows, &waiting, [&marks, &after]).map_err(sqlite)?;
         done.received += adopted.ok_or(ServerErrorKind::OtherServer)?;
+        marks = after;
         done.sent += waiting.events.len() + waiting.results.len();
         if waiting.is_empty() && rows.largest_count() < size {
             return Ok(done);
@@ -67,14 +73,24 @@ pub(super) fn transfer(client: &mut Client, identity: &str, path: &Path) -> Resu
     }
 }
 
-async fn last_numbers(client: &impl GenericClient) -> Result<Marks, ServerErrorKind> {
-    let sql = "SELECT coalesce((SELECT max(id) FROM event), 0), coalesce((SELECT max(id) FROM result), 0)";
-    let row = client.query_one(sql, &[]).await?;
-    Ok(Marks { event: row.try_get(0)?, result: row.try_get(1)? })
+/// Returns whether the rows at the marks are still on the server.
+async fn has_rows(client: &impl GenericClient, marks: &Marks) -> Result<bool, ServerErrorKind> {
+    let sql = "SELECT (SELECT uid FROM event WHERE id = $1), (SELECT event FROM result WHERE id = $2)";
+    let row = client.query_one(sql, &[&marks.event.number, &marks.result.number]).await?;
+    let is_there = |mark: &Mark, found: Option<String>| mark.number == 0 || found.as_ref() == Some(&mark.uid);
+    Ok(is_there(&marks.event, row.try_get(0)?) && is_there(&marks.result, row.try_get(1)?))
+}
+
+/// Returns the last rows of the server.
+async fn last_rows(client: &impl GenericClient) -> Result<Marks, ServerErrorKind> {
+    let event = client.query_opt("SELECT id, uid FROM event ORDER BY id DESC LIMIT 1", &[]).await?;
+    let result = client.query_opt("SELECT id, event FROM result ORDER BY id DESC LIMIT 1", &[]).await?;
+    let mark = |row: Option<Row>| row.map_or(Ok(Mark::default()), |row| read_mark(&row));
+    Ok(Marks { event: mark(event)?, result: mark(result)? })
 }
 
 /// Receives the next rows of the server, at most `size` events and results. A result never comes before its event, because both are read at one moment.
-async fn receive(postgres: &mut Postgres, after: Marks, size: usize) -> Result<(Rows, Marks), ServerErrorKind> {
+async fn receive(postgres: &mut Postgres, after: &Marks, size: usize) -> Result<(Rows, Marks), ServerErrorKind> {
     let builder = postgres.build_transaction().isolation_level(IsolationLevel::RepeatableRead).read_only(true);
     let transaction = builder.start().await?;
     let rows = rows_after(&transaction, after, size).await?;
@@ -82,25 +98,21 @@ async fn receive(postgres: &mut Postgres, after: Marks, size: usize) -> Result<(
     Ok(rows)
 }
 
-async fn rows_after(
-    client: &impl GenericClient,
-    after: Marks,
-    size: usize,
-) -> Result<(Rows, Marks), ServerErrorKind> {
+async fn rows_after(client: &impl GenericClient, after: &Marks, size: usize) -> Result<(Rows, Marks), ServerErrorKind> {
     let limit = size as i64;
     let sql = r#"SELECT id, uid, at, what, kind, device_type, serial_number, is_virtual, description, items,
                         planned_cycles, backup, bench, "user", version, asset,
                         undoes
                  FROM event WHERE id > $1 ORDER BY id LIMIT $2"#;
-    let (mut rows, mut marks) = (Rows::default(), after);
-    for row in client.query(sql, &[&after.event, &limit]).await? {
-        marks.event = row.try_get(0)?;
+    let (mut rows, mut marks) = (Rows::default(), after.clone());
+    for row in client.query(sql, &[&after.event.number, &limit]).await? {
+        marks.event = read_mark(&row)?;
         rows.events.push(read_event(&row)?);
     }
     if rows.events.len() < size {
         let sql = "SELECT id, event, at, outcome, failure, cycles_spent FROM result WHERE id > $1 ORDER BY id LIMIT $2";
-        for row in client.query(sql, &[&after.result, &limit]).await? {
-            marks.result = row.try_get(0)?;
+        for row in client.query(sql, &[&after.result.number, &limit]).await? {
+            marks.result = read_mark(&row)?;
             rows.results.push(read_result(&row)?);
         }
     }
@@ -111,7 +123,7 @@ async fn rows_after(
 async fn send(
     postgres: &mut Postgres,
     own: &Rows,
-    after: Marks,
+    after: &Marks,
     size: usize,
 ) -> Result<(Rows, Marks), ServerErrorKind> {
     let transaction = postgres.transaction().await?;
@@ -121,7 +133,7 @@ async fn send(
     add_results(&transaction, &own.results).await?;
     // All rows up to the own ones are known now, unless there are more than one request returns.
     if rows.largest_count() < size {
-        marks = last_numbers(&transaction).await?;
+        marks = last_rows(&transaction).await?;
     }
     transaction.commit().await?;
     Ok((rows, marks))
@@ -195,6 +207,10 @@ async fn add_results(client: &impl GenericClient, results: &[ResultRow]) -> Resu
 /// Returns a text in the form that PostgreSQL can store, which is without the character 0.
 fn storable(text: impl AsRef<str>) -> String {
     text.as_ref().replace('\0', "\u{fffd}")
+}
+
+fn read_mark(row: &Row) -> Result<Mark, tokio_postgres::Error> {
+    Ok(Mark { number: row.try_get(0)?, uid: row.try_get(1)? })
 }
 
 fn read_event(row: &Row) -> Result<EventRow, tokio_postgres::Error> {
