@@ -1,6 +1,8 @@
 //! The local side of a shared logbook: which rows the server does not have yet, and up to which number the rows of the
 //! server are in the local file.
 
+use std::collections::HashSet;
+
 use jiff::Timestamp;
 use rusqlite::{Connection, OptionalExtension, TransactionBehavior, named_params};
 
@@ -113,9 +115,12 @@ pub(super) fn first_waiting(database: &Connection, limit: usize) -> rusqlite::Re
     let mut result =
         database.prepare_cached("SELECT event, at, outcome, failure, cycles_spent FROM result WHERE event = ?1")?;
     let rows = outbox.query_map([limit as i64], |row| Ok((row.get::<_, String>(0)?, row.get(1)?)))?;
+    let mut included = HashSet::new();
     for row in rows {
         let (uid, is_result) = row?;
-        waiting.events.push(event.query_row([&uid], read_event)?);
+        if included.insert(uid.clone()) {
+            waiting.events.push(event.query_row([&uid], read_event)?);
+        }
         if is_result {
             waiting.results.push(result.query_row([&uid], read_result)?);
         }
@@ -124,8 +129,8 @@ pub(super) fn first_waiting(database: &Connection, limit: usize) -> rusqlite::Re
 }
 
 /// Adds the rows of the server between two marks to the local file, removes from the outbox what the server has, and
-/// records the new marks unless another program has begun again meanwhile. Returns how many events and results are new. If another program has begun to
-/// use another server with this file, nothing is changed and `None` is returned.
+/// records the new marks unless another program has begun again meanwhile. Returns how many events and results are new.
+/// If another program has begun to use another server with this file, nothing is changed and `None` is returned.
 pub(super) fn adopt(
     database: &mut Connection,
     identity: &str,
