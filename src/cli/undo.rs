@@ -58,6 +58,7 @@ pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Res
 fn instruction(kind: &dyn DeviceCommands, kept: &KeptItem) -> String {
     let general = match &kept.redo {
         Redo::Write(value) => format!("write {value} again"),
+        Redo::WriteUnknown => "write its previous value again, which could not be read".to_owned(),
         Redo::Delete => "delete it if its content is not needed".to_owned(),
         Redo::SetPosition => "set the position again".to_owned(),
         Redo::ChangeCode => "change the access code again".to_owned(),

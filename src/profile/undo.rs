@@ -32,6 +32,8 @@ pub struct ChangedSince {
 pub enum Redo {
     /// Write this value again. The backup does not contain it.
     Write(String),
+    /// Write the previous value again. It could not be read before the write, so it is not known.
+    WriteUnknown,
     /// Delete the created data if they are not needed. Their content may have been used since.
     Delete,
     /// Set the position again.

@@ -38,6 +38,7 @@ pub(crate) fn truncated_list<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec
 pub fn redo_text(redo: &Redo) -> Text {
     match redo {
         Redo::Write(value) => Text::new("undo.write").with("value", value),
+        Redo::WriteUnknown => Text::new("undo.write_unknown"),
         Redo::Delete => Text::new("undo.delete"),
         Redo::SetPosition => Text::new("undo.set_position"),
         Redo::ChangeCode => Text::new("undo.change_code"),

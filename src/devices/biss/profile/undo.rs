@@ -41,6 +41,23 @@ impl BissProfile {
         };
         let bank = range.start().bank();
         let is_saved = self.banks().any(|own| Some(own.number) == bank);
-        item.old.clone().filter(|_| !is_saved).map(Redo::Write)
+        (!is_saved).then(|| item.old.clone().map_or(Redo::WriteUnknown, Redo::Write))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::super::test_profiles;
+    use super::*;
+
+    /// Register 0x66 is in no bank, so no backup contains it.
+    #[test]
+    fn a_register_outside_the_banks_is_never_undone_by_its_backup() {
+        let backup = test_profiles::profile("12345678");
+        let changed = |old: Option<&str>| ChangedItem::new("0x66", old.map(str::to_owned), Some("50".to_owned()));
+        assert_eq!(backup.redo_item(&changed(Some("14"))), Some(Redo::Write("14".to_owned())));
+        assert_eq!(backup.redo_item(&changed(None)), Some(Redo::WriteUnknown));
     }
 }
