@@ -100,9 +100,12 @@ pub(crate) fn read_only_reason(source: &Source) -> Option<Text> {
 
 /// Creates a document for a profile that has just been read.
 pub(crate) fn new_document(body: Body) -> ProfileDocument {
-    let now = Timestamp::now();
-    let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
-    ProfileDocument::new(seconds.to_string(), body)
+    ProfileDocument::new(whole_seconds(Timestamp::now()), body)
+}
+
+/// Returns a time as profiles contain it, without a fraction of a second.
+pub(crate) fn whole_seconds(at: Timestamp) -> String {
+    Timestamp::from_second(at.as_second()).unwrap_or(at).to_string()
 }
 
 pub(super) fn read_document(path: PathBuf, store: &Store, kinds: KindRegistry) -> Action {

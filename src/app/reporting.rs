@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::action::{Action, RecorderOwner, TaskResult};
+use super::documents::whole_seconds;
 use super::file_question::FileQuestion;
 use super::report::{
     CreateReport, DeviceReading, ReportContext, ReportFormat, ReportRequest, company, current_time_text,
@@ -71,7 +72,9 @@ impl Studio {
                 };
                 let Source::Link(url) = device.source() else { return Err(Text::new("report.unsaved")) };
                 let reading = DeviceReading { body, status: device.reported_status() };
-                let request = ReportRequest::for_device(url, self.services.world.kinds, reading, language);
+                let mut request = ReportRequest::for_device(url, self.services.world.kinds, reading, language);
+                // The values may have been read long ago.
+                request.document.saved = device.values_read_at().map(whole_seconds);
                 Ok(ReportRequest { results: device.session_results(), ..request })
             }
         }

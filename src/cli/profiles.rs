@@ -4,7 +4,6 @@
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use jiff::Timestamp;
 use serde_json::{Value as Json, json};
 
 use super::args::{CommonArgs, DiffArgs, Restore};
@@ -15,6 +14,7 @@ use super::plan::{NOTHING_TO_WRITE, PlanReport, WriteSummary, print_undo, undo_j
 use super::runner::to_failure;
 use super::user_store::user_store;
 use super::{Failure, Result, Success};
+use crate::app::documents::new_document;
 use crate::app::{KindRegistry, explain, review};
 use crate::profile::{Body, Comparison, Profile, ProfileDocument, RestoreOptions};
 use crate::store::{Event, read_text, write_atomically};
@@ -54,10 +54,7 @@ pub(super) fn read_document(output: &Output, path: &Path) -> Result<ProfileDocum
 
 /// Saves a profile that was read from the device of this command, and records this in the logbook.
 pub fn save_profile(common: &CommonArgs, path: &Path, body: Body) -> Result<()> {
-    let now = Timestamp::now();
-    let second = Timestamp::from_second(now.as_second()).unwrap_or(now);
-    let document = ProfileDocument::new(second.to_string(), body);
-    write_atomically(path, document.emit().as_bytes())
+    write_atomically(path, new_document(body).emit().as_bytes())
         .map_err(|error| to_failure(&explain::file_error_text(&error)))?;
     let store = user_store(common)?;
     common.log.record(&store, &Event::saved_profile(path));

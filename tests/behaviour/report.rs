@@ -109,6 +109,26 @@ fn the_page_shows_the_history_of_a_device() {
     assert!(made["sha256"].as_str().unwrap().to_uppercase().starts_with(number));
 }
 
+/// The virtual encoder has the serial number of the real one.
+#[test]
+fn write_cycles_of_virtual_devices_are_counted_separately() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C9","bytes":"01020304"}]"#]) else { return };
+    let (file, out) = (bench.file("a.ron"), bench.file("r.html"));
+    bench.run(&["save", "hiperface", "--link", &encoder.url, "-o", &file]);
+    let write = |link: &str| {
+        bench.run(&["write", "hiperface", "field:0@3", "C0", "--yes", "--json", "--link", link]).json()["write_cycles"]
+            .as_u64()
+            .unwrap()
+    };
+    let (real, simulated) = (write(&encoder.url), write("sim:"));
+    assert!(real > 0 && simulated > 0);
+    bench.run(&["report", &file, "-o", &out]);
+    let wanted = format!("Write cycles in the logbook: {real}. The newest entry comes first.");
+    let texts = texts(&bench.read("r.html"));
+    assert!(texts.contains(&wanted), "{texts:?}");
+}
+
 #[test]
 fn everything_but_the_time_of_printing_depends_on_the_content() {
     let bench = Bench::new();

@@ -77,9 +77,14 @@ fn a_report_of_a_device_shows_what_was_read() {
     let mut desk = Desk::new_form("");
     let requests = desk.wire().count(0x4A);
     let path = desk.outside.path("device.html");
+    let read_at = desk.studio.selected_device().unwrap().values_read_at().unwrap();
+    // The report is made later than the values were read.
+    std::thread::sleep(std::time::Duration::from_millis(1_100));
     report(&mut desk, &path);
     let page = fs::read_to_string(path).unwrap();
     assert!(page.contains("GB0450179") && page.contains("45 4D 44 37 31 4B"));
+    let shown = read_at.strftime("%Y-%m-%d %H:%M:%S UTC").to_string();
+    assert!(page.contains(&shown), "{shown}");
     assert!(page.contains("No errors or warnings."));
     assert_eq!(desk.wire().count(0x4A), requests, "nothing is read for it");
     let path = desk.outside.path("device.pdf");

@@ -3,6 +3,8 @@
 use std::any::Any;
 use std::path::PathBuf;
 
+use jiff::Timestamp;
+
 use super::AnyDevice;
 use super::model::DeviceMemory;
 use crate::app::Text;
@@ -41,6 +43,11 @@ impl AnyDevice {
 
     pub fn source(&self) -> &Source {
         &self.state().source
+    }
+
+    /// Returns the time at which the displayed values were read, or `None` if they were not read.
+    pub fn values_read_at(&self) -> Option<Timestamp> {
+        self.state().values_read_at
     }
 
     pub fn phase(&self) -> &Phase {

@@ -5,10 +5,12 @@ use std::path::Path;
 use super::content::{NONE, ReportContent};
 use super::sections::time;
 use super::{ReportContext, ReportSource, file_name};
+use crate::analysis::check::CycleCount;
 use crate::app::explain;
 use crate::app::{Text, entry_kind_text, outcome_text};
 use crate::report::{Block, CellStyle, Mark, Section, Table, sha256_hex};
-use crate::store::{Entry, EntryFilter, EntryKind, Logbook, LogbookError, Outcome, Store, read_file};
+use crate::store::{DeviceKey, Entry, EntryFilter, EntryKind, Logbook, LogbookError, Outcome, Store, read_file};
+use crate::worker::commit::known_cycles;
 
 /// Maximum number of entries in a report.
 const LIMIT: u32 = 500;
@@ -19,7 +21,8 @@ pub(super) struct History {
     entries: Vec<Entry>,
     /// Whether there are older entries, which are not listed.
     has_more: bool,
-    write_cycles: u64,
+    /// Write cycles of the device, or `None` if they are unknown.
+    write_cycles: Option<CycleCount>,
     /// Whether virtual devices are named, because the entries may belong to real ones too.
     names_virtual: bool,
     backups: Vec<BackupFile>,
@@ -58,7 +61,12 @@ pub(super) fn read(content: &ReportContent, source: &ReportSource, store: &Store
         is_source && entry.device.device_type == key.device_type
     };
     let mut entries: Vec<Entry> = entries.into_iter().filter(is_own).collect();
-    let write_cycles = entries.iter().map(Entry::write_cycles).sum();
+    // A virtual device does not wear out a real one with the same serial number.
+    let is_virtual = match source {
+        ReportSource::Profile(_) => entries.iter().all(|entry| entry.device.is_virtual),
+        ReportSource::Device { is_virtual, .. } => *is_virtual,
+    };
+    let write_cycles = known_cycles(store, &DeviceKey { is_virtual, ..key.clone() });
     entries.retain(|entry| entry.kind != EntryKind::Connected);
     let has_more = entries.len() > LIMIT as usize;
     entries.truncate(LIMIT as usize);
@@ -82,7 +90,8 @@ impl History {
         if self.entries.is_empty() {
             return Vec::new();
         }
-        let cycles = Text::new("report.cycles").with("cycles", self.write_cycles);
+        let count = self.write_cycles.map_or_else(|| Text::new("wear.unknown"), explain::cycle_count_text);
+        let cycles = Text::new("report.cycles").with_text("cycles", count);
         let mut history = Section::new(context.say("report.history")).with(Block::Paragraph(context.say(cycles)));
         if self.has_more {
             history = history.with(Block::Paragraph(context.say(Text::new("logbook.newest").with("count", LIMIT))));
@@ -141,11 +150,8 @@ impl History {
 impl BackupFile {
     fn of_entry(entry: &Entry) -> Option<Self> {
         let path = entry.backup.as_ref()?;
-        Some(BackupFile {
-            entry: entry.id.to_string(),
-            name: file_name(path),
-            checksum: read_file(path).ok().map(|text| sha256_hex(text.as_bytes())),
-        })
+        let checksum = read_file(path).ok().map(|text| sha256_hex(text.as_bytes()));
+        Some(BackupFile { entry: entry.id.to_string(), name: file_name(path), checksum })
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use jiff::Timestamp;
+
 use super::{PendingOpen, Phase, Source, first};
 use crate::analysis::check::CycleCount;
 use crate::app::kinds::KindRegistry;
@@ -31,6 +33,8 @@ pub struct SessionState {
     pub asset: Option<String>,
     /// Status codes in the logbook, newest first.
     pub statuses: Vec<Entry>,
+    /// Time at which the displayed values were read, or `None` if they were not read.
+    pub(crate) values_read_at: Option<Timestamp>,
     /// Whether nothing has been read since the link was opened.
     pub just_connected: bool,
     /// Whether live values start automatically once the device has been read and its line is idle.
@@ -56,6 +60,7 @@ impl SessionState {
             cycles: None,
             asset: None,
             statuses: Vec::new(),
+            values_read_at: None,
             just_connected: false,
             live_due: false,
             save_to: None,

@@ -127,6 +127,7 @@ impl Encoder {
 
     /// Accepts a survey of the encoder. Edits are kept unless the survey belongs to another encoder.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
+        self.session.values_read_at = Some(services.current_time().timestamp());
         let fresh = std::mem::take(&mut self.session.just_connected);
         // Without a serial number, this may be any encoder of the same type.
         let unproven = fresh && self.survey.is_some() && survey.identity.serial_number.is_empty();

@@ -192,6 +192,7 @@ impl Encoder {
 
     /// Updates the encoder with the result of a survey. Edits are kept unless they belong to another encoder.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
+        self.session.values_read_at = Some(services.current_time().timestamp());
         if self.is_different_device(&survey.identity) {
             self.handle_device_replacement(&survey.identity.serial_number, services);
         }
