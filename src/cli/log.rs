@@ -42,15 +42,14 @@ pub(super) fn profile_of(entry: &Entry) -> Result<PathBuf> {
     Ok(path.to_owned())
 }
 
-/// Returns an error if the backup of an entry is on another computer.
+/// Returns an error if the backup of an entry is on another computer. A file with the same path on this computer is not
+/// the backup.
 pub(super) fn check_bench(entry: &Entry, backup: &Path) -> Result<()> {
-    match entry.origin.other_bench() {
-        Some(bench) if matches!(backup.try_exists(), Ok(false)) => Err(Failure::Failed(vec![
-            format!("The backup of entry {} is on {bench}, where it was written: {}", entry.id, backup.display()),
-            "Run the command there, or copy the file to this computer and use restore.".to_owned(),
-        ])),
-        _ => Ok(()),
-    }
+    let Some(bench) = entry.origin.other_bench() else { return Ok(()) };
+    Err(Failure::Failed(vec![
+        format!("The backup of entry {} is on {bench}, where it was written: {}", entry.id, backup.display()),
+        "Run the command there, or copy the file to this computer and name the copy instead of the entry.".to_owned(),
+    ]))
 }
 
 pub(super) fn no_backup(entry: &Entry) -> Failure {

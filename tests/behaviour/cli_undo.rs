@@ -188,17 +188,26 @@ fn another_device_is_refused() {
     device.bench.run(&["undo", &entry, "--link", &device.link]).fails(2, &["--yes"]);
 }
 
-/// The backup of a write at another bench is not on this computer.
+/// The backup of a write at another bench is not on this computer, even if a file has the same path.
 #[test]
 fn the_bench_of_a_missing_backup_is_named() {
     let device = Device::start("hiperface");
     let entry = device.write("field:0@3+2", "C0FF");
     let logbook = device.bench.path("data/encoder-studio/logbook.sqlite");
-    let moved = "UPDATE event SET bench = 'bench 7', backup = '/data/of bench 7/backup.ron' WHERE what = 'write'";
-    rusqlite::Connection::open(logbook).unwrap().execute(moved, []).unwrap();
-    let parts = ["entry", "on bench 7", "/data/of bench 7/backup.ron", "Run the command there", "copy the file"];
-    device.undo(&entry).fails(1, &parts);
-    device.run(&["diff", &format!("log:{entry}")]).fails(1, &parts);
+    let logbook = rusqlite::Connection::open(logbook).unwrap();
+    for (moved, path) in [
+        ("UPDATE event SET bench = 'bench 7' WHERE what = 'write'", "backups/hiperface"),
+        ("UPDATE event SET backup = '/data/of bench 7/backup.ron' WHERE what = 'write'", "/data/of bench 7/backup.ron"),
+    ] {
+        logbook.execute(moved, []).unwrap();
+        let parts = ["entry", "on bench 7", path, "Run the command there", "copy the file"];
+        device.undo(&entry).fails(1, &parts);
+        device.run(&["diff", &format!("log:{entry}")]).fails(1, &parts);
+    }
+    let (file, out) = (device.bench.file("a.ron"), device.bench.file("r.html"));
+    device.run(&["save", "hiperface", "-o", &file]);
+    device.bench.run(&["report", &file, "-o", &out]);
+    assert!(device.bench.read("r.html").contains("on bench 7"));
     assert_eq!(device.read("field:0@3+2"), "C0FF");
 }
 

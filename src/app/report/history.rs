@@ -33,8 +33,8 @@ pub(super) struct History {
 struct BackupFile {
     entry: String,
     name: String,
-    /// SHA-256 of the file, or `None` if the file cannot be read.
-    checksum: Option<String>,
+    /// SHA-256 of the file, or the reason why it is not known.
+    checksum: Result<String, Text>,
 }
 
 /// Reads the history of a device. The history of a profile includes the entries of real and virtual devices with its
@@ -140,7 +140,7 @@ impl History {
             (Text::new("report.checksum"), CellStyle::Code),
         ]);
         for backup in &self.backups {
-            let checksum = backup.checksum.clone().unwrap_or_else(|| context.say("report.not_readable"));
+            let checksum = backup.checksum.clone().unwrap_or_else(|why| context.say(why));
             table.add_row([backup.entry.clone(), backup.name.clone(), checksum]);
         }
         Section::new(context.say("report.backups")).with(Block::Table(table))
@@ -150,7 +150,12 @@ impl History {
 impl BackupFile {
     fn of_entry(entry: &Entry) -> Option<Self> {
         let path = entry.backup.as_ref()?;
-        let checksum = read_file(path).ok().map(|text| sha256_hex(text.as_bytes()));
+        let checksum = match entry.origin.other_bench() {
+            Some(bench) => Err(Text::new("report.on_bench").with("bench", bench)),
+            None => {
+                read_file(path).map(|text| sha256_hex(text.as_bytes())).map_err(|_| Text::new("report.not_readable"))
+            }
+        };
         Some(BackupFile { entry: entry.id.to_string(), name: file_name(path), checksum })
     }
 }

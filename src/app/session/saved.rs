@@ -9,7 +9,7 @@ use crate::app::review::{Reviewable, UndoneEntry};
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::profile::{Body, ProfileError};
-use crate::store::{Entry, FileError, FileErrorKind};
+use crate::store::Entry;
 use crate::worker::Device;
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
@@ -105,9 +105,11 @@ pub trait HasProfile: HasMemory {
 
     /// Reads a backup that is to be restored, or from which an entry of the logbook is to be undone.
     fn read_backup(&mut self, path: PathBuf, undone: Option<Box<Entry>>, services: &mut Services) {
-        match self.device_key() {
-            Some(of) => self.session().read_backup(of, path, undone, services),
-            None => self.session().report_rejection(Text::new("session.not_connected"), services),
+        let refusal = undone.as_ref().and_then(|entry| other_bench_text(entry, &path));
+        match (refusal, self.device_key()) {
+            (Some(refusal), _) => self.session().report_rejection(refusal, services),
+            (None, Some(of)) => self.session().read_backup(of, path, undone, services),
+            (None, None) => self.session().report_rejection(Text::new("session.not_connected"), services),
         }
     }
 
@@ -122,8 +124,7 @@ pub trait HasProfile: HasMemory {
             planned.map_err(ReadError::Profile)
         });
         if let Err(error) = restored {
-            let elsewhere = undone.as_ref().and_then(|entry| backup_elsewhere(entry, &path, &error));
-            let text = elsewhere.unwrap_or_else(|| read_error(&path, &error, services.world.kinds));
+            let text = read_error(&path, &error, services.world.kinds);
             self.session().report_rejection(text, services);
         }
     }
@@ -136,10 +137,9 @@ pub trait HasProfile: HasMemory {
     }
 }
 
-/// Returns the message that the backup of an entry is on another computer, if this is why it cannot be read.
-fn backup_elsewhere(entry: &Entry, path: &Path, error: &ReadError) -> Option<Text> {
+/// Returns the message that the backup of an entry is on another computer. A file with the same path on this computer is
+/// not the backup.
+fn other_bench_text(entry: &Entry, path: &Path) -> Option<Text> {
     let bench = entry.origin.other_bench()?;
-    let is_missing = |error: &FileError| matches!(error.problem, FileErrorKind::NotFound | FileErrorKind::NoFolder);
-    let missing = matches!(error, ReadError::File(error) if is_missing(error));
-    missing.then(|| Text::new("undo.other_bench").with("bench", bench).with("path", path.display()))
+    Some(Text::new("undo.other_bench").with("bench", bench).with("path", path.display()))
 }

@@ -51,7 +51,9 @@ pub(super) fn entry_ui(
                         if entry.kind.has_result() {
                             undo_ui(ui, theme, studio, entry, actions);
                         }
-                        backup_ui(ui, theme, studio, (&entry.device, path), actions);
+                        if entry.origin.other_bench().is_none() {
+                            backup_ui(ui, theme, studio, (&entry.device, path), actions);
+                        }
                     });
                 }
                 ui.add_space(theme.space.inside);
