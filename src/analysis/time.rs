@@ -39,7 +39,7 @@ impl SampleTime {
 }
 
 impl From<Moment> for SampleTime {
-    /// Converts a moment of a clock. The origin is the start of that clock.
+    /// Converts a moment to a sample time, which is counted from the start of the clock.
     fn from(moment: Moment) -> Self {
         let elapsed = moment.since_start();
         let seconds = i64::try_from(elapsed.as_secs()).unwrap_or(i64::MAX);

@@ -1,4 +1,4 @@
-//! The form for the company in reports: its name and its logo.
+//! The form for the name and the logo of the company that appear in reports.
 
 use std::path::{Path, PathBuf};
 
@@ -8,10 +8,10 @@ use super::report::check_company;
 use super::studio::Studio;
 use super::{Settings, Text};
 
-/// The open form.
+/// State of the open form.
 #[derive(Debug, Default)]
 pub struct CompanyForm {
-    /// Logo that was chosen in the dialog for files, until the form shows it.
+    /// Path of the logo that was chosen in the file dialog, until the form displays it.
     chosen: Option<PathBuf>,
     is_checking: bool,
     problem: Option<Text>,
@@ -22,9 +22,9 @@ pub struct CompanyForm {
 pub enum CompanyAction {
     Open,
     Close,
-    /// Ask for the file of the logo.
+    /// Ask the user to choose a logo file.
     AskLogo,
-    /// Use the name and the logo in reports. An empty text means none.
+    /// Use the name and the logo in reports. If a text is empty, reports omit the name or the logo.
     Save {
         name: String,
         logo: String,
@@ -32,7 +32,7 @@ pub enum CompanyAction {
 }
 
 impl CompanyForm {
-    /// Returns the logo that was chosen in the dialog for files.
+    /// Returns the path of the logo that was chosen in the file dialog, if any.
     pub fn chosen_logo(&self) -> Option<&Path> {
         self.chosen.as_deref()
     }
@@ -41,7 +41,7 @@ impl CompanyForm {
         self.is_checking
     }
 
-    /// Returns the reason why the logo cannot be used.
+    /// Returns the reason why the logo cannot be used, or `None` if there is no problem.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -53,7 +53,7 @@ impl Studio {
         self.company_form.as_ref()
     }
 
-    /// Returns whether a form of the settings is open.
+    /// Returns whether a settings form is open.
     pub fn has_form(&self) -> bool {
         self.server_form.is_some() || self.company_form.is_some()
     }
@@ -73,7 +73,7 @@ impl Studio {
         }
     }
 
-    /// Starts a task that checks the logo before the company is saved.
+    /// Starts a task that checks the logo before the company name and the logo are saved.
     fn check_company(&mut self, name: &str, logo: &str) {
         let Some(form) = &mut self.company_form else { return };
         form.is_checking = true;
@@ -94,7 +94,7 @@ impl Studio {
                 self.company_form = None;
             }
             (Err(why), Some(form)) => (form.is_checking, form.problem) = (false, Some(why)),
-            // The form was closed meanwhile.
+            // The form has been closed in the meantime.
             (_, None) => {}
         }
     }

@@ -1,4 +1,4 @@
-//! Stop and release of motion in all sessions.
+//! Stops or releases motion in all sessions.
 
 use super::devices::MotionControl;
 use super::studio::Studio;
@@ -12,7 +12,7 @@ impl Studio {
         self.devices.iter_mut().filter_map(|device| device.motion_mut())
     }
 
-    /// Returns whether drives are connected in any session. If so, STOP must be reachable.
+    /// Returns whether any session has a connected drive. If so, the STOP button must be reachable.
     pub fn has_drives(&self) -> bool {
         self.devices.iter().any(|device| device.motion().is_some() && device.is_connected())
     }
@@ -22,7 +22,8 @@ impl Studio {
         self.motion_controls().any(MotionControl::is_moving)
     }
 
-    /// Returns whether a motion requested in this window is running. Escape stops this motion first.
+    /// Returns whether a motion that was requested in this window is running. The Escape key stops this motion before
+    /// it closes anything.
     pub fn is_turned_by_hand(&self) -> bool {
         self.motion_controls().any(MotionControl::is_turned_by_hand)
     }
@@ -32,7 +33,7 @@ impl Studio {
         self.motion_controls().any(MotionControl::is_motion_active)
     }
 
-    /// Returns whether drives are under control. If so, their values arrive without a request.
+    /// Returns whether this program controls any drive. A controlled drive sends its values without being asked.
     pub fn has_control(&self) -> bool {
         self.motion_controls().any(MotionControl::has_control)
     }
@@ -47,8 +48,8 @@ impl Studio {
         self.motions_mut().for_each(MotionControl::stop);
     }
 
-    /// Ends all held motions and runs without an end, because the window has lost the keyboard focus or a dialog covers
-    /// it.
+    /// Ends all motions that last while a button is held, and all continuous runs, because the window has lost the
+    /// keyboard focus or a dialog covers it.
     pub(super) fn release_jogs(&mut self) {
         self.motions_mut().for_each(MotionControl::release_motion);
     }

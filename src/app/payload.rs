@@ -55,7 +55,7 @@ impl TaskResult {
         TaskResult::Device(id, Payload::new(done))
     }
 
-    /// Wraps the result of a search task for the connection form of a kind of device.
+    /// Wraps the result of a search task that a kind of device has started for its connection form.
     pub fn from_finder<F: Finder>(tab: Tab, done: F::TaskResult) -> Self {
         TaskResult::Finder(tab, Payload::new(done))
     }

@@ -1,4 +1,4 @@
-//! The review of a write, for every kind of device: its effect, the approval of the user, the progress and the result.
+//! The review of a write for any kind of device. It shows the effect, asks for approval, and reports the result.
 
 mod notices;
 mod permit;
@@ -27,9 +27,9 @@ pub struct Review<K: Reviewable> {
     /// Whether the change was made for another type of device.
     pub is_for_other_type: bool,
     pub(crate) change: K::Change,
-    /// Permissions that affect the plan, each with its present state.
+    /// Permissions that affect the plan, and whether each one is granted.
     permits: Vec<PermitToggle>,
-    /// Entry of the logbook that the write undoes, if any.
+    /// Logbook entry that the write undoes, if any.
     undone: Option<UndoneEntry>,
 }
 
@@ -67,7 +67,7 @@ impl<K: Reviewable> Review<K> {
         }
     }
 
-    /// Makes this the review of an undo. Another device is never allowed for an undo.
+    /// Makes this the review of an undo, which is never allowed on a different device.
     pub(in crate::app) fn undoing(mut self, undone: UndoneEntry) -> Self {
         self.title = undone.title();
         self.permits.clear();
@@ -75,12 +75,12 @@ impl<K: Reviewable> Review<K> {
         self
     }
 
-    /// Returns the entry of the logbook that the write undoes, if any.
+    /// Returns the logbook entry that the write undoes, if any.
     pub(in crate::app) fn undone_entry(&self) -> Option<&EntryUid> {
         self.undone.as_ref().map(UndoneEntry::uid)
     }
 
-    /// Returns a review for which the plan is requested again.
+    /// Returns a review of the given change that waits for a new plan.
     pub(crate) fn renewed(&self, change: K::Change) -> Self {
         let again = Review::new(change, self.is_for_another, self.is_for_other_type);
         match &self.undone {
@@ -89,8 +89,8 @@ impl<K: Reviewable> Review<K> {
         }
     }
 
-    /// Adopts a plan, unless it would undo values that have changed since. Of the items that a restore leaves
-    /// unchanged, an undo reports only those of the write.
+    /// Adopts a plan, unless it undoes a write whose values have changed since then. An undo reports items that are
+    /// left unchanged only if they belong to the original write.
     pub(in crate::app) fn adopt_plan(&mut self, mut prepared: Box<K::Prepared>) {
         if let Some(undone) = &self.undone {
             if let Some(texts) = undone.rejection(&*prepared) {
@@ -157,7 +157,7 @@ impl<K: Reviewable> Review<K> {
             Permit::TypeMismatch => self.is_for_other_type,
             Permit::Mounting => self.prepared_plan().is_some_and(K::skips_mounting_values),
             Permit::Recreate => true,
-            // This permit is offered as a question.
+            // This permission is requested with a question.
             Permit::Copy(_) => false,
         };
         self.permits.iter().copied().filter(|own| own.is_on || matters(own.permit)).collect()
@@ -167,7 +167,7 @@ impl<K: Reviewable> Review<K> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperationTexts {
     pub item: Text,
-    /// Changes in order. There is at least one.
+    /// Changes in order. The list is never empty.
     pub changes: Vec<ChangeTexts>,
 }
 
@@ -205,7 +205,7 @@ pub enum ExecutionMode {
     Writes,
     /// The plan is executed step by step, and the user acts at the device.
     Guided,
-    /// The plan is executed step by step and does not write anything.
+    /// The plan is executed step by step and only tests the device, without writing to it.
     Tests,
 }
 
@@ -237,8 +237,7 @@ pub struct ReviewSheet {
     pub warnings: Vec<Text>,
     /// Actions at the device that the plan requires from the user.
     pub needs: Vec<Text>,
-    /// Values from another device that must be set up again later. They are displayed while planning, while writing and
-    /// at the end.
+    /// Values from another device that must be set up again later. The text is displayed from planning to the end.
     pub redo: Option<Text>,
     /// Wear in addition to the write cycles counted by this computer.
     pub cost: Option<Text>,
@@ -248,19 +247,19 @@ pub struct ReviewSheet {
     pub toggles: Vec<PermitToggle>,
     /// Questions that the user must answer before the plan is executed.
     pub questions: Vec<Question>,
-    /// Whether to write although the limit of write cycles is reached or their number is unknown. `None` if no decision
-    /// of the user is required.
+    /// Whether to write although the limit of write cycles is reached or the number of earlier cycles is unknown.
+    /// `None` if the user does not have to decide.
     pub force_wear: Option<bool>,
     /// Whether the number of earlier write cycles is unknown.
     pub is_uncounted: bool,
-    /// Whether the logbook lacks write cycles, and the memory wears out quickly.
+    /// Whether write cycles are missing from the logbook and the memory wears out quickly.
     pub is_incomplete: bool,
 }
 
 #[derive(Clone, Debug)]
 pub enum Stage {
     Planning,
-    /// The plan contains nothing to do.
+    /// The plan does not contain any operations.
     Nothing,
     Ready(PlanId),
     /// The plan is being executed. Contains the number of completed operations.
@@ -279,14 +278,14 @@ pub enum Stage {
     },
 }
 
-/// A kind of device with a memory, with the texts for its writes.
+/// A kind of device with writable memory, and the texts for the review of its writes.
 pub trait Reviewable: Kind<Review = Review<Self>> {
     type Change: Clone;
     type Prepared: PlannedWrite + Clone;
     type Written;
 
     fn change_title(change: &Self::Change) -> Text;
-    /// Returns the flag of a change that grants a permission, or `None` if the permission does not apply to the change.
+    /// Returns the flag in a change that grants a permission, or `None` if the permission does not apply.
     fn permit_flag(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
     fn operation_texts(prepared: &Self::Prepared, op: &Op<Self>) -> OperationTexts;
     /// Returns whether some values differ but are not written, because they depend on the mounting.
@@ -303,8 +302,8 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
-    /// Removes the items from the report of missing ones that do not concern the write. The default is for kinds whose
-    /// backups contain the complete device.
+    /// Removes items that the write does not concern from the list of missing items. The default implementation is for
+    /// kinds of device whose backups contain the complete device.
     fn retain_missing(_prepared: &mut Self::Prepared, _concerns: &dyn Fn(&str) -> bool) {}
 
     fn warnings(_prepared: &Self::Prepared) -> Vec<Text> {

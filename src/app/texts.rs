@@ -113,7 +113,7 @@ impl Text {
         self
     }
 
-    /// Replaces `{name}` with a number that is already formatted, except for the decimal sign of the language.
+    /// Replaces `{name}` with a number that is already formatted, except for the decimal separator of the language.
     #[must_use]
     pub(crate) fn with_formatted_number(mut self, name: &'static str, digits: impl ToString) -> Self {
         self.arguments.push((name, TextArgument::Number(digits.to_string())));
@@ -178,12 +178,12 @@ impl Text {
     }
 }
 
-/// Formats a number that is given with a decimal point, using the decimal sign of a language.
+/// Formats a number that is given with a decimal point, using the decimal separator of a language.
 pub(crate) fn localize_number(number: &str, language: Language) -> String {
     TextArgument::Number(number.to_owned()).text_for(Output::Window(language))
 }
 
-/// Formats a number with the given number of decimals, using the decimal sign of a language.
+/// Formats a number with the given number of decimals, using the decimal separator of a language.
 pub fn format_decimal(value: f64, decimals: usize, language: Language) -> String {
     TextArgument::Number(format!("{value:.decimals$}")).text_for(Output::Window(language))
 }

@@ -1,4 +1,5 @@
-//! A tab that does not need a device. All tools are alike for the studio, which does not name any of them.
+//! A tab that does not need a device. The application uses all tools through the same trait and does not refer to any
+//! specific tool.
 
 #![warn(missing_docs)]
 
@@ -17,7 +18,7 @@ use super::tab::Tab;
 use super::{Action, Text};
 use crate::link::LinkUrl;
 
-/// A tool before the window is open.
+/// A kind of tool, which creates the tool when the window opens.
 pub trait ToolKind: Sync {
     /// Returns the tab in which the tool is shown.
     fn tab(&self) -> Tab;
@@ -55,13 +56,13 @@ pub trait Tool: Any {
     /// Returns the recorder of the tool, mutably.
     fn recorder_mut(&mut self) -> &mut Recorder;
 
-    /// Adopts the next reading of a source, if any. The reading was taken at standstill.
+    /// Adopts the next reading that a source has taken at standstill, if any.
     fn adopt_reading(&mut self, source: &mut dyn SineCosineSource);
 
-    /// Releases a connection, because it is needed elsewhere.
+    /// Releases a connection that is needed elsewhere.
     fn release_connection(&mut self, url: &LinkUrl, services: &mut Services);
 
-    /// Returns the function that creates a report of the displayed data, or `None` if there are none.
+    /// Returns the function that creates a report of the displayed data, or `None` if no data is displayed.
     fn report(&self) -> Option<CreateReport>;
 
     /// Returns whether the tool can open the given file.
@@ -71,7 +72,7 @@ pub trait Tool: Any {
     fn open(&mut self, path: PathBuf, services: &mut Services);
 }
 
-/// An action of a tool, which can be passed on as a payload.
+/// An action of a tool. Such actions can be passed as a payload.
 pub trait ToolAction: Any + Send {
     /// Tab in which the tool is shown.
     const TAB: Tab;
@@ -150,7 +151,7 @@ impl Studio {
         }
     }
 
-    /// Opens a file in the tool that accepts it. Returns the path if there is no such tool.
+    /// Opens a file in the tool that accepts it. Returns the path as an error if no tool accepts the file.
     pub(super) fn open_in_tool(&mut self, path: PathBuf) -> Result<(), PathBuf> {
         let Some((tab, tool)) = self.tools.iter_mut().find(|(_, tool)| tool.can_open(&path)) else { return Err(path) };
         self.settings.tab = *tab;

@@ -60,10 +60,10 @@ pub struct CommonArgs {
     /// Kinds of device that add options to every command. Set by parsing.
     #[arg(skip = Commands::NONE)]
     pub(super) commands: Commands,
-    /// The part of the logbook that the command adds. Its session shares it.
+    /// Log to which the command adds logbook entries. The session of the command shares this log.
     #[arg(skip)]
     pub(super) log: SessionLog,
-    /// The server that shares the logbook.
+    /// Server through which the logbook is shared.
     #[arg(skip)]
     pub(super) server: LogbookServer,
 }
@@ -292,7 +292,7 @@ pub struct Restore {
 }
 
 impl Restore {
-    /// Returns a restore of the backup of a write that is undone. Another device is never allowed.
+    /// Creates a restore of a backup that undoes a write. Restoring to a different device is never allowed.
     pub(super) fn of_backup(file: PathBuf, undo: &UndoArgs, undone: UndoneEntry) -> Self {
         Restore {
             file,

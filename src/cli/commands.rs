@@ -1,5 +1,5 @@
-//! Commands that devices, buses and Signals add to the command line. The list is in `kinds.rs`. This module is
-//! independent of the devices.
+//! Commands that devices, buses and Signals add to the command line. The commands are listed in `kinds.rs`, so this
+//! module does not depend on any device.
 
 #![warn(missing_docs)]
 
@@ -40,7 +40,7 @@ pub enum CommandId {
     Write,
     /// Perform another action of the device.
     Do,
-    /// Make a report of a profile or a device.
+    /// Create a report of a profile or a device.
     Report,
     /// Explain captured bytes.
     Decode,
@@ -115,7 +115,7 @@ pub trait DeviceCommands: ProfileCommands {
         Vec::new()
     }
 
-    /// Adds the values of the common options. Values from the environment replace them.
+    /// Adds the values of the common options, including those from environment variables, to `given`.
     ///
     /// # Errors
     /// Returns an error if a value is invalid.
@@ -138,7 +138,7 @@ pub trait DeviceCommands: ProfileCommands {
         Vec::new()
     }
 
-    /// Returns the reason why another kind does not accept an option of this kind. `None` if there is no specific
+    /// Returns the reason why another kind does not accept an option of this kind, or `None` if there is no specific
     /// reason.
     fn refused_option(&self, _option: &str) -> Option<String> {
         None
@@ -171,14 +171,14 @@ pub trait ProfileCommands: Sync {
     /// the items that it contains are read.
     fn read_for_comparison(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body>;
 
-    /// Reads a device for a report, in the same way as for a saved profile, and what it reports.
+    /// Reads a device for a report. This reads the same values as saving a profile, and also the status of the device.
     fn read_for_report(&self, common: &CommonArgs, output: &Output) -> Result<DeviceReading> {
         let body = self.read_for_comparison(common, output, None)?;
         Ok(DeviceReading { body, status: None })
     }
 
-    /// Returns an instruction with the command of this kind for an item that cannot be undone, if there is such a
-    /// command.
+    /// Returns an instruction that names the command with which the user can write back an item that an undo leaves
+    /// unchanged, or `None` if this kind has no such command.
     fn redo_command(&self, _kept: &KeptItem) -> Option<String> {
         None
     }
@@ -188,7 +188,7 @@ pub trait ProfileCommands: Sync {
         None
     }
 
-    /// Returns a message if two profiles belong to different devices.
+    /// Returns a message if the two profiles belong to different devices, or `None` if they do not.
     fn device_mismatch(&self, _profile: &Body, _device: &Body) -> Option<String> {
         None
     }
@@ -243,7 +243,7 @@ impl std::fmt::Debug for Commands {
 }
 
 impl Commands {
-    /// The commands of the core alone.
+    /// Only the commands of the core.
     pub(super) const NONE: Commands = Commands::new(&[], &[], &[]);
 
     /// Creates the list of commands.

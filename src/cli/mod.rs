@@ -1,5 +1,5 @@
-//! The command line, which offers the same jobs as the window. It parses arguments, asks for consent and prints
-//! results. The worker executes the jobs.
+//! The command line, which provides the same functions as the window. This module parses arguments, asks for consent
+//! and prints results. The worker executes the jobs.
 
 pub(crate) mod args;
 pub(crate) mod check;
@@ -56,7 +56,7 @@ pub enum Failure {
     Usage(String),
     /// The device or the operation has failed, described in one to four lines. The exit status is 1.
     Failed(Vec<String>),
-    /// The reader has closed the output. Nothing more can be reported.
+    /// The reader has closed the output, so nothing more can be printed.
     NobodyReads,
 }
 

@@ -1,4 +1,5 @@
-//! Plans on the command line, for every kind of device: the old and new value of each line, the cost and the result.
+//! Output of plans on the command line, for every kind of device. Each line shows an old and a new value, followed by
+//! the cost and the result.
 
 use std::path::PathBuf;
 
@@ -19,7 +20,7 @@ pub struct PlanReport {
 }
 
 impl PlanReport {
-    /// Creates the report of a plan whose steps are identical in text and JSON.
+    /// Creates the report of a plan whose steps have the same texts in plain text and JSON.
     pub fn from_plan<Base, Op: Operation>(
         plan: &Plan<Base, Op>,
         steps: Vec<PlanStep>,
@@ -35,7 +36,7 @@ impl PlanReport {
     }
 }
 
-/// Prints how the operations of a plan can be undone after they were written.
+/// Prints how the operations of a plan can be undone after the write.
 pub(super) fn print_undo<P: PlannedWrite>(output: &Output, prepared: &P) {
     let texts = undo_texts(undos(prepared).map(|(item, undo)| (explain::literal_text(item), undo)));
     for text in texts {
@@ -43,7 +44,7 @@ pub(super) fn print_undo<P: PlannedWrite>(output: &Output, prepared: &P) {
     }
 }
 
-/// Returns as JSON how each operation of a plan can be undone after it was written.
+/// Returns how each operation of a plan can be undone after the write, as JSON.
 pub(super) fn undo_json<P: PlannedWrite>(prepared: &P) -> Json {
     let one = |(item, undo): (String, Option<Undo>)| {
         let how = match undo? {
@@ -67,7 +68,7 @@ pub struct PlanStep {
     pub item: String,
     pub old: Option<String>,
     pub new: Option<String>,
-    /// Number of write cycles, zero for an operation that is saved together with others.
+    /// Number of write cycles of the operation. It is zero if the operation is saved together with others.
     pub write_cycles: u64,
 }
 
@@ -89,8 +90,8 @@ pub fn step_lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
     lines
 }
 
-/// Formats a plan with its lines and its cost. The cost includes the write cycles known to this computer, and the
-/// limit, if any.
+/// Formats a plan with its lines and its cost. The cost line also states the write cycles recorded on this computer and
+/// the limit, if any.
 pub fn text<Base, Op: Operation>(
     plan: &Plan<Base, Op>,
     mut lines: Lines,
@@ -113,7 +114,7 @@ pub struct WriteSummary {
     pub written: u64,
     pub verified: u64,
     pub write_cycles: u64,
-    /// Path of the backup. `None` if there was nothing to write.
+    /// Path of the backup, or `None` if nothing had to be written.
     pub backup: Option<PathBuf>,
 }
 

@@ -56,7 +56,7 @@ fn typing_errors(name: &str) -> Vec<String> {
         .collect()
 }
 
-/// Issue 22.17: previously, 153 of 393 misspelt names were accepted.
+/// Previously, 153 of 393 misspelt names were accepted (issue 22.17).
 #[test]
 fn misspelt_names_in_ready_made_profiles_are_reported() {
     let mut misspelt = 0;
@@ -77,7 +77,7 @@ fn misspelt_names_in_ready_made_profiles_are_reported() {
     assert!(misspelt >= 393, "{misspelt}");
 }
 
-/// Issue 22.17: the ready-made profiles of schema 1, and a saved profile of each kind from that time, can be opened.
+/// The ready-made profiles of schema 1, and a saved profile of each kind from that time, can be opened (issue 22.17).
 #[test]
 fn schema_1_profiles_can_be_opened() {
     let files = profiles_in("tests/fixtures/schema-1");

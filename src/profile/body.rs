@@ -1,5 +1,5 @@
-//! Content of profiles for any kind of device. A device module implements [`Profile`] for its own type. This module
-//! derives the untyped traits that documents use.
+//! Content of profiles for any kind of device. A device module implements [`Profile`] for its own type, and this module
+//! derives from it the untyped traits that documents use.
 
 use std::any::Any;
 use std::fmt;
@@ -13,10 +13,10 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     /// Keyword for the kind of device on the command line and in profiles.
     const KIND: &'static str;
 
-    /// Format of this kind, for use in [`ProfileFormats`].
+    /// Profile format of this kind, for use in [`ProfileFormats`].
     const FORMAT: &'static dyn ProfileFormat = &ProfileFormatAdapter::<Self>(PhantomData);
 
-    /// Formats with this kind only, for callers that accept no other kind.
+    /// List that contains only this format, for callers that accept no other kind.
     const FORMATS: ProfileFormats = ProfileFormats::new(&[Self::FORMAT]);
 
     /// Parses the profile from the entries of a document.
@@ -31,16 +31,17 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     /// Compares this profile with another one.
     fn compare(&self, other: &Self) -> Comparison;
 
-    /// Splits an item of the logbook into single values: bytes or registers. An undo compares them one by one.
+    /// Splits a changed item from the logbook into single values, such as bytes or registers. An undo compares these
+    /// values one by one.
     fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
         vec![item.clone()]
     }
 
-    /// Removes the values that a write did not change from its backup, if the backup contains more than the
-    /// surroundings of the write.
+    /// Removes from the backup of a write the values that the write did not change. The default is for kinds whose
+    /// backups contain only the surroundings of the write.
     fn keep_items(&mut self, _items: &[ChangedItem]) {}
 
-    /// Returns what to do about a written item that a restore of this backup cannot write back.
+    /// Returns what the user must do about a written item that restoring this backup cannot write back.
     fn redo(&self, _item: &ChangedItem) -> Option<Redo> {
         None
     }
@@ -75,13 +76,13 @@ pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
     /// Compares this body with another one. Returns `None` if the other body is for a different kind of device.
     fn compare_with(&self, other: &dyn ProfileBody) -> Option<Comparison>;
 
-    /// Returns the function that splits an item of the logbook into single values.
+    /// Returns the function that splits a changed item from the logbook into single values.
     fn single_values(&self) -> fn(&ChangedItem) -> Vec<ChangedItem>;
 
-    /// Removes the values that a write did not change from its backup.
+    /// Removes from the backup of a write the values that the write did not change.
     fn keep_items(&mut self, items: &[ChangedItem]);
 
-    /// Returns what to do about a written item that a restore of this backup cannot write back.
+    /// Returns what the user must do about a written item that restoring this backup cannot write back.
     fn redo(&self, item: &ChangedItem) -> Option<Redo>;
 }
 
@@ -173,12 +174,12 @@ impl Body {
         self.0.keep_items(items);
     }
 
-    /// Returns what to do about a written item that a restore of this backup cannot write back.
+    /// Returns what the user must do about a written item that restoring this backup cannot write back.
     pub fn redo(&self, item: &ChangedItem) -> Option<Redo> {
         self.0.redo(item)
     }
 
-    /// Returns the error for a profile that is not for a `wanted` device.
+    /// Returns the error that reports that this profile is not for the kind of device `wanted`.
     pub fn wrong_kind_error(&self, wanted: &'static str) -> ProfileError {
         ProfileError::OtherKind { found: self.kind(), wanted }
     }

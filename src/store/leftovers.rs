@@ -4,9 +4,9 @@ use std::fs::{self, DirEntry};
 use std::path::Path;
 use std::time::Duration;
 
-/// Beginning of the names of temporary files.
+/// Prefix of the names of temporary files.
 pub(super) const PREFIX: &str = ".encoder-studio-";
-/// End of the names of temporary files.
+/// Suffix of the names of temporary files.
 pub(super) const SUFFIX: &str = ".tmp";
 
 /// Minimum age of a leftover temporary file. A write takes only seconds.

@@ -65,7 +65,7 @@ impl Store {
     /// Returns [`StoreError::NoHome`] if the system does not report such folders.
     pub fn for_user() -> Result<Self, StoreError> {
         let folders = ProjectDirs::from("", "", "encoder-studio")
-            // If the home folder were relative, the location of backups would depend on the working directory.
+            // If the home folder were a relative path, the location of backups would depend on the working directory.
             .filter(|folders| folders.data_dir().is_absolute() && folders.config_dir().is_absolute())
             .ok_or(StoreError::NoHome)?;
         let [data, config] = [folders.data_dir(), folders.config_dir()].map(Path::to_owned);
@@ -112,13 +112,13 @@ impl Store {
         self.data.join("logbook.sqlite")
     }
 
-    /// Returns this store with another server of the logbook.
+    /// Returns this store with a different logbook server.
     #[must_use]
     pub fn with_server(self, server: LogbookServer) -> Self {
         Store { server, ..self }
     }
 
-    /// Returns the server of the logbook. All copies of this store use the same one.
+    /// Returns the logbook server. All copies of this store use the same server.
     pub fn logbook_server(&self) -> &LogbookServer {
         &self.server
     }

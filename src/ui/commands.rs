@@ -1,5 +1,5 @@
-//! Named actions of the window, for the keyboard and the command palette. Each is listed once, with its text, its key
-//! and whether it is available. Motion is excluded, because it requires a held button.
+//! Named actions of the window, for the keyboard and the command palette. Each action is listed once, with its text,
+//! its key and whether it is available. Motion is excluded, because it requires a button to be held.
 
 use std::time::Duration;
 
@@ -220,7 +220,7 @@ fn write_commands(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Com
 }
 
 impl NamedAction {
-    /// Creates an action with the name of its button. `word` is a text id of the common catalogue.
+    /// Creates an action that has the same name as its button. `word` is a text id in the common catalogue.
     pub fn new(theme: &Theme, word: &'static str, is_enabled: bool, action: Action) -> Self {
         NamedAction { name: theme.translate(word), is_enabled, action }
     }

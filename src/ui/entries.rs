@@ -56,8 +56,8 @@ pub(crate) fn clear_secret(ui: &Ui, response: &Response, text: &mut String) {
     egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
 }
 
-/// Draws a one-line entry for a number to the right of its label, with the decimal sign of the current language. Screen
-/// readers refer to the entry by the label.
+/// Draws a one-line entry for a number to the right of its label, with the decimal separator of the current language.
+/// Screen readers refer to the entry by the label.
 pub(crate) fn labelled_number_entry(
     ui: &mut Ui,
     theme: &Theme,
@@ -67,7 +67,7 @@ pub(crate) fn labelled_number_entry(
     hint: &str,
 ) -> Response {
     let word = theme.format_text(&what.into());
-    // Parsing accepts both decimal signs.
+    // Parsing accepts both decimal separators.
     let mut shown = theme.digits(text);
     let response = entry(ui, theme, &word, |ui| text_entry(ui, &mut shown, width, &word, hint));
     if response.changed() {

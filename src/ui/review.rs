@@ -1,5 +1,5 @@
-//! The review of a write, for any device. It shows every operation with its old and new value, its costs and
-//! requirements, the consent, the progress, and the result.
+//! The review of a write, for any kind of device. It shows every operation with its old and new value, the cost and the
+//! requirements of the write, the request for consent, the progress, and the result.
 
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ fn content_ui(
         }
         Stage::Nothing => {
             ui.horizontal(|ui| {
-                // Entries answered with *leave* still differ.
+                // Values for which the user has chosen *leave* still differ.
                 let (icon, colour, words) = if sheet.questions.is_empty() {
                     (icons::CHECK_CIRCLE, theme.palette.good, "review.nothing")
                 } else {
@@ -164,7 +164,7 @@ fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], 
                     ui.separator();
                 }
                 let is_done = done.is_some_and(|done| at < done);
-                // A value that was read back is no longer merely staged.
+                // A value that was read back is no longer shown as staged.
                 let ink = if is_done { palette.good } else { palette.staged };
                 let (icon, colour) =
                     if is_done { (icons::CHECK, palette.good) } else { (icons::PENCIL_SIMPLE, palette.muted) };
@@ -236,7 +236,8 @@ fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeTexts, heads: [&'static 
     }
 }
 
-/// Minimum and maximum height of the operation list, and the height of everything else in and around the dialog.
+/// Minimum height of the operation list in points. The following constants are its maximum height, and the height of
+/// everything else in and around the dialog.
 const MIN_LIST_HEIGHT: f32 = 200.0;
 const MAX_LIST_HEIGHT: f32 = 440.0;
 const OTHER_HEIGHT: f32 = 424.0;

@@ -52,12 +52,12 @@ impl Theme {
         text.to_string_in(self.language)
     }
 
-    /// Formats a number with the decimal sign of the current language.
+    /// Formats a number with the decimal separator of the current language.
     pub fn format_number(&self, value: f64, decimals: usize) -> String {
         crate::app::format_decimal(value, decimals, self.language)
     }
 
-    /// Formats a number that is given with a decimal point, using the decimal sign of the current language.
+    /// Formats a number that is given with a decimal point, using the decimal separator of the current language.
     pub fn digits(&self, number: &str) -> String {
         crate::app::texts::localize_number(number, self.language)
     }

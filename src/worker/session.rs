@@ -1,4 +1,4 @@
-//! A session: one connection, the data known about its device, and the context for its jobs.
+//! A session, which consists of a connection, the data about the connected device, and the context for jobs.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -7,7 +7,7 @@ use super::{Device, Event, JobId, JobInterruption as _, JobReport, SessionLog, W
 use crate::link::{CancelToken, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::{DeviceKey, EntryKind, Event as LogbookEvent, Store};
 
-/// The context of a job for any kind of device, with time, cancellation, trace and folders.
+/// The context in which a job runs, for any kind of device: clock, cancellation flag, trace and folders.
 pub struct SessionContext {
     /// Clock of the session.
     pub clock: Arc<dyn Clock>,
@@ -15,7 +15,7 @@ pub struct SessionContext {
     pub(super) trace: Trace,
     /// Folders for backups and the logbook.
     pub store: Store,
-    /// Whether the device is simulated in this process. Its write cycles are counted separately.
+    /// Whether the device is simulated in this process. Write cycles of simulated devices are counted separately.
     pub is_virtual: bool,
     log: SessionLog,
 }
@@ -26,7 +26,7 @@ impl SessionContext {
         Ctx { wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace }
     }
 
-    /// Returns the log of the session, for parts that outlast the borrow of the context.
+    /// Returns the log of the session. It can be used after the borrow of the context has ended.
     pub fn log(&self) -> SessionLog {
         self.log.clone()
     }
@@ -37,8 +37,8 @@ impl SessionContext {
     }
 }
 
-/// A connection from opening to closing. A worker runs its jobs on a separate thread, and tests run them on their own
-/// thread.
+/// A connection from its opening to its closing. A worker runs its jobs on a separate thread, and tests run them on
+/// their own thread.
 pub struct Session<D> {
     context: SessionContext,
     pub(crate) device: D,
@@ -52,7 +52,7 @@ impl<D: Device> Session<D> {
         Session { context: SessionContext { clock, cancel, trace, store, is_virtual, log }, device }
     }
 
-    /// Uses a log that its creator shares with this session.
+    /// Makes this session use a log that it shares with the caller.
     pub fn share_log(&mut self, log: SessionLog) {
         self.context.log = log;
     }
@@ -143,7 +143,7 @@ impl<D: Device> Session<D> {
         self.device.read_watched(&mut self.context, what)
     }
 
-    /// Returns a message that the device has sent since the last call, unless an event contains it.
+    /// Returns a message that the device has sent since the last call, unless the message was already part of an event.
     pub(super) fn take_device_message(&mut self) -> Option<D::DeviceMessage> {
         self.device.take_device_message()
     }
@@ -156,7 +156,7 @@ impl<D: Device> Session<D> {
         self.run_and_record(job, &mut |_| {})
     }
 
-    /// Runs a job, and records what the logbook keeps of its result before anyone can see the result.
+    /// Runs a job, and adds its result to the logbook before the result is displayed.
     fn run_and_record(
         &mut self,
         job: D::Job,

@@ -1,5 +1,5 @@
-//! Entries that a session adds to the logbook without writing to the device. A logbook that cannot be used is reported
-//! in the log, and the job continues.
+//! Logbook entries that a session makes without writing to the device. If the logbook cannot be used, this is reported
+//! in the log file, and the job continues.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -13,10 +13,11 @@ use crate::store::{
     AssetName, DeviceHold, DeviceKey, EntryKind, Event, Logbook, LogbookError, LogbookErrorKind, Store,
 };
 
-/// Maximum time that a job waits for a logbook in use before its connection is recorded later.
+/// Maximum time that a job waits for a logbook that another process is using. After this time, the connection is
+/// recorded later.
 const BRIEFLY: Duration = Duration::from_millis(50);
 
-/// The part of the logbook that belongs to one session. Copies refer to the same session.
+/// Access to the logbook for one session. Clones refer to the same session.
 #[derive(Clone, Debug, Default)]
 pub struct SessionLog(Arc<Mutex<State>>);
 
@@ -26,9 +27,9 @@ struct State {
     asset: Option<AssetName>,
     /// The device that was identified last.
     device: Option<DeviceKey>,
-    /// Whether the last device was assigned to the asset, now or earlier.
+    /// Whether the last device is assigned to the asset.
     is_assigned: bool,
-    /// Announcement of the last device to other benches.
+    /// Announces to other computers that the last device is connected here.
     hold: Option<DeviceHold>,
     /// Connections to be recorded as soon as the logbook is no longer in use, oldest first.
     pending: VecDeque<Connection>,
@@ -54,7 +55,7 @@ impl SessionLog {
         self.state().device.clone()
     }
 
-    /// Tells other benches with the next transfer that the device is no longer connected.
+    /// Informs other computers, with the next transfer, that the device is no longer connected.
     pub fn release_device(&self) {
         self.state().hold = None;
     }
@@ -64,18 +65,19 @@ impl SessionLog {
         self.state().is_assigned
     }
 
-    /// Records the connections for which the logbook was in use. Waits for the logbook as long as for a write.
+    /// Records the connections that could not be recorded because the logbook was in use. This method waits for the
+    /// logbook as long as a write does.
     pub fn complete(&self) {
         self.state().record_pending(Logbook::open);
     }
 
-    /// Records the connections for which the logbook was in use, unless it still is.
+    /// Records the connections that could not be recorded because the logbook was in use, unless it is still in use.
     pub(super) fn try_to_complete(&self) {
         self.state().record_pending(|path| Logbook::open_with_timeout(path, Duration::ZERO));
     }
 
-    /// Records that a device was identified, once until another one is identified. If the logbook is in use, this is
-    /// done later, because the first reading must not wait for it.
+    /// Records that a device was identified. Repeated calls have no effect until another device is identified. If the
+    /// logbook is in use, the connection is recorded later, because the first reading must not wait.
     pub fn record_identity(&self, store: &Store, device: &DeviceKey) {
         let mut state = self.state();
         if state.device.as_ref() == Some(device) {
@@ -83,7 +85,7 @@ impl SessionLog {
         }
         state.device = Some(device.clone());
         state.hold = store.logbook_server().hold(device);
-        // Devices without a serial number cannot be told apart.
+        // Devices without a serial number cannot be distinguished.
         let asset = state.asset.clone().filter(|_| !device.serial_number.is_empty());
         state.is_assigned = false;
         let connection = Connection { store: store.clone(), at: Timestamp::now(), device: device.clone(), asset };
@@ -91,7 +93,7 @@ impl SessionLog {
         state.record_pending(|path| Logbook::open_with_timeout(path, BRIEFLY));
     }
 
-    /// Records an event of the device that was identified last. Without such a device, nothing is recorded.
+    /// Records an event of the device that was identified last. Does nothing if no device has been identified.
     pub fn record(&self, store: &Store, event: &Event) {
         self.complete();
         if let Some(device) = self.device() {

@@ -113,8 +113,8 @@ fn modules_of_one_layer_use_each_other_only_where_allowed() {
     }
 }
 
-/// No two folders of the core depend on each other, because they would effectively be one folder. A folder includes its
-/// subfolders.
+/// Folders of the core must not depend on each other in both directions, because they would effectively be a single
+/// folder. Subfolders count as part of a folder.
 #[test]
 fn no_two_folders_of_the_core_use_each_other() {
     let sources: Vec<Source> = sources().into_iter().filter(|source| source.place.owner == Owner::Core).collect();

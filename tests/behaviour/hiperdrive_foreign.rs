@@ -1,5 +1,5 @@
-//! The host's side of EtherNet/IP against a foreign target with HIPERDRIVE parameters and all its possible faults. Its
-//! own log shows what was set and saved.
+//! Tests of the EtherNet/IP host with a foreign HIPERDRIVE target that can inject faults. The target logs all sets and
+//! saves.
 
 use std::net::SocketAddrV4;
 use std::sync::Arc;
@@ -97,7 +97,7 @@ fn targets_of_any_behaviour_are_read_and_written() {
     }
 }
 
-/// The commands as typed by a user.
+/// Runs the commands that a user would type.
 #[test]
 fn the_commands_work_with_a_foreign_target() {
     let bench = Bench::new();
@@ -156,7 +156,7 @@ fn services_settings_and_positions_are_written_as_planned() {
     let mut session = session(&bench, &foreign, "");
     let first = DriveNumber::FIRST;
     let done = change(&mut session, Change::SetPosition { drive: first, position: 1000, save: true }).unwrap();
-    // The nearest of 960 and 1024.
+    // 1024 is the nearest of the possible values 960 and 1024.
     assert_eq!((done.written.verified, foreign.requests().join(", ")), (1, "SET 198 1024, SET 47 1, STORE".to_owned()));
     change(&mut session, Change::Try(image(&[(170, 640), (166, 100)]))).unwrap();
     let log = foreign.requests();
@@ -178,8 +178,8 @@ fn services_settings_and_positions_are_written_as_planned() {
     assert!(done.backup.is_none() && foreign.requests().is_empty(), "what is so already is not set");
 }
 
-/// Issue 21.8: the program waits as long as the manual allows, whatever the usual reply time: for 47 with each of its
-/// values, and 152 from 0 to 1. With 8000 ms for a hub it is the same, and takes as long.
+/// The program waits for replies as long as the manual allows, both after each value of parameter 47 and after a change
+/// of parameter 152 from 0 to 1. The limit of 8000 ms for a hub is handled in the same way (issue 21.8).
 #[test]
 fn slow_services_are_answered_late_and_executed_once() {
     let bench = Bench::new();
@@ -203,8 +203,8 @@ fn slow_services_are_answered_late_and_executed_once() {
     }
 }
 
-/// Issue 21.9: a number with another length than in the manual is shown by no command, kept in no file and used in no
-/// write; both lengths are reported, with the remedy.
+/// A number whose length differs from the manual is never printed, stored in a file or used in a write. The message
+/// states both lengths and a remedy (issue 21.9).
 #[test]
 fn a_number_of_another_length_is_not_shown() {
     let bench = Bench::new();
@@ -233,7 +233,7 @@ fn a_number_of_another_length_is_not_shown() {
         assert!(foreign.requests().is_empty(), "{words:?}");
     }
     assert!(!std::path::Path::new(&other).exists(), "a save that fails leaves no file");
-    // A command that reads all parameters continues without it, and names it.
+    // A command that reads all parameters skips and reports these parameters.
     let foreign = bench.target(&["--lengths=24:2,158:1"]).unwrap();
     let survey = match session(&bench, &foreign, "").run_inline(HiperdriveJob::Survey).unwrap() {
         HiperdriveOutput::Surveyed(survey) => *survey,
@@ -244,7 +244,7 @@ fn a_number_of_another_length_is_not_shown() {
     assert!(wrong.iter().all(|(own, ..)| !survey.values.contains_key(&ParameterNumber::new(*own).unwrap())));
 }
 
-/// Issue 21.10: beyond the turns of the drive nothing is sent; both limits are reported in the steps of its scale.
+/// A limit beyond the turns of the drive is not sent. The message states both limits in scaled steps (issue 21.10).
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_not_sent() {
     let bench = Bench::new();
@@ -258,7 +258,7 @@ fn limits_beyond_the_turns_of_the_drive_are_not_sent() {
     ask(&["restore", &file, "--yes"]).fails(1, &["158", "-33554432 to 33554432"]);
     assert!(foreign.requests().is_empty());
     assert_eq!(ask(&["write", "hiperdrive", "160", "33554432", "--yes"]).status, Some(0));
-    // 400/1 are 102400 steps per turn, 52428800 for 512 turns.
+    // A scale of 400/1 is 102400 steps per turn, or 52428800 steps for 512 turns.
     assert_eq!(ask(&["write", "hiperdrive", "154", "400", "--yes"]).status, Some(0));
     ask(&["write", "hiperdrive", "160", "52428801", "--yes"]).fails(1, &["160", "-52428800 to 52428800"]);
     assert_eq!(ask(&["write", "hiperdrive", "160", "52428800", "--yes"]).status, Some(0));
@@ -289,7 +289,7 @@ fn a_silent_or_lost_target_ends_everything_in_time() {
     }
 }
 
-/// Waits a few seconds for a condition.
+/// Waits up to ten seconds for a condition.
 fn comes(what: &str, mut has_come: impl FnMut() -> bool) {
     let begun = std::time::Instant::now();
     while !has_come() {
@@ -327,12 +327,12 @@ fn the_cyclic_connection_is_opened_as_accepted_and_closed() {
         assert!(matches!(session.run_inline(HiperdriveJob::Take), Err(JobError::Device(Error::InControl))));
         session.run_inline(HiperdriveJob::Give).unwrap();
         assert!(!motion.is_open(), "{options:?}");
-        // No motion is requested, so that no word but 0 is sent, and it is already 0.
+        // No motion is requested, so the control word stays 0 and no change is logged.
         assert_eq!(foreign.requests(), [opened, "CLOSE"], "{options:?}");
     }
 }
 
-/// Reference 6. The values are the target's own: 29 °C in parameter 11, 33 °C in 119.
+/// The target reports 29 °C in parameter 11 and 33 °C in parameter 119 (reference 6).
 #[test]
 fn temperatures_are_read_through_the_parameter_words() {
     let bench = Bench::new();
@@ -412,8 +412,8 @@ fn dropping_a_session_stops_its_connection() {
     });
 }
 
-/// Issue 22.19: an action without effect is no success: a fault that remains after acknowledgement, and drives that the
-/// presence test does not find again.
+/// An action without effect is reported as a failure. Examples are a fault that remains after an acknowledgement, and
+/// drives that the presence test does not find (issue 22.19).
 #[test]
 fn an_action_with_a_bad_result_fails() {
     let bench = Bench::new();
@@ -424,7 +424,7 @@ fn an_action_with_a_bad_result_fails() {
         assert_eq!(ran.status, Some(1), "{ran:?}");
         ran.assert_stderr(words);
     };
-    // 2AB8: a fault (reference 3); its drive is under no control, so that it remains.
+    // Status word 2AB8h is a fault (reference 3). The drive is not under control, so the fault remains.
     let Some(faulty) = bench.target(&["--status=2AB8"]) else { return };
     fails(&act(&faulty, "acknowledge"), &["Drive 1 still has a fault"]);
     let Some(hub) = bench.target(&["--topology=hub4", "--drives=1,3", "--gone-after-reset=3"]) else { return };

@@ -1,5 +1,5 @@
-//! The host's side of the handshake against a foreign gateway and a foreign K3 encoder with all their possible faults.
-//! The encoder's own log shows what it stored.
+//! Tests of the host's side of the handshake with a foreign gateway and a foreign K3 encoder that can inject faults.
+//! The encoder's log shows what it stored.
 
 use encoder_studio::devices::interbus::jobs::{
     Change, Commit, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, open,
@@ -15,7 +15,7 @@ use super::support::{Bench, Foreign};
 
 const ENCODER: [&str; 6] =
     ["--steps=3600", "--serial-number=4001", "--mode=4", "--shift=2", "--preset=7", "--programs"];
-/// Programs 2 and 5, of which the second runs or not.
+/// Cam programs 2 and 5 of the encoder, as JSON. Depending on the test, program 5 is running.
 const PROGRAMS: &str = r#"{"2": {"mask": 129, "cams": {"0": [10, 20], "7": [3000, 100]}}, "5": {"mask": 8}}"#;
 
 fn session(bench: &Bench, foreign: &Foreign, query: &str) -> Session<Interbus> {
@@ -47,7 +47,7 @@ fn commit(session: &mut Session<Interbus>, prepared: Prepared) -> Result<u64, Jo
     }
 }
 
-/// Returns the words that the encoder received, and what it stored.
+/// Returns the log of the encoder: the words that it received and the values that it stored.
 fn log(foreign: &Foreign) -> Vec<String> {
     foreign.requests().into_iter().filter(|line| line != "R").collect()
 }
@@ -105,7 +105,7 @@ fn faults_of_the_encoder_or_another_master_are_reported() {
         let mut session = session(&bench, &foreign, "?cycle=1&handshake=500");
         match prepare(&mut session).and_then(|prepared| commit(&mut session, prepared)) {
             Err(JobError::Interrupted { interrupted, .. }) => assert!(told(&interrupted.cause), "{interrupted}"),
-            // Reading a program ends with a position as well.
+            // Reading a program also ends with a position.
             Err(JobError::Device(error)) => assert!(told(&error) && options == ["--no-position"], "{error}"),
             other => panic!("{options:?}: {other:?}"),
         }
@@ -116,7 +116,7 @@ fn faults_of_the_encoder_or_another_master_are_reported() {
     assert_eq!(error.to_string(), expected);
 }
 
-/// Returns the other cams in these programs, cam 0 among them.
+/// Prepares a write of all eight cams, including cam 0, in the first `programs` cam programs.
 fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Interbus>, Prepared) {
     let mut session = session(bench, foreign, "?cycle=1");
     let parameters = match session.run_inline(InterbusJob::Survey).unwrap() {
@@ -139,8 +139,9 @@ fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Int
     }
 }
 
-/// Issue 22.1: the processing word may carry any data, those sent or those of the word before, and a word that is
-/// replaced during processing is not accepted. Eight programs of eight cams are written with one store each.
+/// The processing word may contain any data, either from the current word or from the previous one. A word that is
+/// replaced during processing is not accepted. Eight programs of eight cams are written, and each program is stored
+/// once (issue 22.1).
 #[test]
 fn cam_0_is_written_through_a_busy_gateway() {
     let bench = Bench::new();
@@ -158,7 +159,8 @@ fn cam_0_is_written_through_a_busy_gateway() {
     }
 }
 
-/// Issue 22.2: an echo that comes 0.4 to 0.8 s late, or was never requested (manual 5.3 shows C2000100), ends nothing.
+/// An echo that arrives 0.4 to 0.8 s late, or that was never requested, does not interrupt a write. C2000100h is the
+/// example in the manual (5.3, issue 22.2).
 #[test]
 fn stale_echoes_are_skipped() {
     let bench = Bench::new();
@@ -171,8 +173,8 @@ fn stale_echoes_are_skipped() {
     }
 }
 
-/// Issue 22.2: the cost of a gateway's lag is counted in changes of OUT, each of which takes the lag once. A parameter
-/// is set, stored, read back and left: four of them.
+/// Each change of OUT is delayed once by the lag of the gateway. Writing a parameter takes four changes: it is set,
+/// stored, read back and left (issue 22.2).
 #[test]
 fn a_parameter_takes_four_times_the_lag() {
     let bench = Bench::new();
@@ -186,10 +188,10 @@ fn a_parameter_takes_four_times_the_lag() {
     assert_eq!(commit(&mut session, prepared).unwrap(), 1);
     let words = log(&foreign);
     let set = words.iter().position(|line| line == "W 0A000063").unwrap();
-    // 00000000 after 80000000 needs no wait.
+    // The host does not wait for a reply to 00000000 after 80000000.
     let own: Vec<&str> = words[set..].iter().map(String::as_str).filter(|line| line.starts_with('W')).collect();
     assert_eq!(own, ["W 0A000063", "W 80000000", "W 00000000", "W 20210005", "W 00000000"]);
-    // Identity and base are read for the plan, and again before it is executed.
+    // The identity and the base values are read for the plan, and again before the plan is executed.
     let questions = words[..set].iter().filter(|line| line.starts_with("W 2021")).count();
     assert_eq!(questions, (1 + 6 + 2) + (1 + 1 + 5));
 }

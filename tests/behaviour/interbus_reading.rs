@@ -1,10 +1,10 @@
-//! Reading a foreign K3 encoder at a foreign gateway; reading does not change anything.
+//! Tests of reading a foreign K3 encoder behind a foreign gateway. Reading does not change anything in the encoder.
 
 use serde_json::{Value, json};
 
 use super::support::{Bench, Foreign, Ran, run_on_terminal};
 
-/// Programs of a foreign encoder: two of them, as JSON.
+/// Two cam programs of a foreign encoder, as JSON.
 const PROGRAMS: &str =
     r#"{"1": {"mask": 9, "cams": {"0": [3000, 200], "3": [21, 531]}}, "3": {"mask": 128, "cams": {"7": [100, 100]}}}"#;
 
@@ -12,13 +12,13 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// Returns the OUT words since the last call, and what was stored or preset.
+/// Returns the OUT words, stores and presets that were logged since the last call.
 fn done(encoder: &Foreign) -> Vec<String> {
     encoder.requests().into_iter().filter(|line| line != "R").collect()
 }
 
-/// Checks that only read-outs (reference 3, 5), the selection of a program, run and normal running were sent, and
-/// nothing was stored.
+/// Checks that the host has sent only commands that read (reference 3 and 5), select a program, run it or return to
+/// normal operation, and that nothing was stored.
 #[track_caller]
 fn only_read(encoder: &Foreign) {
     for line in done(encoder) {
@@ -78,7 +78,7 @@ fn every_item_is_read_by_name() {
         assert_eq!(told.get("unit").and_then(Value::as_str), unit, "{told}");
     }
     only_read(&encoder);
-    // In position mode, as before, and OUT is 0.
+    // The encoder is in position mode, as before, and OUT is 0.
     assert_eq!(encoder_mode(&bench, &encoder), "K3");
 }
 
@@ -86,7 +86,7 @@ fn encoder_mode(bench: &Bench, encoder: &Foreign) -> String {
     ask(bench, encoder, &["identify", "interbus"]).json()["mode"].as_str().unwrap().to_owned()
 }
 
-/// Reference 7: 12345 steps of the disc are 542 of 360 per turn: turn 1, 182 steps of 360, which are 182°.
+/// 12345 steps of the disc are 542 steps at 360 per turn, which is turn 1 and step 182, or 182° (reference 7).
 #[test]
 fn a_position_is_within_the_programmed_turns() {
     let bench = Bench::new();
@@ -105,7 +105,8 @@ fn a_position_is_within_the_programmed_turns() {
     assert!(table.out.trim_end().ends_with(",542,1,182,182,true"), "{table:?}");
 }
 
-/// Reference 5: position 1000 of 3600 under the window, cam 3 from 900 on; speed; and an encoder with an error.
+/// Words with cam states, a speed or an error are not printed as a position. In the first case, the position window
+/// shows 1000 of 3600, and cam 3 is on from 900 (reference 5).
 #[test]
 fn words_without_a_position_are_not_printed_as_one() {
     let bench = Bench::new();
@@ -113,10 +114,10 @@ fn words_without_a_position_are_not_printed_as_one() {
     let position = ["--position=2276", "--steps=3600"];
     let Some(encoder) = bench.gateway(&[&position[..], &["--mode=4", "--programs", programs]].concat()) else { return };
     let told = ask(&bench, &encoder, &["position", "interbus"]).json();
-    // 2276 · 3600 / 8192 = 1000.2; 1000 = 3E8h.
+    // 2276 · 3600 / 8192 is 1000.2, and 1000 is 3E8h.
     assert_eq!((&told["raw"], &told["position"]), (&json!(0x0003_E808), &json!(1000)), "{told}");
     assert_eq!((&told["mode"], &told["cams"], &told["valid"]), (&json!("cam 2"), &json!([3]), &json!(true)));
-    // It is in the same program as before.
+    // The encoder is in the same program as before.
     assert_eq!(encoder_mode(&bench, &encoder), "cam 2");
     only_read(&encoder);
     let Some(encoder) = bench.gateway(&["--mode=2", "--rpm=120"]) else { return };
@@ -165,7 +166,7 @@ fn a_saved_profile_matches_the_encoder() {
     assert_eq!(ask(&bench, &encoder, &["diff", &file]).json()["equal"], json!(true));
     only_read(&encoder);
     assert_eq!(encoder_mode(&bench, &encoder), "cam 3", "as it was found");
-    // Values that the profile does not contain are not read: no program is selected.
+    // Values that the profile does not contain are not read, so no program is selected.
     let short = bench.write(
         "short.ron",
         r#"(schema: 1, device: "interbus", parameters: (steps: 3600, revolutions: 1, direction: "ccw", preset: 500,
@@ -176,12 +177,12 @@ fn a_saved_profile_matches_the_encoder() {
     assert_eq!(told["differences"], json!([{"item": "direction", "left": "ccw", "right": "cw"}]), "{told}");
     let selected = done(&encoder).into_iter().filter(|line| line.starts_with("W 2080"));
     assert!(selected.clone().all(|line| line == "W 20800003"), "{:?}", selected.collect::<Vec<_>>());
-    // Two files need no encoder.
+    // Comparing two files does not require an encoder.
     let told = bench.run(&["diff", &file, &short, "--json"]).json_with(3);
     assert_eq!((&told["compared"], told["missing"].as_array().map(Vec::len)), (&json!(5), Some(1 + 8 * 9)), "{told}");
 }
 
-/// The virtual encoder in this process and the same one over TCP return the same values.
+/// A virtual encoder in this process and the same encoder over TCP return the same values.
 #[test]
 fn the_virtual_encoder_is_read_directly_and_over_modbus() {
     use super::support::Simulated;
@@ -211,8 +212,8 @@ fn the_help_of_a_report_warns_of_reading_cam_programs() {
     assert_help_warns(&Bench::new(), "report");
 }
 
-/// Issue 22.31: reading cam programs switches live outputs. On a terminal the program asks first; without one it
-/// continues for the commands that name it in their help.
+/// Reading cam programs switches live outputs. On a terminal, the program asks for confirmation first. Without a
+/// terminal, it continues, because the help of these commands warns of the effect (issue 22.31).
 #[test]
 fn reading_cam_programs_needs_confirmation() {
     let bench = Bench::new();
@@ -231,9 +232,9 @@ fn reading_cam_programs_needs_confirmation() {
     ];
     let selects = || done(&foreign).iter().any(|line| line.starts_with("W 2080"));
     for command in commands {
-        // Without a terminal.
+        // Run the command without a terminal.
         let ran = bench.run(command);
-        // Other programs are only in the encoder: `diff` reports them.
+        // Some programs exist only in the encoder, so `diff` reports differences.
         assert!(matches!(ran.status, Some(0 | 3)) && ran.err.contains("The outputs switch to each program"), "{ran:?}");
         assert!(selects(), "{command:?}");
         assert_help_warns(&bench, command[0]);
@@ -243,7 +244,7 @@ fn reading_cam_programs_needs_confirmation() {
     }
     let ran = run_on_terminal(&bench, commands[3], "y\n");
     assert!(ran.status == Some(0) && ran.out.contains("0..0"), "{ran:?}");
-    // A command that selects no program asks nothing.
+    // A command that does not select a program does not ask for confirmation.
     let ran = run_on_terminal(&bench, &["do", "interbus", "check", "--link", &url], "");
     assert!(ran.status == Some(0) && !ran.out.contains("stand still?"), "{ran:?}");
 }

@@ -1,4 +1,4 @@
-//! Test support: a separate folder, the built program, and foreign encoders and hosts (`tests/foreign`).
+//! Test support: runs the built program in a separate folder, with foreign encoders and hosts (`tests/foreign`).
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
@@ -15,16 +15,16 @@ use jiff::Timestamp;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Time limit longer than any program that ends normally: a program that still runs then hangs.
+/// Time limit that exceeds the run time of any program that ends normally. A program that runs longer has hung.
 const HANGS: Duration = Duration::from_secs(60);
 
-/// A folder with everything that a test touches.
+/// A temporary folder for all files of a test.
 pub(crate) struct Bench {
     folder: TempDir,
     encoders: AtomicU32,
 }
 
-/// The program after its end.
+/// Exit status and output of a program that has ended.
 #[derive(Debug)]
 pub(crate) struct Ran {
     pub(crate) status: Option<i32>,
@@ -56,12 +56,12 @@ impl Bench {
         fs::read_to_string(self.path(name)).unwrap()
     }
 
-    /// Opens the logbook of the program.
+    /// Opens the logbook in this folder.
     pub(crate) fn logbook(&self) -> Logbook {
         Logbook::open(&self.path("data").join("encoder-studio").join("logbook.sqlite")).unwrap()
     }
 
-    /// Adds an old write to the logbook, so that the device has this number of write cycles.
+    /// Adds an old write to the logbook, so that the device has the given number of write cycles.
     pub(crate) fn wear_to(&self, device: &DeviceKey, cycles: u64) {
         let mut logbook = self.logbook();
         let spent = cycles - logbook.write_cycles(device).unwrap();
@@ -71,7 +71,7 @@ impl Bench {
         logbook.record_outcome(id, Timestamp::now(), Outcome::Done, spent).unwrap();
     }
 
-    /// Returns the program, about to be started.
+    /// Returns a command that starts the program with the given arguments.
     pub(crate) fn program(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_encoder-studio"));
         command
@@ -91,7 +91,7 @@ impl Bench {
         finish(self.program(arguments))
     }
 
-    /// Returns everything in all files below the folder, of those that are text.
+    /// Returns the content of all text files in the folder and its subfolders.
     pub(crate) fn everything_kept(&self) -> String {
         let mut text = String::new();
         collect(self.folder.path(), &mut text);
@@ -103,12 +103,12 @@ impl Bench {
         text.replace(self.folder.path().to_str().unwrap(), "")
     }
 
-    /// Starts a foreign HIPERFACE encoder; prints a line and returns `None` if that is not possible.
+    /// Starts a foreign HIPERFACE encoder. If this is not possible, prints a line and returns `None`.
     pub(crate) fn encoder(&self, arguments: &[&str]) -> Option<Foreign> {
         self.on_terminal("encoder.py", "serial:", arguments)
     }
 
-    /// Starts a foreign kit encoder with UBICOM; prints a line and returns `None` if that is not possible.
+    /// Starts a foreign kit encoder with UBICOM. If this is not possible, prints a line and returns `None`.
     pub(crate) fn kit(&self, arguments: &[&str]) -> Option<Foreign> {
         self.on_terminal("ubicom_encoder.py", "serial:", arguments)
     }
@@ -147,7 +147,7 @@ impl Bench {
         Some(foreign)
     }
 
-    /// Starts the same with drives that take time to move, receive their faults at run time, and record each packet.
+    /// Starts an EtherNet/IP target whose drives take time to move, receive faults at run time, and record packets.
     pub(crate) fn moving_target(&self, arguments: &[&str]) -> Option<Foreign> {
         let record = self.file("record");
         self.foreign("moving_target.py", &[&["--record", &record], arguments].concat())
@@ -184,7 +184,7 @@ impl Bench {
 fn collect(folder: &Path, text: &mut String) {
     for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
         let kind = entry.file_type().unwrap();
-        // The foreign encoder's own log contains the real data of the line.
+        // The log of a foreign encoder contains the unmasked data on the line, so it is excluded.
         let foreign = entry.file_name().to_str().is_some_and(|name| name.starts_with("log"));
         if kind.is_dir() {
             collect(&entry.path(), text);
@@ -201,9 +201,9 @@ pub(crate) fn finish(mut command: Command) -> Ran {
     ended(child, begun)
 }
 
-/// Waits for a program and takes its output.
+/// Waits until a program ends and returns its output.
 pub(crate) fn ended(mut child: Child, begun: Instant) -> Ran {
-    // The output fits into the pipes, except if a test polls for long; then a thread reads it meanwhile.
+    // The output may exceed the buffers of the pipes if a test polls for a long time, so threads read it.
     let reader = |pipe: Option<Box<dyn std::io::Read + Send>>| {
         std::thread::spawn(move || {
             let mut text = Vec::new();
@@ -223,28 +223,28 @@ pub(crate) fn ended(mut child: Child, begun: Instant) -> Ran {
         sleep(Duration::from_millis(5));
     };
     let took = begun.elapsed();
-    // A foreign encoder notices that a client disconnects and connects only with some milliseconds in between.
+    // A foreign encoder only notices that a client has disconnected if the next one connects some milliseconds later.
     sleep(Duration::from_millis(20));
     Ran { status: status.code(), out: out.join().unwrap(), err: err.join().unwrap(), took }
 }
 
 impl Ran {
-    /// Returns the one JSON object of the output; checks that the program succeeded.
+    /// Checks that the program succeeded, and returns the JSON object that it printed.
     #[track_caller]
     pub(crate) fn json(&self) -> Value {
         assert_eq!(self.status, Some(0), "{self:?}");
         self.json_with(0)
     }
 
-    /// Returns the one JSON object that was printed.
+    /// Checks the exit status, and returns the JSON object that the program printed.
     #[track_caller]
     pub(crate) fn json_with(&self, status: i32) -> Value {
         assert_eq!(self.status, Some(status), "{self:?}");
         serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {self:?}"))
     }
 
-    /// Checks that it ended with this status, without output and with one to four lines on stderr that hold all these
-    /// words.
+    /// Checks that the program ended with the given status, printed nothing to stdout, and printed one to four lines
+    /// with all the given words to stderr.
     #[track_caller]
     pub(crate) fn fails(&self, status: i32, words: &[&str]) {
         assert_eq!(self.status, Some(status), "{self:?}");
@@ -252,7 +252,7 @@ impl Ran {
         self.assert_stderr(words);
     }
 
-    /// Checks that one to four lines on stderr, besides warnings in the log, hold all these words.
+    /// Checks that stderr, apart from log warnings, has one to four lines with all the given words.
     #[track_caller]
     pub(crate) fn assert_stderr(&self, words: &[&str]) {
         let lines: Vec<&str> = self.err.lines().filter(|line| !line.trim_start().starts_with("WARN")).collect();
@@ -265,45 +265,45 @@ impl Ran {
     }
 }
 
-/// A foreign encoder that runs.
+/// A foreign encoder that runs in a separate process.
 pub(crate) struct Foreign {
     child: Child,
     said: BufReader<ChildStdout>,
-    /// The link for `--link`.
+    /// Link to the encoder, for the option `--link`.
     pub(crate) url: String,
-    /// The symbolic link to its terminal, or its address.
+    /// Symbolic link to the encoder's terminal, or the address of the encoder.
     pub(crate) place: String,
     log: PathBuf,
 }
 
 impl Foreign {
-    /// Returns the requests since the last call, a line each: for HIPERFACE the frames in hex, for BiSS the registers,
-    /// for INTERBUS the words.
+    /// Returns the requests since the last call, one per line: frames in hexadecimal for HIPERFACE, registers for BiSS,
+    /// and words for INTERBUS.
     pub(crate) fn requests(&self) -> Vec<String> {
         let text = fs::read_to_string(&self.log).unwrap_or_default();
         fs::write(&self.log, "").unwrap();
         text.lines().map(str::to_owned).collect()
     }
 
-    /// Returns the registers written since the last call: `0x24:0x10 AA`.
+    /// Returns the registers written since the last call, such as `0x24:0x10 AA`.
     pub(crate) fn registers_written(&self) -> Vec<String> {
         self.requests().iter().filter_map(|line| line.strip_prefix("W ")).map(str::to_owned).collect()
     }
 
-    /// Requests that write, of those since the last time.
+    /// Returns the requests since the last call that write to the encoder.
     pub(crate) fn writes(&self) -> Vec<String> {
         let reads = ["42", "44", "46", "4A", "4C", "4E", "50", "52", "56"];
         self.requests().into_iter().filter(|frame| !reads.contains(&frame.get(3..5).unwrap_or_default())).collect()
     }
 
-    /// Waits longer for its replies, because the computer may be busy: a reply to a request that removes data must not
-    /// come too late.
+    /// Extends the time to wait for replies, because the computer may be busy. The reply to a request that removes data
+    /// must not arrive too late.
     pub(crate) fn waited_for(mut self) -> Self {
         self.url.push_str("?margin=1500");
         self
     }
 
-    /// Sends it a command, if it takes commands.
+    /// Sends a command to the encoder, if it accepts commands.
     pub(crate) fn command(&mut self, line: &str) {
         writeln!(self.child.stdin.as_mut().unwrap(), "{line}").unwrap();
         let mut done = String::new();
@@ -311,13 +311,13 @@ impl Foreign {
         assert!(done.starts_with("done"), "{line}: {done}");
     }
 
-    /// Pulls the plug.
+    /// Kills the process of the encoder, which simulates a loss of power.
     pub(crate) fn kill(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 
-    /// Sends frames as another host would; the checksum is added.
+    /// Sends frames like another host, with checksums added. Returns the replies.
     pub(crate) fn host_address(&self, frames: &[&str]) -> Vec<String> {
         host_address(&self.place, &[&["--sum"], frames].concat())
     }
@@ -329,17 +329,17 @@ impl Drop for Foreign {
     }
 }
 
-/// Runs a foreign HIPERFACE host at a path or `tcp:HOST:PORT`: a line per reply, `-` for none.
+/// Runs a foreign HIPERFACE host at a path or `tcp:HOST:PORT`. Returns the replies, `-` for none.
 pub(crate) fn host_address(path: &str, arguments: &[&str]) -> Vec<String> {
     foreign_host("master.py", path, arguments)
 }
 
-/// Runs a foreign host: a line for each action.
+/// Runs a foreign host. Returns one line for each action.
 pub(crate) fn foreign_host(script: &str, path: &str, arguments: &[&str]) -> Vec<String> {
     foreign_host_with(python(script).unwrap(), path, arguments)
 }
 
-/// Runs the same with a chosen Python.
+/// Runs a foreign host with a specific Python interpreter. Returns one line for each action.
 pub(crate) fn foreign_host_with(mut command: Command, path: &str, arguments: &[&str]) -> Vec<String> {
     let options: Vec<&str> = arguments.iter().copied().filter(|argument| argument.starts_with("--")).collect();
     let frames: Vec<&str> = arguments.iter().copied().filter(|argument| !argument.starts_with("--")).collect();
@@ -357,7 +357,7 @@ pub(crate) struct Simulated {
 }
 
 impl Simulated {
-    /// Starts it; the first argument is its kind.
+    /// Starts a virtual device. The first argument is the kind of device.
     pub(crate) fn start(bench: &Bench, arguments: &[&str]) -> Self {
         let mut child = bench.program(&[&["simulate"], arguments].concat()).spawn().unwrap();
         let mut line = String::new();
@@ -367,7 +367,7 @@ impl Simulated {
         Simulated { child: Some(child), place }
     }
 
-    /// Interrupts it and waits for its end.
+    /// Sends a signal to the process and waits until it ends.
     pub(crate) fn end(mut self, signal_name: &str) {
         let child = self.child.take().unwrap();
         signal(&child, signal_name);
@@ -387,10 +387,10 @@ impl Drop for Simulated {
     }
 }
 
-/// Runs its arguments on a separate terminal; the typed input comes from stdin.
+/// Python code that runs its arguments as a command on a separate terminal, with the typed input from stdin.
 const ON_A_TERMINAL: &str = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))";
 
-/// Runs the program on a terminal on which an answer is typed.
+/// Runs the program on a terminal and types an answer.
 pub(crate) fn run_on_terminal(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
     let program = bench.program(arguments);
     let mut command = Command::new("python3");
@@ -407,7 +407,7 @@ pub(crate) fn skip(why: &str) {
     println!("skipped: {why}");
 }
 
-/// Returns Python with one of the foreign programs; prints a line and returns `None` if there is none.
+/// Returns the command for a foreign program in Python. Prints a line and returns `None` if Python is missing.
 pub(crate) fn python(script: &str) -> Option<Command> {
     let there = Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success());
     if !there {
@@ -419,8 +419,8 @@ pub(crate) fn python(script: &str) -> Option<Command> {
     Some(command)
 }
 
-/// Returns Python with pycomm3 and one of the foreign programs; prints a line and returns `None` if there is none.
-/// `.ci/run` makes an environment with it and names its interpreter in `ENCODER_STUDIO_PYCOMM3`.
+/// Returns the command for a foreign program that uses pycomm3. Prints a line and returns `None` if pycomm3 is missing.
+/// `.ci/run` passes the path of a Python interpreter with pycomm3 in `ENCODER_STUDIO_PYCOMM3`.
 pub(crate) fn pycomm3(script: &str) -> Option<Command> {
     let Some(interpreter) = std::env::var_os("ENCODER_STUDIO_PYCOMM3") else {
         skip("ENCODER_STUDIO_PYCOMM3 names no Python with pycomm3 (.ci/run makes one)");
@@ -431,13 +431,13 @@ pub(crate) fn pycomm3(script: &str) -> Option<Command> {
     Some(command)
 }
 
-/// Returns a frame with its checksum, the XOR of all bytes, as the foreign encoder logs it.
+/// Returns a frame in the format of the foreign encoder's log, with a checksum that is the XOR of all bytes.
 pub(crate) fn frame(bytes: &str) -> String {
     let sum = bytes.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).fold(0, |sum, byte| sum ^ byte);
     format!("{bytes} {sum:02X}")
 }
 
-/// Asks a program to end, by the signal of that name.
+/// Sends the signal with the given name to a program.
 pub(crate) fn signal(child: &Child, name: &str) {
     let sent = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status().unwrap();
     assert!(sent.success());

@@ -149,7 +149,7 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
     assert!(english.iter().any(|line| line == "Offset: 53.4288° el. = 25FE68F7h"), "{english:?}");
 }
 
-/// Reference, section 5: a typed fine position of 339.02 of 1024 periods, with four pole pairs, needs no encoder.
+/// A typed fine position of 339.02 with 1024 periods and 4 pole pairs is enough for the offset (reference, section 5).
 #[test]
 fn a_typed_position_yields_the_offset_of_the_reference() {
     let mut desk = Desk::fresh("");
@@ -263,7 +263,7 @@ fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
     assert_eq!(desk.offset(), Err("commutation.no_reading"));
 }
 
-/// Reference, section 5: a step is 112.5° electrical with 16 periods and 5 pole pairs, and 14° with 128 and 4.
+/// A step is 112.5° electrical with 16 periods and 5 pole pairs, and 14° with 128 and 4 (reference, section 5).
 #[test]
 fn method_2_is_refused_if_its_step_is_too_large() {
     let mut desk = Desk::new_form(AT_REST);

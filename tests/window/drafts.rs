@@ -14,7 +14,7 @@ use crate::tabs::Tabs as _;
 
 const DRAFT: &str = "data/drafts/novo-virtual/N1-1001.ron";
 
-/// Returns a studio in which the virtual encoder of the test kind has been read.
+/// Starts the application and reads the virtual encoder of the test kind.
 fn connected() -> Desk {
     let mut desk = Desk::with_novo();
     connect(&mut desk);

@@ -275,8 +275,8 @@ fn a_discovered_device_fills_the_form() {
     assert_eq!(desk.studio.connect.as_ref().unwrap().typed_link(), "enip:10.0.0.9:2222", "there is none");
 }
 
-/// Reference, section 5: an HDA30 has 512 turns in each direction, which are 33 554 432 steps, or 204 800 steps at 400
-/// steps per turn.
+/// An HDA30 has 512 turns in each direction, which are 33 554 432 steps, or 204 800 steps at 400 steps per turn
+/// (reference, section 5).
 #[test]
 fn limits_may_span_the_full_range_of_the_drive() {
     let mut desk = read("sim:");

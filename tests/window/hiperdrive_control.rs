@@ -172,7 +172,7 @@ fn the_table_shows_live_values_of_the_drive() {
     let target = unit(&desk).target.clone().unwrap();
     target
         .with_station(|station| station.drive(ONE).unwrap().inject_error(Moment::default(), ErrorCode::BLOCK_FORWARD));
-    // Reference, section 4: a block in the forward direction is error 8301h, which is 33537.
+    // A block in the forward direction is error 8301h, which is 33537 (reference, section 4).
     desk.until("its error is read", |studio| {
         let own = studio.hiperdrive().unwrap().drive_status(ONE);
         own.is_some_and(|own| own.buffer.first() == Some(&ErrorCode::BLOCK_FORWARD))

@@ -1,4 +1,4 @@
-//! The page of the logbook, with the real widgets: entries with old and new values, the filter, backups and notes.
+//! Tests of the logbook page with real widgets: entries with old and new values, the filter, backups and notes.
 
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::{Action, DeviceCommand, FileQuestion, LOGBOOK_TAB, Language, Studio, Tab, Text};
@@ -18,7 +18,7 @@ fn entry_count(studio: &Studio) -> Option<usize> {
     studio.logbook().matches()?.as_ref().ok().map(|matches| matches.entries.len())
 }
 
-/// A screen whose encoder has got X instead of E at address 0 of data field 0, which shows the logbook.
+/// Returns a screen that shows the logbook after X was written instead of E at address 0 of data field 0.
 fn after_a_write() -> Screen {
     let mut screen = Screen::new_form(SIZE);
     screen.ask(HiperfaceAction::Put { field: 0, address: 0, bytes: vec![0x58] });
@@ -31,7 +31,7 @@ fn after_a_write() -> Screen {
     });
     screen.click("review.close");
     screen.act(Action::ShowTab(LOGBOOK_TAB));
-    // The connection and the write.
+    // The entries are the connection and the write.
     screen.until("the logbook is read", |studio| entry_count(studio) == Some(2));
     screen
 }
@@ -59,14 +59,14 @@ fn a_write_is_shown_with_old_and_new_values_and_its_backup() {
         screen.act(Action::SetLanguage(language));
         screen.check_language();
     }
-    // Restoring leads to the review of the device. Nothing is written before.
+    // Restoring opens the review of the device. Nothing is written before the review.
     screen.click("backups_card.restore");
     screen.until("the way back is planned", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
     assert!(screen.shows("58  →  45"));
     assert_ne!(screen.studio().settings.tab, LOGBOOK_TAB);
 }
 
-/// Issue 30: a write is undone as on the command line, from the device and after a review.
+/// A write is undone as on the command line, but from the device page and after a review (issue 30).
 #[test]
 fn a_write_is_undone_after_a_review() {
     let mut screen = after_a_write();
@@ -84,7 +84,7 @@ fn a_write_is_undone_after_a_review() {
     assert_eq!((undone.kind, undone.items[0].new.as_deref()), (EntryKind::Restore, Some("45")));
 }
 
-/// Issue 30: an undo and its write name each other, and each leads to the other.
+/// The entries of an undo and of the undone write refer to each other, and each has a link to the other (issue 30).
 #[test]
 fn an_undo_and_its_write_lead_to_each_other() {
     let mut screen = after_a_write();
@@ -102,7 +102,7 @@ fn an_undo_and_its_write_lead_to_each_other() {
     });
     screen.click("review.close");
     let [undo, write, _] = recorded_entries(&screen).try_into().unwrap();
-    // A filter hides the write.
+    // A filter hides the undone write.
     screen.act(Action::ShowTab(LOGBOOK_TAB));
     screen.act(Action::SearchLogbook(EntryFilter { what: Some(EntryKind::Restore), ..EntryFilter::default() }));
     screen.until("only the undo is shown", |studio| entry_count(studio) == Some(1));
@@ -119,7 +119,7 @@ fn an_undo_and_its_write_lead_to_each_other() {
         screen.act(Action::SetLanguage(language));
         screen.check_language();
     }
-    // A second undo says that the write was undone already.
+    // The review of a second undo states that the write was already undone.
     screen.command(DeviceCommand::UndoWrite(Box::new(write)));
     screen.until("there is nothing to do", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
     screen.act(Action::ShowTab(Tab::named("Hiperface")));
@@ -128,7 +128,7 @@ fn an_undo_and_its_write_lead_to_each_other() {
     assert!(screen.shows(&already) && !screen.has_button("review.write"));
 }
 
-/// Issue 30: what has changed since is named, and then nothing can be written.
+/// An undo lists values that have changed since the write, and does not allow a write in this case (issue 30).
 #[test]
 fn an_undo_refuses_a_value_that_has_changed_since() {
     let mut screen = after_a_write();
@@ -154,7 +154,7 @@ fn an_undo_refuses_a_value_that_has_changed_since() {
     assert!(!screen.has_button("review.write"));
 }
 
-/// Issue 30: without the device, or for an entry that wrote nothing, there is nothing to click.
+/// An undo is not available without the device, or for an entry that wrote nothing (issue 30).
 #[test]
 fn an_undo_requires_the_device_and_a_write() {
     let mut screen = after_a_write();
@@ -177,7 +177,7 @@ fn an_undo_requires_the_device_and_a_write() {
     assert!(!screen.is_enabled("undo.button"));
 }
 
-/// Issue 30: the backup of a write at another bench is not on this computer.
+/// A backup that is not on this computer is listed with the name of the computer that made the write (issue 30).
 #[test]
 fn the_bench_of_a_missing_backup_is_named() {
     let mut screen = after_a_write();
@@ -199,7 +199,7 @@ fn the_bench_of_a_missing_backup_is_named() {
     }
 }
 
-/// Issue 30: another program that writes a logbook for a long time does not delay the first reading.
+/// Another program that uses the logbook for a long time does not delay the first reading (issue 30).
 #[test]
 fn a_logbook_in_use_does_not_delay_the_first_reading() {
     let outside = crate::support::Outside::new("");
@@ -249,7 +249,7 @@ fn entries_are_searched_and_the_filter_survives_another_tab() {
     let other = DeviceKey::new("biss", "6129", "7", false);
     let mut logbook = Logbook::open(&screen.outside.store().logbook_path()).unwrap();
     logbook.add_note(jiff::Timestamp::now(), &other, "spare part").unwrap();
-    // The other entry comes from another program, so the list is read again when the tab is opened.
+    // Another program has added an entry, so the list is read again when the tab is opened.
     screen.act(Action::ShowTab(Tab::named("Hiperface")));
     screen.act(Action::ShowTab(LOGBOOK_TAB));
     screen.until("all entries are shown", |studio| entry_count(studio) == Some(3));
@@ -267,7 +267,8 @@ fn entries_are_searched_and_the_filter_survives_another_tab() {
     assert!(screen.shows(&screen.say("logbook.no_match")));
 }
 
-/// Issue 26: a profile saved in the window is recorded like one saved by a command, and entries are found by their asset.
+/// A profile saved in the window is recorded like a profile saved by a command, and its entry is found by the asset
+/// (issue 26).
 #[test]
 fn a_saved_profile_is_recorded_and_found_by_its_asset() {
     let mut screen = after_a_write();

@@ -1,5 +1,5 @@
-//! The window used as by a user: its state by actions, without drawing, and its real widgets by their accessible
-//! labels. One module per behaviour.
+//! Tests that use the window like a user. Some tests apply actions to the state without drawing, and others operate the
+//! real widgets through their accessible labels. Each module tests one behaviour.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod biss;

@@ -28,8 +28,8 @@ fn recorded(studio: &Studio) -> (u64, usize) {
     (history.indices().end, history.indices().filter(is_break).count())
 }
 
-/// The virtual adapter is measured like a capture. It samples an encoder with 0.5 V and 1024 periods, which turns once
-/// in ten seconds.
+/// Samples from the virtual adapter are analysed like a capture. The adapter samples an encoder with 0.5 V and 1024
+/// periods that makes one turn in ten seconds.
 #[test]
 fn the_virtual_adapter_is_measured_like_a_capture() {
     let mut desk = Desk::fresh("");

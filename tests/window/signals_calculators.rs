@@ -56,7 +56,8 @@ fn the_input_circuit_is_computed_while_typing() {
     assert!(screen.shows("338,6 kHz"));
 }
 
-/// The entries use the decimal sign of the language, from the start and after the language is changed (issue 26).
+/// Numeric entries use the decimal separator of the language, both initially and after the language is changed (issue
+/// 26).
 #[test]
 fn entries_are_shown_with_the_decimal_sign_of_the_language() {
     let mut screen = Screen::calculator("page.synchronise");

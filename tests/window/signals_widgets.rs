@@ -171,7 +171,8 @@ fn a_pair_of_voltages_is_converted_exactly_and_by_table() {
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(ExampleCapture::Healthy));
     screen.click("page.error");
-    // Reference, section 3: 7.93e-5 rad with 32 intervals, or 16.27 bits. The arctangent of 0.25 / 0.433 is 30.0007°.
+    // With 32 intervals, the result is 7.93e-5 rad, or 16.27 bits (reference, section 3). The arctangent of 0.25 /
+    // 0.433 is 30.0007°.
     assert!(screen.shows("0.00454°") && screen.shows("16.27") && screen.shows("30.00073°"));
 }
 

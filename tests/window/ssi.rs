@@ -67,7 +67,7 @@ fn a_layout_needs_no_device() {
     assert!(matches!(own.session.source, Source::New { .. }));
     assert_eq!((own.session.phase.clone(), own.is_dirty()), (Phase::Offline, false));
     assert_eq!(own.designer.family().unwrap().key, "ahm36");
-    // Reference, section 8: AHM36, multiturn 123h, singleturn 2A5Bh, in binary and in Gray code.
+    // An AHM36 with multiturn 123h and singleturn 2A5Bh, in binary and in Gray code (reference, section 8).
     act(&mut desk, Ssi::Try(TrialInput::Place(0x123, 0x2A5B)));
     assert_eq!(encoder(&desk).displayed_frame().frame, 0x091_D4B6);
     act(&mut desk, Ssi::Enter(Field::Code, FieldInput::Choice(1)));
@@ -417,7 +417,7 @@ fn the_virtual_encoder_sends_the_edited_layout() {
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36", "the layout stays");
 }
 
-/// Reference, section 8: an AHS36 with 12 bits has its error bit fixed on clock 15, or next to the position on 13.
+/// The error bit of an AHS36 with 12 bits is on clock 15, or follows the position on clock 13 (reference, section 8).
 #[test]
 fn dragging_a_boundary_changes_the_family_settings() {
     let mut desk = layout();

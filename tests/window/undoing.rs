@@ -1,5 +1,5 @@
-//! Undo of a write of the logbook, for every kind of device with a memory, and what the review says about it before the
-//! write.
+//! Tests of undoing a write from the logbook, for every kind of device with a memory, and of what the review says about
+//! a later undo before the write.
 
 use encoder_studio::app::review::{ReviewSheet, Stage};
 use encoder_studio::app::{Action, DeviceCommand, Language, ReviewAction, Text};
@@ -38,7 +38,7 @@ fn case_of(tab: encoder_studio::app::Tab) -> Case {
     CASES.into_iter().find(|case| case.tab == tab).unwrap()
 }
 
-/// Reviews the change that a message of the device plans.
+/// Plans a change with a device action and waits for the review.
 #[track_caller]
 fn plan(desk: &mut Desk, action: impl FnOnce(encoder_studio::app::SessionId) -> Action) {
     let id = shown(&desk.studio).unwrap().id();
@@ -94,7 +94,7 @@ fn a_review_tells_beforehand_what_can_be_undone() {
         let [text] = undo_texts(&desk).try_into().unwrap();
         assert!(text.starts_with("Cannot be undone: ") && text.contains(words), "{text}");
     }
-    // The backup does not contain the address 40h.
+    // The backup does not contain the device address 40h.
     plan(&mut desk, hiperface(HiperfaceChange::SetAddress(DeviceAddress::new(0x45).unwrap())));
     let [text] = undo_texts(&desk).try_into().unwrap();
     assert!(text.starts_with("Undo of ") && text.contains("write 40 again (write cycles: 1)"), "{text}");

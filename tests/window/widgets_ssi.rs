@@ -75,8 +75,8 @@ fn exports_are_shown_in_their_format() {
     assert!(screen.shows("FUNCTION_BLOCK \"SSI_DECODE\""));
 }
 
-/// Frames from a file are listed, decoded with the layout, and tried by a click. Reference, section 8: AHM36 in Gray
-/// code.
+/// Frames from a file are listed and decoded with the layout, and a click loads a frame into the editor. The file
+/// contains frames of an AHM36 in Gray code (reference, section 8).
 #[test]
 fn frames_of_a_file_are_listed_and_tried() {
     let mut screen = layout();

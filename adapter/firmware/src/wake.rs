@@ -11,7 +11,7 @@ use hal::timer::{Alarm as _, Alarm0, Timer};
 
 static ALARM: Mutex<RefCell<Option<Alarm0>>> = Mutex::new(RefCell::new(None));
 
-/// Prepares the alarm.
+/// Enables the interrupt of timer alarm 0, which ends a sleep.
 pub(crate) fn start(timer: &mut Timer) {
     if let Some(mut alarm) = timer.alarm_0() {
         alarm.enable_interrupt();

@@ -157,7 +157,7 @@ fn reference_and_absolute_position_columns_are_recognized() {
     assert_eq!(error, CaptureError::ShortRow { row: 3, columns: 3, needed: 4 });
 }
 
-/// Issue 22.13: the first column of an oscilloscope that writes Start and Increment counts samples.
+/// The first column of an oscilloscope that writes Start and Increment counts samples (issue 22.13).
 #[test]
 fn start_and_increment_define_the_times() {
     let text =
@@ -181,8 +181,8 @@ fn start_and_increment_define_the_times() {
     assert_eq!(read_in_pieces(99, text.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 1e-3, 2e-3]);
 }
 
-/// Issue 22.13: rows without a value and a truncated last line are skipped and counted. Six rows are enough for a
-/// measurement.
+/// Rows without a value and a truncated last line are skipped and counted. Six rows are enough for a measurement (issue
+/// 22.13).
 #[test]
 fn rows_without_a_value_are_skipped() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
@@ -216,7 +216,7 @@ fn rows_without_a_value_are_skipped() {
     assert_eq!(read(most).unwrap_err(), CaptureError::NoValues { left_out: 7, rows: 13, row: 8 });
 }
 
-/// Issue 22.13: a table in UTF-16 and a second header row with units are accepted.
+/// A table in UTF-16 and a second header row with units are accepted (issue 22.13).
 #[test]
 fn encodings_and_rows_of_units_do_not_reject_a_table() {
     let text = "Zeit (\u{b5}s)\tSinus\tKosinus\r\n0\t0,25\t0,5\r\n1000\t-0,3\t0,4\r\n";
@@ -242,7 +242,7 @@ fn encodings_and_rows_of_units_do_not_reject_a_table() {
     }
 }
 
-/// Issue 22.13: rows without a value before the first complete one do not hide the names and units of the columns.
+/// Rows without a value before the first complete one do not hide the names and units of the columns (issue 22.13).
 #[test]
 fn leading_rows_without_a_value_do_not_hide_the_header() {
     let rows = "2,3,4\n3,4,5\n4,5,6\n5,6,7\n6,7,8\n7,8,9\n";
@@ -255,7 +255,7 @@ fn leading_rows_without_a_value_do_not_hide_the_header() {
     assert_eq!((layout.names, capture.left_out, capture.sine_v.len()), (Vec::new(), 2, 6), "without names");
 }
 
-/// Issue 22.13: a truncated last line is skipped, but not the text of several lines after an open quotation mark.
+/// A truncated last line is skipped, but not the text of several lines after an open quotation mark (issue 22.13).
 #[test]
 fn an_unclosed_quotation_mark_swallows_no_rows() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
@@ -273,8 +273,8 @@ fn an_unclosed_quotation_mark_swallows_no_rows() {
     assert_eq!((capture.sine_v.len(), capture.left_out), (7, 0));
 }
 
-/// Issue 22.13: an oscilloscope's sample numbers are converted to times regardless of the channel names, and must be
-/// whole numbers.
+/// An oscilloscope's sample numbers are converted to times regardless of the channel names, and must be whole numbers
+/// (issue 22.13).
 #[test]
 fn sample_numbers_are_integers_in_the_first_column() {
     let (layout, capture) = read("X,sin,cos,Start,Increment\nSequence,V,V,1,0.5\n0,1,2,,\n1,3,4,,\n").unwrap();
@@ -286,7 +286,7 @@ fn sample_numbers_are_integers_in_the_first_column() {
     assert_eq!(read_in_pieces(99, times.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 0.5]);
 }
 
-/// Issue 22.13: SCPI instruments write 9.9E37 for an overload and 9.91E37 for a missing value.
+/// SCPI instruments write 9.9E37 for an overload and 9.91E37 for a missing value (issue 22.13).
 #[test]
 fn scpi_overload_values_count_as_missing() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";

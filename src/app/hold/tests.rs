@@ -55,7 +55,8 @@ impl TestButton {
     }
 }
 
-/// Issue 21.2: the events that X11 reports when Space is held while the window loses and regains the keyboard focus.
+/// These are the events that X11 reports when Space is held while the window loses and regains the keyboard focus
+/// (issue 21.2).
 #[test]
 fn a_key_held_while_focus_returns_starts_no_hold() {
     let mut pad = TestButton::armed();
@@ -80,7 +81,7 @@ fn a_key_held_while_focus_returns_starts_no_hold() {
     assert_eq!(pad.picture(&[DOWN]), None);
 }
 
-/// Issue 21.2: after any change of the button, a key counts only once it is known to be up.
+/// After any change of the button, a key counts only once it is known to be up (issue 21.2).
 #[test]
 fn after_any_change_a_key_counts_only_once_released() {
     type Change = fn(&mut TestButton);
@@ -119,8 +120,8 @@ fn after_any_change_a_key_counts_only_once_released() {
     }
 }
 
-/// Issue 21.2: a pointer that is already pressed does not start a hold, even if the button becomes available in the
-/// meantime.
+/// A pointer that is already pressed does not start a hold, even if the button becomes available in the meantime (issue
+/// 21.2).
 #[test]
 fn a_hold_begins_only_with_a_new_pointer_press() {
     let mut pad = TestButton::armed();
@@ -147,7 +148,7 @@ fn a_hold_begins_only_with_a_new_pointer_press() {
     assert_eq!(pad.picture(&[]), None);
 }
 
-/// Issue 21.2: any key ends a hold by the pointer, and any second input ends a hold by a key.
+/// Any key ends a hold by the pointer, and any second input ends a hold by a key (issue 21.2).
 #[test]
 fn any_other_input_ends_a_hold() {
     let beside = [
@@ -185,7 +186,8 @@ fn any_other_input_ends_a_hold() {
     assert_eq!(pad.picture(&[DOWN]), None);
 }
 
-/// Issue 21.2: a key press during a motion is a request to stop, even if it is not a fresh press.
+/// A key press during a motion is a request to stop, even if the button does not know yet that the key was up (issue
+/// 21.2).
 #[test]
 fn a_key_stops_motion_and_starts_no_hold() {
     for armed in [false, true] {
@@ -202,7 +204,7 @@ fn a_key_stops_motion_and_starts_no_hold() {
     assert_eq!(pad.picture(&[DOWN]), None, "not meant for it");
 }
 
-/// Issue 21.2: a key repeat may be reported as a release and an immediate press in two frames, however far apart.
+/// A key repeat may be reported as a release and an immediate press in two frames, however far apart (issue 21.2).
 #[test]
 fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
@@ -217,7 +219,7 @@ fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     }
 }
 
-/// Issue 22.29: a barcode scanner types Enter within milliseconds of the last digit.
+/// A barcode scanner types Enter within milliseconds of the last digit (issue 22.29).
 #[test]
 fn a_press_right_after_another_key_starts_no_hold() {
     let mut pad = TestButton::armed();
@@ -230,7 +232,7 @@ fn a_press_right_after_another_key_starts_no_hold() {
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
 }
 
-/// Issue 21.2: a user presses the key a tenth of a second after releasing it, with no other event in between.
+/// A user presses the key a tenth of a second after releasing it, with no other event in between (issue 21.2).
 #[test]
 fn a_release_requests_the_frame_that_rearms_the_key() {
     let mut pad = TestButton::armed();

@@ -1,4 +1,4 @@
-//! The company that makes a report, as the settings name it.
+//! The company named in reports, taken from the settings.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use crate::app::{Settings, Text, explain};
 use crate::report::{Company, pdf};
 use crate::store::read_bytes;
 
-/// Returns the company with its logo. Returns `None` if the settings name neither.
+/// Returns the company with its logo, or `None` if the settings contain neither a name nor a logo.
 ///
 /// # Errors
 /// Returns a message if the logo cannot be read.
@@ -19,7 +19,7 @@ pub fn company(settings: &Settings) -> Result<Option<Company>, Text> {
     Ok(is_known.then(|| Company { name: name.unwrap_or_default(), logo }))
 }
 
-/// Checks that reports can contain the company of the settings. Runs in a task.
+/// Checks that the company in the settings can be used in reports. This function reads files, so it runs in a task.
 ///
 /// # Errors
 /// Returns a message if the logo cannot be read or is not a PNG file.

@@ -44,7 +44,7 @@ impl<'a> ReportContext<'a> {
         Fact::code(self.say(label), shown)
     }
 
-    /// Formats a number with the decimal sign of the language.
+    /// Formats a number with the decimal separator of the language.
     pub fn number(&self, value: f64, decimals: usize) -> String {
         format_decimal(value, decimals, self.language)
     }

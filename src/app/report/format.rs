@@ -19,7 +19,7 @@ impl ReportFormat {
     /// File extensions of all formats.
     pub const EXTENSIONS: &[&str] = &["html", "pdf"];
 
-    /// Returns the format for the extension of a file, or `None` if there is none.
+    /// Returns the format that matches the file extension, or `None` if no format matches.
     pub fn of_file(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         match extension.as_str() {
@@ -29,10 +29,9 @@ impl ReportFormat {
         }
     }
 
-    /// Returns the content of the file. `printed` is the time of printing.
+    /// Renders a report as file content. `printed` is the time of printing.
     ///
-    /// # Errors
-    /// Returns a message if the PDF document cannot be made.
+    /// # Errors Returns a message if the PDF document cannot be created.
     pub fn render(self, report: &Report, printed: &str) -> Result<Vec<u8>, Text> {
         match self {
             ReportFormat::Html => Ok(html::render(report, printed).into_bytes()),

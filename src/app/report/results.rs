@@ -1,4 +1,5 @@
-//! Results of the present session in a report: those of a check and of procedures. No profile contains them.
+//! Results of the current session for a report, which come from device checks and procedures. Profiles do not contain
+//! these results.
 
 use super::ReportContext;
 use crate::analysis::check::Verdict;
@@ -6,12 +7,12 @@ use crate::app::Text;
 use crate::app::check::{CheckLine, verdict_text};
 use crate::report::{Block, CellStyle, Mark, Section};
 
-/// A result of the present session.
+/// A result of the current session.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SessionResult {
-    /// A check of the device.
+    /// Results of a device check.
     Check(Vec<CheckLine>),
-    /// A procedure, with its results one after the other.
+    /// Title of a procedure and its results in order.
     Procedure { title: Text, lines: Vec<Text> },
 }
 

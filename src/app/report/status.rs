@@ -5,7 +5,7 @@ use crate::app::Text;
 use crate::profile::Body;
 use crate::report::{Block, CellStyle, Mark, Section};
 
-/// An error or a warning that a device reported, or an earlier one in its memory.
+/// A current error or warning that a device reports, or an earlier one from the memory of the device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StatusLine {
     pub mark: Mark,

@@ -1,4 +1,5 @@
-//! Texts of a review about what a write leaves unchanged, what must be set up again, and how the write can be undone.
+//! Texts of a review that explain which values a write leaves unchanged, which values must be set up again, and how the
+//! write can be undone.
 
 use crate::app::Text;
 use crate::app::explain::{literal_text, redo_text, truncated_list};
@@ -27,7 +28,7 @@ pub(crate) fn undo_texts(operations: impl IntoIterator<Item = (Text, Option<Undo
     texts
 }
 
-/// Maximum number of items that a sentence names.
+/// Maximum number of items listed in a sentence.
 const MAX_NAMED: usize = 3;
 
 fn first_items(items: &[Text]) -> Vec<Text> {
@@ -46,8 +47,8 @@ fn undo_text(undo: &Undo) -> Text {
     }
 }
 
-/// Describes the values that a restore does not change: values that are missing on one side, and values that depend on
-/// another mounting.
+/// Describes the values that a restore does not change: values that the profile or the device does not have, and values
+/// that depend on a different mounting.
 pub(crate) fn skipped_texts(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
     let mut texts = Vec::new();
     if !missing.is_empty() {

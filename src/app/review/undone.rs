@@ -1,4 +1,5 @@
-//! The undo of a write of the logbook: the check whether values have changed since, and what is not undone.
+//! Undo of a write recorded in the logbook. This module checks whether values have changed since the write, and
+//! describes the items that are not undone.
 
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
@@ -9,13 +10,13 @@ use crate::profile::{Body, ChangedSince, KeptItem, UndoneWrite};
 use crate::store::{Entry, EntryUid};
 use crate::worker::commit::PlannedWrite;
 
-/// An entry of the logbook that a restore of its backup undoes.
+/// A logbook entry that is undone by restoring its backup.
 #[derive(Clone, Debug)]
 pub struct UndoneEntry {
     uid: EntryUid,
     /// Local time of the entry.
     at: String,
-    /// Local time at which the entry was undone before, if it was.
+    /// Local time of an earlier undo of the entry, if any.
     undone_at: Option<String>,
     write: UndoneWrite,
 }
@@ -23,8 +24,7 @@ pub struct UndoneEntry {
 impl UndoneEntry {
     /// Removes from the backup the values that the write did not change.
     ///
-    /// # Errors
-    /// Returns a text for each item if none of them can be undone.
+    /// # Errors Returns one text per item if no item can be undone.
     pub(in crate::app) fn new(entry: &Entry, backup: &mut Body) -> Result<Self, Vec<Text>> {
         let write = UndoneWrite::new(&entry.items, backup);
         let undone_at = entry.undone_by.map(|own| minutes(own.at));
@@ -44,7 +44,7 @@ impl UndoneEntry {
         &self.uid
     }
 
-    /// Returns the remark that the entry was undone before, and describes the items that are not undone.
+    /// Returns a warning if the entry was undone before, followed by descriptions of the items that are not undone.
     pub(super) fn warnings(&self) -> impl Iterator<Item = Text> {
         self.already_undone().into_iter().chain(self.kept_texts())
     }
@@ -53,14 +53,15 @@ impl UndoneEntry {
         self.undone_at.as_ref().map(|at| Text::new("undo.already").with("time", at))
     }
 
-    /// Describes the items that are not undone, with what to do instead.
+    /// Describes each item that is not undone, and what the user must do instead.
     fn kept_texts(&self) -> Vec<Text> {
         let kept =
             |own: &KeptItem| Text::new("undo.kept").with("item", &own.item).with_text("instead", redo_text(&own.redo));
         truncated_list(self.write.kept(), kept)
     }
 
-    /// Returns the reason why a plan is not executed: the values that have changed since the write.
+    /// Returns the reason why a plan is rejected, which lists the values that have changed since the write, or `None`
+    /// if no value has changed.
     pub(super) fn rejection<P: PlannedWrite>(&self, prepared: &P) -> Option<Vec<Text>> {
         let planned = prepared.plan().ops.iter().flat_map(|op| prepared.changed_items(op));
         let changed = self.write.changed_since(planned);

@@ -1,5 +1,5 @@
-//! Writes to the memory of a device after a review: a plan is made for a change, and the approved plan is executed by a
-//! job. Each kind of device defines its changes, plans, jobs and their further effects.
+//! Writes to device memory after a review by the user. A plan is made for a change, and a job executes the approved
+//! plan. Each kind of device defines its own changes, plans and jobs, and the further effects of a write.
 
 #![warn(missing_docs)]
 
@@ -45,7 +45,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         self.open_review().map(|review| review.review_sheet(done, |prepared, op| self.operation_texts(prepared, op)))
     }
 
-    /// Returns the change that writes the edits, if there are any.
+    /// Returns the change that writes the edits, or `None` if there are no edits.
     fn edited_change(&self) -> Option<Change<Self>>;
 
     /// Returns whether a change was made for a device other than the connected one.
@@ -68,7 +68,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Creates the job that executes an approved plan.
     fn commit_job(&mut self, agreed: ApprovedPlanOf<Self::Device>) -> Job<Self>;
 
-    /// Discards all data about the device, because another device has replied.
+    /// Discards all data about the previous device after a different device has replied.
     fn discard_device_data(&mut self);
 
     /// Prepares the display of a review.
@@ -84,7 +84,8 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         None
     }
 
-    /// Marks the values that the running plan changes as not read. Called regardless of how the plan ends.
+    /// Marks the values that the plan changes as unread, so that they are read again. This method is called regardless
+    /// of how the plan ends.
     fn schedule_rereads(&mut self) {}
 
     /// Handles the end of a plan that has been executed.
@@ -159,7 +160,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     fn adopt_plan(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
         if self.targets_other_device(&prepared) {
             *self.review_mut() = None;
-            // With edits, the change of the device was reported when it was read.
+            // If there are edits, the user was told about the new device when it was read.
             if !self.pending_edits().is_dirty() {
                 let serial = prepared.device(self.session().is_virtual()).serial_number;
                 let text = Text::new("session.plan_of_another").with("serial", serial);
@@ -236,11 +237,11 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         *self.review_mut() = None;
     }
 
-    /// Handles the end of an executed plan. The device is read again.
+    /// Handles the end of an executed plan and reads the device again.
     fn handle_commit_end(&mut self, committed: Committed<Self>, services: &mut Services) {
         let (severity, texts) = written_texts::<Self::Device>(&committed);
         let (name, stands) = (self.session().name(), self.open_review().is_some_and(Review::is_writing));
-        // The review shows a success until it is closed.
+        // A successful result remains in the review until the user closes it.
         if severity == Severity::Good && stands {
             services.log_only(severity, texts, Some(&name));
         } else {

@@ -86,8 +86,8 @@ fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
     assert_eq!((track.position_count(), track.dropped_count()), (9, 3));
 }
 
-/// Issue 22.21: one frame in ten is damaged. The speed is available after one averaging window and stays at 50 steps in
-/// 50 µs.
+/// One frame in ten is damaged. The speed is available after one averaging window and stays at 50 steps in 50 µs (issue
+/// 22.21).
 #[test]
 fn damaged_frames_do_not_interrupt_the_speed() {
     let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
@@ -110,8 +110,8 @@ fn damaged_frames_do_not_interrupt_the_speed() {
     }
 }
 
-/// Issue 22.21: at 50 steps in 50 µs, a shaft with 1000 steps completes a turn after 20 samples. A gap of this many
-/// damaged samples is not bridged, but a gap of a few is.
+/// At 50 steps in 50 µs, a shaft with 1000 steps completes a turn after 20 samples. A gap of this many damaged samples
+/// is not bridged, but a gap of a few is (issue 22.21).
 #[test]
 fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
     let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
@@ -147,8 +147,8 @@ fn steps(track: &DeviceRecorder<Nothing>, heading: &str) -> Vec<f64> {
     samples(track, at).into_iter().map(|(_, steps, _)| steps).collect()
 }
 
-/// Issue 21.12: after a change of the scale, earlier recordings keep the old scale and the selected unit, and can be
-/// exported.
+/// After a change of the scale, earlier recordings keep the old scale and the selected unit, and can be exported (issue
+/// 21.12).
 #[test]
 fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     let mut track = DeviceRecorder::<Nothing>::default();
@@ -183,7 +183,7 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     assert_eq!(names(&track).len(), 3, "whoever clears it wants them gone");
 }
 
-/// Issue 21.12: an entered pitch adds another unit for the same steps.
+/// An entered pitch adds another unit for the same steps (issue 21.12).
 #[test]
 fn another_unit_of_the_same_steps_uses_the_same_lines() {
     let on_spindle = |millimetres: f64| {
@@ -205,7 +205,7 @@ fn another_unit_of_the_same_steps_uses_the_same_lines() {
     assert_eq!((line.scales()[0].factor, line.scale().unwrap().unit.id()), (0.0125, "unit.steps"));
 }
 
-/// Issue 21.12: a value that is no longer watched and later watched again.
+/// A value that is no longer watched keeps its samples and continues when it is watched again (issue 21.12).
 #[test]
 fn a_value_no_longer_watched_keeps_its_samples() {
     let mut track = DeviceRecorder::<Nothing>::default();
@@ -233,8 +233,8 @@ fn a_value_no_longer_watched_keeps_its_samples() {
     assert_eq!(steps(&track, "nothing"), [4.0]);
 }
 
-/// Issue 21.12: when another device is connected. In other cases, the user is asked before two minutes of data are
-/// lost.
+/// More than two minutes of data are kept when another device is connected. In other cases, the user is asked before
+/// such data are lost (issue 21.12).
 #[test]
 fn minutes_of_another_device_are_kept() {
     let meaning = PositionScales::for_steps_per_turn(None, 1000.0);
@@ -250,7 +250,7 @@ fn minutes_of_another_device_are_kept() {
     }
 }
 
-/// Issue 21.12: if only the newest words are stored, these are decoded again, and the others are not lost.
+/// If only the newest words are stored, these are decoded again, and the others are not lost (issue 21.12).
 #[test]
 fn samples_that_cannot_be_decoded_again_are_kept() {
     let (before, after) =

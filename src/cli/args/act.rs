@@ -24,10 +24,10 @@ pub struct ActionArgs {
 }
 
 impl ActionArgs {
-    /// Returns the action for a kind of device, whose actions are listed in `known`.
+    /// Parses the action name as an action of type `A`. `kind` and `known` are the name of the kind of device and its
+    /// list of actions, for the error message.
     ///
-    /// # Errors
-    /// Returns an error if the action belongs to another kind of device.
+    /// # Errors Returns an error if this kind of device does not have the action.
     pub(crate) fn parse_action<A: ValueEnum>(&self, kind: &str, known: &str) -> Result<A> {
         let action = &self.action;
         A::from_str(action, false)

@@ -21,7 +21,7 @@ fn commented_profile(kind: &str) -> String {
     std::fs::read_to_string(folder.join(kind).with_extension("ron")).unwrap()
 }
 
-/// Issue 22.26: saving an unchanged profile leaves the text unchanged, for every kind and with any line ends.
+/// Saving an unchanged profile leaves the text unchanged, for every kind and with any line ends (issue 22.26).
 #[test]
 fn unchanged_text_is_kept_verbatim() {
     for kind in program().studio.formats.kinds() {
@@ -35,8 +35,8 @@ fn unchanged_text_is_kept_verbatim() {
     }
 }
 
-/// Issue 22.26: a changed profile saved over a text has exactly its own content, and each comment of the user remains
-/// or is reported.
+/// A changed profile that is saved over an existing text is written exactly, and each user comment in the text is kept
+/// or reported as lost (issue 22.26).
 #[test]
 fn any_rewrite_is_exact_and_lists_lost_comments() {
     let all = ready_made();
@@ -117,8 +117,8 @@ fn with_varied_whitespace(text: &str, picks: &[usize]) -> (String, usize) {
 proptest::proptest! {
     #![proptest_config(proptest::test_runner::Config { cases: 256, ..Default::default() })]
 
-    /// Issue 22.26: comments and line ends between any words remain or are reported, for any profile saved over the
-    /// text.
+    /// Comments and line ends between any words are kept or reported as lost, for any profile saved over the text
+    /// (issue 22.26).
     #[test]
     fn comments_between_any_tokens_are_kept_or_listed(
         from in 0_usize..100,

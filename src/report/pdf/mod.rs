@@ -16,7 +16,7 @@ use self::flow::{Flow, PAGE};
 use self::typeface::Typefaces;
 use super::Report;
 
-/// The reason why a report could not be made a PDF document.
+/// The reason why a report could not be converted to a PDF document.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PdfError {
     /// A built-in font cannot be read.
@@ -30,10 +30,9 @@ pub enum PdfError {
     Document(String),
 }
 
-/// Checks that a logo can be printed.
+/// Checks that a logo can be used in a PDF document.
 ///
-/// # Errors
-/// Returns [`PdfError::Logo`] if it is not a PNG file.
+/// # Errors Returns [`PdfError::Logo`] if the logo is not a PNG file.
 pub fn check_logo(bytes: Vec<u8>) -> Result<(), PdfError> {
     decode_logo(bytes).map(drop)
 }
@@ -42,8 +41,8 @@ fn decode_logo(bytes: Vec<u8>) -> Result<Image, PdfError> {
     Image::from_png(bytes.into(), true).map_err(|_| PdfError::Logo)
 }
 
-/// Returns the report as a PDF document. `printed` is the time of printing; everything else depends on the content
-/// alone.
+/// Renders a report as a PDF document. `printed` is the time of printing. The rest of the document depends only on the
+/// report.
 ///
 /// # Errors
 /// Returns an error if the logo or the document is invalid.

@@ -1,4 +1,4 @@
-//! `analyse`: reports the quality of a sine/cosine signal, recorded or sampled by an adapter.
+//! The command `analyse`, which reports the quality of a sine/cosine signal from a recording or an adapter.
 
 mod args;
 mod live;
@@ -84,7 +84,7 @@ fn capture_report(output: &Output, arguments: &ReportArgs, context: &ReportConte
 fn read(output: &Output, path: &Path, hints: &TableHints) -> std::result::Result<Capture, Failure> {
     let bar = TerminalProgressBar::default();
     let mut progress = |done, total| bar.show(done, total, &"bytes");
-    // Never cancelled here: Ctrl-C ends the whole process, since the command only reads.
+    // The command never cancels reading. It does not write anything, so Ctrl-C may end the whole process.
     let read = read_capture(path, hints, &AtomicBool::new(false), &mut progress);
     drop(bar);
     let (layout, capture) =
@@ -93,7 +93,7 @@ fn read(output: &Output, path: &Path, hints: &TableHints) -> std::result::Result
     Ok(capture)
 }
 
-/// Analyses samples. `path` is the file or the link that they come from.
+/// Analyses samples. `path` is the file or the link from which the samples come.
 fn analyse_capture(output: &Output, path: &Path, capture: &Capture, arguments: &AnalyseArgs) -> Result {
     let samples = Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v };
     let references_v = capture.references_v();
@@ -105,7 +105,7 @@ fn analyse_capture(output: &Output, path: &Path, capture: &Capture, arguments: &
         diagnosis.findings.iter().map(|finding| explain::signal::diagnosis_text(finding).terminal_text()).collect();
     let analysis = analysis.map_err(|error| {
         let why = explain::signal::analysis_error_text(path, &error).terminal_text();
-        // If the wires were recorded, their findings explain more than the missing ellipse.
+        // If single wires were recorded, the findings about these wires explain more than the missing ellipse.
         let more = findings.iter().filter(|_| references_v.is_some()).take(3).cloned();
         Failure::Failed(std::iter::once(why).chain(more).collect())
     })?;
@@ -137,7 +137,7 @@ fn print_remarks(output: &Output, layout: &Layout, capture: &Capture) {
 }
 
 /// Calculates DNL and INL against the reference angle. If the number of periods is missing, a remark explains how to
-/// specify this number.
+/// specify it.
 fn analyse_revolution(
     output: &Output,
     capture: &Capture,

@@ -24,8 +24,8 @@ use crate::store::ReadCaptureError;
 pub struct Signals {
     family: Family,
     periods: Option<u32>,
-    /// Whether the number of periods comes from the virtual encoder. If so, the number does not apply to a capture from
-    /// a file.
+    /// Whether the number of periods comes from the virtual encoder. Such a number does not apply to a capture from a
+    /// file.
     periods_of_source: bool,
     pub(crate) source: Source,
     synchronise: SynchroniseState,
@@ -125,7 +125,8 @@ impl Signals {
         Signals { source: Source::with_link(links.first()), ..Signals::default() }
     }
 
-    /// Starts the adapter after other users have released its connection. The link is stored in the settings.
+    /// Starts the adapter after other parts of the program have released its connection. The link is stored in the
+    /// settings.
     fn start_adapter_when_free(&mut self, context: &mut ToolContext<'_>) {
         let earlier = match self.source.adapter_url() {
             Some(url) => context.release_connection(&url, TEXTS.text("session.let_go_for_signals")),
@@ -167,13 +168,12 @@ impl Signals {
         self.comparison.as_ref()
     }
 
-    /// Returns the last table, including a table that could not be read.
+    /// Returns the last table, even if it could not be read.
     pub fn table(&self) -> Option<&Table> {
         self.table.as_ref()
     }
 
-    /// Returns the reason why the last table could not be read. After a failure, the previous capture remains on
-    /// display.
+    /// Returns the reason why the last table could not be read. The previous capture is still displayed in this case.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -191,7 +191,8 @@ impl Signals {
         self.measurement.as_ref().map_or(&[], |measurement| &measurement.diagnosis.findings)
     }
 
-    /// Returns the changes relative to the capture kept for comparison. Both use the same limits.
+    /// Returns the changes relative to the capture that was kept for comparison. Both captures are judged by the same
+    /// limits.
     pub fn changes(&self) -> Option<DiagnosisChanges> {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
         let before = kept.diagnosis.with_new_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
@@ -343,7 +344,7 @@ impl Signals {
         }
     }
 
-    /// Returns the table of the displayed capture, but not a table that is still being read.
+    /// Returns the table of the displayed capture. A table that is still being read is ignored.
     fn displayed_table(&self) -> Option<Table> {
         self.reading.as_ref().map_or_else(|| self.table.clone(), |reading| reading.settled.clone())
     }
@@ -384,7 +385,7 @@ impl Signals {
         });
     }
 
-    /// Starts to read a table. A reading in progress is cancelled.
+    /// Starts reading a table and cancels a reading in progress.
     fn read(&mut self, place: TableSource, hints: TableHints, settled: Option<Table>, services: &mut Services) {
         self.attempts = self.attempts.wrapping_add(1);
         let number = self.attempts;

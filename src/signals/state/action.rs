@@ -14,7 +14,7 @@ pub enum SignalsAction {
     Example(ExampleCapture),
     /// Sets the delimiter instead of the detected one.
     SetDelimiter(Delimiter),
-    /// Sets whether the decimal sign is a comma.
+    /// Sets whether the decimal separator is a comma.
     SetDecimalComma(bool),
     /// Selects a column by its number from 1. `None` selects no column.
     SetColumn(Column, Option<usize>),

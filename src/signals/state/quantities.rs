@@ -273,7 +273,7 @@ mod tests {
             .analysis
             .clone()
             .unwrap();
-        // Issue 22.13: without the periods per revolution, there are no mechanical angles and no speed.
+        // Without the periods per revolution, there are no mechanical angles and no speed (issue 22.13).
         let bare = error_quantities(&analysis, None);
         assert!(bare.len() == 2 && bare.iter().all(|own| own.unit == Unit::Degrees && own.also.is_none()), "{bare:?}");
         let list = error_quantities(&analysis, Some(1024));

@@ -1,4 +1,4 @@
-//! The source of the samples, with its progress and errors. It is shown at the top of every page that uses the samples.
+//! View of the sample source with its progress and errors, at the top of every page that uses samples.
 
 use egui::{Align, Layout, RichText, Ui, vec2};
 
@@ -13,7 +13,7 @@ use crate::ui::controls::{badge, enabled_button, fill_width, icon_button, labell
 use crate::ui::widgets::series_colour;
 use crate::ui::{Theme, icons};
 
-/// Width of the buttons of an empty page in points.
+/// Width of the buttons on an empty page, in points.
 const BUTTON: f32 = 220.0;
 
 #[derive(Default)]
@@ -56,8 +56,8 @@ pub(super) fn source_ui(
     shown
 }
 
-/// Draws the settings of the virtual encoder while they are open. Each page places them next to the result that they
-/// affect.
+/// Draws the settings of the virtual encoder while they are open. Each page places these settings next to the result
+/// that they affect.
 pub(super) fn settings_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -71,7 +71,7 @@ pub(super) fn settings_ui(
     }
 }
 
-/// Returns the kind of the running or displayed source, or `None` for a table.
+/// Returns the kind of source that is running or displayed, or `None` for a table.
 fn current_source(signals: &Signals) -> Option<SourceKind> {
     if signals.source().is_running() {
         return Some(signals.source().kind());

@@ -16,8 +16,8 @@ fn near(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
 }
 
-/// Reference section 7 with R = 0.5, p = 0.02, q = −0.03, r = 1.05 and α = 3°. One period has 360 samples, because 1
-/// rev/min with one period per revolution is 6°/s.
+/// The signal follows section 7 of the reference with R = 0.5, p = 0.02, q = −0.03, r = 1.05 and α = 3°. One period has
+/// 360 samples, because 1 rev/min with one period per revolution is 6°/s.
 #[test]
 fn samples_match_section_7() {
     let source = source(Settings {

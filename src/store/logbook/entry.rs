@@ -28,7 +28,7 @@ impl DeviceKey {
     }
 }
 
-/// Number of an entry in the logbook of this computer.
+/// Number of an entry in this computer's logbook.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EntryId(pub(super) i64);
 
@@ -45,7 +45,7 @@ impl fmt::Display for EntryId {
     }
 }
 
-/// Identifier of an entry, which is the same on every bench.
+/// Identifier of an entry, which is the same on every computer that shares the logbook.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct EntryUid(pub(super) String);
 
@@ -61,7 +61,7 @@ pub struct LinkedEntry {
 pub enum EntryKind {
     /// A device was identified. Recorded once for each connection.
     Connected,
-    /// The device was assigned to an asset, a motor or an axis.
+    /// The device was assigned to an asset, such as a motor or an axis.
     Assigned,
     /// Status codes were read. Reading may have cleared them in the device.
     Status,
@@ -73,7 +73,7 @@ pub enum EntryKind {
     Preset,
     /// A procedure or a service of the device was executed, such as a calibration.
     Procedure,
-    /// A profile of the device was saved. The backup before a write belongs to the entry of the write.
+    /// A profile of the device was saved. A backup before a write is recorded in the entry of the write instead.
     Backup,
     /// The device was checked.
     Check,
@@ -95,7 +95,7 @@ impl EntryKind {
         EntryKind::Note,
     ];
 
-    /// Returns the word in the file and on the command line.
+    /// Returns the word for this value in the database and on the command line.
     pub const fn keyword(self) -> &'static str {
         match self {
             EntryKind::Connected => "connected",
@@ -124,7 +124,7 @@ impl EntryKind {
         }
     }
 
-    /// Returns the reason why entries of this kind cannot be undone, if they cannot.
+    /// Returns the reason why entries of this kind cannot be undone, or `None` if they can be undone.
     pub const fn undo_obstacle(self) -> Option<UndoObstacle> {
         match self {
             EntryKind::Write | EntryKind::Restore => None,
@@ -152,7 +152,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Returns the word in the file and on the command line.
+    /// Returns the word for this value in the database and on the command line.
     pub const fn keyword(&self) -> &'static str {
         match self {
             Outcome::Done => "done",
@@ -162,19 +162,19 @@ impl Outcome {
     }
 }
 
-/// Computer, user and program version of an entry.
+/// Computer, user and program version with which an entry was made.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Origin {
-    /// Name of the computer, empty in entries of older logbooks.
+    /// Name of the computer. Empty in entries of older logbooks.
     pub bench: String,
-    /// Name of the user, if known and if the settings allow it.
+    /// Name of the user, if it is known and the settings allow it to be recorded.
     pub user: Option<String>,
-    /// Version of the program, empty in entries of older logbooks.
+    /// Version of the program. Empty in entries of older logbooks.
     pub version: String,
 }
 
 impl Origin {
-    /// Returns the origin of the entries that this process makes.
+    /// Returns the origin of entries made by this process.
     pub fn of_this_process() -> Self {
         Origin {
             bench: this_bench().to_owned(),
@@ -183,7 +183,8 @@ impl Origin {
         }
     }
 
-    /// Returns the computer on which the entry was made, unless it is this one or unknown.
+    /// Returns the computer on which the entry was made, or `None` if it was made on this computer or the computer is
+    /// unknown.
     pub fn other_bench(&self) -> Option<&str> {
         Some(self.bench.as_str()).filter(|bench| !bench.is_empty() && *bench != this_bench())
     }
@@ -212,7 +213,7 @@ pub struct Intent {
 pub struct Event {
     pub kind: EntryKind,
     pub description: String,
-    /// Items with their old and new values, if the description is not enough.
+    /// Changed items with their old and new values, for events whose description does not contain them.
     pub items: Vec<ChangedItem>,
     /// Path of the profile that was saved.
     pub backup: Option<PathBuf>,
@@ -224,7 +225,7 @@ impl Event {
         Event { kind, description: description.into(), items: Vec::new(), backup: None }
     }
 
-    /// Creates the event that a profile of the device was saved to a file.
+    /// Creates an event for saving a profile of the device to a file.
     pub fn saved_profile(path: &Path) -> Self {
         let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let saved = Event::new(EntryKind::Backup, format!("saved to {}", full.display()));
@@ -232,7 +233,7 @@ impl Event {
     }
 }
 
-/// An entry of the logbook with the result of the write, if it has one.
+/// A logbook entry. An entry of a write contains the result of the write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// Identifier of the entry. Later entries have greater identifiers.
@@ -242,9 +243,9 @@ pub struct Entry {
     /// Time of the event. For a write, this is the time directly before its first byte.
     pub at: Timestamp,
     pub device: DeviceKey,
-    /// Asset to which the device was assigned at that time.
+    /// Asset to which the device was assigned at the time of the event.
     pub asset: Option<String>,
-    /// Description. For a write, it contains the changed items.
+    /// Description of the event. For a write, it contains the changed items.
     pub description: String,
     /// Changed items. The list is empty in entries of older logbooks.
     pub items: Vec<ChangedItem>,
@@ -252,18 +253,18 @@ pub struct Entry {
     /// Path of the backup taken before the write. Invalid Unicode in the path is replaced.
     pub backup: Option<PathBuf>,
     pub origin: Origin,
-    /// The entry that this write undoes.
+    /// The entry that this write undoes, if any.
     pub undoes: Option<LinkedEntry>,
-    /// The last write that undid this one completely and was not undone itself.
+    /// The last write that undid this entry completely and has not been undone itself, if any.
     pub undone_by: Option<LinkedEntry>,
-    /// Result of the write. `None` means that the write is still running or that the program died during the write.
+    /// Result of the write. `None` means that the write is still running or that the program ended during the write.
     pub conclusion: Option<WriteResult>,
 }
 
 /// The reason why an entry cannot be undone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UndoObstacle {
-    /// The entry is of an older version and does not contain the changed values.
+    /// The entry was made by an older version of the program and does not contain the changed values.
     NoItems,
     /// The position was set, or a preset was stored or fired.
     Preset,
@@ -288,8 +289,8 @@ impl Entry {
         }
     }
 
-    /// Returns the write cycles spent. For a write without a result, these are its planned cycles, because the program
-    /// may have died after the last byte.
+    /// Returns the number of write cycles that this entry has used. For a write without a result, this is the planned
+    /// number, because the program may have ended after the last byte was sent.
     pub fn write_cycles(&self) -> u64 {
         self.conclusion.as_ref().map_or(self.planned_cycles, |end| end.cycles_spent)
     }
@@ -299,11 +300,11 @@ impl Entry {
 pub struct WriteResult {
     pub at: Timestamp,
     pub outcome: Outcome,
-    /// Number of write cycles spent, including those of a write that failed half-way.
+    /// Number of write cycles used, including those of a write that was only partly completed.
     pub cycles_spent: u64,
 }
 
-/// Selection of entries.
+/// Filter that selects logbook entries.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EntryFilter {
     pub device: Option<DeviceKey>,

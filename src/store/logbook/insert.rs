@@ -1,4 +1,4 @@
-//! Adding of events to the logbook.
+//! Insertion of events into the logbook.
 
 use std::path::Path;
 
@@ -74,8 +74,8 @@ pub(super) fn assignment(
     transaction.commit()
 }
 
-/// Limits the cycles of an entry to 32 bits, which rules out an overflow of the sum. No EEPROM survives a thousandth of
-/// that number.
+/// Limits the number of write cycles of an entry to 32 bits, so that the sum of all entries cannot overflow. No EEPROM
+/// survives a thousandth of this number.
 pub(super) fn saturating_cycle_count(cycles: u64) -> u32 {
     u32::try_from(cycles).unwrap_or(u32::MAX)
 }

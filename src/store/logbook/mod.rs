@@ -1,12 +1,12 @@
-//! The logbook, which records what happened to each device: connections, writes with their old and new values and the
-//! write cycles they took, status codes that were read, saved profiles, checks, and the asset of the device. An intent
-//! is recorded before the first byte is sent, and its result afterwards. If the program dies in between, the intent
-//! remains. Entries are only ever added. The format is SQLite: two windows can share the logbook, and any tool can read
-//! it.
+//! The logbook, which records the history of each device: connections, writes with old and new values and the number of
+//! write cycles, status codes, saved profiles, checks, and the assignment to an asset. The intent to write is recorded
+//! before the first byte is sent, and the result afterwards. If the program ends in between, the intent remains.
+//! Entries are never changed or deleted. The format is SQLite, so that two windows can share the logbook and any tool
+//! can read it.
 //!
 //! The logbook never contains access codes, because descriptions and failure messages are made from the plan instead of
-//! frames. It does not decide whether a device may be written to. If it fails, the caller rejects writes that are not
-//! forced.
+//! frames. The logbook does not decide whether a device may be written to. If the logbook fails, the caller rejects
+//! writes that are not forced.
 
 mod aside;
 mod asset;
@@ -52,7 +52,7 @@ pub struct Logbook {
 
 impl Logbook {
     /// Opens the logbook, creating it and its folder if missing. A damaged file is kept under another name, and a new
-    /// one is begun.
+    /// file is created.
     ///
     /// # Errors
     /// Returns an error if the file is in use for longer than two seconds, not writable, or created by a newer version
@@ -61,7 +61,7 @@ impl Logbook {
         Self::open_with_timeout(path, LOCK_TIMEOUT)
     }
 
-    /// Opens the logbook as [`open`](Self::open) does, but waits at most this long for another window.
+    /// Opens the logbook like [`open`](Self::open), but waits for another window no longer than the given time.
     ///
     /// # Errors
     /// Returns the errors of [`open`](Self::open).
@@ -111,7 +111,8 @@ impl Logbook {
         added.map_err(|error| self.database_error(error))
     }
 
-    /// Assigns a device to an asset from now on. Nothing is recorded if the device is already assigned to this asset.
+    /// Assigns a device to an asset, starting at the given time. Nothing is recorded if the device is already assigned
+    /// to this asset.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read or written.
@@ -152,9 +153,9 @@ impl Logbook {
         }
     }
 
-    /// Returns the number of write cycles that this program has spent on a device. For an intent without an outcome,
-    /// the planned cycles are counted, because the program may have died after the last byte. Writes by other programs
-    /// are not included, so the count is a minimum.
+    /// Returns the number of write cycles that this program has used on a device. For an intent without a result, the
+    /// planned cycles are counted, because the program may have ended after the last byte was sent. Writes by other
+    /// programs are not included, so the count is a minimum.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
@@ -176,7 +177,7 @@ impl Logbook {
         query::present_asset(&self.database, device).map_err(|error| self.database_error(error))
     }
 
-    /// Returns an entry, or `None` if there is none with this number.
+    /// Returns the entry with the given number, or `None` if it does not exist.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
@@ -192,7 +193,7 @@ impl Logbook {
         self.record(at, device, &Event::new(EntryKind::Note, note)).map(drop)
     }
 
-    /// Returns all devices that have entries, in the order of their kinds and serial numbers.
+    /// Returns all devices that have entries, sorted by kind and serial number.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
@@ -200,7 +201,7 @@ impl Logbook {
         query::devices(&self.database).map_err(|error| self.database_error(error))
     }
 
-    /// Returns the names of all assets to which a device was ever assigned, in their order.
+    /// Returns the names of all assets to which a device was ever assigned, sorted by name.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
@@ -232,7 +233,7 @@ impl Logbook {
         query::status_entries(&self.database, device, limit).map_err(|error| self.database_error(error))
     }
 
-    /// Returns the number of entries that the server of the logbook does not have yet.
+    /// Returns the number of entries that have not been transferred to the logbook server yet.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
@@ -240,7 +241,8 @@ impl Logbook {
         outbox::count_waiting(&self.database).map_err(|error| self.database_error(error))
     }
 
-    /// Returns the damaged file that was replaced by this logbook, and whose entries and write cycles are missing here.
+    /// Returns the path of the damaged file that this logbook replaced, if any. The entries and write cycles of that
+    /// file are missing from this logbook.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
@@ -248,7 +250,8 @@ impl Logbook {
         aside::last_damaged(&self.database).map_err(|error| self.database_error(error))
     }
 
-    /// Returns the error to report. If it means that the file is damaged, a new one is begun for the next time.
+    /// Converts a database error to the error to report. If the file is damaged, a new file is created for the next
+    /// use.
     fn database_error(&self, error: rusqlite::Error) -> LogbookError {
         let problem = match aside::is_damage(&error).then(|| aside::set_aside(&self.path, LOCK_TIMEOUT)) {
             Some(Ok(Some(kept))) => LogbookErrorKind::SetAside { kept },

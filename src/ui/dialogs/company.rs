@@ -1,4 +1,4 @@
-//! The form for the company in reports.
+//! The form for the company name and the logo that appear in reports.
 
 use egui::{RichText, Ui};
 
@@ -8,10 +8,10 @@ use crate::ui::entries::text_entry;
 use crate::ui::{Theme, icons};
 
 const WIDTH: f32 = 480.0;
-/// Height in points of the lines reserved for a problem with the logo.
+/// Height in points that is reserved for a message about the logo.
 const PROBLEM_HEIGHT: f32 = 44.0;
 
-/// What was typed into the form. It is dropped when the form is closed.
+/// Text typed into the form. It is discarded when the form is closed.
 #[derive(Default)]
 pub(in crate::ui) struct CompanyView {
     typed: Option<Typed>,
@@ -20,7 +20,7 @@ pub(in crate::ui) struct CompanyView {
 struct Typed {
     name: String,
     logo: String,
-    /// Logo that was taken from the dialog for files.
+    /// Path of the logo that was last taken over from the file dialog.
     taken: Option<String>,
 }
 
@@ -68,7 +68,7 @@ fn problem_ui(ui: &mut Ui, theme: &Theme, form: &CompanyForm) {
         Some(text) => paragraph(ui, RichText::new(theme.format_text(text)).color(theme.palette.bad)),
         None => ui.skip_ahead_auto_ids(1),
     }
-    // The buttons do not move under the pointer.
+    // Keep the buttons in place, so that they do not move under the pointer.
     ui.add_space((top + PROBLEM_HEIGHT - ui.cursor().top()).max(0.0));
 }
 

@@ -1,5 +1,5 @@
-//! Choice of a file in the system's file dialog, on a separate thread. If the system has no dialog, the user types the
-//! path.
+//! Choice of a file in the system's file dialog, which runs on a separate thread. If the system has no file dialog, the
+//! user types the path.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -13,13 +13,13 @@ use crate::ui::{Theme, icons};
 pub(in crate::ui) struct FileView {
     question: FileQuestion,
     path: String,
-    /// Folder from which relative paths start.
+    /// Folder to which relative paths refer.
     working: Option<PathBuf>,
     fresh: bool,
 }
 
-/// Time below which no user can close a dialog. A dialog that ends sooner without an answer is assumed never to have
-/// opened.
+/// Minimum time that a user needs to close a dialog. A dialog that ends sooner without an answer is assumed never to
+/// have opened.
 const TOO_FAST: Duration = Duration::from_millis(250);
 
 /// Asks the user for a file. The answer arrives as an action. If the system has no file dialogs, [`file_ui`] asks
@@ -100,8 +100,8 @@ fn title(question: &FileQuestion) -> Text {
 }
 
 impl FileView {
-    /// Creates the state for typing a path. The path starts in the user's home folder unless the question names another
-    /// one.
+    /// Creates the state for typing a path. The path starts in the user's home folder unless the question specifies
+    /// another folder.
     pub(in crate::ui) fn new(question: FileQuestion, folders: &BaseFolders) -> Self {
         let home = folders.home_folder().unwrap_or(Path::new(""));
         let path = home.join(question.suggested_path().unwrap_or(Path::new("")));

@@ -1,29 +1,29 @@
-//! How the operations of a plan can be undone, before they are written.
+//! Determines, before a plan is written, how its operations can be undone.
 
 use super::PlannedWrite;
 use crate::profile::{Body, ChangedItem, Operation as _, Redo};
 use crate::store::{EntryKind, UndoObstacle};
 
-/// How an operation can be undone after it was written.
+/// How an operation can be undone after the write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Undo {
-    /// Undoing the entry of the logbook writes exactly the old values.
+    /// Undoing the logbook entry restores exactly the old values.
     Exactly,
     /// The old value must be written again, because the backup does not contain it.
     AnotherWrite {
         /// Old value.
         value: String,
-        /// Write cycles that this costs.
+        /// Number of write cycles required to write the old value.
         cycles: u64,
     },
-    /// The entry of the logbook cannot be undone, but a restore of the backup writes exactly the old values.
+    /// The logbook entry cannot be undone, but restoring the backup writes exactly the old values.
     RestoreBackup,
     /// The operation cannot be undone.
     Never(Redo),
 }
 
 impl Undo {
-    /// Returns how each operation of a plan can be undone. `None` means that the operation changes nothing.
+    /// Returns how each operation of a plan can be undone. An operation that changes nothing yields `None`.
     pub(super) fn of_plan<P: PlannedWrite + ?Sized>(prepared: &P) -> Vec<Option<Undo>> {
         let (backup, kind) = (prepared.backup().body, prepared.entry_kind());
         let of_operation = |op: &P::Op| {
@@ -45,7 +45,7 @@ impl Undo {
         }
     }
 
-    /// Returns a number that is greater the more remains to be done by the user.
+    /// Returns a rank for the effort that an undo requires from the user. A higher rank means more effort.
     const fn effort(&self) -> u8 {
         match self {
             Undo::Exactly => 0,

@@ -11,7 +11,8 @@ use crate::units::Moment;
 /// A time limit that exceeds the duration of any test.
 const HANGS: Duration = Duration::from_secs(20);
 
-/// A producer that counts as fast as possible, with one millisecond per batch on its clock, until it stalls or fails.
+/// A sample producer for tests. It produces consecutive numbers as fast as possible until it stalls or fails. Each
+/// batch advances its clock by one millisecond.
 struct Numbers {
     sizes: VecDeque<usize>,
     next: u64,

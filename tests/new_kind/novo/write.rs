@@ -1,4 +1,4 @@
-//! Writing a plan into a Novo encoder.
+//! Writes a plan to a Novo encoder.
 
 use encoder_studio::profile::{Body, ChangedItem, ConfirmedPlan, DeviceError, ProfileDocument, Write, WrittenChanges};
 use encoder_studio::store::{DeviceKey, EntryKind};

@@ -1,5 +1,5 @@
-//! A simulated user at the motor of a virtual encoder, who follows the requests and presses Start when possible; and
-//! the changes for the tests of procedures.
+//! A simulated user at the motor of a virtual encoder, who follows the requests and presses Start when possible. This
+//! module also provides the changes for the tests of procedures.
 
 use std::time::Duration;
 
@@ -19,15 +19,15 @@ use encoder_studio::worker::commit::ApprovedPlan;
 
 use super::support::{Bench, at};
 
-/// Follows the requests, and records them.
+/// A simulated user who follows the requests and records them.
 pub(crate) struct TestOperator {
     motor: Motor,
     pub(crate) seat: OperatorChannel,
-    /// Revolutions per minute in the calibration and in the Wiegand test.
+    /// Speed of the motor in the calibration and in the Wiegand test, in revolutions per minute.
     pub(crate) rpm: (f64, f64),
-    /// Reported operations and steps, each when it began.
+    /// Operations and steps in the order in which they began.
     pub(crate) steps: Vec<(usize, ProcedureStep)>,
-    /// The last demand for each task, in the order in which they were made.
+    /// Last request for each task, in the order of the requests.
     pub(crate) demands: Vec<OperatorPrompt>,
     /// Answers other than Start.
     pub(crate) instead: Vec<(OperatorTask, OperatorAnswer)>,
@@ -53,7 +53,7 @@ impl TestOperator {
         }
     }
 
-    /// Returns the job that carries this plan out, with this user at the motor.
+    /// Returns the job that executes a plan with this user at the motor.
     pub(crate) fn commit_of(&self, prepared: &Prepared) -> BissJob {
         let attendance = OperatorPresence::Attended(self.seat.clone());
         let consent = Consent::to(prepared.plan.id());
@@ -101,7 +101,7 @@ pub(crate) fn filter() -> Change {
     Change::SelectFilter(PositionFilter::Dynamic)
 }
 
-/// Returns three bytes of OEM data, in two runs and two banks.
+/// Returns a change that writes three bytes of OEM data to two banks.
 pub(crate) fn data() -> Change {
     let edit = |place: &str, bytes: &[u8]| (place.parse().unwrap(), bytes.to_vec());
     Change::Write(vec![
@@ -123,7 +123,7 @@ impl Bench {
         }
     }
 
-    /// Carries a plan out with this user at the motor.
+    /// Executes a plan with a simulated user at the motor.
     pub(crate) fn commit(&mut self, prepared: &Prepared, hands: &mut TestOperator) -> Result<Committed, Box<JobError>> {
         match self.run_watched(hands.commit_of(prepared), &mut |news| hands.hear(news))? {
             BissOutput::Committed(committed) => Ok(*committed),
@@ -131,7 +131,7 @@ impl Bench {
         }
     }
 
-    /// Carries a plan out without a user at the motor.
+    /// Executes a plan without a user at the motor.
     pub(crate) fn commit_alone(&mut self, prepared: &Prepared, patience: Duration) -> Result<Committed, JobError> {
         let attendance = OperatorPresence::Unattended(UnattendedOperator { patience });
         let consent = Consent::to(prepared.plan.id());
@@ -165,12 +165,12 @@ impl Bench {
         }
     }
 
-    /// Returns mode and password, read directly in the encoder.
+    /// Returns the device mode and the password, read directly from the simulated encoder.
     pub(crate) fn mode_and_password(&self) -> (DeviceMode, u8) {
         (self.encoder(|encoder, _| encoder.mode()), self.encoder_reads(at("0x6B")).unwrap())
     }
 
-    /// Returns a bank, read directly in the encoder's flash.
+    /// Returns a bank, read directly from the flash of the simulated encoder.
     pub(crate) fn flash_bank(&self, bank: u8) -> Vec<u8> {
         self.encoder(|encoder, _| {
             let (data, first) = match bank {
@@ -182,9 +182,9 @@ impl Bench {
     }
 }
 
-/// Returns the exchanges of an undisturbed run at which a cut makes a difference: all but those before the first
-/// operation, which only read, and the repeated ones, for the position while the user is waited for and for the status
-/// during a run. Every eighth of these is enough.
+/// Returns the indices of the exchanges at which the tests interrupt a run. Of the exchanges before the first
+/// operation, which only read, and of the repeated requests for the position or the status during a wait or a run, only
+/// every eighth is included.
 pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
     let mut bench = original.copied();
     let mut hands = TestOperator::on(&bench);
@@ -211,7 +211,7 @@ pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
     (0..=sent()).filter(|at| !asks_again(*at) || at % 8 == 0).collect()
 }
 
-/// Returns the interruption; fails for another error.
+/// Returns the interruption. Panics if the error is not an interruption.
 pub(crate) fn interrupted(error: JobError) -> InterruptedWrite {
     match error {
         JobError::Interrupted { interrupted, .. } => *interrupted,
@@ -221,7 +221,7 @@ pub(crate) fn interrupted(error: JobError) -> InterruptedWrite {
 
 pub(crate) const IN_OPERATION: (DeviceMode, u8) = (DeviceMode::OPERATION, 0);
 
-/// Checks that the reported state is that of the encoder.
+/// Checks that the reported state matches the encoder.
 pub(crate) fn assert_reported_state(left: &EndState, bench: &Bench, context: &str) {
     let (mode, password) = bench.mode_and_password();
     match &left.standing {

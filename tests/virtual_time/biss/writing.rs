@@ -1,5 +1,5 @@
-//! Restoring and writing: the fewest registers and saves, planned before and recorded afterwards; nothing on a changed
-//! base; single answers lost at every exchange; wear.
+//! Tests of restoring and writing. A write uses as few registers and saves as possible, is planned before and recorded
+//! afterwards, and is rejected if the base values have changed. The tests also cover lost replies and wear.
 
 use std::time::Duration;
 
@@ -24,7 +24,7 @@ use super::support::{Bench, Transport, at};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// Returns the profile with other bytes in a bank.
+/// Returns the profile with the given bytes changed in a bank.
 fn with_bytes(profile: &BissProfile, number: u8, bytes: &[(usize, u8)]) -> BissProfile {
     let mut wanted = profile.clone();
     let mut bank = profile.bank(number).unwrap();
@@ -41,7 +41,7 @@ fn history(bench: &mut Bench) -> Vec<Entry> {
     logbook.history(&device_key(&prepared.identity, true), 9).unwrap()
 }
 
-/// Returns the UBICOM writes to banks: their global addresses, low byte first.
+/// Returns the UBICOM writes to the given banks, each with its global address and the written byte.
 fn writes_to(bench: &Bench, banks: std::ops::RangeInclusive<u8>) -> Vec<(u16, u8)> {
     let is_write = |frame: &&Vec<u8>| frame[..3] == [0x80, 0x01, 0x02];
     let tap = bench.tap();
@@ -50,7 +50,7 @@ fn writes_to(bench: &Bench, banks: std::ops::RangeInclusive<u8>) -> Vec<(u16, u8
     writes.filter(|(global, _)| range.contains(global)).collect()
 }
 
-/// The issue: three bytes of one bank are three registers and one save, in the plan and in the logbook.
+/// Three bytes in one bank take three register writes and one save, in the plan and in the logbook.
 #[test]
 fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -64,7 +64,7 @@ fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
     let before = bench.flash_cycles();
     bench.tap().sent.clear();
     let committed = bench.commit_alone(&prepared, Duration::ZERO).unwrap();
-    // Bank 24h begins at 0940h.
+    // Bank 24h begins at address 0940h.
     assert_eq!(writes_to(&bench, 0x04..=0x43), [(0x0950, 1), (0x0951, 2), (0x0970, 3)]);
     let commands = writes_to(&bench, 0x00..=0x00);
     assert_eq!(commands, [(0x005A, 2), (0x005A, 3)], "opened for OEM data, and saved once");
@@ -81,7 +81,7 @@ fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
     assert_eq!((&conclusion.outcome, conclusion.cycles_spent), (&CountedFinding::Done, 1));
     assert!(bench.prepare(restore_of(&wanted)).unwrap().plan.is_empty());
 
-    // The before-image restores it.
+    // The backup restores the previous bytes.
     let text = read_text(&committed.backup.unwrap()).unwrap();
     let kept = ProfileDocument::parse(&text, program().studio.formats).unwrap();
     assert_eq!(kept.note.as_deref(), Some("before-image of a write"));
@@ -135,7 +135,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
     assert_eq!(bench.prepare(restore(true)).unwrap().plan.write_cycles(), 2);
 }
 
-/// The values read for the plan have changed before it is executed: nothing is written.
+/// Nothing is written if the values read for the plan have changed before the plan is executed.
 #[test]
 fn a_plan_with_a_changed_base_is_not_executed() {
     type Case = (fn() -> Change, fn(&mut Bench), &'static str);
@@ -154,7 +154,7 @@ fn a_plan_with_a_changed_base_is_not_executed() {
         assert!(matches!(&error, JobError::Device(Error::Changed { item: own }) if own == item), "{error}");
         assert_eq!(bench.flash_cycles(), before);
     }
-    // Another encoder with the same memory on the same cable.
+    // Another encoder with the same memory is connected to the same cable.
     let prepared = Bench::new(Transport::ConfigPin, "serial=1").prepare(data()).unwrap();
     let mut other = Bench::new(Transport::ConfigPin, "serial=2");
     let error = other.commit_alone(&prepared, Duration::ZERO).unwrap_err();
@@ -175,7 +175,7 @@ fn a_consent_covers_only_its_plan() {
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
 }
 
-/// Issue 22.4: unknown write cycles are not 0.
+/// An unknown number of write cycles is not treated as 0 (issue 22.4).
 #[test]
 fn an_encoder_with_unknown_wear_is_written_only_by_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -201,8 +201,8 @@ fn an_encoder_with_unknown_wear_is_written_only_by_force() {
     assert_eq!(bench.flash_cycles() - before, 1);
 }
 
-/// Manual 6.1: 1000 write cycles. The logbook counts; a plan that would exceed them is rejected, and executed if
-/// forced.
+/// The manual allows 1000 write cycles (6.1), which are counted in the logbook. A plan that would exceed this limit is
+/// rejected unless it is forced.
 #[test]
 fn a_worn_encoder_is_written_only_by_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -222,7 +222,7 @@ fn a_worn_encoder_is_written_only_by_force() {
     let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
     assert!(matches!(error, JobError::NotStarted(NotStarted::Worn { seen: 999, cost: 2, limit: 1000 })), "{error}");
     assert_eq!(bench.flash_cycles(), before);
-    // One is left.
+    // One write cycle is left.
     let one = bench.prepare(filter()).unwrap();
     bench.commit_alone(&one, Duration::ZERO).unwrap();
     let prepared = bench.prepare(preset(1, 1)).unwrap();
@@ -240,8 +240,8 @@ fn a_worn_encoder_is_written_only_by_force() {
     assert_eq!(bench.flash_cycles() - before, 3);
 }
 
-/// One answer or one request is lost at every exchange: a write is never repeated if that would spend a cycle, and the
-/// report describes the real result.
+/// At each exchange in turn, one reply or one request is lost. A write is never repeated if this would use a write
+/// cycle, and the report describes the actual result.
 #[test]
 fn one_lost_request_or_reply_at_any_exchange_is_tolerated() {
     type Scene = (&'static str, fn() -> Change, u32);
@@ -267,7 +267,7 @@ fn one_lost_request_or_reply_at_any_exchange_is_tolerated() {
                         assert_eq!(spent, cost, "{context}");
                         assert_eq!(committed.written.verified, committed.written.written, "{context}");
                     }
-                    // A command that was not received, and must not be sent twice.
+                    // A command that was not received and must not be sent twice.
                     Err(error) => {
                         failures += 1;
                         assert_eq!(lost, "request", "{context}: {error}");
@@ -284,7 +284,7 @@ fn one_lost_request_or_reply_at_any_exchange_is_tolerated() {
     }
 }
 
-/// A Wiegand result that may not have been saved: it cannot be read back, so it is reported as unclear.
+/// A Wiegand result that may not have been saved cannot be read back, so it is reported as unclear.
 #[test]
 fn unverifiable_results_are_reported_as_unclear() {
     let mut original = Bench::new(Transport::ConfigPin, "");
@@ -342,7 +342,7 @@ fn writes_over_a_noisy_line_are_correct_or_fail() {
     assert!(right >= 12, "{right} right, {told} told");
 }
 
-/// Registers outside the procedures are written one by one; the description defines their cost.
+/// Registers that no procedure uses are written one by one. The register description defines the cost.
 #[test]
 fn a_single_register_is_written_and_read_back() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -351,7 +351,7 @@ fn a_single_register_is_written_and_read_back() {
     assert_eq!(prepared.plan.write_cycles(), 0);
     let written = bench.commit_alone(&prepared, Duration::ZERO).unwrap().written;
     assert_eq!((written.verified, written.write_cycles, bench.encoder_reads(at("0x40"))), (1, 0, Some(5)));
-    // The kit encoder has no register there and rejects.
+    // The kit encoder has no register at this address and rejects the write.
     let prepared = bench.prepare(write("0x50", 1)).unwrap();
     let told = interrupted(bench.commit_alone(&prepared, Duration::ZERO).unwrap_err());
     assert!(matches!(told.cause, Failure::Device(Error::Refused { .. })), "{told}");

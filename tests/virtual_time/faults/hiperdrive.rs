@@ -14,7 +14,7 @@ use fastrand::Rng;
 use super::{End, Fault, Schedule, any_faults, campaign};
 use crate::hiperdrive::support::{Stand, drive, image, number};
 
-/// Parameters that the changes write.
+/// Numbers of the parameters that the tested changes write.
 const WRITTEN: [u16; 8] = [24, 154, 156, 158, 160, 166, 186, 198];
 
 type State = Vec<Value>;

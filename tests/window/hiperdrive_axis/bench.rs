@@ -218,7 +218,8 @@ pub(super) fn control(desk: &mut Desk) {
     });
 }
 
-/// Returns a studio whose drive has 400 steps per turn of 4 mm and limits that are to be confirmed.
+/// Starts the application and advances the axis set-up to the step in which the user confirms the limits. The drive has
+/// 400 steps per turn and a pitch of 4 mm.
 pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
@@ -236,7 +237,7 @@ pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
     step_with_writes(&mut desk, 156, rough);
-    // Reference, section 5: the scale is 400/256, and 511 turns of 400 steps are 204 400 steps.
+    // The scale is 400/256, and 511 turns of 400 steps are 204 400 steps (reference, section 5).
     assert_eq!([154, 156, 158, 160].map(|own| number(&desk, own)), [400, 256, -204_400, 204_400]);
     next(&mut desk, AxisStep::Confirm);
     desk

@@ -6,7 +6,7 @@ use super::super::{BLOCK, ColumnPart, Flags, Grid, History, HistoryPicture, Kind
 use super::model::Model;
 use crate::analysis::SampleTime;
 
-/// Shape of the values of a run of samples.
+/// Pattern of the generated sample values in a run.
 #[derive(Clone, Copy, Debug)]
 enum Shape {
     Noise,

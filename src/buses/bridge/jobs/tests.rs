@@ -17,7 +17,7 @@ use crate::worker::stream::{MAX_WAIT, Stream};
 
 const MARGIN: Duration = Duration::from_millis(20);
 
-/// A virtual adapter with its clock and the producer of its stream.
+/// A virtual adapter, the clock that it runs on, and the bridge job that produces its sample stream.
 pub(crate) struct Bench<S: StreamFormat> {
     pub(crate) clock: Arc<VirtualClock>,
     adapter: Arc<Mutex<dyn ByteDevice>>,

@@ -144,7 +144,7 @@ fn open() -> ForwardOpen {
     }
 }
 
-/// Reference 9: a ForwardOpen request of 50 bytes, its reply, and ForwardClose.
+/// The packets are a ForwardOpen request of 50 bytes, its reply, and a ForwardClose request (reference 9).
 #[test]
 fn published_connection_matches() {
     let text = "54 02 20 06 24 01 03 FA 00 00 00 00 01 00 01 00 01 00 34 12 CD AB 00 00 01 00 00 00 10 27 00 00 16 48 \

@@ -119,7 +119,7 @@ mod tests {
             let bytes = parse_hex(text).unwrap();
             let frame = Frame::parse(&bytes).unwrap();
             assert_eq!(frame.emit(), bytes, "{text}");
-            // Reference 2: the sum of all bytes is FFh.
+            // The sum of all bytes is FFh (reference 2).
             assert_eq!(bytes.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte)), 0xFF, "{text}");
         }
     }

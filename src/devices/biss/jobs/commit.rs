@@ -1,4 +1,4 @@
-//! Execution of a plan.
+//! Execution of plans on an encoder.
 
 use super::{Biss, ChangeKind, Commit, Committed, JobError, JobStep, Prepared, WEAR_LIMIT, device_key};
 use crate::devices::biss::procedures::procedure::ProcedureProgress;
@@ -18,7 +18,7 @@ pub(super) fn commit_plan(
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let Commit { agreed, mut attendance } = commit;
     let Prepared { identity, plan, .. } = &agreed.prepared;
-    // The steps of an operation are reported, including its start.
+    // Report each step of an operation, including its start.
     let report = &mut |news: ProcedureProgress| {
         let (done, total) = (news.op as u64, plan.ops.len() as u64);
         let item = plan.ops.get(news.op).map(Op::item_name).unwrap_or_default();

@@ -339,7 +339,7 @@ mod tests {
         assert_eq!(station.supply, Some(Supply { millivolt: 4_750, measured: None }));
     }
 
-    /// Issue 22.20: 12 multiturn bits, 19 singleturn bits and two flags, with CRC6 43h unless specified otherwise.
+    /// 12 multiturn bits, 19 singleturn bits, two flags, and CRC6 43h unless specified otherwise (issue 22.20).
     #[test]
     fn a_frame_format_can_be_given_in_the_link() {
         let given = |query: &str| station(query).unwrap().given.map(|own| (own.data_bits(), own.crc_bits()));

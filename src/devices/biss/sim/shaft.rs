@@ -48,8 +48,8 @@ impl Shaft {
         PositionData { multiturn, singleturn, error: false, warning: false }
     }
 
-    /// Returns the position at a moment with [`FRACTIONAL_BITS`] fractional bits, for another encoder on the same shaft
-    /// that needs this resolution.
+    /// Returns the position at time `at` as a fixed-point number with [`FRACTIONAL_BITS`] fractional bits. A second
+    /// encoder on the same shaft needs this resolution.
     pub(super) fn fractional_position_at(&self, at: Moment) -> u64 {
         let whole = (self.integer_steps(at) + self.offset) % self.position_count();
         // The product is at least 0 and below 1 << FRACTIONAL_BITS.

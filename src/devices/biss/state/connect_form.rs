@@ -260,7 +260,7 @@ mod tests {
             "tcp:[::1]:4001",
             "bridge:/dev/ttyACM0?clock=2000000",
             "bridge:tcp:adapter:5000",
-            // Issue 22.16: a value that the checkbox cannot represent remains in the link.
+            // A value that the checkbox cannot represent remains in the link (issue 22.16).
             "bridge:/dev/ttyACM0?leave-supply=on",
             "bridge:tcp:adapter:5000?clock=2000000&leave-supply=on",
             "bridge:/dev/ttyACM0?leave-supply=off",

@@ -132,8 +132,8 @@ mod tests {
         (said.fault, words.join(" "))
     }
 
-    /// Issue 22.11: damaged frames on the configuration pin (section 6 of the UBICOM reference) are explained and
-    /// marked, even if the reply follows them.
+    /// Damaged frames on the configuration pin (section 6 of the UBICOM reference) are explained and marked, even if
+    /// the reply follows them (issue 22.11).
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let request = "80 01 01 02 00 26 00 55";

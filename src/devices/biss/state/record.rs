@@ -313,7 +313,7 @@ mod tests {
         assert_eq!((last.position_word().to_string(), last.error, last.warning), ("00A".to_owned(), None, None));
     }
 
-    /// Issue 22.20: a position is not split into turns and degrees if the number of steps per turn is unknown.
+    /// A position is not split into turns and degrees if the number of steps per turn is unknown (issue 22.20).
     #[test]
     fn positions_with_unknown_split_are_recorded_in_steps() {
         let mut record = Record::default();

@@ -140,11 +140,11 @@ impl DriveFact {
     }
 }
 
-/// Returns the errors and warnings that a drive reports.
+/// Returns the errors and warnings of a drive.
 ///
-/// Entries in the error buffer survive a power cycle, so only the newest ones are treated as errors. Their number is
-/// the fault count since the last acknowledgement, but at least one during a fault. A drive outside its limits and a
-/// communication error are treated as warnings. See section 4 of the reference.
+/// Entries in the error buffer survive a power cycle, so only the entries since the last acknowledgement are treated as
+/// current errors. The fault counter determines how many there are, but during a fault there is at least one. A
+/// position outside the limits and a communication error are treated as warnings. See section 4 of the reference.
 fn drive_fact_list(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.is_set(StatusBit::Fault);

@@ -27,7 +27,8 @@ impl PlannedWrite for Prepared {
     type Kind = ChangeKind;
 
     fn header(&self) -> PlanHeader<'_, Self> {
-        // The manual gives no limit (`U`). Saves are counted and reported, and rejected only if counting fails.
+        // The manual does not state a limit (`U`). Saves are counted and reported, and rejected only if they cannot be
+        // counted.
         PlanHeader { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: u64::MAX }
     }
 

@@ -136,7 +136,7 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
-    /// Issue 21.13: while a drive moves, one of the groups becomes due at least every 60 ms.
+    /// While a drive moves, one of the groups becomes due at least every 60 ms (issue 21.13).
     #[test]
     fn a_group_is_due_every_60_ms_during_motion() {
         let mut read = [at(0); GROUPS];

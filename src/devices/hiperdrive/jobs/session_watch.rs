@@ -152,7 +152,7 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
-    /// Issue 21.13: 130 ms without a reply is too long, counted from the first unanswered request.
+    /// 130 ms without a reply is too long, counted from the first unanswered request (issue 21.13).
     #[test]
     fn silence_counts_from_the_first_unanswered_request() {
         let mut watch = ReplyMonitor::default();
@@ -194,8 +194,8 @@ mod tests {
         }
     }
 
-    /// Issue 21.13: an unanswered request or bytes that are not a frame lock motion, and a reply unlocks it. The test
-    /// receives the reply to RegisterSession from the reference (section 9) in two parts.
+    /// An unanswered request or bytes that are not a frame lock motion, and a reply unlocks it. The test receives the
+    /// reply to RegisterSession from the reference (section 9) in two parts (issue 21.13).
     #[test]
     fn a_silent_session_locks_motion() {
         let mut reply = vec![0x65, 0, 4, 0, 0x78, 0x56, 0x34, 0x12];

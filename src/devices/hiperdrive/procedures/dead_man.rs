@@ -222,8 +222,8 @@ impl DeadMan {
         }
     }
 
-    /// Marks a request as spent if it can no longer start a motion. This applies to a rest, a stop, a request for
-    /// another drive, and a request that was not refreshed in time. Earlier requests are spent as well.
+    /// Discards a request that must not start a motion, together with all earlier requests. This applies to requests to
+    /// rest or to stop, to a request for another drive, and to a request that was not refreshed in time.
     fn discard_void_request(&mut self, now: Moment, intent: &MotionIntent) {
         let rests = matches!(intent.request, MotionRequest::Rest | MotionRequest::Stop);
         let stale = intent.is_stale(now);

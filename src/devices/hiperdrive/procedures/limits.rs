@@ -253,8 +253,9 @@ mod tests {
         assert!(!other.is_endless_run_allowed(), "its factory values are not known");
     }
 
-    /// Issue 21.3: an invalid scale, range or time-out is treated like one that was not read. According to section 4 of
-    /// the reference, 152 is 0 or 1, 160 is above 158, and 186 is 1 to 100, or 255 for no time-out.
+    /// An invalid scale, range or time-out is treated like one that was not read. According to section 4 of the
+    /// reference, parameter 152 is 0 or 1, parameter 160 is above parameter 158, and parameter 186 is 1 to 100, or 255
+    /// for no time-out (issue 21.3).
     #[test]
     fn invalid_parameter_values_permit_no_motion() {
         type Case<'c> = (&'c [(u16, Option<i64>)], MotionLock);
@@ -281,7 +282,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.3: the later of two doubts applies, regardless of the order in which they arrive.
+    /// The later of two doubts applies, regardless of the order in which they arrive (issue 21.3).
     #[test]
     fn an_earlier_doubt_does_not_replace_a_later_one() {
         let mut limits = DriveLimits::from_rules(rules(&[]), HDA30A, at(0));
@@ -293,7 +294,7 @@ mod tests {
         assert!(limits.is_valid(at(100)));
     }
 
-    /// Issue 21.3: a reading carries its time, which the dead-man checks.
+    /// A reading contains its time, which the dead-man control checks (issue 21.3).
     #[test]
     fn a_reading_is_valid_for_four_seconds() {
         let mut limits = DriveLimits::from_rules(rules(&[]), HDA30A, at(0));
@@ -319,8 +320,8 @@ mod tests {
         assert_eq!(limits.limits(), None);
     }
 
-    /// Issue 21.3: a confirmation applies to the limits and the scale that were shown, and is void when the scale
-    /// changes.
+    /// A confirmation applies to the limits and the scale that were shown, and is void when the scale changes (issue
+    /// 21.3).
     #[test]
     fn limits_are_confirmed_as_they_were_shown() {
         let scaled = rules(&[(154, Some(400)), (156, Some(256)), (158, Some(-1000)), (160, Some(1000))]);

@@ -18,7 +18,7 @@ pub struct MotionLimitParameters {
     pub limits: Option<(i64, i64)>,
     /// RS-485 time-out, parameter 186.
     pub timeout: Option<i64>,
-    /// Reference, parameter 198. A change of the reference shifts every position.
+    /// Number of the reference position (parameter 198). A change of the reference shifts every position.
     pub reference: Option<i64>,
 }
 

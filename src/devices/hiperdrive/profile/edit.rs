@@ -100,8 +100,8 @@ pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32)
     Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
 }
 
-/// Plans a service. The plan is based on everything that the device stores, since the old values cannot be determined
-/// after the service. The base of an acknowledgement is empty.
+/// Plans a service. The base of the plan contains all values that the device stores, because the old values cannot be
+/// read after the service. For an acknowledgement, the base is empty.
 pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     let values = match service {
         Service::Acknowledge(_) => BTreeMap::new(),

@@ -21,7 +21,7 @@ pub enum AddressSwitch {
 }
 
 impl AddressSwitch {
-    /// Parses the two digits of the switches, or returns `None` above 99.
+    /// Converts the two-digit position of the address switches, or returns `None` if `number` is greater than 99.
     pub const fn parse(number: u8) -> Option<Self> {
         let source = match number {
             0 => AddressSwitch::Object,

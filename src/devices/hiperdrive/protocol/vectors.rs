@@ -236,7 +236,7 @@ fn status_word_for(state: State) -> StatusWord {
     status(word)
 }
 
-/// The words match section 3 of the reference, and no step is complete before its word.
+/// The control words match section 3 of the reference, and no step is complete before its word is sent.
 #[test]
 fn recipes_reach_their_target_state() {
     let walk = |steps: &[Step], mut before: ControlWord, mut state: State| {

@@ -1,13 +1,14 @@
-//! Axis set-up as a single procedure that leads from an unknown drive to limits in millimetres that have survived a
-//! power cycle. It is a state machine between the facts that were read ([`DriveFacts`]) and the requests to the drive
+//! Axis set-up. This procedure starts with an unknown drive and ends with limits in millimetres that have survived a
+//! power cycle. It is a state machine that receives the drive data ([`DriveFacts`]) and issues requests to the drive
 //! ([`DriveRequest`]). It performs no I/O, and every step waits until the drive has confirmed it.
 //!
-//! The results of the steps form a chain. Each depends on facts about the drive: scale, pitch, reference, limits. When
-//! these change, the result becomes void together with all later results, even if another program made the change. The
-//! displayed step is independent of that: it changes only when the user presses a button.
+//! The results of the steps form a chain. Each result depends on data of the drive: scale, pitch, reference and limits.
+//! When this data changes, the result becomes void together with all later results, even if another program made the
+//! change. The displayed step changes only when the user presses a button.
 //!
-//! Parameters are first written without saving and read back. Saving is a separate step, the last but one. The manual
-//! does not guarantee that unsaved values are lost at power-off, so the previous values are written back.
+//! Parameters are first written without saving and read back. Saving is a separate step, the last but one. If the
+//! set-up is aborted before that, the previous values are written back, because the manual does not guarantee that
+//! unsaved values are lost at power-off.
 
 mod act;
 mod differences;
@@ -40,7 +41,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, PositionScale};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum AxisStep {
-    /// The drive is requested (parameter 152).
+    /// The drive is requested with parameter 152.
     Request,
     /// Pitch and resolution are written as parameters 154 and 156.
     Scale,
@@ -114,17 +115,19 @@ pub struct Axis {
     reference: Option<(i32, PositionOrigin)>,
     sets: Option<i32>,
     standstill: StandstillMonitor,
-    /// Number of times the position jumped at standstill.
+    /// Number of position jumps that were detected at standstill.
     jumps: u32,
-    /// Number of steps by which the position has changed while it was not read, since the reference.
+    /// Number of steps by which the position has changed since the reference was set, while the position was not being
+    /// read.
     unexplained: Option<i64>,
     outcomes: [Option<Outcome>; 3],
-    /// Running test move: the target, its position, and the number of the action that started the move.
+    /// Test move in progress: the target, the position of the target, and the number of the action that started the
+    /// move.
     going: Option<(TestTarget, i32, u64)>,
     saved: bool,
     power: Option<Power>,
     changes: Vec<AxisChange>,
-    /// Whether possibly only some of the changes were made.
+    /// Whether a write ended early, so that some of the changes may not have been made.
     partly: bool,
     returned: Vec<(u16, i64)>,
     asked: Option<DriveRequest>,
@@ -149,7 +152,7 @@ impl AxisStep {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Test)
     }
 
-    /// Returns whether the drive is moved by hand in this step.
+    /// Returns whether the user jogs the drive in this step.
     pub const fn is_jogging(self) -> bool {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper)
     }
@@ -169,7 +172,7 @@ impl AxisStep {
 }
 
 impl Axis {
-    /// Creates the set-up at its first step, with the known data of the spindle.
+    /// Creates a set-up that starts at the first step. `ruler` contains the spindle data if it is already known.
     pub fn new(drive: DriveNumber, ruler: Option<Ruler>) -> Self {
         Axis {
             drive,
@@ -238,7 +241,7 @@ impl Axis {
         self.asked.is_some()
     }
 
-    /// Returns how far the axis was moved by hand.
+    /// Returns how far the user has jogged the axis.
     pub const fn travel(&self) -> JogTravel {
         self.travel
     }
@@ -259,8 +262,8 @@ impl Axis {
         self.power
     }
 
-    /// Returns the earliest step whose result the drive no longer has, if it is before the current step. This step and
-    /// all later steps must be repeated.
+    /// Returns the earliest step before the current one whose result is no longer valid, if any. This step and all
+    /// later steps must be repeated.
     pub fn invalidated_step(&self) -> Option<AxisStep> {
         self.chain.first_open_step().filter(|step| *step < self.step)
     }
@@ -279,7 +282,7 @@ impl Axis {
         }
     }
 
-    /// Returns whether the supply was off, the saved values are present, and the axis has not moved.
+    /// Returns whether the supply was switched off, the saved values are still present, and the axis has not moved.
     pub fn has_survived(&self) -> bool {
         self.power.is_some_and(Power::has_survived_power_cycle)
     }

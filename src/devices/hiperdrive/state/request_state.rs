@@ -213,7 +213,8 @@ impl HiperdriveDevice {
         (value, ruler.decimal_places(measure), TEXTS.text(measure.unit()))
     }
 
-    /// Returns the states that a single control word can reach from the current state. There are none without control.
+    /// Returns the states that a drive can reach from its current state with a single control word. The list is empty
+    /// if this program does not control the drive.
     pub fn reachable_states(&self, drive: DriveNumber) -> Vec<State> {
         let Some(state) = self.state(drive).filter(|_| self.check_controllable().is_ok()) else { return Vec::new() };
         let mut reachable = Vec::new();

@@ -1,4 +1,4 @@
-//! Facts and requests of the axis set-up and the network settings of a device.
+//! Drive data and requests of the axis set-up, and the network settings of a device.
 
 use core::net::Ipv4Addr;
 use std::path::PathBuf;
@@ -119,8 +119,8 @@ impl HiperdriveDevice {
             },
             AxisAction::TakePlace => axis.adopt_limit(&seen),
             AxisAction::Next => {
-                // Before this step, the entries are only used for a preview. After it, positions are measured on this
-                // spindle everywhere.
+                // Before this step, the entered spindle data is only used for a preview. After this step, it applies to
+                // all displayed positions.
                 let confirms = axis.step() == AxisStep::Scale
                     && axis.setup_end().is_none()
                     && axis.check_can_continue(&seen).is_ok();
@@ -166,7 +166,7 @@ impl HiperdriveDevice {
         self.report_of(self.axis()?).map(|report| report.page(language))
     }
 
-    /// Returns the completed set-up of an axis for a report of the device.
+    /// Returns the result of a completed axis set-up for a report of the device.
     pub(super) fn axis_result(&self, axis: &Axis) -> Option<SessionResult> {
         self.report_of(axis).map(AxisReport::into_session_result)
     }
@@ -278,7 +278,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Records that all parameters were read, which shows whether the saved values have survived.
+    /// Records that all parameters were read. This shows whether the saved values have survived a power cycle.
     pub(super) fn handle_axes_survey(&mut self) {
         let switched = std::mem::take(&mut self.switched);
         let seen: Vec<(DriveNumber, DriveFacts)> =

@@ -148,8 +148,8 @@ mod tests {
     const HEAD: &str = "6F 00 14 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 \
                         00 00 00 00 00 00 02 00 00 00 00 00 B2 00 04 00";
 
-    /// Issue 22.11: rejections and deliberately damaged explicit messages (reference, section 7) are explained and
-    /// marked.
+    /// Rejections and deliberately damaged explicit messages (reference, section 7) are explained and marked (issue
+    /// 22.11).
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let cases = [

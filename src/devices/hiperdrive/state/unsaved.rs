@@ -108,8 +108,8 @@ mod tests {
         image.values.iter().map(|(number, value)| (*number, Value::Number(*value))).collect()
     }
 
-    /// Issue 21.6 (h): until the next save, the saved values are remembered when other values are written over them,
-    /// even by an earlier run of the program.
+    /// Until the next save, the saved values are remembered when other values are written over them, even by an earlier
+    /// run of the program (issue 21.6 h).
     #[test]
     fn saved_values_are_remembered_until_the_next_save() {
         let three = DriveNumber::new(3).unwrap();

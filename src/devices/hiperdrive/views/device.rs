@@ -169,8 +169,8 @@ mod tests {
         assert_eq!(kept.replace('\u{a0}', "_"), "Each drive: 1_RS-485_+_white, 2_RS-485_−_green, 6_GND_blue.");
     }
 
-    /// Issue 22.23: the wiring card follows the HIPERDRIVE manual, 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and
-    /// 4.2 (bus adapter).
+    /// The wiring card follows sections 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and 4.2 (bus adapter) of the
+    /// HIPERDRIVE manual (issue 22.23).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         assert_notes(&TEXTS, &WIRING, &["4-pin, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);

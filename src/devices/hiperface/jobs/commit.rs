@@ -1,4 +1,4 @@
-//! Execution of a plan.
+//! Execution of plans on an encoder.
 
 use super::{ChangeKind, Commit, Committed, Hiperface, JobError, JobStep, Prepared, WEAR_LIMIT};
 use crate::devices::hiperface::procedures::write::EncoderWriter;

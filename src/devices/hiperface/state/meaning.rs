@@ -80,8 +80,8 @@ mod tests {
         TraceEntry { at: Moment::START, direction, bytes: MaskedBytes::unmasked(bytes) }
     }
 
-    /// Issue 22.11: damaged replies are marked, and their explanation names the error. The frames are replies to
-    /// commands in the manual and were corrupted deliberately.
+    /// Damaged replies are marked, and their explanation names the error. The frames are replies to commands in the
+    /// manual and were corrupted deliberately (issue 22.11).
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let position = [0x40, 0x42, 0x02];

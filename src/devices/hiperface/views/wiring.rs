@@ -41,10 +41,10 @@ mod tests {
     use crate::devices::hiperface::state::TEXTS;
     use crate::ui::wiring::{assert_notes, assert_wires};
 
-    /// Issue 22.23: expected values from the HIPERFACE manual: "Hardware im Regler" (eight lines, 7 to 12 V, typically
-    /// 8 V, overall screen, twisted pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485) and figure 15 (built-in resistors
-    /// of 130 Ω and 1 kΩ; in the bus version, at most eight encoders without 130 Ω, and a terminator at the encoder
-    /// farthest from the master).
+    /// The expected values are from the HIPERFACE manual: "Hardware im Regler" (eight lines, 7 to 12 V, typically 8 V,
+    /// overall screen, twisted pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485) and figure 15 (built-in resistors of
+    /// 130 Ω and 1 kΩ; in the bus version, at most eight encoders without 130 Ω, and a terminator at the encoder
+    /// farthest from the master; issue 22.23).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         assert_wires(

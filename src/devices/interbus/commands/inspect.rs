@@ -53,7 +53,7 @@ fn format_turns(turns: u32) -> String {
     if turns == 1 { "1 revolution".to_owned() } else { format!("{turns} revolutions") }
 }
 
-/// Returns the name of a mode in output for scripts, such as `velocity` or `cam 3`.
+/// Returns the name of a startup mode for JSON output, such as `velocity` or `cam 3`.
 pub(super) fn mode(mode: StartupMode) -> String {
     match mode {
         StartupMode::K2 => "K2".to_owned(),

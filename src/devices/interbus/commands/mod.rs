@@ -104,7 +104,8 @@ impl DeviceCommands for InterbusCommands {
     }
 }
 
-/// Parses the name of an item. If its program or cam does not exist, the error states the valid range.
+/// Parses the name of an item. If the item names a program or cam that does not exist, the error states the valid
+/// range.
 fn parse_item(text: &str) -> Result<Item> {
     text.parse().map_err(|error: ItemError| match error {
         ItemError::Unknown(_) => Failure::Usage(error.to_string()),
@@ -112,19 +113,20 @@ fn parse_item(text: &str) -> Result<Item> {
     })
 }
 
-/// Effect of a command on the process data that a machine uses.
+/// Effect of a command on the process data that a connected machine uses.
 #[derive(Clone, Copy)]
 enum DisturbanceLevel {
     Reading,
     /// All cam programs are selected one after the other.
     Programs,
-    /// The state that another program has left is ended, and its settings are stored.
+    /// The encoder leaves a state in which another program has left it, and stores the settings of this state.
     RestoringMode,
 }
 
 impl DisturbanceLevel {
-    /// Announces the effect before a command begins. If live outputs switch, the user has to confirm on a terminal. No
-    /// confirmation is required after a write was approved, for a virtual encoder, or without a terminal.
+    /// Prints the effect of a command before it begins. If the command switches live outputs, the user must confirm it
+    /// on a terminal. No confirmation is required if a write was approved, for a virtual encoder, or without a
+    /// terminal.
     fn confirm_start(self, common: &CommonArgs, output: &Output, consent: Option<&ConsentArgs>) -> Result<()> {
         self.print_effect(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == LinkScheme::Sim);

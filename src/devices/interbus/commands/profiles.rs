@@ -1,4 +1,4 @@
-//! The commands `save` and `restore` for INTERBUS profiles, and reading for a comparison.
+//! The commands `save` and `restore` for INTERBUS profiles, and the reading of an encoder for a comparison.
 
 use serde_json::json;
 
@@ -71,8 +71,8 @@ impl ProfileCommands for InterbusCommands {
         Ok(DeviceReading { body: Body::new(profile), status: Some(status_lines(status.error)) })
     }
 
-    /// Returns a message if two profiles belong to different encoders. A profile without a serial number does not
-    /// belong to any encoder.
+    /// Returns a message if two profiles belong to different encoders. A profile without a serial number matches every
+    /// encoder of the same type.
     fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {
         let error =
             profile::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity)

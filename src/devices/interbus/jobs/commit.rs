@@ -1,4 +1,4 @@
-//! Execution of a plan.
+//! Execution of plans on an encoder.
 
 use super::{
     ChangeKind, Commit, Committed, DeviceMessage, Interbus, JobError, JobStep, Prepared, ProgressSink, device_key,

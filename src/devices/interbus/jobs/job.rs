@@ -273,7 +273,7 @@ mod tests {
         };
         let cases = [
             (Some(0), 1, None),
-            // Issue 22.4: the number of earlier stores is unknown.
+            // The number of earlier stores is unknown (issue 22.4).
             (None, 1, Some(WearAfterPlan::Unknown)),
             (None, 0, None),
             (Some(148), 1, None),

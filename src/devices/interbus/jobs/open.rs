@@ -56,8 +56,8 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     Ok((station, config))
 }
 
-/// Masks the transaction number of a request. It differs in each request, so that a request would otherwise not match a
-/// recording.
+/// Masks the transaction number of a sent request. This number differs in each request, so requests would otherwise not
+/// match a recording.
 fn mask_numbers(entry: TraceEntry) -> TraceEntry {
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
     TraceEntry { bytes: MaskedBytes::with_masked(&bytes, &[0, 1]), ..entry }

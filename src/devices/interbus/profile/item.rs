@@ -222,8 +222,8 @@ impl Image {
         })
     }
 
-    /// Sets the value of an item. Returns `false` if the item cannot have the value. An unknown program is created with
-    /// a mask of 0.
+    /// Sets the value of an item. Returns `false` if the value is not valid for the item. If the item belongs to a
+    /// program that does not exist yet, the program is created with a mask of 0.
     pub fn set_value(&mut self, item: Item, value: ItemValue) -> bool {
         let parameters = &mut self.parameters;
         match (item, value) {

@@ -174,7 +174,7 @@ fn contradictions_in_the_manual_are_resolved() {
     assert!(matches!(Reply::parse(0xC200_00FF), Reply::Echo { .. }), "11: received");
 }
 
-/// Reference 6.3: the mode determines the meaning of a word, and some words must not be sent.
+/// The mode determines the meaning of a word, and some words must not be sent (reference 6.3).
 #[test]
 fn the_mode_determines_the_meaning_of_a_word() {
     let (zero, start) = (value(0), Command::Velocity(true));
@@ -224,7 +224,7 @@ fn the_mode_determines_the_echo() {
     }
 }
 
-/// Reference 7: the window of a position at different shifts, with cam 5 on.
+/// The position window is tested at different shifts, with cam 5 on (reference 7).
 #[test]
 fn published_cam_outputs_match() {
     for (word, at) in [(0x01CD_EF20, 0), (0x01AB_CD20, 8), (0x00BC_DE20, 4), (0x0000_0020, 25)] {
@@ -301,7 +301,7 @@ fn the_gear_rounds_down() {
     assert!(Gear::new(0x200_0000, 4096).is_err());
 }
 
-/// Reference 3: the limits of a parameter, some of which depend on the gear.
+/// Parameters have limits, some of which depend on the gear (reference 3).
 #[test]
 fn parameter_limits_are_checked() {
     let gear = Gear::new(3600, 10).unwrap();
@@ -310,7 +310,7 @@ fn parameter_limits_are_checked() {
         (P::Turns, 1, 4096),
         (P::Direction, 3, 4),
         (P::Preset, 0, 3599),
-        // Issue 22.6: the zero shift must be within the measuring range.
+        // The zero shift must be within the measuring range (issue 22.6).
         (P::ZeroShift, 0, 3599),
         (P::Default, 0, 0),
     ] {
@@ -328,7 +328,7 @@ fn parameter_limits_are_checked() {
     assert_eq!(P::from_code(Code::new(6).unwrap()), None);
 }
 
-/// Reference 7: a cam is also on at its edges.
+/// A cam is also on at its edges (reference 7).
 #[test]
 fn cams_are_on_between_their_edges() {
     let on = |start, stop, at| Cam { start: value(start), stop: value(stop) }.is_on(value(at));

@@ -15,7 +15,8 @@ use crate::sim::line::TransitQueue;
 use crate::sim::{ByteDevice, Motor, SimulatedFaults};
 use crate::units::Moment;
 
-/// A client's connection to a virtual gateway. [`new_connection`](Self::new_connection) adds another client.
+/// A virtual gateway, as seen through the connection of one client. [`new_connection`](Self::new_connection) creates a
+/// connection for another client.
 #[derive(Clone)]
 pub struct Gateway {
     shared: Arc<Mutex<Shared>>,

@@ -102,8 +102,8 @@ mod tests {
     use crate::bits::{MaskedBytes, parse_hex};
     use crate::units::Moment;
 
-    /// Issue 22.11: damaged gateway replies (Modbus application protocol 1.1b3, 6.4 and 7), rejections, and replies
-    /// with an error word of the encoder (reference 2) are explained and marked.
+    /// Damaged gateway replies (Modbus application protocol 1.1b3, 6.4 and 7), rejections, and replies with an error
+    /// word of the encoder (reference 2) are explained and marked (issue 22.11).
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let request = "00 07 00 00 00 06 01 04 00 00 00 02";

@@ -167,9 +167,9 @@ mod tests {
     use crate::devices::interbus::state::TEXTS;
     use crate::ui::wiring::assert_notes;
 
-    /// Issue 22.23: the card matches the INTERBUS manual, 3.1 and 3.2 (9-pin round connectors, male for the input and
-    /// female for the output; no addresses; shield to the housing, and in Loop the housing to PE) and 6.1 (10 to 30 V
-    /// DC absolute, 3.5 W, 500 kBaud or 2 MBaud).
+    /// The card matches the INTERBUS manual, 3.1 and 3.2 (9-pin round connectors, male for the input and female for the
+    /// output; no addresses; shield to the housing, and in Loop the housing to PE) and 6.1 (10 to 30 V DC absolute, 3.5
+    /// W, 500 kBaud or 2 MBaud; issue 22.23).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         assert_notes(

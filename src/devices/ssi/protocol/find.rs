@@ -100,8 +100,8 @@ pub struct LayoutProposal {
 }
 
 impl LayoutProposal {
-    /// Returns the layout as one word for the command line. This is a family with as few settings as possible, or else
-    /// a complete description of the frame.
+    /// Returns the layout as a single word for the command line. The word names an encoder family with as few settings
+    /// as possible. If no family matches, the word describes the complete frame.
     pub fn spec_text(&self, families: &Families) -> String {
         let descriptor = self.layout.descriptor();
         let named = self.family.as_ref().and_then(|(key, _)| {

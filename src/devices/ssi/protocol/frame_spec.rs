@@ -173,7 +173,7 @@ mod tests {
         FrameDescriptor::parse(text).unwrap().unwrap()
     }
 
-    /// Reference section 8: an AHM36 in Gray code has 12 and 14 position bits followed by an error bit.
+    /// An AHM36 in Gray code has 12 and 14 position bits followed by an error bit (reference section 8).
     #[test]
     fn one_word_specifications_parse() {
         let layout = Layout::new(frame("frame,clocks=27,mt=12,st=14,code=gray,err=27,area=26")).unwrap();

@@ -275,7 +275,7 @@ fn angle_degrees(steps: u64, per_turn: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Reference section 5: 100 steps over 12.5 turns of 8192 steps each, and 3600 steps over one turn.
+    /// The ranges are 100 steps over 12.5 turns of 8192 steps each, and 3600 steps over one turn (reference section 5).
     #[test]
     fn positions_convert_to_turns_and_degrees() {
         let axis = Range::RoundAxis { steps: 100, revolutions: Fraction { numerator: 25, denominator: 2 } };

@@ -150,7 +150,7 @@ mod tests {
             "sim:?ssi=ahm36,code=gray&rpm=-60&fault=drop:0.01&clock=1000000",
             "bridge:/dev/ttyACM0",
             "bridge:/dev/ttyACM0?voltage=24&margin=200",
-            // Issue 22.16: a value that the check box cannot represent stays in the link.
+            // A value that the check box cannot represent stays in the link (issue 22.16).
             "bridge:/dev/ttyACM0?voltage=24&leave-supply=on",
             "bridge:/dev/ttyACM0?voltage=24&leave-supply=off",
             "bridge:tcp:adapter:5000?clock=1500000&pause=30",

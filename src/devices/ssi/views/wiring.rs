@@ -75,9 +75,9 @@ mod tests {
     use crate::devices::ssi::state::TEXTS;
     use crate::ui::wiring::{assert_notes, assert_wires};
 
-    /// Issue 22.23: the card matches SICK SSI description 2.1 (four lines, RS-422 or RS-485, twisted and shielded
-    /// pairs), 2.7 (cable lengths and clock frequencies), figure 2 and reference section 1 (the plus wires of clock and
-    /// data idle high, and the minus wires idle low).
+    /// The card matches SICK SSI description 2.1 (four lines, RS-422 or RS-485, twisted and shielded pairs), 2.7 (cable
+    /// lengths and clock frequencies), figure 2 and reference section 1 (the plus wires of clock and data idle high,
+    /// and the minus wires idle low; issue 22.23).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         assert_wires(

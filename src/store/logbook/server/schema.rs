@@ -1,15 +1,16 @@
-//! Tables of the logbook on a server: those of the local file, in PostgreSQL's words. The table `logbook` holds the
-//! number of the schema.
+//! Tables of the logbook on a server. They correspond to the tables of the local file, but use the SQL dialect of
+//! PostgreSQL. The table `logbook` contains the schema number.
 
 use tokio_postgres::Transaction;
 
 use super::client::Client;
 use super::error::ServerErrorKind;
 
-/// Migrations from each schema to the next. Existing migrations must never change, because servers have them.
+/// Migrations from each schema to the next. Existing migrations must never change, because servers have already applied
+/// them.
 ///
-/// The numbers of events and results rise in the order in which they became visible, because all benches add rows under
-/// a lock. A bench can therefore continue after the last number that it knows.
+/// The numbers of events and results increase in the order in which the rows become visible, because all computers add
+/// rows while they hold a lock. A computer can therefore continue after the last number that it knows.
 pub(super) const STEPS: [&str; 3] = [
     r#"
     CREATE TABLE logbook (
@@ -46,7 +47,7 @@ pub(super) const STEPS: [&str; 3] = [
         CHECK ((outcome = 'failed') = (failure IS NOT NULL))
     );
 "#,
-    // Devices that are connected to a bench at this moment.
+    // Devices that are currently connected to a computer.
     r#"
     CREATE TABLE hold (
         program        TEXT        NOT NULL, -- the running program
@@ -60,17 +61,17 @@ pub(super) const STEPS: [&str; 3] = [
     );
     CREATE INDEX hold_of_device ON hold (kind, serial_number, device_type);
 "#,
-    // uid of the event that this one undoes.
+    // uid of the event that this event undoes.
     "ALTER TABLE event ADD COLUMN undoes TEXT",
 ];
 
 const SCHEMA_VERSION: i64 = STEPS.len() as i64;
 
-/// Key of the lock under which rows are added and tables are changed, so that their numbers rise in the order in which
-/// they become visible.
+/// Key of the lock that is held while rows are added or tables are changed, so that the numbers of rows increase in the
+/// order in which the rows become visible.
 const LOCK: i64 = 0x656e_636f_6465_7273;
 
-/// Waits for the lock until the end of the transaction.
+/// Waits for the lock and holds it until the end of the transaction.
 pub(super) async fn lock(transaction: &Transaction<'_>) -> Result<(), ServerErrorKind> {
     transaction.execute("SELECT pg_advisory_xact_lock($1)", &[&LOCK]).await?;
     Ok(())
@@ -86,7 +87,7 @@ pub(super) fn prepare(client: &mut Client) -> Result<String, ServerErrorKind> {
         }
         let transaction = postgres.transaction().await?;
         lock(&transaction).await?;
-        // Another bench may have changed the tables in the meantime.
+        // Another computer may have changed the tables in the meantime.
         let found = read(&transaction).await?.map_or(0, |(_, found)| found);
         let migrated = migrate(&transaction, check(found)?).await;
         migrated.map_err(|problem| match problem {
@@ -99,7 +100,8 @@ pub(super) fn prepare(client: &mut Client) -> Result<String, ServerErrorKind> {
     })
 }
 
-/// Returns the number of entries, or `None` if the database has no logbook yet. Nothing is changed.
+/// Returns the number of entries, or `None` if the database has no logbook yet. This function does not change the
+/// database.
 pub(super) fn count_entries(client: &mut Client) -> Result<Option<u64>, ServerErrorKind> {
     client.run(async |postgres| {
         match read(postgres).await? {
@@ -119,7 +121,7 @@ async fn migrate(transaction: &Transaction<'_>, done: usize) -> Result<(), Serve
     Ok(())
 }
 
-/// Returns the identity and the schema, or `None` if the database has no logbook.
+/// Returns the identity and the schema number of the logbook, or `None` if the database has no logbook.
 async fn read(client: &impl tokio_postgres::GenericClient) -> Result<Option<(String, i64)>, ServerErrorKind> {
     let exists = client.query_one("SELECT to_regclass('logbook') IS NOT NULL", &[]).await?;
     if !exists.try_get(0)? {

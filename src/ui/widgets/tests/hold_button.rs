@@ -160,7 +160,7 @@ fn step_after(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) 
     events
 }
 
-/// Issue 21.2: a key repeat may be reported as a release and an immediate press in two frames, however far apart.
+/// A key repeat may be reported as a release and an immediate press in two frames, however far apart (issue 21.2).
 #[test]
 fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
@@ -174,7 +174,7 @@ fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     }
 }
 
-/// Issue 21.2: a user presses the key a tenth of a second after releasing it, with no other event in between.
+/// A user presses the key a tenth of a second after releasing it, with no other event in between (issue 21.2).
 #[test]
 fn a_release_requests_the_frame_that_rearms_the_key() {
     let mut harness = armed();
@@ -197,8 +197,8 @@ fn a_release_requests_the_frame_that_rearms_the_key() {
     }
 }
 
-/// Issue 21.2: the events that the window system reports when Space is held while the user switches to another window
-/// and back. What egui reports as a first press is a repetition.
+/// These are the events that the window system reports when Space is held while the user switches to another window and
+/// back. The event that egui reports as a first press is a key repeat (issue 21.2).
 #[test]
 fn a_key_held_during_a_window_change_starts_no_hold() {
     for held_before in [false, true] {
@@ -228,7 +228,7 @@ fn a_key_held_during_a_window_change_starts_no_hold() {
     }
 }
 
-/// Issue 21.2: a button that was not drawn, was locked, or was covered by a dialog does not know that a key is up.
+/// A button that was not drawn, was locked, or was covered by a dialog cannot know whether a key is up (issue 21.2).
 #[test]
 fn a_key_down_before_the_button_was_enabled_starts_no_hold() {
     type Change = fn(&mut Jog, bool);
@@ -259,8 +259,8 @@ fn a_key_down_before_the_button_was_enabled_starts_no_hold() {
     assert_eq!(step(&mut harness, [key(true, true)]), []);
 }
 
-/// Issue 21.2: under a dialog, the pointer cannot hold the button either. A press that began there has no effect after
-/// the dialog is closed.
+/// Under a dialog, the pointer cannot hold the button either. A press that began there has no effect after the dialog
+/// is closed (issue 21.2).
 #[test]
 fn a_press_under_a_dialog_starts_no_hold() {
     let mut harness = jog();
@@ -275,7 +275,7 @@ fn a_press_under_a_dialog_starts_no_hold() {
     assert_eq!(step(&mut harness, [button(at, true)]), [Press]);
 }
 
-/// Issue 21.2: any key, modifier, other button or second finger ends a hold by the pointer.
+/// Any key, modifier, other button or second finger ends a hold by the pointer (issue 21.2).
 #[test]
 fn any_other_input_ends_a_pointer_hold() {
     let other = |key| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
@@ -313,7 +313,7 @@ fn any_other_input_ends_a_pointer_hold() {
     }
 }
 
-/// Issue 21.2: a key press on the button during another motion is a request to stop.
+/// A key press on the button during another motion is a request to stop (issue 21.2).
 #[test]
 fn a_key_stops_a_running_motion() {
     let mut harness = armed();

@@ -201,7 +201,7 @@ fn the_supply_can_be_switched() {
     assert_eq!(status(&mut host), BissStatus::NO_ACKNOWLEDGE, "it starts");
     host.now = host.now + Duration::from_millis(500);
     assert_eq!(status(&mut host), BissStatus::OK);
-    // Issue 22.16: another host sends HELLO, which does not change the supply and reports it.
+    // Another host sends HELLO, which does not change the supply and reports it (issue 22.16).
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
     assert!(hello.capabilities.contains(Capabilities::SUPPLY_ON));
     assert_eq!(status(&mut host), BissStatus::OK);
@@ -211,7 +211,7 @@ fn the_supply_can_be_switched() {
     assert_eq!(status(&mut host), BissStatus::NO_ACKNOWLEDGE);
 }
 
-/// Issue 22.18: requests that arrive faster than they can be answered are lost, and the adapter answers the next one.
+/// Requests that arrive faster than they can be answered are lost, and the adapter answers the next one (issue 22.18).
 #[test]
 fn the_adapter_answers_after_a_flood_of_requests() {
     let mut host = Host::with("");

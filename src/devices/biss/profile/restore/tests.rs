@@ -125,8 +125,8 @@ fn a_bank_marked_empty_in_the_profile_is_cleared() {
     assert_eq!(required_banks(&partial, &data_areas()), [0x25]);
 }
 
-/// Issue 22.9: another kind of encoder requires a separate permission. The permission for another serial number is not
-/// sufficient.
+/// Another kind of encoder requires a separate permission. The permission for another serial number is not sufficient
+/// (issue 22.9).
 #[test]
 fn another_kind_needs_a_separate_permission() {
     let mut wanted = profile("1");
@@ -177,7 +177,7 @@ fn another_encoder_keeps_its_mounting() {
     let all = ["OEM data 0x24:0x00:00>01 0x24:0x01:00>02 0x24:0x02:00>03 (1)", "0x01:0x02+6 (1)"];
     assert_eq!(ops(&restore), all);
     assert_eq!(restore.mounting_left, []);
-    // Issue 22.7: mounting values of another encoder are reported if they are written.
+    // Mounting values of another encoder are reported if they are written (issue 22.7).
     let written: Vec<String> = restore.mounting_written.iter().map(ToString::to_string).collect();
     assert_eq!(written, ["0x01:0x02+6", "0x24:0x01+2"]);
     assert_eq!(planned(&wanted, &device(&profile("1"))).mounting_written, []);
@@ -186,8 +186,8 @@ fn another_encoder_keeps_its_mounting() {
     assert_eq!(ops(&plan_data_areas(&wanted, &now).unwrap()), all[..1]);
 }
 
-/// Issue 22.9: an encoder with another device ID or position width is of another type, which requires a separate
-/// permission. If the serial number differs as well, both permissions are required.
+/// An encoder with another device ID or position width is of another type, which requires a separate permission. If the
+/// serial number differs as well, both permissions are required (issue 22.9).
 #[test]
 fn another_type_needs_a_separate_permission() {
     let mut wanted = profile("1");

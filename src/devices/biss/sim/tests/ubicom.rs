@@ -208,8 +208,8 @@ fn reopening_the_link_revives_a_dead_encoder() {
     assert_eq!(line.port.encoder().motor().rpm(), 0.0);
 }
 
-/// Issue 22.18: bytes that exceed the buffer of a UART are lost, so that the line becomes idle as soon as the buffer is
-/// empty.
+/// Bytes that exceed the buffer of a UART are lost, so that the line becomes idle as soon as the buffer is empty (issue
+/// 22.18).
 #[test]
 fn the_encoder_answers_after_a_flood_of_bytes() {
     let mut line = Line::with("temperature=25");

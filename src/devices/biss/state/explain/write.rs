@@ -317,7 +317,7 @@ mod tests {
         Some(LeftState { mode, password: PossibleValues::new(password), activity })
     }
 
-    /// Issue 22.5: the remedy applies only after the encoder has returned to operation.
+    /// The remedy applies only after the encoder has returned to operation (issue 22.5).
     #[test]
     fn completing_a_write_is_advised_after_the_return_to_operation() {
         for kind in [ChangeKind::Restore, ChangeKind::Bytes, ChangeKind::Guided, ChangeKind::Filter] {

@@ -226,7 +226,7 @@ fn a_delayed_thread_reads_pending_packets_before_giving_up() {
     assert!(bench.drives.connection_loss().is_some(), "listened for 40 ms");
 }
 
-/// Issue 21.13: at rest, missing packets are tolerated until the target's own time-out (80 ms in this test).
+/// At rest, missing packets are tolerated until the target's own time-out, which is 80 ms in this test (issue 21.13).
 #[test]
 fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
     let mut bench = Bench::new();

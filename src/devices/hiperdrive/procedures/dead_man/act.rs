@@ -283,7 +283,7 @@ impl TargetState {
 }
 
 impl SpeedTorque {
-    /// Zero speed and torque, which start no motion.
+    /// Zero speed and torque, with which no motion starts.
     pub const NONE: SpeedTorque = SpeedTorque { speed: Percent::NONE, torque: Percent::NONE };
     /// Default speed and torque of a jog: 10 % and 25 %.
     pub const DEFAULT_JOG: SpeedTorque = SpeedTorque { speed: percent(10), torque: percent(25) };

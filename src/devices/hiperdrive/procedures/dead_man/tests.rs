@@ -196,8 +196,8 @@ impl DeadManBench {
 
 const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FULL, outward: false };
 
-/// Issue 21.3: if parameters become doubtful while a drive is being enabled, they are read before the drive moves. A
-/// running motion continues, and a paused one does not resume.
+/// If parameters become doubtful while a drive is being enabled, they are read before the drive moves. A running motion
+/// continues, and a paused one does not resume (issue 21.3).
 #[test]
 fn doubted_limits_delay_the_start_of_a_motion() {
     let doubted = ActionEnd::Refused(MotionRefusal::Locked(MotionLock::Outdated));
@@ -227,8 +227,8 @@ fn doubted_limits_delay_the_start_of_a_motion() {
     assert_eq!(looks.man.last_end(), Some((2, doubted)));
 }
 
-/// Issue 21.4: another master may change the limits, or the shaft may be pushed, just before a motion starts. If the
-/// drive is then outside its limits, it does not start and does not move further out.
+/// Another master may change the limits, or the shaft may be pushed, just before a motion starts. If the drive is then
+/// outside its limits, it does not start and does not move further out (issue 21.4).
 #[test]
 fn a_drive_outside_its_limits_before_moving_does_not_start() {
     for (wish, direction) in [
@@ -255,7 +255,7 @@ fn a_drive_outside_its_limits_before_moving_does_not_start() {
     }
 }
 
-/// Issue 21.4: if both limits are within a degree, status bit 15 does not reveal which limit the drive has passed.
+/// If both limits are within a degree, status bit 15 does not reveal which limit the drive has passed (issue 21.4).
 #[test]
 fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
     let at = |position| Permit::for_range(-150, 150).outside_limits(heard(Some((0xAA37, position))).unwrap());
@@ -273,8 +273,8 @@ fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
     );
 }
 
-/// Issue 21.6b: the first packets of a connection contain no valid position, because a hub first queries all its
-/// drives. A step therefore starts only after positions have been arriving for 250 ms.
+/// The first packets of a connection contain no valid position, because a hub first queries all its drives. A step
+/// therefore starts only after positions have been arriving for 250 ms (issue 21.6b).
 #[test]
 fn a_step_is_not_counted_from_the_first_packets() {
     let mut looks = DeadManBench::new();

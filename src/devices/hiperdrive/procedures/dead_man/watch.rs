@@ -140,8 +140,8 @@ impl ActionMonitor {
         ActionMonitor { outside, best, waits_at: None, freed, at_end }
     }
 
-    /// Compares a report with the limits and the target, and returns the required end of the motion, or `None` if the
-    /// motion may continue.
+    /// Checks a position report against the limits and the target. Returns the reason to end the motion, or `None` if
+    /// the motion may continue.
     pub(super) fn check_report(&mut self, motion: &Motion, actual: ActualValues, permit: &Permit) -> Option<ActionEnd> {
         let degree = i64::from(permit.degree);
         let distance = motion.distance_to_target(actual);

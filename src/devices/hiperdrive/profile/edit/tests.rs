@@ -188,8 +188,8 @@ fn unwritable_parameters_are_refused_with_a_reason() {
     assert_eq!(error.range, ParameterRange::Within(-33_554_432, 33_554_432));
 }
 
-/// Issue 21.10: the ±512 turns of an HDA30 are 33554432 steps at 65536 steps per turn, and 204800 at 400. A step of the
-/// keys on the drive is at most the travel of 1024 turns.
+/// The ±512 turns of an HDA30 are 33554432 steps at 65536 steps per turn, and 204800 at 400 steps per turn. A step of
+/// the keys on the drive is at most the travel of 1024 turns (issue 21.10).
 #[test]
 fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
     let jogs = |image: Image| image.overlaid_with(&image_with_values(&[(170, 4096), (176, -4096)]));

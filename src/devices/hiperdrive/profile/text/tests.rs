@@ -146,14 +146,14 @@ fn the_identity_round_trips() {
 /// Profile as written by a user, with comments.
 const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/hiperdrive.ron"));
 
-/// Issue 22.26: changing a value changes the text in one place only.
+/// Changing a value changes the text in one place only (issue 22.26).
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut HiperdriveProfile| assert_eq!(own.image.values.insert(parameter(166), 40), Some(50));
     assert_edit_in_place(COMMENTED, edit, "166: 50", "166: 40");
 }
 
-/// Issue 22.26: adding or removing an entry affects only its own line.
+/// Adding or removing an entry affects only its own line (issue 22.26).
 #[test]
 fn adding_or_removing_an_entry_changes_only_its_line() {
     let (_, carried) = edit_profile(COMMENTED, |_, own: &mut HiperdriveProfile| {

@@ -125,8 +125,8 @@ fn probe_values(typed: &TranscribedRow<'_>) -> (Vec<i64>, Vec<i64>) {
     }
 }
 
-/// Issue 21.10: every row matches in type, access, unit, saving, factory value and allowed values. No row is missing or
-/// superfluous.
+/// Every row matches in type, access, unit, saving, factory value and allowed values. No row is missing or superfluous
+/// (issue 21.10).
 #[test]
 fn every_row_matches_the_manual() {
     let typed = transcribed_rows();
@@ -174,7 +174,7 @@ fn every_row_matches_the_manual() {
     }
 }
 
-/// Issue 21.8: only the values listed in the manual take a long time to write.
+/// Only the values listed in the manual take a long time to write (issue 21.8).
 #[test]
 fn every_row_is_answered_within_the_manuals_time() {
     for typed in transcribed_rows() {
@@ -199,8 +199,8 @@ fn every_row_is_answered_within_the_manuals_time() {
     }
 }
 
-/// Issue 21.10: for each family and scale, limits range to turns · 256 · numerator / denominator steps in either
-/// direction, rounded towards 0 and within 32 bits.
+/// For each family and scale, limits range to turns · 256 · numerator / denominator steps in either direction, rounded
+/// towards 0 and within 32 bits (issue 21.10).
 #[test]
 fn limit_ranges_match_the_turns_of_the_family() {
     let names = [("HDA 30, HDA 45", Family::Short), ("HDA 70", Family::Long), ("PSE441", Family::Pse441)];

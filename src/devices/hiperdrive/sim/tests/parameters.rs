@@ -57,8 +57,8 @@ fn limits_must_contain_the_position() {
     assert_eq!((bench.write(160, 1), bench.read(158), bench.read(160)), (Ok(()), value(0), value(1)));
 }
 
-/// Issue 21.10: limits are within ±512 turns of an HDA30 or ±16000 turns of an HDA70, in scaled steps. A step of the
-/// keys on the drive is no longer than the travel.
+/// Limits are within ±512 turns of an HDA30 or ±16000 turns of an HDA70, in scaled steps. A step of the keys on the
+/// drive is no longer than the travel (issue 21.10).
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_refused() {
     let mut bench = Bench::single();
@@ -142,9 +142,9 @@ fn saved_parameters_survive_a_power_cycle() {
     assert_eq!(bench.write(47, 2), Err(ParameterError::Value));
 }
 
-/// Issue 21.6 (d): 47 = −1 and −2 only affect the parameters that the adapter or hub itself stores (manual, 47): its
-/// registers, the requests of drives (152), and their baud rates (190). Scale, limits and reference of a drive are
-/// unchanged.
+/// The values −1 and −2 of parameter 47 only affect the parameters that the adapter or hub itself stores (manual, 47):
+/// its registers, the requests of drives (152), and their baud rates (190). Scale, limits and reference of a drive are
+/// unchanged (issue 21.6 d).
 #[test]
 fn the_device_recalls_only_its_own_parameters() {
     let own = [24, 152, 190];
@@ -169,8 +169,8 @@ fn the_device_recalls_only_its_own_parameters() {
     }
 }
 
-/// Issue 21.6 (d): a reset does not affect a position that was set, whether saved or not. The factory state restores
-/// the position of the shaft, between 0 and 1 turn (manual, 198).
+/// A reset does not affect a position that was set, whether saved or not. The factory state restores the position of
+/// the shaft, between 0 and 1 turn (manual, 198; issue 21.6 d).
 #[test]
 fn a_set_position_survives_a_reset() {
     let mut bench = Bench::single();

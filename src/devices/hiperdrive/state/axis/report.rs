@@ -1,4 +1,5 @@
-//! Report of a finished run for saving and printing: plain text that fits a page, lengths in millimetres.
+//! Report of a completed axis set-up for saving and printing. It is plain text that fits a page, with lengths in
+//! millimetres.
 
 use super::{Axis, AxisStep, DriveFacts, SetupEnd, StepStatus, TestTarget, labels};
 use crate::app::report::SessionResult;
@@ -20,17 +21,17 @@ const INDENT: &str = "   ";
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisReport {
     pub title: Text,
-    /// The drive, how the set-up ended, and the pitch of the spindle.
+    /// The drive, the end of the set-up, and the pitch of the spindle.
     pub summary: Vec<Text>,
-    /// The steps and, below each of them, its findings.
+    /// Steps, each with its findings.
     pub steps: Vec<(Text, Vec<Text>)>,
-    /// What was written.
+    /// Description of the written values.
     pub outcome: Vec<Text>,
 }
 
 impl AxisReport {
-    /// Returns the report of a completed set-up, or `None` while it is running. Values that were written back after the
-    /// set-up are reported as in `now`.
+    /// Returns the report of a completed set-up, or `None` while it is running. `now` provides the values that were
+    /// written back after the set-up.
     pub fn new(axis: &Axis, now: &DriveFacts, device: &Device) -> Option<Self> {
         let over = axis.run_summary()?;
         let seen = &over.seen;
@@ -64,7 +65,7 @@ impl AxisReport {
         page.text
     }
 
-    /// Returns the report for a report of the device.
+    /// Converts this report to a section of a device report.
     pub fn into_session_result(self) -> SessionResult {
         let AxisReport { title, summary, steps, outcome } = self;
         let steps = steps.into_iter().flat_map(|(step, findings)| std::iter::once(step).chain(findings));
@@ -72,7 +73,7 @@ impl AxisReport {
     }
 }
 
-/// Returns the result of a step, and its findings.
+/// Returns the result of a step and the findings for it.
 fn step_texts(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> (Text, Vec<Text>) {
     let reached = axis.step_status(step);
     let line = TEXTS.text("hd_axis.report_step").with("number", step.index() + 1);
@@ -96,7 +97,8 @@ fn step_texts(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> (Text, Vec<Text
     (line, findings)
 }
 
-/// Returns what was written, whether it is saved, and which values now differ from the saved ones.
+/// Returns lines that list the written values, whether they are saved, and which current values differ from the saved
+/// ones.
 pub fn write_outcome_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     let mut lines = Vec::new();
     match (axis.changes().is_empty(), labels::write_back_text(axis, now)) {

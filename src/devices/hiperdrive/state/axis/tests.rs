@@ -123,7 +123,7 @@ fn a_step_is_shown_for_a_minimum_time() {
     assert!(!axis.can_go_back(&seen), "nothing is before the first step");
 }
 
-/// A proposed value has the decimal sign of the language, and is accepted in either language.
+/// A proposed value has the decimal separator of the language, and is accepted in either language.
 #[test]
 fn proposed_values_use_the_decimal_sign_of_the_language() {
     for (language, step) in [(Language::English, "0.01"), (Language::German, "0,01")] {

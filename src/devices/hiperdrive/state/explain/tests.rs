@@ -99,7 +99,7 @@ fn errors_name_cause_and_remedy() {
     for error in errors {
         assert_complete(&device_error_text(&error), 2);
     }
-    // Issue 21.9: both lengths, in both languages.
+    // The message states both lengths in both languages (issue 21.9).
     for (language, said) in [
         (
             Language::English,

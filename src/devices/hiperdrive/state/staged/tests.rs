@@ -72,8 +72,8 @@ fn invalid_edits_are_refused_with_a_reason() {
     assert!(!staged.is_dirty());
 }
 
-/// Issue 21.10: a value beyond a drive's travel is rejected when entered, and marked if it results from a scale or a
-/// profile. ±512 turns of an HDA30 are 33554432 steps at 65536 per turn, and 204800 at 400.
+/// A value beyond a drive's travel is rejected when entered, and marked if it results from a scale or a profile. ±512
+/// turns of an HDA30 are 33554432 steps at 65536 steps per turn, and 204800 at 400 (issue 21.10).
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_refused() {
     let mut staged = staged();

@@ -153,14 +153,14 @@ fn another_encoder_keeps_its_mounting() {
     assert_eq!(ops(&wanted, &now, other.clone()).unwrap(), ["0@2+1", "0@20+1"]);
     let restore = plan_restore(&wanted, &now, other.clone()).unwrap().common;
     assert_eq!((restore.mounting_left, restore.mounting_written), (vec![FieldRange::new(0, 3, 2)], vec![]));
-    // Issue 22.7: mounting values written to another encoder are reported as well.
+    // Mounting values written to another encoder are reported as well (issue 22.7).
     let with_mounting = RestoreOptions { with_mounting: true, ..other };
     assert_eq!(ops(&wanted, &now, with_mounting.clone()).unwrap(), ["0@2+3", "0@20+1"]);
     let restore = plan_restore(&wanted, &now, with_mounting).unwrap().common;
     assert_eq!((restore.mounting_left, restore.mounting_written), (vec![], vec![FieldRange::new(0, 3, 2)]));
 }
 
-/// Issue 22.8: bytes of unknown meaning are written to another encoder only if the user has agreed for each field.
+/// Bytes of unknown meaning are written to another encoder only if the user has agreed for each field (issue 22.8).
 #[test]
 fn bytes_of_unknown_meaning_are_copied_only_on_request() {
     let mut wanted =
@@ -218,7 +218,8 @@ fn bytes_of_unknown_meaning_are_copied_only_on_request() {
     assert_eq!(plan_restore(&wanted, &own, RestoreOptions::default()).unwrap().unknown_fields, []);
 }
 
-/// Issue 22.9: another type requires a separate permission. The permission for another serial number is not sufficient.
+/// Another type requires a separate permission. The permission for another serial number is not sufficient (issue
+/// 22.9).
 #[test]
 fn another_type_needs_a_separate_permission() {
     let mut wanted = profile("B", vec![]);
@@ -270,8 +271,8 @@ fn unchanged_bytes_are_counted() {
     assert_eq!(restore.plan.write_cycles(), 1);
 }
 
-/// Issue 22.12: restoring a backup deletes the fields that the write created, starting with the last one, if they are
-/// unchanged. Other profiles never delete surplus fields.
+/// Restoring a backup deletes the fields that the write created, starting with the last one, if they are unchanged.
+/// Other profiles never delete surplus fields (issue 22.12).
 #[test]
 fn restoring_a_backup_deletes_fields_its_write_created() {
     let wanted = profile("A", vec![field(0, 0xC9, &[(0, 1)]), field(1, 0xA8, &[(3, 7)]), field(2, 0xC8, &[])]);

@@ -25,8 +25,8 @@ fn equal_values_are_not_written() {
     assert!(plan_edits(&nothing, &nothing).unwrap().is_empty());
 }
 
-/// Issue 22.6: a zero shift is a position within the measuring range. If it is beyond the new range, it is changed
-/// before the range.
+/// A zero shift is a position within the measuring range. If it is beyond the new range, it is changed before the range
+/// (issue 22.6).
 #[test]
 fn a_zero_shift_must_be_within_the_measuring_range() {
     let device = Image::from_parameters(Parameters {

@@ -117,7 +117,7 @@ fn parse_document(text: &str) -> ProfileDocument {
 /// Profile as written by a user, with comments.
 const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/interbus.ron"));
 
-/// Issue 22.26: changing a value edits the text only at that value.
+/// Changing a value edits the text only at that value (issue 22.26).
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut InterbusProfile| {
@@ -127,7 +127,7 @@ fn a_change_edits_only_its_value() {
     assert_edit_in_place(COMMENTED, edit, "start: 10,", "start: 15,");
 }
 
-/// Issue 22.26: adding or removing an entry changes only its line.
+/// Adding or removing an entry changes only its line (issue 22.26).
 #[test]
 fn adding_or_removing_an_entry_changes_only_its_line() {
     let (_, carried) = edit_profile(COMMENTED, |note, own: &mut InterbusProfile| {
@@ -145,7 +145,7 @@ fn adding_or_removing_an_entry_changes_only_its_line() {
     assert_eq!(carried.lost, ["knife"]);
 }
 
-/// Issue 22.26: in a ready-made profile, the comment about a value changes together with the value.
+/// In a ready-made profile, the comment about a value changes together with the value (issue 22.26).
 #[test]
 fn generated_comments_follow_their_values() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/interbus/packaging-machine.ron"));
@@ -157,7 +157,7 @@ fn generated_comments_follow_their_values() {
     assert!(carried.text.contains("mask: 0x03, // these cams work: 0, 1\n"));
 }
 
-/// Issue 22.25: the changes that two users have made to a common profile are listed by entry.
+/// The changes that two users have made to a common profile are listed by entry (issue 22.25).
 #[test]
 fn divergent_changes_are_listed_by_entry() {
     let base = parse_document(COMMENTED);

@@ -22,7 +22,8 @@ impl Setting<'_> {
         Ok(())
     }
 
-    /// Sets the mask of active cams. A mask with more than 8 bits is invalid (`U`: not documented). See reference 6.9.
+    /// Sets the mask that selects the active cams (reference 6.9). A mask with more than 8 bits is rejected as wrong
+    /// data (`U`: the manual does not document this case).
     pub(super) fn set_active_cams(&mut self, mask: u16) -> Result<(), WordFault> {
         self.0.mask = u8::try_from(mask).map_err(|_| WordFault::WrongData)?;
         Ok(())

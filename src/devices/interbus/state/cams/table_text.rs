@@ -135,7 +135,7 @@ mod tests {
         assert!(german.contains("350,000° → Schritt 772 (0,0195° weniger)"), "{german}");
     }
 
-    /// 10.05 steps are 0.05 beyond step 10.
+    /// The message about rounding repeats the value as typed: 10.05 steps are rounded to step 10, which is 0.05 lower.
     #[test]
     fn rounding_shows_the_value_as_typed() {
         let scale = Scale::default();

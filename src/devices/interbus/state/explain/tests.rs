@@ -189,7 +189,7 @@ fn an_interrupted_write_names_the_remaining_steps() {
     assert!(lines[1].contains("lead-back"), "{lines:?}");
 }
 
-/// Issue 22.5: the advice to complete the write follows the advice to return the encoder to its mode.
+/// The advice to complete the write follows the advice to return the encoder to its mode (issue 22.5).
 #[test]
 fn completing_a_write_is_advised_after_the_return_to_operation() {
     let standing = LeftState { out: 0, parameterising: true, found: None, is: None };
@@ -213,7 +213,7 @@ fn completing_a_write_is_advised_after_the_return_to_operation() {
     }
 }
 
-/// Issue 22.4: if the number of earlier stores is unknown, the message names the option that permits the write.
+/// If the number of earlier stores is unknown, the message names the option that permits the write (issue 22.4).
 #[test]
 fn a_write_with_unknown_wear_names_the_override() {
     let refused = job_error_texts(&JobError::NotStarted(NotStarted::WearUnknown { cost: 2 }));

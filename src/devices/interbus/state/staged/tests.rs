@@ -87,7 +87,7 @@ fn refused_edits_name_the_limits_and_change_nothing() {
         (Edit::Steps(0), EditError::Gear(GearError::Steps { steps: 0, turns: 1, most: 8192 })),
         (Edit::Revolutions(4097), EditError::Gear(GearError::Turns { turns: 4097 })),
         (Edit::Preset(1000), beyond(Parameter::Preset, 1000, 0, 999)),
-        // Issue 22.6: the zero shift must be within the measuring range.
+        // The zero shift must be within the measuring range (issue 22.6).
         (Edit::ZeroShift(1000), beyond(Parameter::ZeroShift, 1000, 0, 999)),
         (edge(1, 0, Edge::Start, 1000), EditError::Edge { edge: Edge::Start, to: 1000, last: 999 }),
         (edge(1, 0, Edge::Stop, u32::MAX), EditError::Edge { edge: Edge::Stop, to: u32::MAX, last: 999 }),

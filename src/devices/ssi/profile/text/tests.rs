@@ -321,7 +321,7 @@ fn profile_errors_name_their_location() {
     }
 }
 
-/// Issue 22.26: changing a value edits the text only at that value.
+/// Changing a value edits the text only at that value (issue 22.26).
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut SsiProfile| {

@@ -118,8 +118,8 @@ fn frames_match_the_reference() {
     }
 }
 
-/// Reference section 8, "full, SHIFT-RIGHT only": if the whole 25-bit frame is sent one clock later, its last bit is
-/// lost.
+/// If the whole 25-bit frame is sent one clock later, its last bit is lost (reference section 8, "full, SHIFT-RIGHT
+/// only").
 #[test]
 fn shifting_right_alone_loses_the_last_bit() {
     let layout = resolve("atm60,shift=1").unwrap().layout;
@@ -134,8 +134,8 @@ fn shifting_right_alone_loses_the_last_bit() {
     }
 }
 
-/// Reference section 6, trap 1: the pattern is tested before the frame is decoded. A frame with only some of these ones
-/// is suspicious, but its position remains valid.
+/// The pattern is tested before the frame is decoded. A frame with only some of these ones is suspicious, but its
+/// position remains valid (reference section 6, trap 1).
 #[test]
 fn the_kh53_has_an_error_pattern() {
     for code in ["binary", "gray"] {
@@ -177,8 +177,8 @@ fn a_safety_fault_and_a_stuck_line_are_distinguished() {
     assert_eq!(excess.to_findings(excess.decode(0)), [FrameFinding::StuckLow { sure: true }, FrameFinding::Code]);
 }
 
-/// Reference section 6, trap 5: the frame of an AFS60 becomes shorter if the resolution is reduced, whereas the frame
-/// of an AHS36 does not.
+/// The frame of an AFS60 becomes shorter if the resolution is reduced, whereas the frame of an AHS36 does not
+/// (reference section 6, trap 5).
 #[test]
 fn only_some_frames_shrink_with_the_resolution() {
     let clocks = |text: &str| resolve(text).unwrap().layout.clock_count();
@@ -195,7 +195,7 @@ fn wrong_padding_is_reported() {
     assert!(layout.is_valid(reading));
 }
 
-/// Reference section 5: a round axis with 100 steps over 12.5 turns has 8 steps per turn.
+/// A round axis with 100 steps over 12.5 turns has 8 steps per turn (reference section 5).
 #[test]
 fn a_round_axis_divides_into_turns() {
     let layout = resolve("ahm36,steps=100,revolutions=25/2").unwrap().layout;

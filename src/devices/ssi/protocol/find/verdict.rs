@@ -12,15 +12,15 @@ use crate::devices::ssi::protocol::range::Range;
 const LEAD_BITS: f64 = 100.0;
 /// Maximum information content of motion that is considered steady, as a fraction of the bits in the position values.
 const EVEN_MOTION_INFORMATION: f64 = 0.7;
-/// Maximum information content of steady motion that still allows a certain result, as a fraction of the bits in the
-/// position values.
+/// Maximum information content of steady motion with which a result can be reported as certain, as a fraction of the
+/// bits in the position values.
 const CERTAIN_INFORMATION: f64 = 0.35;
 /// Maximum percentage of frames that jump or have no valid number.
 const DISTURBED_PERCENT: usize = 15;
-/// Minimum number of frames for a certain result.
+/// Minimum number of frames before a result can be reported as certain.
 const CERTAIN_FRAMES: usize = 200;
 const CERTAIN_BITS: u8 = 5;
-/// Minimum number of different frames for a certain result.
+/// Minimum number of different frames before a result can be reported as certain.
 const CERTAIN_DIFFERENT_FRAMES: usize = 64;
 const MEMBERS: usize = 200;
 
@@ -158,7 +158,7 @@ fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> ClassEvidence {
     }
 }
 
-/// Returns the motions of the shaft that would distinguish or confirm the members.
+/// Returns the shaft motions that are still required to distinguish the members of a group or to confirm them.
 fn open_questions(words: &FrameSet, group: &Group) -> Vec<OpenQuestion> {
     let mut open = unproven_properties(words, group);
     let members = &group.members;

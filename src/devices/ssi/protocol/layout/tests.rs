@@ -177,8 +177,8 @@ fn impossible_layouts_are_refused_with_a_reason() {
     }
 }
 
-/// Reference section 8: the position ABCDEF in Gray code followed by an error bit of 1, which the code may cover or
-/// not.
+/// The frames contain the position ABCDEFh in Gray code followed by an error bit of 1, which may be part of the Gray
+/// code or not (reference section 8).
 #[test]
 fn gray_decodes_with_and_without_the_error_bit() {
     let descriptor = |coded| FrameDescriptor {

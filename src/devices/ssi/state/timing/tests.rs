@@ -33,7 +33,7 @@ fn span_texts(diagram: &BurstDiagram) -> Vec<String> {
     diagram.spans().iter().map(|span| diagram.span_text(span).to_string_in(Language::English)).collect()
 }
 
-/// Reference section 1: 33 bits at 400 kHz take 82.5 µs, and tm is 15 to 25 µs.
+/// 33 bits at 400 kHz take 82.5 µs, and tm is 15 to 25 µs (reference section 1).
 #[test]
 fn a_short_pause_is_drawn_without_a_break() {
     let diagram = diagram("afm60", 400e3, 40.0, false);

@@ -49,8 +49,8 @@ fn published_requests_match() {
     host.is_asking("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
 }
 
-/// Issue 21.8: according to the manual, a reset of drives is answered on completion. Other requests are answered
-/// without delay in the meantime.
+/// According to the manual, a reset of drives is answered on completion. Other requests are answered without delay in
+/// the meantime (issue 21.8).
 #[test]
 fn a_reset_is_answered_on_completion() {
     for (query, ms) in [("", 1000), ("reset=8000", 8000), ("hub=8&reset=8000", 8000)] {

@@ -1,9 +1,10 @@
-//! The facts that results depend on: which results they make void, how they are proved and reported.
+//! Tests of the drive data on which the results of the steps depend: changed data makes results void, and is detected
+//! and reported.
 
 use super::*;
 use crate::devices::hiperdrive::protocol::{ErrorCode, Length};
 
-/// Goes back to the step that no longer holds: by a press, and not before.
+/// Goes back to the step whose result is void. The page changes only when the button is pressed.
 #[track_caller]
 fn go_back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
     let shown = axis.step();
@@ -28,22 +29,22 @@ fn limits_are_confirmed_with_the_scale_of_the_drive() {
     press(&mut axis, &mut seen, AxisButton::Do);
     next(&mut axis, &seen, AxisStep::Confirm);
     assert!(axis.check_can_continue(&seen).is_err(), "what was confirmed before was for another scale");
-    // Locked, although it was confirmed once: the lock counts.
+    // The step stays locked although it was confirmed once.
     press(&mut axis, &mut seen, AxisButton::Confirm);
     next(&mut axis, &seen, AxisStep::Jog);
     seen.locks = vec![MotionLock::LimitsUnconfirmed];
     go_back_to(&mut axis, &seen, AxisStep::Confirm);
 }
 
-/// Issue 21.6 (i): an earlier fact becomes void, and the page stays until the user goes back.
+/// When an earlier result becomes void, the displayed page does not change until the user goes back (issue 21.6 i).
 #[test]
 fn setup_returns_to_the_first_step_with_lost_values() {
     let (mut axis, mut seen) = at_test_step();
-    // Everything is discarded.
+    // Discard all drive data.
     seen = DriveFacts { controlled: true, pitch: seen.pitch, ..fresh() };
     go_back_to(&mut axis, &seen, AxisStep::Request);
     assert!(AxisStep::ALL[1..].iter().all(|step| axis.step_status(*step) == StepStatus::Ahead));
-    // Nothing is concluded from a drive that does not answer.
+    // A drive that does not answer does not make any result void.
     let (mut axis, mut seen) = at_test_step();
     seen.connected = false;
     seen.scale = None;
@@ -51,7 +52,8 @@ fn setup_returns_to_the_first_step_with_lost_values() {
     assert_eq!((axis.step(), axis.invalidated_step()), (AxisStep::Test, None));
 }
 
-/// Issue 21.6 (c): any change of pitch, reference or a limit makes all later results void, including taught limits.
+/// Any change of the pitch, the reference or a limit makes all later results void, including taught limits (issue 21.6
+/// c).
 #[test]
 fn steps_after_a_changed_value_are_undone() {
     let tested = || {
@@ -62,12 +64,12 @@ fn steps_after_a_changed_value_are_undone() {
     };
     let done =
         |axis: &Axis| AxisStep::ALL.into_iter().filter(|step| axis.step_status(*step) == StepStatus::Done).count();
-    // Changed on another page or by another master: the drive has it, and that counts.
+    // A change on another page or by another master has the same effect, because only the values in the drive matter.
     type Case<'c> = (&'c str, fn(&mut DriveFacts), AxisStep);
     let cases: [Case<'_>; 5] = [
         ("a limit", |seen| seen.limits = Some((-1000, 2001)), AxisStep::Confirm),
         ("the reference to another number", |seen| _ = seen.values.insert(198, 34_800), AxisStep::Reference),
-        // By another master at another place: see `standstill`.
+        // A reference set by another master at a different position is tested in `standstill`.
         ("the reference from this window, to the same number", |seen| seen.times_set += 1, AxisStep::Reference),
         ("the pitch", |seen| seen.pitch = Some(Length { nanometres: 5_000_000 }), AxisStep::Scale),
         ("the request", |seen| seen.requested = Some(false), AxisStep::Request),
@@ -81,7 +83,8 @@ fn steps_after_a_changed_value_are_undone() {
         assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""), "{label}");
         assert!(axis.request(AxisButton::Go(TestTarget::Upper), &seen).is_err(), "{label}");
     }
-    // The same by the run itself: back to the reference, 13.44 mm from the one before. 1500 steps become 1472.
+    // The set-up itself makes later results void when the user goes back and sets a reference 13.44 mm from the
+    // previous one. 1500 steps become 1472.
     let (mut axis, mut seen) = tested();
     (0..3).for_each(|_| axis.go_back(&seen));
     assert_eq!((axis.step(), done(&axis)), (AxisStep::Reference, 6));
@@ -91,7 +94,7 @@ fn steps_after_a_changed_value_are_undone() {
     assert_eq!(done(&axis), 5);
     assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""));
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "entry.missing");
-    // Another lower limit: the test was between other limits.
+    // A changed lower limit makes the test moves void, because they were made between the previous limits.
     let (mut axis, mut seen) = tested();
     (0..2).for_each(|_| axis.go_back(&seen));
     axis.set_entries(LengthEntries { lower: "-9".to_owned(), ..axis.entries().clone() });
@@ -100,7 +103,7 @@ fn steps_after_a_changed_value_are_undone() {
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(158, -900), (160, 2000)]));
     next(&mut axis, &seen, AxisStep::Test);
     assert_eq!(axis.invalidated_step(), None, "the review of their plan confirms them");
-    // Going back to look, and forward again, loses nothing.
+    // Going back to look at a step and then forward again keeps all results.
     let (mut axis, seen) = tested();
     (0..4).for_each(|_| axis.go_back(&seen));
     for step in [AxisStep::Reference, AxisStep::Lower, AxisStep::Upper, AxisStep::Test] {
@@ -109,7 +112,7 @@ fn steps_after_a_changed_value_are_undone() {
     assert!(axis.outcome_of(TestTarget::Middle).is_some());
 }
 
-/// Issue 21.6 (b): a jump of the position, and motion without a held button, are not a jog.
+/// A jump of the position, or motion while no button is held, does not count as a jog (issue 21.6 b).
 #[test]
 fn only_motion_while_the_pad_is_held_is_a_jog() {
     let (mut axis, mut seen) = at_jog_step();
@@ -122,7 +125,7 @@ fn only_motion_while_the_pad_is_held_is_a_jog() {
         (axis.travel(), axis.check_can_continue(&seen).unwrap_err().id()),
         (JogTravel::default(), "hd_axis.needs_up")
     );
-    // The first packets while a button is held: none of them contains a position yet.
+    // The first packets while a button is held do not contain a position yet.
     seen.held = Some((7, Direction::Clockwise));
     seen.position = None;
     axis.update(&seen);
@@ -132,7 +135,7 @@ fn only_motion_while_the_pad_is_held_is_a_jog() {
     at(&mut seen, 5100);
     axis.update(&seen);
     assert_eq!((axis.travel().up, axis.travel().clockwise_is_up), (100, Some(true)));
-    // Released, moved by something else, and pressed again.
+    // The button is released, the axis is moved by other means, and the button is pressed again.
     seen.held = None;
     at(&mut seen, -9000);
     axis.update(&seen);
@@ -141,7 +144,7 @@ fn only_motion_while_the_pad_is_held_is_a_jog() {
     assert_eq!((axis.travel().up, axis.travel().down), (100, 0));
 }
 
-/// Issue 21.6 (e): a connection that was lost and restored is no proof that the supply was off.
+/// A connection that was lost and restored does not prove that the supply was off (issue 21.6 e).
 #[test]
 fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     let found = |axis: &Axis, seen: &DriveFacts| {
@@ -151,7 +154,7 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
         axis.handle_connection_loss();
         axis.on_survey(seen, false);
     };
-    // Nothing was marked: the user has to state it, and the result says so.
+    // Without a restart marker, the user must confirm the power cycle, and the result states this.
     let (mut axis, mut seen) = at_power_cycle_step();
     assert_eq!(axis.request(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.needs_power");
     again(&mut axis, &seen);
@@ -165,18 +168,18 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
         "{}",
         found(&axis, &seen)
     );
-    // It was marked, and still is: the user cannot state the opposite.
+    // The restart marker is still present, so the user cannot confirm a power cycle.
     let (mut axis, mut seen) = at_power_cycle_step();
     press(&mut axis, &mut seen, AxisButton::Do);
     again(&mut axis, &seen);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(axis.request(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
-    // Then it really is off.
+    // Now the supply is actually switched off.
     axis.handle_connection_loss();
     seen.values.insert(182, 1000);
     axis.on_survey(&seen, false);
     assert!(axis.has_survived() && found(&axis, &seen).contains("The drive has restarted"));
-    // Another master has changed it before: that proves it as well.
+    // A value that another master had changed before also proves the power cycle.
     let (mut axis, mut seen) = at_power_cycle_step();
     seen.values.insert(182, 500);
     axis.update(&seen);
@@ -187,12 +190,12 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     assert!(axis.has_survived());
 }
 
-/// Issue 21.6 (g): a fault is shown with its code, blocks all motion, and can be acknowledged here.
+/// A fault is displayed with its code, blocks all motion, and can be acknowledged in the set-up (issue 21.6 g).
 #[test]
 fn a_fault_is_shown_and_can_be_acknowledged() {
     let (axis, mut seen) = at_test_step();
     assert_eq!(axis.request(AxisButton::Acknowledge, &seen).unwrap_err().id(), "hd_axis.no_fault");
-    // Reference 9: 2AB8 is a fault, 2A70 the lock; 8300 is a block in reverse.
+    // Status word 2AB8h is a fault and 2A70h the lock. Error 8300h is a block in reverse (reference 9).
     for (word, why) in [(0x2AB8, "hd_refused.fault"), (0x2A70, "hd_refused.lock")] {
         seen.actual = seen.actual.map(|actual| ActualValues { status: StatusWord::new(word), ..actual });
         seen.error = None;
@@ -205,8 +208,8 @@ fn a_fault_is_shown_and_can_be_acknowledged() {
     }
 }
 
-/// Issue 21.6 (d, h): differences from the saved values are reported, written back and compared; a position is set at
-/// its place.
+/// Differences from the saved values are reported, written back and compared. A position is set only where it was set
+/// before (issue 21.6 d and h).
 #[test]
 fn differences_from_saved_values_are_shown_and_restored() {
     let (mut axis, mut seen) = (run(), fresh());
@@ -230,7 +233,8 @@ fn differences_from_saved_values_are_shown_and_restored() {
     assert!(returned(&seen).contains("0 of 2"), "nothing was read yet");
     seen.values.extend([(154, 256), (156, 1)]);
     assert!(returned(&seen).contains("restored to their previous values: 2 of 2"));
-    // Manual, 198: "the actual position to be shown at the present position": elsewhere the old number is a wrong zero.
+    // The manual describes parameter 198 as "the actual position to be shown at the present position". Writing the old
+    // number at a different position would therefore shift the zero point.
     let told = labels::unrestored_position_text(&axis, &seen).unwrap().to_string_in(Language::English);
     assert!(
         told.starts_with(
@@ -252,14 +256,14 @@ fn differences_from_saved_values_are_shown_and_restored() {
     assert_eq!(axis.request(AxisButton::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
 }
 
-/// Issue 21.6 (f): an unconfirmed pitch is no spindle: 65536 steps per turn stay steps until there is one.
+/// Without a confirmed pitch, positions are displayed in steps, 65536 per turn (issue 21.6 f).
 #[test]
 fn millimetres_need_a_confirmed_pitch() {
     let (mut axis, mut seen) = (run(), fresh());
     let position = |seen: &DriveFacts| labels::millimetres_text(seen.ruler(), 400).to_string_in(Language::English);
     press(&mut axis, &mut seen, AxisButton::Do);
     next(&mut axis, &seen, AxisStep::Scale);
-    // A drive with 400 steps per turn of an unknown spindle: no pitch is proposed that would fit it by accident.
+    // The drive has 400 steps per turn and an unknown spindle. A pitch that would fit by coincidence is not proposed.
     seen.scale = PositionScale::new(400, 256).ok();
     assert_eq!(axis.entries().pitch, "");
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "entry.missing");
@@ -272,7 +276,7 @@ fn millimetres_need_a_confirmed_pitch() {
     assert_eq!((known.entries().pitch.as_str(), known.entries().resolution.as_str()), ("8", "0.02"));
 }
 
-/// Issue 21.6 (j): the report of the end, in millimetres, in lines that fit a page.
+/// A completed set-up has a report in millimetres, with lines that fit a page (issue 21.6 j).
 #[test]
 fn a_run_ends_with_a_report() {
     let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };
@@ -281,7 +285,7 @@ fn a_run_ends_with_a_report() {
     axis.handle_connection_loss();
     axis.on_survey(&seen, true);
     go_on(&mut axis, &seen);
-    // Later changes are not part of this run.
+    // Later changes do not affect the report of this set-up.
     at(&mut seen, 0);
     seen.limits = Some((-5, 5));
     for language in [Language::English, Language::German] {

@@ -1,22 +1,24 @@
-//! A reference set again to the same number: what a position that changes at a standstill proves, and what not.
+//! Tests of position changes at standstill, which may reveal that another master has set the reference to the same
+//! number elsewhere.
 
 use std::time::Duration;
 
 use super::*;
 use crate::units::Moment;
 
-/// Bit 13, standing still, and without it (reference 3).
+/// Status word of a drive at standstill, with bit 13 set. `MOVES` is the same word without bit 13 (reference 3).
 const STANDS: u16 = 0x2A37;
 const MOVES: u16 = 0x0A37;
 
-/// A reading at that moment of the session.
+/// Sets the drive data to a reading taken `ms` milliseconds after the start of the session.
 fn read(seen: &mut DriveFacts, ms: u64, position: i32, word: u16) {
     at(seen, position);
     seen.actual = seen.actual.map(|own| ActualValues { status: StatusWord::new(word), ..own });
     seen.actual_at = Some(Moment::START + Duration::from_millis(ms));
 }
 
-/// In the test step, read at 10 s: the axis stands still at 2000, with 400 steps per turn.
+/// Returns a set-up in the test step. The reading at 10 s shows the axis at standstill at position 2000, with 400 steps
+/// per turn.
 fn at_standstill() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = at_test_step();
     read(&mut seen, 10_000, 2000, STANDS);
@@ -24,8 +26,9 @@ fn at_standstill() -> (Axis, DriveFacts) {
     (axis, seen)
 }
 
-/// Issue 21.6 (c): 198 keeps its number if the reference is set again elsewhere; a shaft turns at most 35 rpm (166),
-/// which is 210° per second, readjusts by up to 5°, and reports up to 0.1 s late.
+/// Parameter 198 keeps its number if the reference is set to the same number elsewhere. A shaft turns at up to 35 rpm
+/// (parameter 166), which is 210° per second. It readjusts by up to 5°, and its reports are up to 0.1 s late (issue
+/// 21.6 c).
 #[test]
 fn a_position_jump_at_standstill_means_a_changed_reference() {
     let case = |ms: u64, position: i32, word: u16| {
@@ -36,13 +39,13 @@ fn a_position_jump_at_standstill_means_a_changed_reference() {
     };
     let jump = (Some(AxisStep::Reference), false);
     for (label, ms, steps, expected) in [
-        // 0.12 s · 210° + 5° are 30.2°, which are 33.6 steps.
+        // 0.12 s · 210°/s + 5° is 30.2°, or 33.6 steps.
         ("as far as it turns at once", 20, 34, (None, false)),
         ("farther", 20, 35, jump),
-        // 1.1 s · 210° + 5° are 236°: 262.2 steps.
+        // 1.1 s · 210°/s + 5° is 236°, or 262.2 steps.
         ("as far as it turns in a second", 1000, 263, (None, false)),
         ("farther", 1000, -264, jump),
-        // 1.101 s · 210° + 5° are 236.21°: 262.5 steps.
+        // 1.101 s · 210°/s + 5° is 236.21°, or 262.5 steps.
         ("unread for so long that it may have moved", 1001, -263, (None, true)),
         ("farther", 1001, 264, jump),
         ("5° are 5.6 steps: it has readjusted", 60_000, 6, (None, false)),
@@ -59,7 +62,7 @@ fn a_position_jump_at_standstill_means_a_changed_reference() {
     assert_eq!(axis.may_move(&seen).unwrap_err().id(), "hd_axis.fallen");
 }
 
-/// Issue 21.6 (c): a known change of the position is no jump.
+/// A known change of the position is not treated as a jump (issue 21.6 c).
 #[test]
 fn a_known_position_change_is_not_a_jump() {
     type Case<'c> = (&'c str, fn(&mut DriveFacts));
@@ -75,7 +78,7 @@ fn a_known_position_change_is_not_a_jump() {
         axis.update(&seen);
         assert_eq!((axis.invalidated_step(), labels::unexplained_change_text(&axis, &seen)), (None, None), "{label}");
     }
-    // Set by this program: the run is at the step after it, and counts by the new numbers.
+    // The position was set by this program. The set-up is at the next step and uses the new numbers.
     let (mut axis, mut seen) = at_standstill();
     (0..3).for_each(|_| axis.go_back(&seen));
     axis.set_entries(LengthEntries { reference: "1".to_owned(), ..axis.entries().clone() });
@@ -88,14 +91,14 @@ fn a_known_position_change_is_not_a_jump() {
     assert_eq!((axis.invalidated_step(), axis.reference_position()), (None, Some(128)));
 }
 
-/// Issue 21.6 (c): after a lost connection a motion cannot be distinguished from a new reference; this is reported,
-/// also in the report, until the user has been at the reference again.
+/// After a lost connection, a motion cannot be distinguished from a new reference. The set-up and its report state this
+/// until the user has set the reference again (issue 21.6 c).
 #[test]
 fn an_unobserved_position_change_is_reported_as_unexplained() {
     let again = |position: i32| {
         let (mut axis, mut seen) = at_standstill();
         axis.handle_connection_loss();
-        // The clock of the next session starts again.
+        // The clock of the next session starts at zero again.
         read(&mut seen, 0, position, STANDS);
         axis.update(&seen);
         (axis, seen)
@@ -112,7 +115,7 @@ fn an_unobserved_position_change_is_reported_as_unexplained() {
         labels::unexplained_change_text(axis, seen).map(|text| text.to_string_in(Language::English))
     };
     assert!(told(&axis, &seen).unwrap().starts_with("The position changed by -3.48 mm while"));
-    // No reference was set or confirmed yet: nothing counts by it.
+    // No reference has been set or confirmed yet, so no result depends on it.
     let (mut early, mut fresh) = at_jog_step();
     read(&mut fresh, 0, 0, STANDS);
     early.update(&fresh);
@@ -120,7 +123,7 @@ fn an_unobserved_position_change_is_reported_as_unexplained() {
     read(&mut fresh, 0, 348, STANDS);
     early.update(&fresh);
     assert_eq!(told(&early, &fresh), None);
-    // At the reference, and from there on.
+    // Go back to the reference, and continue from there.
     (0..3).for_each(|_| axis.go_back(&seen));
     assert!(told(&axis, &seen).is_some());
     next(&mut axis, &seen, AxisStep::Lower);

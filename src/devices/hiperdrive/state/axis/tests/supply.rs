@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Issue 21.6 (e): the restart marker is never saved, so a failed write of it leaves all other values as saved.
+/// The restart marker is never saved, so a failed write of it leaves all other values as saved (issue 21.6 e).
 #[test]
 fn a_failed_mark_keeps_saved_values() {
     for begun in [false, true] {
@@ -15,8 +15,8 @@ fn a_failed_mark_keeps_saved_values() {
     }
 }
 
-/// Issue 21.6 (e): if the connection is lost during the write of the restart marker, a reading determines whether the
-/// marker has arrived.
+/// If the connection is lost during the write of the restart marker, a reading determines whether the marker has
+/// arrived (issue 21.6 e).
 #[test]
 fn an_interrupted_write_of_the_mark_is_read_back() {
     let cut_off = |value: i64| {

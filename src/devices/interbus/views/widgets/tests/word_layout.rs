@@ -16,8 +16,8 @@ fn draw(shift: u8, word: Option<u32>, width: f32) -> egui_kittest::Harness<'stat
 
 #[test]
 fn groups_describe_their_bits() {
-    // Reference 7: the word 00BCDE20h contains position 1ABCDEFh with a shift of 4, and cam 5 is on. The window
-    // contains bits 20 to 4.
+    // The word 00BCDE20h contains position 1ABCDEFh with a shift of 4, and cam 5 is on. The window contains bits 20 to
+    // 4 (reference 7).
     let harness = draw(4, Some(0x00BC_DE20), 860.0);
     harness.get_by_label("Invalid, bit 31: 0");
     harness.get_by_label("Always 0, bits 30 to 25: 000000");
