@@ -17,7 +17,7 @@ const SHOWN: u32 = 2_001;
 const ROUNDS: usize = 7;
 const TIMEOUT: Duration = Duration::from_secs(30);
 
-/// Adds entries for 500 devices on ten benches. Three entries in ten are writes. One entry in a thousand contains the
+/// Adds entries for 500 devices on ten computers. Three entries in ten are writes. One entry in a thousand contains the
 /// word `needle`.
 pub(crate) fn fill(path: &Path, entries: u32) {
     drop(Logbook::open(path).unwrap());

@@ -33,7 +33,8 @@ fn frames(layout: &Layout) -> Vec<u64> {
     (0..FRAMES).map(frame).collect()
 }
 
-/// Decodes 25 bits in Gray code, of which 12 are turns, as in the manual: bit by bit from the first clock on.
+/// Decodes a frame of 25 bits in Gray code with 12 bits for turns. It uses the method of the manual, bit by bit from
+/// the first clock.
 fn bit_by_bit(frame: u64) -> (u32, u32) {
     let (mut turns, mut steps, mut before) = (0_u32, 0_u32, 0_u64);
     for clock in 1..=25 {

@@ -148,7 +148,7 @@ fn stream() {
     .unwrap();
 }
 
-/// Number of samples of each of the four lines: sine, cosine, REFSIN and REFCOS at intervals of one microsecond.
+/// Number of samples per line. The four lines are sine, cosine, REFSIN and REFCOS, sampled every microsecond.
 const SAMPLES: usize = 10_000_000;
 
 fn write_capture(path: &std::path::Path) {

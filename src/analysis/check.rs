@@ -20,7 +20,8 @@ pub struct StepResult<S, F> {
 }
 
 impl<S, F> StepResult<S, F> {
-    /// Creates the result of a step. Its verdict is the worst verdict among the findings, or good if there are none.
+    /// Creates the result of a step. The verdict is the worst verdict among the findings, or good if the step has no
+    /// findings.
     pub(crate) fn new(step: S, findings: Vec<(Verdict, F)>) -> Self {
         let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
         StepResult { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }

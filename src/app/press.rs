@@ -49,8 +49,8 @@ impl KeyStates {
         *self = KeyStates::default();
     }
 
-    /// Handles a key press and returns whether it is fresh. A press is fresh if the key had been up for long enough in
-    /// an earlier frame.
+    /// Handles a key press and returns whether it is a new press rather than a key repeat. A press is new if the key
+    /// had been up for a minimum time in an earlier frame.
     pub fn is_fresh_press(&mut self, key: PressKey) -> bool {
         std::mem::replace(self.state_mut(key), KeyState::Down) == KeyState::Up
     }

@@ -1,4 +1,5 @@
-//! Services of the studio for its sessions: the environment, threads for blocking tasks, the log, and the list of jobs.
+//! Services that the application provides to sessions: the environment, threads for blocking tasks, the log, and the
+//! list of jobs.
 
 use std::any::{Any, TypeId};
 use std::collections::{HashMap, VecDeque};

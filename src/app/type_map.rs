@@ -1,5 +1,5 @@
-//! Values supplied to a kind of device from outside: start options, or substitutes in a test. The studio does not know
-//! their types.
+//! Values supplied to a kind of device from outside: start options, or substitutes in a test. The application does not
+//! know the types of these values.
 
 use std::any::{Any, TypeId};
 use std::collections::HashMap;

@@ -6,7 +6,8 @@ use super::Theme;
 
 /// Default width of the label column. A longer label widens it.
 const DEFAULT_LABEL_WIDTH: f32 = 132.0;
-/// Maximum width of the label column as a fraction of the card, by default and for long labels.
+/// Maximum width of the label column as a fraction of the card width. The first value is the default, and the second is
+/// for long labels.
 const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
 
 #[derive(Clone, Copy, Default)]

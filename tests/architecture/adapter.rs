@@ -1,5 +1,5 @@
-//! Rules for the adapter's workspace, which is separate from the studio: the codec and the core need no operating
-//! system and no unsafe code, and every module is documented and short.
+//! Rules for the adapter's workspace, which is separate from the main program. The codec and the core do not use an
+//! operating system or unsafe code, and every module is documented and short.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -426,7 +426,7 @@ fn literals(source: &str) -> Vec<Literal> {
     found
 }
 
-/// Returns a text without its escape sequences. None of them stands for a letter.
+/// Returns a text without escape sequences. The texts do not contain escape sequences for letters.
 fn unescaped(text: &str) -> String {
     let mut characters = text.chars();
     let mut bare = String::new();

@@ -154,8 +154,8 @@ fn an_unknown_type_takes_periods_and_turns_from_the_link() {
     assert_eq!((&line["turns"], &line["steps"]), (&json!(2), &json!(0x131)));
 }
 
-/// A restore onto another encoder creates data fields. Restoring its backup deletes them again, except for a field that
-/// was changed meanwhile, which is named in the message, and the fields before it (issue 22.12).
+/// Restoring a profile to another encoder creates data fields. Restoring the backup deletes these fields again, except
+/// for a field that was changed in the meantime, which the message names, and the fields before it (issue 22.12).
 #[test]
 fn undoing_a_restore_deletes_only_the_fields_it_created() {
     let bench = Bench::new();

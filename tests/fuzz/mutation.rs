@@ -36,7 +36,7 @@ const SPECIAL: &[&[u8]] = &[
     b"\xEF\xBB\xBF",
 ];
 
-/// Returns the example with up to six changes, some of which insert a part of `other`.
+/// Returns the example with up to six changes. A change may insert a part of `other`.
 pub(crate) fn mutate(example: &[u8], other: &[u8], rng: &mut Rng) -> Vec<u8> {
     let mut bytes = example.to_vec();
     for _ in 0..rng.usize(1..=6) {

@@ -35,7 +35,7 @@ impl Desk {
         Desk { studio: Studio::new(world, Arc::new(|| ())), folder }
     }
 
-    /// Creates a desk connected to the virtual encoder, which has been read.
+    /// Connects to the virtual encoder and reads it.
     pub(crate) fn connected(query: &str) -> Self {
         let mut desk = Desk::new();
         desk.open(query);

@@ -1,4 +1,4 @@
-//! The kind of device in the studio and in the window.
+//! Integration of the test kind into the application and the window.
 
 use eframe::{App, Frame};
 use egui::Role;

@@ -181,7 +181,7 @@ impl Desk {
         Self::at(bus(query), &VirtualClock::default(), station)
     }
 
-    /// Creates a desk with the given line. Its time is that of `clock`, or later.
+    /// Creates a test set-up with the given line. Its time is the time of `clock` or later.
     pub(crate) fn at(bus: Bus, clock: &VirtualClock, station: Station) -> Self {
         let own = Arc::new(VirtualClock::default());
         own.sleep_until(clock.now());

@@ -1,4 +1,4 @@
-//! Test support: a studio with a BiSS encoder.
+//! Test support: the application with a BiSS encoder.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -17,14 +17,14 @@ pub(crate) fn is_read(studio: &Studio) -> bool {
     studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
 }
 
-/// Opens a link in the BiSS tab of a new studio, and waits until the encoder has been read.
+/// Starts the application, opens a link in the BiSS tab, and waits until the encoder has been read.
 pub(crate) fn open(link: &str) -> Desk {
     let mut desk = Desk::fresh("");
     connect(&mut desk, link);
     desk
 }
 
-/// Opens a link in the BiSS tab of this studio, and waits until the encoder has been read.
+/// Opens a link in the BiSS tab, and waits until the encoder has been read.
 pub(crate) fn connect(desk: &mut Desk, link: &str) {
     desk.act(Action::ShowTab(crate::tabs::BISS));
     desk.studio.start_with(Some(link.parse().unwrap()), None);

@@ -201,7 +201,7 @@ fn without_a_logbook_a_write_needs_a_permission_and_warns() {
     desk.until("the list says why", |studio| matches!(studio.hiperface().unwrap().session.writes, Some(Err(_))));
 }
 
-/// Waits for a condition without polling the studio, so that its events stay unread.
+/// Waits for a condition without processing events, so that they stay unread.
 fn without_polling(condition: impl Fn() -> bool) {
     let began = Instant::now();
     while !condition() {

@@ -21,7 +21,7 @@ fn connected() -> Desk {
     desk
 }
 
-/// Drops the studio without closing it, as a crash would, and starts a new one.
+/// Drops the application without closing it, as a crash would, and starts it again.
 fn crash(desk: Desk) -> Desk {
     let mut desk = desk.crash();
     connect(&mut desk);

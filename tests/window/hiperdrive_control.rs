@@ -1,5 +1,5 @@
-//! Tests of control over HIPERDRIVE drives, by actions: its loss and the messages about it, and parameters that another
-//! master changes meanwhile.
+//! Tests of control over HIPERDRIVE drives, by actions. They cover the loss of control, the messages about it, and
+//! parameters that another master changes in the meantime.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;

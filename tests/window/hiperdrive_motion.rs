@@ -31,7 +31,7 @@ fn is_at_standstill(desk: &Desk) -> bool {
     status(desk).is_set(StatusBit::Standstill)
 }
 
-/// Returns a studio that controls the drives of a virtual device.
+/// Connects to a virtual device and takes control of its drives.
 pub(crate) fn in_control(link: &str) -> Desk {
     let mut desk = read(link);
     act(&mut desk, Hiperdrive::Take);

@@ -16,7 +16,7 @@ use crate::tabs::Tabs as _;
 
 const PRESS: MotorCommand = MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false };
 
-/// Returns a studio in which a flag simulates remote operation.
+/// Starts the application with a flag that simulates remote operation.
 fn studio(outside: &Outside, remote: &Arc<AtomicBool>) -> Studio {
     let remote = remote.clone();
     let is_remote = Arc::new(move || remote.load(Ordering::SeqCst));

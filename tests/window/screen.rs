@@ -1,4 +1,4 @@
-//! Test support: the real window of a studio, operated by its accessible labels, which are read from the table of
+//! Test support: the real window, operated through its accessible labels. The labels are looked up in the table of
 //! texts.
 
 use crate::tabs::Tabs as _;
@@ -41,7 +41,7 @@ impl Screen {
         Self::of(outside, studio, size)
     }
 
-    /// Creates a window for a studio in this environment.
+    /// Creates a window for the given application state and environment.
     pub(crate) fn of(outside: Outside, studio: Studio, size: [f32; 2]) -> Self {
         let harness = Harness::builder().with_size(Vec2::from(size)).build_eframe(|cc| {
             install_fonts(&cc.egui_ctx);

@@ -15,7 +15,7 @@ use crate::tabs::Tabs as _;
 const LARGE: [f32; 2] = [1280.0, 800.0];
 const SMALL: [f32; 2] = [1024.0, 640.0];
 
-/// Returns a studio with the default settings of the program, connected to a link.
+/// Starts the application with the default settings, and connects to a link if one is given.
 fn usual(query: &str, link: Option<&str>) -> Desk {
     let outside = Outside::new(query);
     let mut desk = Desk { studio: outside.usual_studio(), outside };

@@ -14,7 +14,7 @@ use encoder_studio::devices::ssi::state::{
 
 use crate::support::Desk;
 
-/// Returns a studio that shows the SSI tab with nothing connected.
+/// Starts the application and shows the SSI tab without a connection.
 fn layout() -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::SSI));

@@ -29,7 +29,7 @@ pub(crate) fn with_novo() -> Program {
     *PROGRAM.get_or_init(|| Program::new(&[KINDS, &[NOVO]].concat(), &[signals::TAB], &[], &[]))
 }
 
-/// Access to the content of each tab of a studio.
+/// Access to the content of each tab.
 pub(crate) trait Tabs {
     fn hiperface(&self) -> Option<&hiperface::state::Encoder>;
     fn biss(&self) -> Option<&biss::state::Encoder>;

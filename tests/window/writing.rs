@@ -302,7 +302,7 @@ fn late_results_for_another_encoder_are_dropped() {
     assert!(desk.encoder().session.review.is_none() && !desk.encoder().session.is_busy());
 }
 
-/// Returns a studio whose encoder has a second field, so that the first is no longer the last.
+/// Connects to an encoder that has a second data field, so that the first field is not the last one.
 fn with_two_fields() -> Desk {
     let mut desk = Desk::new_form("");
     let status = DataFieldStatus::new(FieldSize::from_bytes(16).unwrap(), AccessCodeNumber::ZERO, true);

@@ -1,5 +1,5 @@
-//! Drafts, which preserve edits across a crash. Each edit is stored immediately with the other data of the studio, in
-//! one file per device or profile.
+//! Drafts, which preserve edits across a crash. Each edit is stored immediately in the program's data folder, in one
+//! file per device or profile.
 //!
 //! A draft has a single owner. A second session with the same device, in this or another window, neither adopts nor
 //! overwrites it. Only the kind of device knows the content of an edit.

@@ -17,7 +17,7 @@ const SECTION: Style = Style { face: Face::Strong, size: 12.0, colour: TEXT };
 const HEADING: Style = Style { face: Face::Strong, size: 9.5, colour: TEXT };
 const SIGNATURE: Style = Style { face: Face::Text, size: 8.0, colour: MUTED };
 
-/// Width of the labels of facts in points: 45 mm.
+/// Width of the labels of facts (label and value) in points, which is 45 mm.
 const LABELS: f32 = 127.6;
 /// Distance between a label and its value in points: 4 mm.
 const LABEL_GAP: f32 = 11.3;

@@ -66,7 +66,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Adds vertical space after the preceding part. There is none at the top of a page.
+    /// Adds vertical space after the preceding part. No space is added at the top of a page.
     pub(super) fn skip(&mut self, distance: f32) {
         if !self.is_page_empty() {
             self.y += distance;

@@ -316,6 +316,7 @@ pub struct EntryFilter {
     pub asset: Option<String>,
     /// Time of the oldest entry.
     pub since: Option<Timestamp>,
-    /// Text contained in the description, the device, its asset at that time, the user or the bench. The case of ASCII letters is ignored.
+    /// Text contained in the description, the device, its asset at the time, the user or the computer. ASCII case is
+    /// ignored.
     pub search: String,
 }

@@ -22,7 +22,7 @@ use crate::ui::widgets::series_colour;
 #[derive(Clone, Debug, Default)]
 pub struct Lissajous<'a> {
     pub figures: &'a [LissajousFigure],
-    /// Limits of the good range of the length of the amplitude vector, in volts.
+    /// Limits of the good range for the length of the amplitude vector, in volts.
     pub ok_v: (f64, f64),
     /// Limits of the length of the amplitude vector, in volts, outside which the signal is faulty.
     pub fault_v: (f64, f64),

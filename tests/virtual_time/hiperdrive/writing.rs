@@ -194,8 +194,9 @@ fn a_presence_test_may_take_the_time_of_the_manual() {
     }
 }
 
-/// If the reply takes longer than the manual allows, or the connection falls silent meanwhile, the job ends in time
-/// (CLI.md: within 10 s). The request is sent once, and the report says that its result is not known (issue 21.8).
+/// If the reply takes longer than the manual allows, or the connection falls silent in the meantime, the job ends
+/// within the 10 s that CLI.md specifies. The request is sent once, and the report states that the result is unknown
+/// (issue 21.8).
 #[test]
 fn an_unanswered_presence_test_times_out() {
     // The number of frames that are sent before the request.

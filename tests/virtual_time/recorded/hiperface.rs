@@ -14,7 +14,7 @@ fn status(byte: u8) -> DataFieldStatus {
     DataFieldStatus::from_byte(byte)
 }
 
-/// Returns an encoder with four fields, one of which is write-protected and guarded by its own code.
+/// Connects to an encoder with four data fields. One field is write-protected and has its own access code.
 fn scene() -> Desk {
     let mut desk = Desk::new("codes=2:66&position=4096");
     desk.remember_code(2, 0x66);

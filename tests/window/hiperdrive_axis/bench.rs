@@ -264,7 +264,7 @@ pub(super) fn confirmed() -> Desk {
     confirm(at_jog_step())
 }
 
-/// Returns a studio whose drive has its position set to 128 steps, before the limits are taught.
+/// Advances the axis set-up until the position has been set to 128 steps, before the limits are taught.
 pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = confirm(until_scaled(link, drive, rough));
     jog(&mut desk, Direction::Clockwise, 20);
@@ -281,7 +281,7 @@ pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
     desk
 }
 
-/// Returns a studio with taught limits at the test step.
+/// Advances the axis set-up to the test step, with taught limits.
 pub(super) fn at_test_step(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = referenced(link, drive, rough);
     jog(&mut desk, Direction::Counterclockwise, 10);
@@ -330,7 +330,7 @@ pub(super) fn tested(mut desk: Desk) -> Desk {
     desk
 }
 
-/// Returns a studio whose axis is saved, before the power-cycle check.
+/// Advances the axis set-up until the parameters are saved, before the power-cycle check.
 pub(super) fn until_saved_with(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = tested(at_test_step(link, drive, rough));
     next(&mut desk, AxisStep::Save);

@@ -7,7 +7,7 @@ use encoder_studio::sim::SimulatedFaults;
 
 use super::*;
 
-/// Returns a studio whose drive had its position set to 128 steps and is now 0.15 turns away from there.
+/// Advances the axis set-up until the position has been set to 128 steps, and then moves the shaft by 0.15 turns.
 fn other_mode_text() -> Desk {
     let mut desk = referenced("sim:?requested=0&timeout=250", 1, false);
     jog(&mut desk, Direction::Clockwise, 60);

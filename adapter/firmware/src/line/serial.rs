@@ -12,7 +12,7 @@ use hal::pio::{SM1, SM2};
 use super::machine::Machine;
 use crate::ring::dma;
 
-/// Maximum number of characters of a request and of a reply.
+/// Maximum number of characters in a request or a reply.
 const LENGTH: usize = 512;
 /// DMA channels: sending, the mark of the first edge, the time of this edge, and the characters of the reply.
 const SEND: usize = 4;

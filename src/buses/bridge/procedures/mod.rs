@@ -336,8 +336,8 @@ impl Adapter<'_, '_> {
     }
 }
 
-/// Limits of the offset between the adapter's clock and the local clock in nanoseconds. They follow from the fact that
-/// an adapter samples between a request and its reply.
+/// Limits of the offset between the adapter's clock and the local clock in nanoseconds. They result from the time at
+/// which an adapter samples, which is between a request and the reply.
 #[derive(Clone, Copy, Debug, Default)]
 struct ClockOffsetBounds {
     bounds: Option<(i128, i128)>,

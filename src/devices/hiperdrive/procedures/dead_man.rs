@@ -95,7 +95,7 @@ pub const ARRIVAL_TIME: Duration = Duration::from_millis(250);
 const NOT_REACHED_TIME: Duration = Duration::from_millis(500);
 
 impl DeadMan {
-    /// Creates the state for a newly opened connection. Actions numbered up to `spent` do not start.
+    /// Creates the state for a newly opened connection. Actions with numbers up to `spent` do not start a motion.
     pub const fn new(drive: DriveNumber, spent: u64) -> Self {
         DeadMan {
             drive,

@@ -1,4 +1,4 @@
-//! Errors of drives behind EtherNet/IP. Each contains the facts that its message needs.
+//! Errors of drives that are connected through EtherNet/IP. Each error contains the data for its message.
 
 use std::fmt;
 use std::time::Duration;

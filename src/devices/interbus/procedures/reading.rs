@@ -3,7 +3,7 @@
 use crate::devices::interbus::protocol::{CamOutput, Gear, Reply, StartupMode, Value, WindowShift};
 use crate::units::Moment;
 
-/// An IN word, with the facts about the encoder that are known in the session.
+/// An IN word, and the data about the encoder that is known in the session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordReading {
     pub at: Moment,

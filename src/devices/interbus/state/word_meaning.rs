@@ -18,7 +18,7 @@ pub struct WordContext {
 }
 
 impl WordContext {
-    /// Returns the facts that apply to the replies of a command.
+    /// Returns the session data that applies to replies to a command.
     pub fn for_command(command: Command, shift: Option<WindowShift>) -> Self {
         let read_out = if let Command::ReadOut(what) = command { Some(what) } else { None };
         WordContext { mode: mode_of_command(command), read_out, shift }

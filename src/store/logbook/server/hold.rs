@@ -1,5 +1,5 @@
-//! Devices that are currently connected to a bench. If several benches hold the same device, each of them is notified
-//! of the others. This is a warning and not a lock.
+//! Devices that are currently connected to a computer. If a device appears to be connected to several computers, each
+//! of them is notified about the others. This is only a warning and not a lock.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use super::LogbookServer;
 use super::client::Client;
 use super::error::ServerErrorKind;
 
-/// Time after which a hold expires if the bench does not renew it.
+/// Time after which a hold expires if the computer does not renew it.
 const VALID: Duration = Duration::from_secs(30);
 
 /// Another program that is connected to the same device.

@@ -11,7 +11,7 @@ use crate::ui::Theme;
 #[derive(Clone, Debug, Default)]
 pub struct RegisterView {
     pub(super) selected: Option<SelectedRow>,
-    /// Groups of which only the heading is visible.
+    /// Collapsed groups, which show only their heading.
     pub(super) folded: BTreeSet<usize>,
     /// Registers whose bit fields are visible.
     pub(super) open: BTreeSet<RegisterLocation>,

@@ -26,7 +26,7 @@ pub struct Step {
 #[derive(Clone, Debug)]
 enum State {
     Rest,
-    /// Sending the head in cycles 0 to 18. `bits` contains the CDM bits, the first of which is bit 18.
+    /// Sending the head in cycles 0 to 18. `bits` contains the CDM bits, and bit 18 is sent first.
     Head {
         request: Request,
         bits: u32,

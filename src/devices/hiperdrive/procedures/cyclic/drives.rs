@@ -39,7 +39,7 @@ const STOP_LADDER_TIME: Duration = Duration::from_millis(700);
 const SWITCH_OFF_PACKETS: u32 = 3;
 
 impl Drives {
-    /// Creates the drives of a connection that was opened at `now`. Requests numbered up to `spent` cannot start a
+    /// Creates the drives of a connection that was opened at `now`. Requests with numbers up to `spent` do not start a
     /// motion.
     pub fn new(opened: &OpenedConnection, drives: &[DriveNumber], spent: u64, now: Moment) -> Self {
         let places = opened.layout.topology.drives();

@@ -1,6 +1,5 @@
-//! Sequences of control words that bring a drive to a requested state. The control words are sent one after another,
-//! each until the drive has followed or a time limit has expired (reference, section 3, and the recipes in
-//! `devices/hiperdrive/protocol/recipe`).
+//! Sequences of control words that bring a drive to a requested state. Each control word is sent until the drive has
+//! followed or a time limit has expired. See section 3 of the reference and `devices/hiperdrive/protocol/recipe`.
 
 use super::{
     ActionEnd, DeadMan, MAX_REPORT_DELAY, MotionKind, MotionRefusal, ReportMark, STEP, Stage, TargetState, UserAction,

@@ -59,7 +59,7 @@ impl TestBench {
         (0..count).for_each(|_| self.run_cycle());
     }
 
-    /// Creates a bench and brings its dead-man control to a phase named in the table.
+    /// Creates a test set-up and brings its dead-man control to a phase named in the table.
     fn in_phase(name: &str) -> Self {
         let job = MotionRequest::Move { target: 5000, effort: SpeedTorque::DEFAULT_JOG };
         let jog =

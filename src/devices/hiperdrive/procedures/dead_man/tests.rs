@@ -164,7 +164,8 @@ fn an_unseen_stop_still_ends_the_job() {
     }
 }
 
-/// A bench with given reports of the drive, ten milliseconds per call, and a request that is always refreshed.
+/// A test set-up with predefined reports from the drive. Each call takes ten milliseconds, and the request is always
+/// refreshed.
 struct DeadManBench {
     man: DeadMan,
     now: Moment,

@@ -8,7 +8,8 @@ fn is_fault(bench: &mut Bench) -> bool {
     bench.actual(FIRST).status.to_u16() & 0x2AFF == 0x2AB8
 }
 
-/// Clears a fault with the recipe of the reference. Each step is complete before the next one is sent.
+/// Clears a fault with the sequence of control words from the reference. Each step is complete before the next word is
+/// sent.
 fn acknowledge(bench: &mut Bench) {
     for step in ACKNOWLEDGE {
         bench.word(step.word.to_u16());

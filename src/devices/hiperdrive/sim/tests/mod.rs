@@ -35,7 +35,7 @@ impl Bench {
         Bench::new(StationConfig::default())
     }
 
-    /// Creates a bench with a four-port hub and drives in the first two ports.
+    /// Creates a test set-up with a four-port hub and drives on the first two ports.
     fn hub() -> Self {
         let drive = Some((Variant::new(13), SpindleLoad::default()));
         Bench::new(StationConfig { topology: Topology::Hub4, drives: vec![drive, drive], serial_number: 1 })

@@ -1,4 +1,4 @@
-//! The known facts about a drive on which its axis set-up is based.
+//! Known data about a drive, on which the axis set-up is based.
 
 use std::collections::BTreeMap;
 

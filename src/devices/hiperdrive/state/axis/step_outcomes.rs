@@ -1,5 +1,5 @@
-//! Results of the axis set-up, step by step. Each result contains the facts about the drive on which it depends. If one
-//! of them changes for any reason, the result becomes void together with all later ones.
+//! Results of the axis set-up, step by step. Each result contains the drive data on which it depends. If this data
+//! changes for any reason, the result becomes void together with all later results.
 
 use super::{AxisStep, DriveFacts};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;

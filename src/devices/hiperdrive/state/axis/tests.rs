@@ -12,7 +12,7 @@ use crate::app::{Language, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock};
 use crate::devices::hiperdrive::protocol::{ActualValues, Direction, Family, StatusWord};
 
-/// Returns the facts of a drive that is not requested, with factory settings.
+/// Returns the data of a drive that is not requested and has factory settings.
 fn fresh() -> DriveFacts {
     DriveFacts {
         connected: true,

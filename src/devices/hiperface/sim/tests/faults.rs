@@ -105,7 +105,7 @@ fn bytes_received_before_opening_are_discarded() {
     host.expect("40 50 10", "40 50 00 10");
 }
 
-/// Returns random bytes, some of which start like a request or form a complete request.
+/// Generates random bytes. Some of the sequences start like a request or form a complete request.
 fn noise() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![
         proptest::collection::vec(any::<u8>(), 0..200),
