@@ -1,6 +1,6 @@
 //! Undo and redo for any type of state. The current state is stored by the owner.
 
-/// The states before the last steps, and the undone states.
+/// Undo history, which contains earlier states and undone states.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct History<T> {
     undo: Vec<T>,

@@ -57,7 +57,7 @@ impl TaskRunner {
 
 impl ActionMailbox {
     pub fn send(&self, action: Action) {
-        // If the studio has ended, the action is not needed.
+        // If the application has ended, the action is no longer needed.
         let _ = self.sender.send(action);
         self.wake_window();
     }

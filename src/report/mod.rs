@@ -1,5 +1,6 @@
-//! The document model of reports: sections with facts, tables and drawings in one language. It does not depend on
-//! devices and does no I/O. Two renderers, [`html`] and [`pdf`], turn the same document into pages.
+//! The document model of reports, which consist of sections with label–value pairs, tables and drawings in one
+//! language. It does not depend on devices and does no I/O. Two renderers, [`html`] and [`pdf`], turn the same document
+//! into pages.
 
 mod content_hash;
 pub mod html;
@@ -165,12 +166,12 @@ impl Section {
 }
 
 impl Fact {
-    /// Creates a fact whose value is text.
+    /// Creates a label–value pair whose value is text.
     pub fn new(label: impl Into<String>, value: impl Into<String>) -> Self {
         Fact { label: label.into(), value: value.into(), style: CellStyle::Text }
     }
 
-    /// Creates a fact whose value is an identifier, an address or bytes.
+    /// Creates a label–value pair whose value is an identifier, an address or bytes.
     pub fn code(label: impl Into<String>, value: impl Into<String>) -> Self {
         Fact { style: CellStyle::Code, ..Fact::new(label, value) }
     }

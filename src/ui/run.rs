@@ -30,7 +30,7 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
     // The program does not wait for this, so a slow disk does not delay the window.
     thread::spawn(move || cleaned.remove_leftovers());
     let look = ThemeData::built_in().map_err(|why| format!("assets/theme.ron: {why}"))?;
-    // The window is created after the studio. Until then, there is nothing to wake.
+    // The window is created after the application state. Until then, no window has to be woken.
     let context: Arc<OnceLock<egui::Context>> = Arc::default();
     let waker = context.clone();
     let wake: Wake = Arc::new(move || {

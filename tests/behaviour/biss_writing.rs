@@ -250,8 +250,8 @@ fn filter_and_preset_are_actions() {
     }
 }
 
-/// The flash is rated for 1000 write cycles (manual 6.1). From 800 cycles on a warning is printed; after 1000, nothing
-/// is written unless the write is forced.
+/// The flash is rated for 1000 write cycles (manual 6.1). A warning is printed from 800 cycles. After 1000 cycles,
+/// nothing is written unless the write is forced.
 #[test]
 fn a_worn_flash_is_reported_and_written_only_if_forced() {
     let bench = Bench::new();

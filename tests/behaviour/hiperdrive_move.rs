@@ -30,8 +30,8 @@ fn a_drive_moves_to_a_position() {
     simulated.end("INT");
 }
 
-/// Without consent, the command ends with status 2 for wrong usage. It opens no connection: there is no device at this
-/// address.
+/// Without consent, the command ends with status 2 for wrong usage. It does not open a connection, since there is no
+/// device at this address.
 #[test]
 fn without_consent_nothing_moves() {
     let bench = Bench::new();
@@ -51,7 +51,7 @@ fn without_consent_nothing_moves() {
     assert_eq!(bench.run(&["move", "interbus", "1", "--yes", "--link", "sim:"]).status, Some(2));
 }
 
-/// The command ends with status 1 and one clear sentence, and the drive has not moved.
+/// The command ends with status 1 and a single sentence, and the drive does not move.
 #[test]
 fn invalid_moves_are_refused() {
     let bench = Bench::new();

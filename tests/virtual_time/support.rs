@@ -30,9 +30,9 @@ pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 pub(crate) struct Tap {
     /// Every frame that was sent over the link.
     pub(crate) sent: Vec<Vec<u8>>,
-    /// From this frame on, counted from 0, the link is lost.
+    /// Number of the frame, counted from 0, at which the link is lost.
     pub(crate) lost_from: Option<usize>,
-    /// From this frame on, no request reaches the encoder.
+    /// Number of the first frame that no longer reaches the encoder.
     pub(crate) deaf_from: Option<usize>,
     /// Number of the frame from which on no reply arrives.
     pub(crate) mute_from: Option<usize>,

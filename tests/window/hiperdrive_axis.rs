@@ -140,7 +140,7 @@ fn a_recall_does_not_change_the_drive() {
     assert_eq!((axis(&desk).step(), axis(&desk).invalidated_step()), (AxisStep::Jog, Some(AxisStep::Request)));
 }
 
-/// The jog pads of the set-up send their own speed and torque, and the Motion page keeps its own (issue 21.6 a).
+/// The jog pads of the set-up and the Motion page have separate speed and torque settings (issue 21.6 a).
 #[test]
 fn the_jog_pads_of_the_setup_have_a_separate_effort() {
     let mut desk = new_form("sim:");

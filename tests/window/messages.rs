@@ -31,7 +31,7 @@ fn places(screen: &Screen) -> Vec<(Role, String, Rect)> {
 fn assert_nothing_moved(before: &[(Role, String, Rect)], after: &[(Role, String, Rect)]) {
     for (role, label, place) in before {
         let now: Vec<_> = after.iter().filter(|own| own.0 == *role && own.1 == *label).collect();
-        // The button of a job that has ended meanwhile may be missing.
+        // The button of a job that has ended in the meantime may be missing.
         let stays = now.is_empty() || now.iter().any(|own| own.2 == *place);
         assert!(stays, "{role:?} {label:?} was at {place:?}: {now:?}");
     }

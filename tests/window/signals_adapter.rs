@@ -135,8 +135,8 @@ fn a_valid_adapter_link_is_remembered_and_an_invalid_one_is_not() {
     assert!(!desk.studio.signals().source().is_running());
 }
 
-/// The encoder is supplied only as the user chooses. The virtual adapter with `supply=switched` supplies it only on
-/// command; 0.3 W at 8 V are 37 mA.
+/// The encoder is supplied only in the way that the user chooses. The virtual adapter with `supply=switched` supplies
+/// it only on command; 0.3 W at 8 V are 37 mA.
 #[test]
 fn the_encoder_is_supplied_only_as_chosen() {
     let mut desk = Desk::fresh("");

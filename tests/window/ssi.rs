@@ -282,7 +282,7 @@ fn a_layout_found_live_can_be_adopted() {
     desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
     let SearchState::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
     // The shaft did not pass the end of the 4096 turns, so the result is uncertain. The number of remaining classes
-    // depends on the angle that the shaft turned meanwhile.
+    // depends on the angle by which the shaft has turned in the meantime.
     assert!(matches!(search.doubt, Some(SearchUncertainty::Open | SearchUncertainty::Close)), "{:?}", search.doubt);
     let is_afm60 = |member: &LayoutProposal| member.family.as_ref().is_some_and(|(key, _)| key == "afm60");
     let (class, member) = search

@@ -189,7 +189,7 @@ fn values_typed_for_a_drive_stay_in_their_window() {
 const FOLDER: &str = "ENCODER_STUDIO_TEST_FOLDER";
 const NAME: &str = "ENCODER_STUDIO_TEST_NAME";
 
-/// Runs an ignored test of this module as a window in a separate process, with the folder of `desk`.
+/// Runs an ignored test of this module as a second window in a separate process, which uses the same folder as `desk`.
 fn process(desk: &Desk, test: &str, name: &str) -> Child {
     let mut own = Command::new(env::current_exe().unwrap());
     own.args(["--ignored", "--exact", &format!("two_windows::{test}")]);

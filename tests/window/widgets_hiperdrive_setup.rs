@@ -126,8 +126,9 @@ fn axis_setup_names_missing_steps_in_the_language() {
     assert!(screen.shows("Nothing was written."));
 }
 
-/// A pitch and a resolution set the scale, and the limits keep their places. Reference, section 5: a spindle of 4 mm in
-/// steps of 0.01 mm has 400 steps per turn; 511 turns in each direction are 2044 mm, or 204400 steps.
+/// A pitch and a resolution set the scale, and the limits keep their positions. A spindle with a pitch of 4 mm and
+/// steps of 0.01 mm has 400 steps per turn, and 511 turns in each direction are 2044 mm, or 204400 steps (reference,
+/// section 5).
 #[test]
 fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     let mut screen = page("sim:", "page.parameters");

@@ -80,7 +80,8 @@ struct State {
     deadly: bool,
     /// Every frame that was sent.
     sent: Vec<Vec<u8>>,
-    /// The request at which the cable is held: its command, and the number of such requests before it.
+    /// Request at which communication is held: the command, and the number of requests with this command that pass
+    /// first.
     hold: Option<(u8, usize)>,
     held: bool,
 }

@@ -32,12 +32,12 @@ impl<'a> ReportContext<'a> {
         text.into().to_string_in(self.language)
     }
 
-    /// Creates a fact with a text as its value.
+    /// Creates a label–value pair whose value is text.
     pub fn fact(&self, label: impl Into<Text>, value: impl Into<Text>) -> Fact {
         Fact::new(self.say(label), self.say(value))
     }
 
-    /// Creates a fact with an identifier, an address or bytes as its value. An empty value is shown as a dash.
+    /// Creates a label–value pair whose value is an identifier, an address or bytes. An empty value is shown as a dash.
     pub fn code(&self, label: impl Into<Text>, value: impl Into<String>) -> Fact {
         let value: String = value.into();
         let shown = if value.trim().is_empty() { NONE.to_owned() } else { value };

@@ -17,13 +17,13 @@ const SECTION: Style = Style { face: Face::Strong, size: 12.0, colour: TEXT };
 const HEADING: Style = Style { face: Face::Strong, size: 9.5, colour: TEXT };
 const SIGNATURE: Style = Style { face: Face::Text, size: 8.0, colour: MUTED };
 
-/// Width of the labels of facts (label and value) in points, which is 45 mm.
+/// Width of the label in a label–value pair in points (45 mm).
 const LABELS: f32 = 127.6;
 /// Distance between a label and its value in points: 4 mm.
 const LABEL_GAP: f32 = 11.3;
-/// Vertical distance between two facts, in points.
+/// Vertical distance between two label–value pairs, in points.
 const FACT_GAP: f32 = 2.5;
-/// Maximum number of lines for which a fact is kept on one page.
+/// Maximum number of lines up to which a label–value pair is kept on one page.
 const KEPT_LINES: usize = 6;
 /// Maximum line length of a paragraph, in points.
 const MEASURE: f32 = 425.2;
@@ -82,7 +82,7 @@ impl Flow<'_> {
         let values = self.lines(style, &fact.value, WIDTH - LABELS - LABEL_GAP);
         let count = labels.len().max(values.len());
         let lower = (BODY.size - style.size) * 1.05;
-        // A short fact stays on one page.
+        // Keep a short label–value pair on one page.
         self.ensure(count.min(KEPT_LINES) as f32 * BODY.line_height() + FACT_GAP);
         for number in 0..count {
             self.ensure(BODY.line_height());

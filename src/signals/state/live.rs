@@ -302,7 +302,7 @@ impl Signals {
                     self.set_periods(settings.periods as u32, true, services);
                 }
             }
-            // The studio starts the adapter, because it knows the other users of the connection.
+            // The application starts the adapter, because it knows which other parts use the connection.
             SourceAction::StartAdapter => {}
             SourceAction::SetLink(link) => {
                 self.source.link = link;

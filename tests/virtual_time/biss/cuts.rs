@@ -76,7 +76,7 @@ enum Ended {
     Interrupted(Box<InterruptedWrite>),
 }
 
-/// Executes the change on a copy of the bench. `disturb` is called once the plan is complete.
+/// Executes the change on a copy of the test set-up. `disturb` is called after the plan has been made.
 fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Bench)) -> (Bench, Ended) {
     let mut bench = original.copied();
     disturb(&mut bench);

@@ -116,7 +116,7 @@ impl<D: ByteDevice + 'static> Rig<D> {
     }
 }
 
-/// Access to the encoder of a bench while a job runs.
+/// Access to the encoder of a test set-up while a job runs.
 pub(crate) struct Handle {
     end: End,
     clock: Arc<VirtualClock>,
@@ -155,7 +155,7 @@ impl Bench {
         Self::made(way, query, store, folder)
     }
 
-    /// Creates a bench whose session uses the given store.
+    /// Creates a test set-up whose session uses the given store.
     pub(crate) fn in_store(way: Transport, query: &str, store: Store) -> Self {
         Self::made(way, query, store, folder())
     }
@@ -210,12 +210,12 @@ impl Bench {
         Self::plugged(self.end.clone(), self.session.station().transport, self.clock.clone(), store, folder)
     }
 
-    /// Creates a bench with an adapter that can switch the encoder's supply. The supply is off at first.
+    /// Creates a test set-up with an adapter that can switch the encoder's supply. The supply is off at first.
     pub(crate) fn supplied(after: SupplyAfterSession) -> Self {
         Self::supplied_at("", after)
     }
 
-    /// Creates a bench like [`supplied`](Self::supplied), with additional settings of the adapter.
+    /// Like [`supplied`](Self::supplied), but with additional settings of the adapter.
     pub(crate) fn supplied_at(query: &str, after: SupplyAfterSession) -> Self {
         let query = format!("supply=switched&{query}");
         let adapter = Adapter::from_pairs(&pairs(&query), attachable_kinds()).unwrap();

@@ -33,9 +33,9 @@ pub(crate) enum Fault {
     Echo,
     /// The reply arrives later by this time.
     LateReply(Duration),
-    /// From this request on, nothing arrives in either direction.
+    /// Nothing arrives in either direction, starting with this request.
     Silence,
-    /// From this request on, the link is lost.
+    /// The link is lost, starting with this request.
     Lost,
     /// The device briefly loses its power before the request arrives.
     PowerLoss,

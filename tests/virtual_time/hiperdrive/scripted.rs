@@ -219,7 +219,7 @@ fn values_have_their_type_and_sign() {
     }
 }
 
-/// A number of another length than its type is rejected in every reply, and the message has both lengths (issue 21.9).
+/// A number of the wrong length is rejected in every reply, and the message states both lengths (issue 21.9).
 #[test]
 fn a_number_of_another_length_is_refused_with_both_lengths() {
     const REPLIES: [&str; 5] =

@@ -74,8 +74,9 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
     }
 }
 
-/// The bench and the model check each word. This test checks that after the last request for motion the drive stops
-/// within the time for the escalating stop words and for braking, and remains stopped (issue 21.14).
+/// Each control word is checked by the test set-up and by the model. This test checks that, after the last motion
+/// request, the drive stops within the time for the escalating stop words and for braking, and that it remains stopped
+/// (issue 21.14).
 #[test]
 fn any_session_ends_at_a_standstill() {
     let mut moved = 0u64;

@@ -24,9 +24,9 @@ use super::support::{program, station};
 /// The position that the encoder returns if the script defines nothing else.
 pub(crate) const POSITION: u32 = 1234;
 
-/// An encoder that acknowledges every word at once, except for those in the script: for each of these, it returns the
-/// given IN words cycle by cycle, and the last one from then on. The value of a read-out remains until `00000000` or
-/// `80000000`.
+/// An encoder that acknowledges every word immediately, except for the words in the script. For each of these, it
+/// returns the given IN words in consecutive cycles and then repeats the last one. The value of a read-out remains
+/// until `00000000` or `80000000`.
 #[derive(Default)]
 pub(crate) struct Script {
     /// Answers by OUT word. If there are several lists, the first one is used the first time the word is written.

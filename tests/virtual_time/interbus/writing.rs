@@ -1,4 +1,4 @@
-//! Writing: only differences, each read back, with one store per operation; and rejections before any write.
+//! Only differences are written and read back, with one store per operation, unless the change is rejected first.
 
 use std::path::Path;
 use std::time::Duration;

@@ -276,8 +276,8 @@ fn typed_text_stays_with_its_register_when_lines_change() {
     assert_eq!((typed(&harness), harness.state().view.selected()), (None, None));
 }
 
-/// A window that is drawn slowly receives several keys at once, 10 ms apart. None of them is lost or handled twice,
-/// whether the keyboard focus is still on the table or returns to it (issue 26.4).
+/// A window that is drawn slowly receives several keys at once, 10 ms apart. No key is lost or handled twice, whether
+/// the table still has the keyboard focus or regains it (issue 26.4).
 #[test]
 fn text_typed_in_a_single_frame_is_complete() {
     let mut harness = table();

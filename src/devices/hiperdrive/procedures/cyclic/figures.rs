@@ -51,9 +51,10 @@ const EDGES: [i64; 14] = [-5000, -2000, -1000, -500, -200, -100, -50, 50, 100, 2
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bucket {
-    /// Lower bound of the deviation in microseconds, negative for short intervals; `None` if unbounded.
+    /// Lower bound of the deviation in microseconds, or `None` if there is no bound. It is negative for short
+    /// intervals.
     pub from_us: Option<i64>,
-    /// Upper bound of the deviation in microseconds; `None` if unbounded.
+    /// Upper bound of the deviation in microseconds, or `None` if there is no bound.
     pub below_us: Option<i64>,
     pub count: u64,
 }

@@ -38,7 +38,7 @@ pub enum MotionRequest {
     /// Turns while the button is held, at most up to the end of the range.
     Jog {
         direction: Direction,
-        /// Speed and torque; limited to [`SpeedTorque::DEFAULT_JOG`] if `outward` is set.
+        /// Speed and torque, which are limited to [`SpeedTorque::DEFAULT_JOG`] if `outward` is set.
         effort: SpeedTorque,
         /// Whether a drive outside its limits may move further outward. With a wrong reference, this can be the only
         /// way back.

@@ -1,5 +1,5 @@
 //! Tests of the virtual encoder from the perspective of a host, in virtual time. Expected bytes are taken from the
-//! manual and the reference. None of them are calculated by the code under test.
+//! manual and the reference. The expected bytes are never calculated by the code under test.
 
 mod at_adapter;
 mod commands;
