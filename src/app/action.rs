@@ -4,6 +4,7 @@ use std::any::Any;
 use std::path::PathBuf;
 
 use super::company_form::CompanyAction;
+use super::comparison::{ComparisonAction, Moments, Side};
 use super::devices::{AnyDevice, DeviceCommand, OpenProfile};
 use super::diverged::{ConflictResolution, ProfileConflict};
 use super::file_question::FileQuestion;
@@ -73,7 +74,7 @@ pub enum Action {
     Typed(FileQuestion, PathBuf),
     /// Use the file chosen in a system dialog. An existing file may be replaced.
     Chosen(FileQuestion, PathBuf),
-    CloseComparison,
+    Comparison(ComparisonAction),
     /// Show the entries of the logbook that match a filter.
     SearchLogbook(EntryFilter),
     /// Add a note about a device to the logbook.
@@ -140,12 +141,14 @@ pub enum TaskResult {
         /// Function that opens the profile, or `None` if the window does not support its kind of device.
         open: Option<OpenProfile>,
     },
-    /// Reading a profile for comparison with a session has succeeded or failed.
+    /// Reading a profile for a side of the comparison has succeeded or failed.
     Compare {
-        session: SessionId,
+        side: Side,
         path: PathBuf,
         result: Result<Box<ProfileDocument>, ReadError>,
     },
+    /// The backups and entries with which a kind of device can be compared were listed.
+    Moments(Box<Moments>),
     Written {
         saving: Box<SaveRequest>,
         file: ProfileFile,

@@ -20,9 +20,9 @@ impl Studio {
             DeviceCommand::Reconnect => self.reconnect(id),
             DeviceCommand::WriteInto(target) => self.write_profile_to(id, target),
             DeviceCommand::AskRestore => self.services.file_question = Some(FileQuestion::Restore(id)),
-            DeviceCommand::AskCompare => self.services.file_question = Some(FileQuestion::Compare(id)),
+            DeviceCommand::AskCompare => self.compare_session(id, None),
             DeviceCommand::AskReport => self.ask_report_path(RecorderOwner::Device(id)),
-            DeviceCommand::Compare(path) => self.compare_with(id, path),
+            DeviceCommand::Compare(source) => self.compare_session(id, Some(*source)),
             DeviceCommand::Poll(interval) => {
                 self.settings.live_stopped = interval.is_none();
                 self.poll_device(id, interval);

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::action::RecorderOwner;
+use super::comparison::Side;
 use super::payload::Payload;
 use super::report::ReportFormat;
 use super::studio::SessionId;
@@ -15,7 +16,7 @@ use super::{DeviceAction, Language, Picture, Text};
 pub enum FileQuestion {
     Open,
     Restore(SessionId),
-    Compare(SessionId),
+    Compare(Side),
     OpenCapture,
     /// The company's logo in reports.
     Logo,

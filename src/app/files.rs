@@ -8,7 +8,7 @@ use super::file_question::FileQuestion;
 use super::question::{FollowUpAction, Question};
 use super::recorder::{self, ExportResult, Recorder};
 use super::studio::{SessionId, Studio};
-use super::{DeviceCommand, Picture, Severity, Text, connect, explain};
+use super::{ComparisonAction, ComparisonSource, DeviceCommand, Picture, Severity, Text, connect, explain};
 use crate::link::{LinkScheme, LinkUrl};
 use crate::store::{BaseFolders, FileError, write_atomically};
 
@@ -53,8 +53,9 @@ impl Studio {
             FileQuestion::Restore(session) => {
                 self.handle_action(Action::Command(session, DeviceCommand::Restore(path)))
             }
-            FileQuestion::Compare(session) => {
-                self.handle_action(Action::Command(session, DeviceCommand::Compare(path)))
+            FileQuestion::Compare(side) => {
+                let source = ComparisonSource::File(path);
+                self.handle_action(Action::Comparison(ComparisonAction::Choose(side, source)));
             }
             FileQuestion::OpenCapture => self.open_capture(path),
             FileQuestion::Logo => self.choose_logo(path),

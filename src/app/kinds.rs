@@ -52,6 +52,15 @@ impl KindRegistry {
             .unwrap_or_else(|| explain::literal_text(cause))
     }
 
+    /// Returns the name of an item of a profile or of the logbook. `manual_name` is the name in the manual, if the item is
+    /// an address. The item of an unknown kind has the name that the command line uses.
+    pub fn item_name(self, kind: &str, item: &str, manual_name: Option<&str>) -> Text {
+        self.for_profile(kind).and_then(|kind| kind.item_name(item, manual_name)).unwrap_or_else(|| match manual_name {
+            Some(name) => explain::literal_text(format!("{item} {name}")),
+            None => explain::literal_text(item),
+        })
+    }
+
     /// Returns a link as it may be displayed and stored. Parameters that are secret for any kind of device are removed,
     /// because the link may be meant for another kind.
     pub fn display_link(self, url: &LinkUrl) -> String {

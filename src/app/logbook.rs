@@ -131,6 +131,27 @@ impl Studio {
         self.services.world.kinds.for_profile(kind).map(|kind| kind.bus_name())
     }
 
+    /// Returns the name of an item of a profile or of the logbook, for a kind of device.
+    pub fn item_name(&self, kind: &str, item: &str, manual_name: Option<&str>) -> Text {
+        self.services.world.kinds.item_name(kind, item, manual_name)
+    }
+
+    /// Returns the changed items of an entry with their old and new values, or its description if it has no items.
+    pub fn entry_text(&self, entry: &Entry) -> Text {
+        if entry.items.is_empty() {
+            return explain::literal_text(&entry.description);
+        }
+        let texts = entry.items.iter().map(|item| {
+            let name = self.item_name(&entry.device.kind, &item.item, item.name.as_deref());
+            if item.old.is_none() && item.new.is_none() {
+                return name;
+            }
+            let [old, new] = [&item.old, &item.new].map(|value| value.as_deref().unwrap_or("–"));
+            Text::new("logbook.changed_item").with_text("item", name).with("old", old).with("new", new)
+        });
+        Text::new("plain.words").with_list("words", texts)
+    }
+
     pub fn logbook(&self) -> &LogbookPage {
         &self.logbook
     }

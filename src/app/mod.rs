@@ -61,7 +61,10 @@ mod type_map;
 
 pub use action::{Action, OpenedConnection, ReadBackup, RecorderOwner, ReviewAction, TaskResult};
 pub use brakes::{DriveStopHandle, DriveStopHandles};
-pub use comparison::ProfileComparison;
+pub use comparison::{
+    ComparedGroup, ComparedRow, ComparedRows, ComparedSide, ComparisonAction, ComparisonSource, ComparisonView,
+    ItemValue, ItemValues, Side,
+};
 pub(crate) use devices::PrepareFn;
 pub use devices::{ActionContext, DeviceMemory, DeviceModel, MotionControl};
 pub use devices::{AnyDevice, DeviceCommand, DeviceKind, DeviceType, OpenDevice};

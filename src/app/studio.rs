@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::action::{Action, ShutdownWait, TaskResult};
 use super::company_form::CompanyForm;
-use super::comparison::ProfileComparison;
+use super::comparison::ComparisonView;
 use super::connect::ConnectDialog;
 use super::devices::{AnyDevice, DeviceType, Selection};
 use super::diverged::ProfileConflict;
@@ -42,7 +42,7 @@ pub struct Studio {
     pub(super) closing: bool,
     pub(super) waited: Option<ShutdownWait>,
     path_question: Option<FileQuestion>,
-    pub(super) comparison: Option<ProfileComparison>,
+    pub(super) comparison: Option<Box<ComparisonView>>,
     pub(super) logbook: LogbookPage,
     pub(super) server_thread: Option<ServerThread>,
     pub(super) server_form: Option<ServerForm>,
@@ -149,7 +149,7 @@ impl Studio {
             Action::TypePath(question) => self.path_question = Some(question),
             Action::Typed(question, path) => self.handle_typed_path(question, path),
             Action::Chosen(question, path) => self.handle_chosen_path(question, path),
-            Action::CloseComparison => self.comparison = None,
+            Action::Comparison(action) => self.apply_comparison_action(action),
             Action::Recorder(owner, action) => self.apply_recorder_action(owner, action),
             Action::AskForget(owner) => self.confirm_discard_recording(owner),
             Action::AskTable { owner, visible } => self.ask_table_path(owner, visible),
@@ -195,6 +195,7 @@ impl Studio {
         self.remember_drives();
         self.refresh_settings();
         self.start_exchange();
+        self.refresh_comparison();
         self.stop_hidden_motion();
         self.write_if_changed();
     }
@@ -344,7 +345,8 @@ impl Studio {
                 }
             }
             TaskResult::Read { file, result, open } => self.read(file, result, open),
-            TaskResult::Compare { session, path, result } => self.compare(session, path, result),
+            TaskResult::Compare { side, path, result } => self.show_compared_profile(side, path, result),
+            TaskResult::Moments(moments) => self.show_moments(*moments),
             TaskResult::Waited(what) => self.waited = self.waited.max(Some(what)),
             TaskResult::Looked { question, path, exists: true } => {
                 let text = Text::new("question.replace").with("path", path.display());

@@ -78,7 +78,7 @@ pub(super) fn diff(common: &CommonArgs, output: &Output, diff: &DiffArgs) -> Res
         .compare(&right)
         .map_err(|error| to_failure(&explain::profile_file_error_text(&name, &error, KindRegistry::NONE)))?;
     let missing = comparison.one_sided_items();
-    show_comparison(output, &comparison, comparison.differences.is_empty() && missing.is_empty())
+    show_comparison(output, &comparison, comparison.differences().is_empty() && missing.is_empty())
 }
 
 pub(super) fn verify_profile(common: &CommonArgs, output: &Output, file: &Path) -> Result {
@@ -93,7 +93,7 @@ pub(super) fn verify_profile(common: &CommonArgs, output: &Output, file: &Path) 
         .compare(&device)
         .map_err(|error| to_failure(&explain::profile_file_error_text(file, &error, KindRegistry::NONE)))?;
     // Items that only the device has do not count, because they are not part of the profile.
-    let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
+    let equal = comparison.differences().is_empty() && comparison.only_left().is_empty();
     show_comparison(output, &comparison, equal)
 }
 
@@ -163,26 +163,26 @@ pub fn restore_options(restore: &Restore) -> Result<RestoreOptions> {
 }
 
 fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Result {
-    let differences: Vec<Json> = comparison
-        .differences
+    let differences = comparison.differences();
+    let json_differences: Vec<Json> = differences
         .iter()
         .map(|difference| json!({"item": difference.item, "left": difference.left, "right": difference.right}))
         .collect();
     let missing = comparison.one_sided_items();
     let json = json!({
         "equal": equal,
-        "differences": differences,
+        "differences": json_differences,
         "compared": comparison.compared,
         "missing": missing,
     });
     let mut lines = Lines::default();
-    for difference in &comparison.differences {
+    for difference in &differences {
         lines.add_line(&difference.item, format!("{}  →  {}", difference.left, difference.right));
     }
-    for item in &comparison.only_left {
+    for item in &comparison.only_left() {
         lines.add_line(item, "only on the left");
     }
-    for item in &comparison.only_right {
+    for item in &comparison.only_right() {
         lines.add_line(item, "only on the right");
     }
     let compared = comparison.compared;

@@ -1,11 +1,27 @@
-//! Differences between two profiles, or between a profile and a device.
+//! Comparison of two profiles, or of a profile with a device.
 
 use std::ops::Range;
+
+use crate::bits::hex_compact;
+
+/// An item of one or both sides.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ComparedItem {
+    /// Name of the item as accepted by `read`, such as `field:1@3+2`.
+    pub item: String,
+    /// Name of the register or area in the manual, if `item` is an address.
+    pub name: Option<String>,
+    /// Value on the left side, with bytes as upper-case hex. Empty if it could not be read, and `None` if the left side
+    /// does not have the item.
+    pub left: Option<String>,
+    /// Value on the right side.
+    pub right: Option<String>,
+}
 
 /// An item whose values differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// Name of the item as accepted by `read`, such as `field:1@3+2`.
+    /// Name of the item as accepted by `read`.
     pub item: String,
     /// Value on the left side, with bytes as upper-case hex.
     pub left: String,
@@ -16,45 +32,79 @@ pub struct Difference {
 /// Result of a comparison.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Comparison {
-    /// Differences in the order of the device memory.
-    pub differences: Vec<Difference>,
+    /// All items in the order of the device memory. Consecutive bytes that differ are one item, and so are consecutive
+    /// bytes that are equal.
+    pub items: Vec<ComparedItem>,
     /// Number of compared values. Each byte of a data field is one value, including the status byte.
     pub compared: u64,
-    /// Items that are present or readable only on the left side.
-    pub only_left: Vec<String>,
-    /// Items that are present or readable only on the right side.
-    pub only_right: Vec<String>,
+}
+
+impl ComparedItem {
+    /// Returns whether the sides differ, or only one of them has the item.
+    pub fn differs(&self) -> bool {
+        self.left != self.right
+    }
 }
 
 impl Comparison {
     /// Compares an item that is a single value. `None` means that a side does not have the item.
     pub fn compare_item<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
-        match (left, right) {
-            (None, None) => {}
-            (Some(_), None) => self.only_left.push(item),
-            (None, Some(_)) => self.only_right.push(item),
-            (Some(left), Some(right)) => {
-                self.compared += 1;
-                if left != right {
-                    self.differences.push(Difference { item, left: left.to_string(), right: right.to_string() });
-                }
-            }
+        if left.is_some() && right.is_some() {
+            self.compared += 1;
         }
+        if left.is_some() || right.is_some() {
+            let [left, right] = [left, right].map(|value| value.map(|value| value.to_string()));
+            self.items.push(ComparedItem { item, name: None, left, right });
+        }
+    }
+
+    /// Compares the bytes that both sides have. `item` names a range of them.
+    pub(crate) fn compare_bytes(&mut self, left: &[u8], right: &[u8], item: impl Fn(Range<usize>) -> ComparedItem) {
+        self.compared += left.len().min(right.len()) as u64;
+        for (_, run) in runs(left, right) {
+            let part = |side: &[u8]| Some(hex_compact(side.get(run.clone()).unwrap_or_default()));
+            self.items.push(ComparedItem { left: part(left), right: part(right), ..item(run.clone()) });
+        }
+    }
+
+    /// Returns the items whose values differ.
+    pub fn differences(&self) -> Vec<Difference> {
+        let difference = |own: &ComparedItem| {
+            let (left, right) = (own.left.clone()?, own.right.clone()?);
+            (left != right).then(|| Difference { item: own.item.clone(), left, right })
+        };
+        self.items.iter().filter_map(difference).collect()
+    }
+
+    /// Returns the items that are present or readable only on the left side.
+    pub fn only_left(&self) -> Vec<String> {
+        self.items.iter().filter(|own| own.right.is_none()).map(|own| own.item.clone()).collect()
+    }
+
+    /// Returns the items that are present or readable only on the right side.
+    pub fn only_right(&self) -> Vec<String> {
+        self.items.iter().filter(|own| own.left.is_none()).map(|own| own.item.clone()).collect()
     }
 
     /// Returns the items that are present on only one side.
     pub fn one_sided_items(&self) -> Vec<String> {
-        self.only_left.iter().chain(&self.only_right).cloned().collect()
+        [self.only_left(), self.only_right()].concat()
     }
 }
 
 /// Returns the ranges of consecutive bytes that differ. Bytes beyond the shorter side are ignored.
 pub(crate) fn differing_ranges(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for (at, _) in left.iter().zip(right).enumerate().filter(|(_, (a, b))| a != b) {
+    runs(left, right).into_iter().filter(|(differs, _)| *differs).map(|(_, run)| run).collect()
+}
+
+/// Returns the ranges of consecutive bytes, and whether the bytes in each range differ.
+fn runs(left: &[u8], right: &[u8]) -> Vec<(bool, Range<usize>)> {
+    let mut runs: Vec<(bool, Range<usize>)> = Vec::new();
+    for (at, (left, right)) in left.iter().zip(right).enumerate() {
+        let differs = left != right;
         match runs.last_mut() {
-            Some(run) if run.end == at => run.end += 1,
-            _ => runs.push(at..at + 1),
+            Some((own, run)) if *own == differs => run.end += 1,
+            _ => runs.push((differs, at..at + 1)),
         }
     }
     runs

@@ -29,7 +29,7 @@ mod written;
 pub use body::{Body, Profile, ProfileBody, ProfileFormat, ProfileFormats};
 pub use cause::Cause;
 pub use changed_item::ChangedItem;
-pub use difference::{Comparison, Difference};
+pub use difference::{ComparedItem, Comparison, Difference};
 pub use document::{ProfileDocument, SCHEMA};
 pub(crate) use entry_location::find_location;
 pub use error::{ProfileError, SyntaxErrorKind};

@@ -173,7 +173,7 @@ fn a_cause_displays_the_device_error_and_keeps_its_type() {
 #[test]
 fn profiles_of_one_kind_are_compared() {
     let comparison = lamp("red").compare(&lamp("blue")).unwrap();
-    assert_eq!((comparison.compared, comparison.differences.len()), (1, 1));
+    assert_eq!((comparison.compared, comparison.differences().len()), (1, 1));
     assert!(matches!(
         lamp("red").compare(&Body::new(Fan)),
         Err(ProfileError::OtherKind { found: "fan", wanted: "lamp" })

@@ -9,12 +9,12 @@ use super::controls::{
 };
 use super::{Theme, icons};
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, DeviceCommand, Text, explain};
+use crate::app::{Action, AnyDevice, ComparisonSource, DeviceCommand, Studio, Text, explain};
 use crate::store::{AssetName, Entry, Outcome};
 
 const COMPARE: &str = icons::ARROWS_OUT_LINE_HORIZONTAL;
 
-pub fn page_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
+pub fn page_ui(ui: &mut Ui, theme: &Theme, (studio, device): (&Studio, &AnyDevice), actions: &mut Vec<Action>) {
     profile_ui(ui, theme, device, actions);
     if *device.phase() == Phase::Offline {
         return;
@@ -24,7 +24,7 @@ pub fn page_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec
     theme.add_gap(ui);
     asset_ui(ui, theme, device, actions);
     theme.add_gap(ui);
-    writes_ui(ui, theme, device);
+    writes_ui(ui, theme, studio, device);
     if !device.logged_status_codes().is_empty() {
         theme.add_gap(ui);
         statuses_ui(ui, theme, device);
@@ -80,7 +80,8 @@ fn backups_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
                     }
                     let compare = theme.translate("backups_card.compare");
                     if enabled_button(ui, device.is_comparable(), COMPARE, &compare).clicked() {
-                        actions.push(device.command(DeviceCommand::Compare(backup.path.clone())));
+                        let source = ComparisonSource::Backup(backup.clone());
+                        actions.push(device.command(DeviceCommand::Compare(Box::new(source))));
                     }
                     if labelled_button(ui, icons::FILE_TEXT, &theme.translate("backups_card.look")).clicked() {
                         actions.push(Action::Open(backup.path.clone()));
@@ -112,7 +113,7 @@ fn asset_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Ac
     });
 }
 
-fn writes_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
+fn writes_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice) {
     card(ui, theme, "writes_card.title", |ui| match device.logged_writes() {
         None => {
             ui.label(theme.label(theme.translate("writes_card.none")));
@@ -125,7 +126,7 @@ fn writes_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
         }
         Some(Ok(writes)) => {
             for write in writes {
-                write_ui(ui, theme, write);
+                write_ui(ui, theme, studio, write);
             }
         }
     });
@@ -146,7 +147,7 @@ pub(super) fn time(at: Timestamp) -> String {
     at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d  %H:%M:%S").to_string()
 }
 
-fn write_ui(ui: &mut Ui, theme: &Theme, write: &Entry) {
+fn write_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, write: &Entry) {
     let palette = theme.palette;
     let (icon, colour, words) = match write.conclusion.as_ref().map(|end| &end.outcome) {
         Some(Outcome::Done) => (icons::CHECK_CIRCLE, palette.good, theme.translate("writes_card.done")),
@@ -159,6 +160,7 @@ fn write_ui(ui: &mut Ui, theme: &Theme, write: &Entry) {
         ui.label(RichText::new(icon).color(colour)).on_hover_text(&words);
         let cycles = Text::new("writes_card.cycles").with("cycles", write.write_cycles());
         ui.label(theme.label(theme.format_text(&cycles)));
-        ui.add(egui::Label::new(theme.monospace(&write.description)).truncate());
+        let changes = theme.format_text(&studio.entry_text(write));
+        ui.add(egui::Label::new(theme.monospace(changes)).truncate());
     });
 }

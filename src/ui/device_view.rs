@@ -9,6 +9,7 @@ use super::commands::NamedAction;
 use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
 use super::{Theme, status_line};
 use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, LOGBOOK_TAB, Rgb, Studio, Tab, Text, ToolKind};
+use crate::profile::Body;
 
 /// A page of a tab, as listed in the navigation and the help.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,7 +121,18 @@ pub trait TypedDeviceView: Sync + 'static {
 
     /// Draws the part of an empty tab below the buttons common to all kinds. The tab is empty while no device is open.
     fn empty_ui(_ui: &mut Ui, _skin: &Theme, _actions: &mut Vec<Action>) {}
+
+    /// Returns the name of the picture in which two profiles are compared. Returns `None` for a kind without a picture.
+    fn compared_picture() -> Option<Text> {
+        None
+    }
+
+    /// Draws two profiles over or below each other.
+    fn compared_picture_ui(_ui: &mut Ui, _theme: &Theme, _left: &ProfileOf<Self>, _right: &ProfileOf<Self>) {}
 }
+
+/// Profile of the devices that a view displays.
+pub type ProfileOf<V> = <<V as TypedDeviceView>::Device as DeviceType>::Profile;
 
 /// View of a kind of device, object-safe for the window. For a device of another kind, it does not draw anything and
 /// reports no edits.
@@ -151,6 +163,12 @@ pub trait DeviceView: Sync {
 
     /// Draws the part of an empty tab below the buttons common to all kinds. The tab is empty while no device is open.
     fn empty_ui(&self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>);
+
+    /// Returns the name of the picture in which two profiles are compared. Returns `None` for a kind without a picture.
+    fn compared_picture(&self) -> Option<Text>;
+
+    /// Draws two profiles over or below each other. Draws nothing if they are of other kinds.
+    fn compared_picture_ui(&self, ui: &mut Ui, theme: &Theme, left: &Body, right: &Body);
 }
 
 /// View of one session, with its open page, text buffers and selections.
@@ -211,6 +229,16 @@ impl<V: TypedDeviceView> DeviceView for V {
 
     fn empty_ui(&self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         V::empty_ui(ui, theme, actions);
+    }
+
+    fn compared_picture(&self) -> Option<Text> {
+        V::compared_picture()
+    }
+
+    fn compared_picture_ui(&self, ui: &mut Ui, theme: &Theme, left: &Body, right: &Body) {
+        if let Some((left, right)) = left.get().zip(right.get()) {
+            V::compared_picture_ui(ui, theme, left, right);
+        }
     }
 }
 
@@ -337,6 +365,11 @@ impl TabViews {
 
     pub(crate) fn device(self, tab: Tab) -> Option<&'static dyn DeviceView> {
         self.devices.iter().copied().find(|view| view.kind().tab() == tab)
+    }
+
+    /// Returns the view of a kind of device, by its keyword in profiles.
+    pub(crate) fn for_profile(self, keyword: &str) -> Option<&'static dyn DeviceView> {
+        self.devices.iter().copied().find(|view| view.kind().keyword() == keyword)
     }
 
     pub(crate) fn tool_views(self) -> &'static [&'static dyn ToolView] {

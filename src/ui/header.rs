@@ -7,7 +7,9 @@ use super::page::with_stable_ids;
 use super::stop_debounce::{press_began, press_time, register_stop_press};
 use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
-use crate::app::{Action, AnyDevice, ColorScheme, CompanyAction, DeviceCommand, Language, Studio, Text, connect};
+use crate::app::{
+    Action, AnyDevice, ColorScheme, CompanyAction, ComparisonAction, DeviceCommand, Language, Studio, Text, connect,
+};
 
 /// Width of the STOP button in points while no motion is in progress.
 const STOP_BUTTON_WIDTH: f32 = 72.0;
@@ -65,9 +67,10 @@ fn tools_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, acti
     if icon_button(ui, restorable, icons::CLOCK_COUNTER_CLOCKWISE, &theme.translate("shell.restore")).clicked() {
         actions.extend(shown.map(|own| own.command(DeviceCommand::AskRestore)));
     }
-    let comparable = shown.is_some_and(AnyDevice::is_comparable);
+    let comparable = shown.is_none_or(AnyDevice::is_comparable);
     if icon_button(ui, comparable, icons::ARROWS_OUT_LINE_HORIZONTAL, &theme.translate("shell.compare")).clicked() {
-        actions.extend(shown.map(|own| own.command(DeviceCommand::AskCompare)));
+        let open = Action::Comparison(ComparisonAction::Open { left: None, right: None });
+        actions.push(shown.map_or(open, |own| own.command(DeviceCommand::AskCompare)));
     }
     if tool(ui, true, icons::PLUGS_CONNECTED, "shell.connect").clicked() {
         actions.push(Action::Connect(connect::ConnectAction::Open));

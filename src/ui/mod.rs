@@ -5,6 +5,7 @@ pub mod backups;
 mod cards;
 pub(crate) mod check;
 mod commands;
+mod comparison;
 pub mod controls;
 pub(crate) mod device_view;
 pub(crate) mod dialogs;
@@ -38,7 +39,9 @@ pub(crate) mod wiring;
 pub(crate) mod workspace;
 
 pub use commands::NamedAction;
-pub use device_view::{DeviceView, PageInfo, SessionView, TabPage, TabViews, ToolPages, ToolView, TypedDeviceView};
+pub use device_view::{
+    DeviceView, PageInfo, ProfileOf, SessionView, TabPage, TabViews, ToolPages, ToolView, TypedDeviceView,
+};
 pub use dialogs::connect::{ConnectForm, TypedConnectForm};
 pub use run::run;
 pub use theme::{Theme, install_fonts};

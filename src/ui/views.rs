@@ -18,6 +18,8 @@ pub struct Views {
     pub(super) company: CompanyView,
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
+    /// Whether a comparison shows the picture of its kind instead of the items.
+    pub(super) compares_pictures: bool,
     pub(super) help: bool,
     pub(super) palette: Option<PaletteUiState>,
     pub(super) trace: TraceView,
@@ -38,6 +40,7 @@ impl Views {
             company: CompanyView::default(),
             file: None,
             about: false,
+            compares_pictures: false,
             help: false,
             palette: None,
             trace: TraceView::default(),

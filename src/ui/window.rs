@@ -14,7 +14,7 @@ use super::live_pace::LivePace;
 use super::navigation::navigation_ui;
 use super::page::with_stable_ids;
 use super::widgets::{HoldButtonContext, set_hold_button_context};
-use super::{Theme, Views, header, review, status_line, stop_debounce};
+use super::{Theme, Views, comparison, header, review, status_line, stop_debounce};
 use crate::app::{Action, AnyDevice, Studio, ThemeData};
 
 pub struct Window {
@@ -160,7 +160,8 @@ impl Window {
                 None => self.views.palette = Some(palette),
             }
         }
-        dialogs::comparison_ui(ctx, theme, &self.studio, actions);
+        let pictures = (self.views.tabs, &mut self.views.compares_pictures);
+        comparison::comparison_ui(ctx, theme, &self.studio, pictures, actions);
         dialogs::diverged_ui(ctx, theme, &self.studio, actions);
         dialogs::question_ui(ctx, theme, &self.studio, actions);
     }

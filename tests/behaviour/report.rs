@@ -82,10 +82,10 @@ fn the_page_shows_the_history_of_a_device() {
     let has = |text: &str| texts.iter().any(|own| own == text);
     for text in [
         "HIPERFACE report",
-        "field:0@3+2",
+        "Data field 0, bytes 0x03 to 0x04",
         &old,
         "C0FF",
-        "position",
+        "Position",
         "Axis 7",
         "Status when read",
         "Backups and saved profiles",
@@ -152,8 +152,8 @@ fn everything_but_the_time_of_printing_depends_on_the_content() {
         bench.run(&["report", &other, "-o", &bench.file("3.html"), "--compare", &bench.file("a.ron"), "--json"]);
     assert_ne!(compared.json()["sha256"], first["sha256"]);
     let page = texts(&bench.read("3.html"));
-    let at = page.iter().position(|text| text == "field:0@0+1").unwrap();
-    assert_eq!(&page[at..at + 3], ["field:0@0+1", "58", "45"]);
+    let at = page.iter().position(|text| text == "Data field 0, byte 0x00").unwrap();
+    assert_eq!(&page[at + 1..at + 3], ["58", "45"]);
     assert!(page.iter().any(|text| text == "Differences to a.ron"), "{page:?}");
     // The asset is content.
     assert_ne!(report("4.html", &["--asset", "Axis 1"]).json()["sha256"], first["sha256"]);

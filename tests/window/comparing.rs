@@ -1,17 +1,24 @@
-//! *Restore a profile…* and *Compare with a profile…*, for the device that is shown.
+//! The comparison of any two of a device, a profile, a file, a backup and an entry of the logbook, and the values that are
+//! taken over from it.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 
+use egui_kittest::kittest::Queryable;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Severity, Studio};
+use encoder_studio::app::{
+    Action, ComparedRow, ComparedRows, ComparisonAction, ComparisonSource, DeviceCommand, FileQuestion, ItemValue,
+    Language, ReviewAction, Side, Studio,
+};
 use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 
+use crate::each_kind::{CASES, command, shown, write};
 use crate::screen::Screen;
 use crate::support::Desk;
 
 /// The connected encoder, and a profile of it in which the byte at address 0 of field 0 differs: E became X.
-fn with_changed_profile() -> (Desk, std::path::PathBuf) {
+fn with_changed_profile() -> (Desk, PathBuf) {
     let mut desk = Desk::new_form("");
     let path = desk.outside.path("mine.ron");
     desk.ask(Hiperface::Save(path.clone()));
@@ -31,8 +38,34 @@ fn is_planned(studio: &Studio) -> bool {
         .is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
 }
 
-fn compared(studio: &Studio) -> bool {
-    studio.comparison().is_some()
+fn file(path: &Path) -> Option<ComparisonSource> {
+    Some(ComparisonSource::File(path.to_owned()))
+}
+
+fn compare_with(path: &Path) -> DeviceCommand {
+    DeviceCommand::Compare(Box::new(ComparisonSource::File(path.to_owned())))
+}
+
+fn rows(studio: &Studio) -> Option<&ComparedRows> {
+    studio.comparison()?.rows()?.as_ref().ok()
+}
+
+fn is_compared(studio: &Studio) -> bool {
+    rows(studio).is_some()
+}
+
+fn differing(studio: &Studio) -> Vec<&ComparedRow> {
+    let all = rows(studio).into_iter().flat_map(|rows| &rows.groups).flat_map(|group| &group.rows);
+    all.filter(|row| row.differs).collect()
+}
+
+fn close_review(desk: &mut Desk) {
+    let id = shown(&desk.studio).unwrap().id();
+    desk.act(Action::Review(id, ReviewAction::Close));
+}
+
+fn bytes(bytes: &[u8]) -> Option<ItemValue> {
+    Some(ItemValue::Bytes(bytes.to_vec()))
 }
 
 #[test]
@@ -41,25 +74,135 @@ fn a_comparison_lists_what_differs_and_writes_nothing() {
     let session = desk.studio.selected_device().unwrap().id();
     let requests = desk.wire().count(0x4A);
     desk.command(DeviceCommand::AskCompare);
+    assert!(desk.studio.comparison().unwrap().rows().is_none(), "the other side is not chosen");
+    assert!(desk.studio.comparison_choices().contains(&ComparisonSource::Session(session)));
+    desk.act(Action::Comparison(ComparisonAction::AskFile(Side::Left)));
     let question = desk.studio.take_file_question().unwrap();
-    assert_eq!(question, FileQuestion::Compare(session));
+    assert_eq!(question, FileQuestion::Compare(Side::Left));
     desk.act(Action::Chosen(question, path.clone()));
-    desk.until("it is compared", compared);
-    let shown = desk.studio.comparison().unwrap();
-    assert_eq!((shown.session(), shown.path()), (session, path.as_path()));
-    let comparison = shown.comparison();
-    let [difference] = comparison.differences.as_slice() else { panic!("{comparison:?}") };
-    assert_eq!(
-        (difference.item.as_str(), difference.left.as_str(), difference.right.as_str()),
-        ("field:0@0+1", "45", "58")
-    );
+    desk.until("it is compared", is_compared);
+    let view = desk.studio.comparison().unwrap();
+    assert_eq!((view.side(Side::Left).path(), view.side(Side::Right).session()), (Some(path.as_path()), Some(session)));
+    let [row] = differing(&desk.studio).try_into().unwrap();
+    assert_eq!((row.item.as_str(), &row.left, &row.right), ("field:0@0+1", &bytes(b"X"), &bytes(b"E")));
+    assert_eq!(rows(&desk.studio).unwrap().different, 1);
+    desk.act(Action::Comparison(ComparisonAction::Swap));
+    let [row] = differing(&desk.studio).try_into().unwrap();
+    assert_eq!((&row.left, &row.right), (&bytes(b"E"), &bytes(b"X")));
     assert_eq!(desk.wire().count(0x4A), requests, "nothing is read for it");
     desk.act(Action::Escape);
-    assert!(!compared(&desk.studio));
-    desk.command(DeviceCommand::Compare(path));
-    desk.until("it is compared again", compared);
+    assert!(desk.studio.comparison().is_none());
+    desk.command(compare_with(&path));
+    desk.until("it is compared again", is_compared);
     desk.act(Action::CloseSession(session));
-    assert!(!compared(&desk.studio), "it ends with its session");
+    assert!(desk.studio.comparison().is_none(), "it ends with its session");
+}
+
+#[test]
+fn two_files_are_compared_without_a_device() {
+    let mut desk = Desk::fresh("");
+    let profiles = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/ssi");
+    let (left, right) = (file(&profiles.join("ahm36.ron")), file(&profiles.join("afs60s.ron")));
+    desk.act(Action::Comparison(ComparisonAction::Open { left, right }));
+    desk.until("it is compared", is_compared);
+    assert!(differing(&desk.studio).iter().any(|row| row.item == "family"));
+    assert!(desk.studio.edited_side().is_none());
+}
+
+#[test]
+fn a_write_of_the_logbook_is_a_moment_to_compare_with() {
+    let (mut desk, _) = with_changed_profile();
+    desk.put(0, 0, b"Y");
+    desk.write();
+    desk.command(DeviceCommand::AskCompare);
+    let before = |studio: &Studio| {
+        let mut choices = studio.comparison_choices().into_iter();
+        choices.find(|own| matches!(own, ComparisonSource::Entry(entry) if !entry.items.is_empty()))
+    };
+    desk.until("the write is listed", |studio| before(studio).is_some());
+    let backups = desk.studio.comparison_choices();
+    assert!(!backups.iter().any(|own| matches!(own, ComparisonSource::Backup(_))), "the entry has the only backup");
+    let moment = before(&desk.studio).unwrap();
+    desk.act(Action::Comparison(ComparisonAction::Choose(Side::Left, moment)));
+    desk.until("it is compared", is_compared);
+    let [row] = differing(&desk.studio).try_into().unwrap();
+    assert_eq!((&row.left, &row.right), (&bytes(b"E"), &bytes(b"Y")));
+}
+
+/// Issue 30: single items are taken over from the left into the edits of the right, by the names of `read`.
+#[test]
+fn values_are_taken_over_into_the_edits_of_every_kind() {
+    for case in CASES {
+        let mut desk = case.desk();
+        case.read_all(&mut desk);
+        let path = desk.outside.path("before.ron");
+        case.save(&mut desk, &path);
+        desk.settle();
+        case.edit(&mut desk, &[0x5A, 0x5B]);
+        write(&mut desk);
+        close_review(&mut desk);
+        command(&mut desk, compare_with(&path));
+        desk.until("it is compared", is_compared);
+        // The reference of a drive is set by a procedure.
+        let is_accepted = |row: &&ComparedRow| shown(&desk.studio).unwrap().accepts_item(&row.item);
+        let items: Vec<String> =
+            differing(&desk.studio).into_iter().filter(is_accepted).map(|row| row.item.clone()).collect();
+        let others = rows(&desk.studio).unwrap().different - items.len();
+        assert!((1..=2).contains(&items.len()), "{:?}: {items:?}", case.tab);
+        for item in &items {
+            desk.act(Action::Comparison(ComparisonAction::Take(item.clone())));
+            assert_eq!(desk.studio.comparison().unwrap().refusal(), None, "{item}");
+        }
+        assert_eq!(shown(&desk.studio).unwrap().edit_count(), 2, "{:?}", case.tab);
+        let all = rows(&desk.studio).unwrap();
+        let taken = all.groups.iter().flat_map(|group| &group.rows).filter(|row| row.is_taken);
+        assert_eq!((all.different, taken.count()), (others, items.len()), "the rows stay");
+        desk.act(Action::Comparison(ComparisonAction::Close));
+        // The edits are written as any others, after which nothing differs.
+        write(&mut desk);
+        close_review(&mut desk);
+        command(&mut desk, compare_with(&path));
+        desk.until("it is compared again", is_compared);
+        assert_eq!(rows(&desk.studio).unwrap().different, others, "{:?}", case.tab);
+    }
+}
+
+/// The names of items say more than the items, in both languages.
+#[test]
+fn items_of_every_kind_have_names() {
+    for case in CASES {
+        let mut desk = case.desk();
+        case.read_all(&mut desk);
+        let path = desk.outside.path("saved.ron");
+        case.save(&mut desk, &path);
+        desk.settle();
+        command(&mut desk, compare_with(&path));
+        desk.until("it is compared", is_compared);
+        let all = rows(&desk.studio).unwrap();
+        assert!(all.compared > 0 && all.different == 0);
+        if case.tab == crate::tabs::NOVEL {
+            continue; // It has no names.
+        }
+        for group in &all.groups {
+            assert!(group.title.is_some(), "{:?}", case.tab);
+            for row in &group.rows {
+                let names = [Language::English, Language::German].map(|language| row.name.to_string_in(language));
+                assert!(names.iter().all(|name| *name != row.item), "{}", row.item);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_taken_over_names_the_reason() {
+    let (mut desk, path) = with_changed_profile();
+    desk.command(compare_with(&path));
+    desk.until("it is compared", is_compared);
+    for item in ["status:0", "field:9@0+1", "field:0@0+4096", "steps"] {
+        desk.act(Action::Comparison(ComparisonAction::Take(item.to_owned())));
+        assert!(desk.studio.comparison().unwrap().refusal().is_some(), "{item}");
+        assert_eq!(desk.edits(), [], "{item}");
+    }
 }
 
 #[test]
@@ -79,20 +222,17 @@ fn a_profile_that_is_chosen_to_be_restored_is_reviewed_first() {
 #[test]
 fn incomparable_captures_are_reported_with_a_reason() {
     let (mut desk, _) = with_changed_profile();
-    let profiles = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
-    for (path, id) in [
-        (profiles.join("interbus/scaled-encoder.ron"), "profile.other_kind"),
-        (desk.outside.path("missing.ron"), "file.not_found"),
-    ] {
-        desk.command(DeviceCommand::Compare(path));
-        desk.until("it is told", |studio| {
-            studio.services.log.current().is_some_and(|own| own.severity == Severity::Error)
-        });
-        let told = desk.studio.services.log.current().unwrap();
-        assert_eq!(told.texts[0].id(), id);
-        assert!(!compared(&desk.studio));
-        desk.act(Action::Dismiss);
-    }
+    let profiles = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
+    desk.command(compare_with(&profiles.join("interbus/scaled-encoder.ron")));
+    let problem = |studio: &Studio| match studio.comparison().and_then(|view| view.rows()) {
+        Some(Err(why)) => Some(why.id()),
+        _ => None,
+    };
+    desk.until("it is told", |studio| problem(studio) == Some("comparison.other_kind"));
+    desk.command(compare_with(&desk.outside.path("missing.ron")));
+    let left = |studio: &Studio| studio.comparison().unwrap().side(Side::Left).problem().first().map(|text| text.id());
+    desk.until("it is told", |studio| left(studio) == Some("file.not_found"));
+    assert!(desk.studio.comparison().unwrap().rows().is_none());
 }
 
 #[test]
@@ -100,10 +240,25 @@ fn the_comparison_is_drawn_with_its_way_to_the_review() {
     let (desk, path) = with_changed_profile();
     let Desk { outside, studio, .. } = desk;
     let mut screen = Screen::of(outside, studio, [1024.0, 640.0]);
-    screen.command(DeviceCommand::Compare(path));
-    screen.until("it is compared", compared);
-    assert!(screen.shows("field:0@0+1"));
+    screen.command(compare_with(&path));
+    screen.until("it is compared", is_compared);
+    for language in [Language::German, Language::English] {
+        screen.act(Action::SetLanguage(language));
+        screen.check_language();
+    }
+    assert!(screen.shows("Data field 0, byte 0x00") && !screen.shows("Status of data field 0"));
+    screen.harness.get_by_label(&screen.say("comparison.only_differences")).click();
+    screen.steps();
+    assert!(screen.shows("Status of data field 0"));
+    screen.harness.get_by_label("Edit the right side to this value: Data field 0, byte 0x00").click();
+    screen.steps();
+    assert_eq!(screen.encoder().staged.byte(0, 0), Some(b'X'));
+    assert!(screen.shows("With 1 edit that is not written yet"));
+    screen.act(Action::Comparison(ComparisonAction::Close));
+    screen.command(DeviceCommand::RevertAll);
+    screen.command(compare_with(&path));
+    screen.until("it is compared", is_compared);
     screen.click("comparison.restore");
     screen.until("it is planned", is_planned);
-    assert!(!compared(screen.studio()));
+    assert!(screen.studio().comparison().is_none());
 }

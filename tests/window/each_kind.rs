@@ -157,7 +157,7 @@ impl Case {
     }
 
     /// Reads the data that are not read on connection.
-    fn read_all(&self, desk: &mut Desk) {
+    pub(crate) fn read_all(&self, desk: &mut Desk) {
         let id = shown(&desk.studio).unwrap().id();
         match self.tab {
             crate::tabs::BISS => {
@@ -546,7 +546,7 @@ fn read_values_can_be_saved_after_the_line_is_lost() {
                     assert!(lost.note.is_some_and(|note| note.contains("did not answer")));
                     if all {
                         let comparison = compared(&read(&whole).body, &lost.body);
-                        assert!(comparison.compared > 0 && comparison.differences.is_empty(), "{:?}", case.tab);
+                        assert!(comparison.compared > 0 && comparison.differences().is_empty(), "{:?}", case.tab);
                         assert!(comparison.one_sided_items().is_empty(), "{:?}", comparison.one_sided_items());
                     }
                 }

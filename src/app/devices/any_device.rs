@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use jiff::Timestamp;
 
 use super::AnyDevice;
-use super::model::DeviceMemory;
+use super::memory::DeviceMemory;
 use crate::app::Text;
 use crate::app::action::{ReadBackup, ReviewAction};
 use crate::app::closing::LONG_RECORDING_NS;

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::AnyDevice;
 use crate::app::action::Action;
+use crate::app::comparison::ComparisonSource;
 use crate::app::studio::SessionId;
 use crate::store::{AssetName, Entry};
 
@@ -29,7 +30,8 @@ pub enum DeviceCommand {
     AskRestore,
     AskCompare,
     AskReport,
-    Compare(PathBuf),
+    /// Compare with this, which becomes the left side.
+    Compare(Box<ComparisonSource>),
     /// Show the effect of writing this profile to the device of the given session.
     WriteInto(SessionId),
 }

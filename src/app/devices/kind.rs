@@ -9,6 +9,7 @@ use std::path::Path;
 use super::AnyDevice;
 use super::model::DeviceModel;
 use crate::app::Text;
+use crate::app::comparison::ItemValues;
 use crate::app::connect::form::{AnyForm, Finder, FormModel, FormModelAdapter};
 use crate::app::payload::{Payload, PayloadKindError};
 use crate::app::report::{ReportContent, ReportContext};
@@ -88,6 +89,22 @@ pub trait DeviceType: DeviceModel + Sized {
         own
     }
 
+    /// Returns the name of an item of a profile or of the logbook, for comparisons, lists and reports. `manual_name` is
+    /// the name in the manual, if the item is an address. Returns `None` if there is no better name than the item.
+    fn item_name(_item: &str, _manual_name: Option<&str>) -> Option<Text> {
+        None
+    }
+
+    /// Returns the heading under which a comparison lists an item, such as the drive or data field to which it belongs.
+    fn item_group(_item: &str) -> Option<Text> {
+        None
+    }
+
+    /// Returns a function that describes the values of a profile. See [`ItemValues`].
+    fn item_values(_profile: &Self::Profile, _document: &ProfileDocument) -> ItemValues {
+        Box::new(|_, _| None)
+    }
+
     /// Returns the values of a profile with their meaning, for a report.
     ///
     /// # Errors
@@ -140,6 +157,14 @@ pub trait DeviceKind: Sync {
     fn is_typical_link(&self, url: &LinkUrl) -> bool;
     /// Returns the reason why a profile was rejected, or `None` if the cause belongs to another kind of device.
     fn explain_rejection(&self, cause: &Cause) -> Option<Text>;
+    /// Returns the name of an item of a profile or of the logbook. Returns `None` if there is no better name than the
+    /// item.
+    fn item_name(&self, item: &str, manual_name: Option<&str>) -> Option<Text>;
+    /// Returns the heading under which a comparison lists an item.
+    fn item_group(&self, item: &str) -> Option<Text>;
+    /// Returns a function that describes the values of a profile. It describes nothing if the profile is of another kind
+    /// of device.
+    fn item_values(&self, document: &ProfileDocument) -> ItemValues;
     /// Returns the values of a profile with their meaning, for a report. Returns `None` if the profile is of another
     /// kind of device.
     fn report(&self, document: &ProfileDocument, context: &ReportContext<'_>) -> Option<Result<ReportContent, Text>>;
@@ -191,6 +216,21 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
 
     fn explain_rejection(&self, cause: &Cause) -> Option<Text> {
         M::explain_rejection(cause)
+    }
+
+    fn item_name(&self, item: &str, manual_name: Option<&str>) -> Option<Text> {
+        M::item_name(item, manual_name)
+    }
+
+    fn item_group(&self, item: &str) -> Option<Text> {
+        M::item_group(item)
+    }
+
+    fn item_values(&self, document: &ProfileDocument) -> ItemValues {
+        match document.body.get() {
+            Some(profile) => M::item_values(profile, document),
+            None => Box::new(|_, _| None),
+        }
     }
 
     fn report(&self, document: &ProfileDocument, context: &ReportContext<'_>) -> Option<Result<ReportContent, Text>> {

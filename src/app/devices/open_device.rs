@@ -9,7 +9,8 @@ use std::path::PathBuf;
 use crossbeam_channel::Receiver;
 
 use super::command::DeviceCommand;
-use super::model::{ActionContext, DeviceMemory, DeviceModel, MotionControl};
+use super::memory::DeviceMemory;
+use super::model::{ActionContext, DeviceModel, MotionControl};
 use crate::app::action::{ConnectAttempt, OpenFailure, OpenedSession, TaskResult};
 use crate::app::live_session::JobProgress;
 use crate::app::recorder::Recorder;
@@ -109,6 +110,12 @@ pub trait OpenDevice: Any {
     fn edited_body(&self) -> Option<Body>;
     #[doc(hidden)]
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>>;
+    #[doc(hidden)]
+    fn edited_values(&self) -> Option<Result<Body, Vec<Text>>>;
+    /// Returns whether an item can be edited so that it has the value of another profile.
+    fn accepts_item(&self, item: &str) -> bool;
+    #[doc(hidden)]
+    fn take_item(&mut self, item: &str, from: &Body) -> Result<(), Text>;
     #[doc(hidden)]
     fn reported_status(&self) -> Option<Vec<StatusLine>>;
     #[doc(hidden)]
@@ -317,6 +324,18 @@ impl<M: DeviceModel> OpenDevice for M {
 
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>> {
         DeviceModel::comparable_body(self)
+    }
+
+    fn edited_values(&self) -> Option<Result<Body, Vec<Text>>> {
+        DeviceModel::edited_values(self)
+    }
+
+    fn accepts_item(&self, item: &str) -> bool {
+        DeviceModel::accepts_item(self, item)
+    }
+
+    fn take_item(&mut self, item: &str, from: &Body) -> Result<(), Text> {
+        DeviceModel::take_item(self, item, from)
     }
 
     fn reported_status(&self) -> Option<Vec<StatusLine>> {

@@ -7,7 +7,7 @@ use super::sections::time;
 use super::{ReportContext, ReportSource, file_name};
 use crate::analysis::check::CycleCount;
 use crate::app::explain;
-use crate::app::{Text, entry_kind_text, outcome_text};
+use crate::app::{KindRegistry, Text, entry_kind_text, outcome_text};
 use crate::report::{Block, CellStyle, Mark, Section, Table, sha256_hex};
 use crate::store::{DeviceKey, Entry, EntryFilter, EntryKind, Logbook, LogbookError, Outcome, Store, read_file};
 use crate::worker::commit::known_cycles;
@@ -86,7 +86,7 @@ impl History {
     }
 
     /// Returns the sections of the history. There are none without entries.
-    pub(super) fn sections(&self, context: &ReportContext<'_>) -> Vec<Section> {
+    pub(super) fn sections(&self, context: &ReportContext<'_>, kinds: KindRegistry) -> Vec<Section> {
         if self.entries.is_empty() {
             return Vec::new();
         }
@@ -96,18 +96,18 @@ impl History {
         if self.has_more {
             history = history.with(Block::Paragraph(context.say(Text::new("logbook.newest").with("count", LIMIT))));
         }
-        let history = history.with(Block::Table(self.table(context)));
+        let history = history.with(Block::Table(self.table(context, kinds)));
         let backups = (!self.backups.is_empty()).then(|| self.backup_section(context));
         std::iter::once(history).chain(backups).collect()
     }
 
-    fn table(&self, context: &ReportContext<'_>) -> Table {
+    fn table(&self, context: &ReportContext<'_>, kinds: KindRegistry) -> Table {
         let mut table = context.table([
             (Text::new("report.entry"), CellStyle::Short),
             (Text::new("report.time"), CellStyle::Short),
             (Text::new("report.what"), CellStyle::Text),
             (Text::new("report.cycles_column"), CellStyle::Number),
-            (Text::new("report.item"), CellStyle::Code),
+            (Text::new("report.item"), CellStyle::Text),
             (Text::new("report.old"), CellStyle::Code),
             (Text::new("report.new"), CellStyle::Code),
         ]);
@@ -124,7 +124,7 @@ impl History {
                 continue;
             }
             for item in &entry.items {
-                let name = item.name.as_ref().map_or_else(|| item.item.clone(), |name| format!("{} {name}", item.item));
+                let name = context.say(kinds.item_name(&entry.device.kind, &item.item, item.name.as_deref()));
                 let [old, new] = [&item.old, &item.new].map(|value| value.as_deref().unwrap_or(NONE).to_owned());
                 let begin = std::mem::take(&mut first);
                 table.add_marked_row(mark, begin.into_iter().chain([name, old, new]));

@@ -23,6 +23,7 @@ pub use status::{DeviceReading, StatusLine};
 use self::results::result_section;
 use self::sections::{comparison_section, time};
 use self::status::status_section;
+use super::comparison::compare_documents;
 use super::documents::new_document;
 use super::{KindRegistry, Language, Text, explain};
 use crate::link::{LinkScheme, LinkUrl};
@@ -93,10 +94,11 @@ impl ReportRequest {
         sections.extend(self.status.as_ref().map(|status| status_section(&context, status)));
         sections.extend(self.results.iter().map(|result| result_section(&context, result)));
         if let Some((name, body)) = compared {
-            let comparison = document.body.compare(body).map_err(|error| explain::profile_error_text(&error, kinds))?;
-            sections.push(comparison_section(&context, name, &comparison));
+            let compared = compare_documents(kinds, document, &new_document(body.clone()))
+                .map_err(|error| explain::profile_error_text(&error, kinds))?;
+            sections.push(comparison_section(&context, name, &compared));
         }
-        sections.extend(history.sections(&context));
+        sections.extend(history.sections(&context, kinds));
         let subject = context.say(Text::new("report.subject").with("bus", kind.bus_name()));
         Ok(report(&context, subject, content.title, origin(&context, document, source, asset), sections))
     }

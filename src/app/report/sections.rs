@@ -4,8 +4,8 @@ use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
 use super::ReportContext;
-use crate::app::Text;
-use crate::profile::Comparison;
+use crate::app::{ComparedRows, ItemValue, Text};
+use crate::bits::hex;
 use crate::report::{Block, CellStyle, Fact, Section};
 
 /// Formats a time. Reports give UTC, so that a report of the same content is the same everywhere.
@@ -14,29 +14,37 @@ pub(super) fn time(at: Timestamp) -> String {
 }
 
 /// Lists the differences to another profile.
-pub(super) fn comparison_section(context: &ReportContext<'_>, name: &str, comparison: &Comparison) -> Section {
+pub(super) fn comparison_section(context: &ReportContext<'_>, name: &str, compared: &ComparedRows) -> Section {
     let section = Section::new(context.say(Text::new("report.compared").with("name", name)));
-    let missing = &comparison.one_sided_items();
-    let is_equal = comparison.differences.is_empty() && missing.is_empty();
-    let summary = match is_equal {
-        true => Text::new("report.equal"),
-        false => Text::new("report.different").with("count", comparison.differences.len() + missing.len()),
+    let summary = match compared.different {
+        0 => Text::new("report.equal"),
+        count => Text::new("report.different").with("count", count),
     };
-    let section = section.with(Block::Paragraph(context.say(summary.with("compared", comparison.compared))));
-    if is_equal {
-        return section;
-    }
+    let section = section.with(Block::Paragraph(context.say(summary.with("compared", compared.compared))));
     let mut table = context.table([
-        (Text::new("report.item"), CellStyle::Code),
+        (Text::new("report.item"), CellStyle::Text),
         (Text::new("report.here"), CellStyle::Code),
         (Text::new("report.there"), CellStyle::Code),
     ]);
-    for difference in &comparison.differences {
-        table.add_row([difference.item.clone(), difference.left.clone(), difference.right.clone()]);
+    let mut one_sided = [("report.only_here", Vec::new()), ("report.only_there", Vec::new())];
+    let [(_, only_here), (_, only_there)] = &mut one_sided;
+    for row in compared.groups.iter().flat_map(|group| &group.rows).filter(|row| row.differs) {
+        let name = context.say(row.name.clone());
+        match (&row.left, &row.right) {
+            (Some(left), Some(right)) => table.add_row([name, value(context, left), value(context, right)]),
+            (Some(_), None) => only_here.push(name),
+            (None, _) => only_there.push(name),
+        }
     }
     let section = if table.rows.is_empty() { section } else { section.with(Block::Table(table)) };
-    let sides = [("report.only_here", &comparison.only_left), ("report.only_there", &comparison.only_right)];
-    let sides = sides.into_iter().filter(|(_, items)| !items.is_empty());
-    let sides: Vec<Fact> = sides.map(|(id, items)| context.code(id, items.join(", "))).collect();
+    let sides = one_sided.into_iter().filter(|(_, names)| !names.is_empty());
+    let sides: Vec<Fact> = sides.map(|(id, names)| Fact::new(context.say(id), names.join("; "))).collect();
     if sides.is_empty() { section } else { section.with(Block::Facts(sides)) }
+}
+
+fn value(context: &ReportContext<'_>, value: &ItemValue) -> String {
+    match value {
+        ItemValue::Bytes(bytes) => hex(bytes),
+        ItemValue::Text(text) => context.say(text.clone()),
+    }
 }

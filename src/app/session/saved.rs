@@ -36,6 +36,9 @@ pub trait HasProfile: HasMemory {
     /// Returns a message for each part of a profile that was not read.
     fn last_read_profile(&self) -> Option<KnownProfile>;
 
+    /// Replaces the values of a profile of earlier readings by the edited ones.
+    fn add_edits(&self, _profile: &mut Body) {}
+
     /// Returns whether earlier readings are saved as the profile. This is done if the device no longer replies.
     fn saves_last_reading(&self) -> bool {
         matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.last_read_profile().is_some()

@@ -2,7 +2,6 @@
 
 mod about;
 mod company;
-mod comparison;
 pub(crate) mod connect;
 mod diverged;
 mod file;
@@ -12,7 +11,6 @@ mod server;
 
 pub(super) use about::{about_ui, help_ui};
 pub(super) use company::{CompanyView, company_ui};
-pub(super) use comparison::comparison_ui;
 pub(super) use connect::{ConnectView, connect_ui};
 pub(super) use diverged::diverged_ui;
 pub(super) use file::{FileView, ask_for_file, file_ui};

@@ -5,7 +5,9 @@ use std::path::Path;
 use egui::{Label, RichText, ScrollArea, Ui};
 
 use super::{LogbookView, description, device_name, moment, old_and_new, result, time, undone_by};
-use crate::app::{Action, AnyDevice, DeviceCommand, MAX_NOTE, Studio, Text, entry_kind_text};
+use crate::app::{
+    Action, AnyDevice, ComparisonAction, ComparisonSource, DeviceCommand, MAX_NOTE, Studio, Text, entry_kind_text,
+};
 use crate::store::{DeviceKey, Entry, EntryFilter, EntryKind, LinkedEntry, Origin};
 use crate::ui::controls::{card, card_with_trailing, enabled_button, fill_width, paragraph, row, text_entry};
 use crate::ui::{Theme, icons};
@@ -33,7 +35,7 @@ pub(super) fn entry_ui(
                 links_ui(ui, theme, studio, view, entry, actions);
                 if !entry.items.is_empty() {
                     ui.add_space(theme.space.between);
-                    items_ui(ui, theme, entry);
+                    items_ui(ui, theme, studio, entry);
                 }
                 if let Some(path) = &entry.backup {
                     ui.add_space(theme.space.between);
@@ -52,7 +54,7 @@ pub(super) fn entry_ui(
                             undo_ui(ui, theme, studio, entry, actions);
                         }
                         if entry.origin.other_bench().is_none() {
-                            backup_ui(ui, theme, studio, (&entry.device, path), actions);
+                            backup_ui(ui, theme, studio, (entry, path), actions);
                         }
                     });
                 }
@@ -72,7 +74,7 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry) {
     if let Some(asset) = entry.asset.as_ref().filter(|_| entry.kind != EntryKind::Assigned) {
         row(ui, theme, &theme.translate("asset_card.name"), asset);
     }
-    let description = description(entry);
+    let description = description(theme, studio, entry);
     if entry.items.is_empty() && !description.is_empty() {
         row(ui, theme, &theme.translate("logbook.text"), description);
     }
@@ -121,37 +123,30 @@ fn origin_ui(ui: &mut Ui, theme: &Theme, origin: &Origin) {
     }
 }
 
-fn items_ui(ui: &mut Ui, theme: &Theme, entry: &Entry) {
+fn items_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry) {
     ui.spacing_mut().item_spacing.y = theme.space.inside;
     for item in &entry.items {
-        let name = match (entry.kind, &item.name) {
-            (EntryKind::Assigned, _) => theme.translate("asset_card.name"),
-            (_, Some(name)) => format!("{}  {name}", item.item),
-            (_, None) => item.item.clone(),
+        let name = match entry.kind {
+            EntryKind::Assigned => theme.translate("asset_card.name"),
+            _ => theme.format_text(&studio.item_name(&entry.device.kind, &item.item, item.name.as_deref())),
         };
         paragraph(ui, theme.label(name));
         ui.add(Label::new(theme.monospace(old_and_new(item))).wrap().selectable(true));
     }
 }
 
-/// Draws the actions for the backup. The backup can be compared and restored while the device is open.
-fn backup_ui(
-    ui: &mut Ui,
-    theme: &Theme,
-    studio: &Studio,
-    (device, path): (&DeviceKey, &Path),
-    actions: &mut Vec<Action>,
-) {
-    let device = studio.device_of(device);
+/// Draws the actions for the backup. It can be compared with the device if that is open, or with another source. It can be
+/// restored while the device is connected.
+fn backup_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, (entry, path): (&Entry, &Path), actions: &mut Vec<Action>) {
+    let device = studio.device_of(&entry.device);
     if enabled_button(ui, true, icons::FILE_TEXT, &theme.translate("backups_card.look")).clicked() {
         actions.push(Action::Open(path.to_owned()));
     }
-    let compare = enabled_button(
-        ui,
-        device.is_some_and(|device| device.is_comparable()),
-        COMPARE,
-        &theme.translate("backups_card.compare"),
-    );
+    if enabled_button(ui, true, COMPARE, &theme.translate("backups_card.compare")).clicked() {
+        let left = Some(ComparisonSource::Entry(Box::new(entry.clone())));
+        let right = device.map(|device| ComparisonSource::Session(device.id()));
+        actions.push(Action::Comparison(ComparisonAction::Open { left, right }));
+    }
     let restore = enabled_button(
         ui,
         device.is_some_and(|device| device.is_ready()),
@@ -160,13 +155,9 @@ fn backup_ui(
     );
     let Some(device) = device else {
         let why = theme.translate("logbook.not_connected");
-        compare.on_disabled_hover_text(&why);
         restore.on_disabled_hover_text(&why);
         return;
     };
-    if compare.clicked() {
-        push_for(device, DeviceCommand::Compare(path.to_owned()), actions);
-    }
     if restore.clicked() {
         push_for(device, DeviceCommand::Restore(path.to_owned()), actions);
     }

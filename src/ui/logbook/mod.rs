@@ -234,8 +234,11 @@ fn row_ui(row: &mut TableRow<'_, '_>, theme: &Theme, studio: &Studio, entry: &En
         ui.add(Label::new(name).truncate());
     });
     row.col(|ui| {
-        let text =
-            format!("{}  {}", theme.translate(entry_kind_text(entry.kind)), description(entry).replace('\n', " "));
+        let text = format!(
+            "{}  {}",
+            theme.translate(entry_kind_text(entry.kind)),
+            description(theme, studio, entry).replace('\n', " ")
+        );
         ui.add(Label::new(text).truncate());
     });
 }
@@ -274,13 +277,13 @@ fn result(theme: &Theme, entry: &Entry) -> (&'static str, Rgb, String) {
 }
 
 /// Returns the description of an entry. Where its kind says everything else, it is the name or the path alone.
-fn description(entry: &Entry) -> String {
+fn description(theme: &Theme, studio: &Studio, entry: &Entry) -> String {
     match (entry.kind, entry.items.as_slice(), &entry.backup) {
         (EntryKind::Connected, ..) => String::new(),
         (EntryKind::Assigned, [ChangedItem { old: None, new: Some(new), .. }], _) => new.clone(),
         (EntryKind::Assigned, [item], _) => old_and_new(item),
         (EntryKind::Backup, _, Some(path)) => path.display().to_string(),
-        _ => entry.description.clone(),
+        _ => theme.format_text(&studio.entry_text(entry)),
     }
 }
 

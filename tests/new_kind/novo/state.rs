@@ -12,7 +12,7 @@ use encoder_studio::profile::Body;
 
 use super::jobs::{Error, Job, JobError, Novo, Output, Sample};
 use super::profile::NovoProfile;
-use super::protocol::{TURN, Values};
+use super::protocol::{ITEMS, TURN, Values};
 
 pub(crate) static TEXTS: Catalogue = Catalogue::new(
     r#"{
@@ -146,6 +146,16 @@ impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Novo");
     type Action = Action;
     type TaskResult = Infallible;
+
+    fn accepts_item(&self, item: &str) -> bool {
+        ITEMS.contains(&item)
+    }
+    fn take_item(&mut self, item: &str, from: &Body) -> Result<(), Text> {
+        let item = ITEMS.iter().position(|own| *own == item);
+        let value = item.and_then(|item| Some((item, from.get::<NovoProfile>()?.values[item])));
+        self.staged.edit_values(value);
+        value.map(drop).ok_or_else(|| Text::new("comparison.not_taken"))
+    }
 
     fn connect(&mut self, opened: OpenedConnection<Novo>, services: &mut Services) {
         self.release_thread(JobState::Cancelled, services);

@@ -49,7 +49,7 @@ impl TypedDeviceView for NovoView {
         actions: &mut Vec<StudioAction>,
     ) {
         page::scrollable_page(ui, theme, (device.id(), page.index()), |ui| match page {
-            Page::Backups => backups::page_ui(ui, theme, device, actions),
+            Page::Backups => backups::page_ui(ui, theme, (studio, device), actions),
             Page::Values => {
                 card(ui, theme, TEXTS.text("novo.values"), |ui| {
                     for (item, (name, typed)) in ITEMS.into_iter().zip(typed).enumerate() {

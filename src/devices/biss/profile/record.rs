@@ -170,6 +170,17 @@ impl BissProfile {
         self.data.iter().find_map(|image| image.bank(number))
     }
 
+    /// Returns the name of the data area to which a bank belongs.
+    pub fn area_name(&self, bank: u8) -> Option<&str> {
+        let area = self.data.iter().find(|area| (area.first..=area.last).contains(&bank))?;
+        Some(area.name.as_str()).filter(|name| !name.is_empty())
+    }
+
+    /// Returns the value of a register in a data area, or `None` if the profile does not contain its bank.
+    pub fn register(&self, address: RegisterAddress) -> Option<u8> {
+        self.bank(address.bank()?)?.bytes.get(usize::from(address.address())).copied()
+    }
+
     /// Changes a register in a data area. Returns `false` if the profile does not contain its bank.
     pub fn set_register(&mut self, address: RegisterAddress, byte: u8) -> bool {
         let Some(number) = address.bank() else { return false };

@@ -83,10 +83,15 @@ impl Encoder {
     /// Returns the profile with its edits, or `None` if this is an encoder.
     pub(crate) fn edited_profile(&self) -> Option<BissProfile> {
         let mut profile = self.profile()?.clone();
+        self.add_edits_to(&mut profile);
+        Some(profile)
+    }
+
+    /// Replaces the registers of a profile that are edited.
+    pub(super) fn add_edits_to(&self, profile: &mut BissProfile) {
         for (at, byte) in self.memory.iter() {
             profile.set_register(at, byte);
         }
-        Some(profile)
     }
 
     pub fn identity(&self) -> Option<&Identity> {

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{BissForm, Encoder, report};
+use super::{BissForm, Encoder, items, report};
 use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
-use crate::app::{DeviceType, Text};
+use crate::app::{DeviceType, ItemValues, Text};
 use crate::devices::biss::jobs::{Biss, check_link, load_descriptions};
 use crate::devices::biss::procedures::{BusParameters, FrameParameters, LineParameters, PinParameters};
 use crate::devices::biss::profile::BissProfile;
@@ -31,6 +31,19 @@ impl DeviceType for Encoder {
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::entry_error_text(cause)
+    }
+
+    fn item_name(item: &str, manual_name: Option<&str>) -> Option<Text> {
+        items::item_name(item, manual_name)
+    }
+
+    fn item_group(item: &str) -> Option<Text> {
+        items::item_group(item)
+    }
+
+    fn item_values(profile: &BissProfile, _document: &ProfileDocument) -> ItemValues {
+        let profile = profile.clone();
+        Box::new(move |item, value| items::item_value(&profile, item, value))
     }
 
     fn report(

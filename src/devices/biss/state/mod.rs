@@ -11,6 +11,7 @@ pub mod explain;
 pub mod format;
 pub mod forms;
 mod guide;
+mod items;
 mod kind;
 mod log;
 mod mark;

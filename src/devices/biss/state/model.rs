@@ -3,13 +3,16 @@
 use std::convert::Infallible;
 
 use super::explain::outcome_texts;
-use super::{BissAction, Encoder, ProcedureEnd, status_lines};
+use super::{BissAction, Encoder, ProcedureEnd, format, status_lines};
 use crate::app::action::OpenedConnection;
 use crate::app::report::{SessionResult, StatusLine};
 use crate::app::services::{JobState, Services};
 use crate::app::session::SessionEvents;
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, Recording, Tab, Text};
 use crate::devices::biss::jobs::{Biss, BissJob};
+use crate::devices::biss::profile::{BissProfile, RegisterRange};
+use crate::devices::biss::protocol::RegisterAddress;
+use crate::profile::Body;
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Biss");
@@ -59,6 +62,22 @@ impl DeviceModel for Encoder {
 
     fn record_mut(&mut self) -> &mut dyn Recording {
         &mut self.record
+    }
+
+    fn accepts_item(&self, item: &str) -> bool {
+        let start = item.parse::<RegisterRange>().map(RegisterRange::start);
+        let area = |start| self.description.as_ref()?.area_at(start);
+        start.is_ok_and(|start| area(start).is_some_and(|area| area.access.is_writable()))
+    }
+
+    fn take_item(&mut self, item: &str, from: &Body) -> Result<(), Text> {
+        let not_taken = || Text::new("comparison.not_taken");
+        let range: RegisterRange = item.parse().map_err(|_| not_taken())?;
+        let profile = from.get::<BissProfile>().ok_or_else(not_taken)?;
+        let byte = |at: RegisterAddress| profile.register(at);
+        let bytes = range.addresses().map(byte).collect::<Option<Vec<u8>>>().ok_or_else(not_taken)?;
+        let description = self.description.clone().ok_or_else(not_taken)?;
+        self.memory.edit_bytes(&description, range.start(), &bytes).map_err(format::edit_error_text)
     }
 
     fn memory(&self) -> Option<&dyn DeviceMemory> {

@@ -12,7 +12,9 @@ use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, Change, Commit, Committed, JobError, OperatorPresence, Prepared};
 use crate::devices::biss::procedures::procedure::{Failure, OperatorAnswer, OperatorTask, UnattendedOperator};
 use crate::devices::biss::procedures::{Error, create_profile};
-use crate::devices::biss::profile::{Bank, DataImage, Op, RegisterRange, RestoreOptions, check_device, other_type};
+use crate::devices::biss::profile::{
+    Bank, BissProfile, DataImage, Op, RegisterRange, RestoreOptions, check_device, other_type,
+};
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::devices::biss::state::explain;
 use crate::profile::{Body, PlanId, ProfileError};
@@ -174,6 +176,12 @@ impl HasProfile for Encoder {
             .chain(explain::unsaved_profile_warning(&profile))
             .collect();
         Some(Ok((Body::new(profile), remarks)))
+    }
+
+    fn add_edits(&self, body: &mut Body) {
+        if let Some(profile) = body.get_mut::<BissProfile>() {
+            self.add_edits_to(profile);
+        }
     }
 
     fn restore_change(body: Body) -> Result<Change, ProfileError> {

@@ -134,7 +134,7 @@ impl TypedDeviceView for BissView {
             return;
         }
         page::scrollable_page(ui, theme, (encoder.session.id, page.index()), |ui| match page {
-            Page::Backups => backups::page_ui(ui, theme, device, actions),
+            Page::Backups => backups::page_ui(ui, theme, (studio, device), actions),
             Page::Procedures => procedures::page_ui(ui, theme, studio, encoder, &mut view.procedures, actions),
             _ => encoder::page_ui(ui, theme, encoder, actions),
         });

@@ -1,10 +1,10 @@
 //! HIPERDRIVE as a kind of device for the studio, before a device is open.
 
-use super::{HiperdriveDevice, HiperdriveForm, report};
+use super::{HiperdriveDevice, HiperdriveForm, items, report};
 use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
-use crate::app::{DeviceType, Text};
+use crate::app::{DeviceType, ItemValues, Text};
 use crate::devices::hiperdrive::jobs::{Hiperdrive, check_link};
 use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
@@ -28,6 +28,18 @@ impl DeviceType for HiperdriveDevice {
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::entry_error_text(cause)
+    }
+
+    fn item_name(item: &str, _manual_name: Option<&str>) -> Option<Text> {
+        items::item_name(item)
+    }
+
+    fn item_group(item: &str) -> Option<Text> {
+        items::item_group(item)
+    }
+
+    fn item_values(profile: &HiperdriveProfile, document: &ProfileDocument) -> ItemValues {
+        items::item_values(profile, document)
     }
 
     fn report(

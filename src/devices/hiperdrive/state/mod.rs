@@ -13,6 +13,7 @@ mod events;
 pub mod explain;
 pub mod format;
 pub mod forms;
+mod items;
 mod job;
 mod kind;
 pub mod leds;

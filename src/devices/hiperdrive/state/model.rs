@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use super::{HiperdriveAction, HiperdriveDevice, status_lines};
+use super::{Edit, HiperdriveAction, HiperdriveDevice, format, is_editable, status_lines};
 use crate::app::action::OpenedConnection;
 use crate::app::live_session::LiveSession;
 use crate::app::recorder::Recorder;
@@ -13,7 +13,9 @@ use crate::app::{
     ActionContext, DeviceMemory, DeviceModel, EditStep, MotionControl, Recording, StoredDriveData, Tab, Text,
 };
 use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob};
+use crate::devices::hiperdrive::profile::{HiperdriveProfile, Item};
 use crate::devices::hiperdrive::protocol::DriveNumber;
+use crate::profile::Body;
 
 impl DeviceModel for HiperdriveDevice {
     const TAB: Tab = Tab::named("Hiperdrive");
@@ -71,6 +73,18 @@ impl DeviceModel for HiperdriveDevice {
     fn apply_edit_step(&mut self, step: EditStep) {
         step(&mut self.staged);
         self.refusal = None;
+    }
+
+    fn accepts_item(&self, item: &str) -> bool {
+        item.parse::<Item>().is_ok_and(|item| item.0.row().is_some_and(is_editable))
+    }
+
+    fn take_item(&mut self, item: &str, from: &Body) -> Result<(), Text> {
+        let not_taken = || Text::new("comparison.not_taken");
+        let item: Item = item.parse().map_err(|_| not_taken())?;
+        let value = from.get::<HiperdriveProfile>().and_then(|profile| profile.image.get(item.0));
+        let edit = Edit::Set(item.0, value.ok_or_else(not_taken)?);
+        self.staged.apply_edit(&edit).map(drop).map_err(|error| format::edit_error_text(&error))
     }
 
     fn memory(&self) -> Option<&dyn DeviceMemory> {

@@ -104,6 +104,14 @@ impl HasProfile for HiperdriveDevice {
         Some(Ok((Body::new(profile), remarks)))
     }
 
+    fn add_edits(&self, body: &mut Body) {
+        if let Some(profile) = body.get_mut::<HiperdriveProfile>() {
+            profile.image.values.iter_mut().for_each(|(number, value)| {
+                *value = self.staged.value(*number).unwrap_or(*value);
+            });
+        }
+    }
+
     fn restore_change(body: Body) -> Result<Change, ProfileError> {
         let profile = Box::new(body.into_profile()?);
         Ok(Change::Restore { profile, options: RestoreOptions::default() })

@@ -149,7 +149,7 @@ impl TypedDeviceView for HiperdriveView {
                 theme.add_gap(ui);
                 network::card_ui(ui, theme, unit, &mut view.network, actions);
             }
-            Page::Backups => backups::page_ui(ui, theme, device, actions),
+            Page::Backups => backups::page_ui(ui, theme, (studio, device), actions),
         });
     }
 

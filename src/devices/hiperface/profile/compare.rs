@@ -1,9 +1,8 @@
-//! Differences between two encoders, or between an encoder and a profile: one item for each run of differing bytes.
+//! Comparison of two encoders, or of an encoder with a profile: one item for each run of differing or equal bytes.
 
 use super::{FieldImage, FieldRange, Item};
 use crate::bits::hex_compact;
-use crate::profile::difference::differing_ranges;
-use crate::profile::{Comparison, Difference};
+use crate::profile::{ComparedItem, Comparison};
 
 pub(super) fn compare(left: &[FieldImage], right: &[FieldImage]) -> Comparison {
     let mut comparison = Comparison::default();
@@ -14,51 +13,47 @@ pub(super) fn compare(left: &[FieldImage], right: &[FieldImage]) -> Comparison {
     for number in numbers {
         match (find(left, number), find(right, number)) {
             (Some(left), Some(right)) => compare_fields(&left, &right, &mut comparison),
-            (Some(_), None) => comparison.only_left.push(field_name(number)),
-            (None, _) => comparison.only_right.push(field_name(number)),
+            (left, right) => {
+                let [left, right] = [left, right].map(|field| field.map(|field| bytes_text(&field)));
+                comparison.items.push(ComparedItem { left, right, ..item(FieldRange::whole_field(number)) });
+            }
         }
     }
     comparison
 }
 
 fn compare_fields(left: &FieldImage, right: &FieldImage, comparison: &mut Comparison) {
-    comparison.compared += 1;
-    if left.status != right.status {
-        comparison.differences.push(Difference {
-            item: Item::Status(left.number).to_string(),
-            left: format!("{:02X}", left.status.byte()),
-            right: format!("{:02X}", right.status.byte()),
-        });
-    }
+    let status = |field: &FieldImage| Some(format!("{:02X}", field.status.byte()));
+    comparison.compare_item(Item::Status(left.number).to_string(), status(left), status(right));
     match (&left.bytes, &right.bytes) {
         (Some(a), Some(b)) => compare_bytes(left.number, a, b, comparison),
         (None, None) => {}
-        (Some(_), None) => comparison.only_left.push(field_name(left.number)),
-        (None, Some(_)) => comparison.only_right.push(field_name(left.number)),
+        (one, other) => {
+            let range = FieldRange::whole_field(left.number);
+            let [left, right] = [one, other].map(|bytes| bytes.as_deref().map(hex_compact));
+            comparison.items.push(ComparedItem { left, right, ..item(range) });
+        }
     }
 }
 
 fn compare_bytes(number: u8, left: &[u8], right: &[u8], comparison: &mut Comparison) {
+    comparison.compare_bytes(left, right, |run| item(FieldRange::new(number, run.start, run.len())));
     let common = left.len().min(right.len());
-    comparison.compared += common as u64;
-    for run in differing_ranges(left, right) {
-        let part = |side: &[u8]| hex_compact(side.get(run.clone()).unwrap_or_default());
-        comparison.differences.push(Difference {
-            item: FieldRange::new(number, run.start, run.len()).to_string(),
-            left: part(left),
-            right: part(right),
-        });
-    }
-    let rest = |side: &[u8]| FieldRange::new(number, common, side.len() - common).to_string();
-    if left.len() > common {
-        comparison.only_left.push(rest(left));
-    } else if right.len() > common {
-        comparison.only_right.push(rest(right));
+    let longer = left.len().max(right.len());
+    if longer > common {
+        let rest = |side: &[u8]| side.get(common..).filter(|rest| !rest.is_empty()).map(hex_compact);
+        let range = FieldRange::new(number, common, longer - common);
+        comparison.items.push(ComparedItem { left: rest(left), right: rest(right), ..item(range) });
     }
 }
 
-fn field_name(number: u8) -> String {
-    FieldRange { field: number, start: 0, count: None }.to_string()
+fn item(range: FieldRange) -> ComparedItem {
+    ComparedItem { item: range.to_string(), ..ComparedItem::default() }
+}
+
+/// Returns the bytes of a field, or an empty text if they could not be read.
+fn bytes_text(field: &FieldImage) -> String {
+    field.bytes.as_deref().map(hex_compact).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -78,10 +73,11 @@ mod tests {
         let left = [field(0, 0xC8, Some(&[0; 16])), field(1, 0xE8, None), field(2, 0xC8, Some(&[0; 16]))];
         let right = [field(0, 0x88, Some(&changed)), field(1, 0xE8, None)];
         let comparison = compare(&left, &right);
+        let differences = comparison.differences();
         let items: Vec<(&str, &str, &str)> =
-            comparison.differences.iter().map(|d| (d.item.as_str(), d.left.as_str(), d.right.as_str())).collect();
+            differences.iter().map(|d| (d.item.as_str(), d.left.as_str(), d.right.as_str())).collect();
         assert_eq!(items, [("status:0", "C8", "88"), ("field:0@3+2", "0000", "0815"), ("field:0@15+1", "00", "01")]);
-        assert_eq!(comparison.only_left, ["field:2"]);
+        assert_eq!(comparison.only_left(), ["field:2"]);
         assert_eq!(comparison.compared, 1 + 16 + 1);
     }
 
@@ -91,7 +87,7 @@ mod tests {
             &[field(0, 0xC8, Some(&[0; 16])), field(1, 0xE8, Some(&[0; 16]))],
             &[field(0, 0xC9, Some(&[0; 32])), field(1, 0xE8, None)],
         );
-        assert_eq!(comparison.only_right, ["field:0@16+16"]);
-        assert_eq!(comparison.only_left, ["field:1"]);
+        assert_eq!(comparison.only_right(), ["field:0@16+16"]);
+        assert_eq!(comparison.only_left(), ["field:1"]);
     }
 }

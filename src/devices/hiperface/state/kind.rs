@@ -1,10 +1,10 @@
 //! HIPERFACE as a kind of device in the studio, before an encoder is opened.
 
-use super::{Encoder, LinkForm, report};
+use super::{Encoder, LinkForm, items, report};
 use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
-use crate::app::{DeviceType, Severity, Text};
+use crate::app::{DeviceType, ItemValues, Severity, Text};
 use crate::devices::hiperface::jobs::{self, Hiperface, check_link, encoder_types};
 use crate::devices::hiperface::procedures::{LinkParameters, recorded_identity};
 use crate::devices::hiperface::profile::HiperfaceProfile;
@@ -38,6 +38,18 @@ impl DeviceType for Encoder {
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::rejection_text(cause)
+    }
+
+    fn item_name(item: &str, _manual_name: Option<&str>) -> Option<Text> {
+        items::item_name(item)
+    }
+
+    fn item_group(item: &str) -> Option<Text> {
+        items::item_group(item)
+    }
+
+    fn item_values(_profile: &HiperfaceProfile, _document: &ProfileDocument) -> ItemValues {
+        Box::new(items::item_value)
     }
 
     fn report(

@@ -9,6 +9,7 @@ mod encoder;
 mod events;
 pub mod explain;
 pub mod forms;
+mod items;
 mod job;
 mod kind;
 mod meaning;

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use super::explain::check_lines;
-use super::{Encoder, HiperfaceAction, status_lines};
+use super::{Encoder, HiperfaceAction, explain, status_lines};
 use crate::app::action::OpenedConnection;
 use crate::app::report::{SessionResult, StatusLine};
 use crate::app::services::{JobState, Services, StudioEnvironment};
@@ -11,6 +11,8 @@ use crate::app::session::SessionEvents;
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, PrepareFn, Recording, SineCosineSource, Tab, Text};
 use crate::devices::hiperface::jobs::{Hiperface, HiperfaceJob};
 use crate::devices::hiperface::procedures::InitialAccessCodes;
+use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item};
+use crate::profile::Body;
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Hiperface");
@@ -65,6 +67,24 @@ impl DeviceModel for Encoder {
 
     fn read_device(&mut self, services: &mut Services) {
         self.read_encoder(services);
+    }
+
+    fn accepts_item(&self, item: &str) -> bool {
+        matches!(item.parse(), Ok(Item::Field(FieldRange { count: Some(_), .. })))
+    }
+
+    fn take_item(&mut self, item: &str, from: &Body) -> Result<(), Text> {
+        let not_taken = || Text::new("comparison.not_taken");
+        let Ok(Item::Field(range)) = item.parse() else { return Err(not_taken()) };
+        let fields = from.get::<HiperfaceProfile>().map(|profile| profile.fields.as_slice()).unwrap_or_default();
+        let field = fields.iter().find(|own| own.number == range.field);
+        let bytes = field.and_then(|own| own.bytes.as_ref()).and_then(|bytes| {
+            let end = range.count.map_or(bytes.len(), |count| range.start.saturating_add(count));
+            bytes.get(range.start..end)
+        });
+        let bytes = bytes.ok_or_else(not_taken)?;
+        let edited = self.staged.edit_bytes(range.field, range.start, bytes);
+        edited.map_err(|error| explain::edit_error_text(&error, bytes.len(), range.start))
     }
 
     fn memory(&self) -> Option<&dyn DeviceMemory> {

@@ -10,7 +10,7 @@ use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, S
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperface::jobs::{Change, Committed, Hiperface, HiperfaceJob, Prepared};
 use crate::devices::hiperface::procedures::{SaveOptions, create_profile};
-use crate::devices::hiperface::profile::{RecordedValues, RestoreOptions, check_device};
+use crate::devices::hiperface::profile::{HiperfaceProfile, RecordedValues, RestoreOptions, check_device};
 use crate::profile::{Body, ProfileError};
 
 impl Encoder {
@@ -109,6 +109,12 @@ impl HasProfile for Encoder {
             .collect();
         let recorded = RecordedValues { counter: self.counter, ..RecordedValues::default() };
         Some(Ok((Body::new(create_profile(identity, fields, recorded)), remarks)))
+    }
+
+    fn add_edits(&self, body: &mut Body) {
+        if let Some(profile) = body.get_mut::<HiperfaceProfile>() {
+            profile.fields = self.staged.edited_fields();
+        }
     }
 
     fn restore_change(body: Body) -> Result<Change, ProfileError> {

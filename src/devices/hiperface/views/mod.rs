@@ -98,7 +98,7 @@ impl TypedDeviceView for HiperfaceView {
             Page::Values => values::page_ui(ui, theme, encoder, &mut view.values, actions),
             Page::Setup => setup::page_ui(ui, theme, encoder, &mut view.setup, actions),
             Page::Commutation => commutation::page_ui(ui, theme, encoder, actions),
-            Page::Backups => backups::page_ui(ui, theme, device, actions),
+            Page::Backups => backups::page_ui(ui, theme, (studio, device), actions),
             Page::Memory => {}
         });
     }

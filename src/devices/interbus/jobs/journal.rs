@@ -13,7 +13,7 @@ use crate::worker::{SessionContext, SessionLog};
 use super::job::logbook_key;
 
 /// Description in the entry of the logbook.
-const PROGRAM_READ_NOTE: &str = "cam programs read, each of which may be stored when it is left";
+pub const PROGRAM_READ_NOTE: &str = "cam programs read, each of which may be stored when it is left";
 
 pub(super) struct WriteJournal {
     store: Store,

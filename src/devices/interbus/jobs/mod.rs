@@ -16,6 +16,7 @@ pub use job::{
 };
 pub use open::{check_link, open};
 
+pub use journal::PROGRAM_READ_NOTE;
 use journal::WriteJournal;
 
 use crate::analysis::check::Verdict;

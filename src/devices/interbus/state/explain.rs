@@ -12,7 +12,7 @@ use crate::devices::interbus::state::TEXTS;
 pub use check::check_lines;
 pub use entry::entry_error_text;
 pub use gateway::{damage_text, exception_text};
-pub use item::{direction_text, parameter_text, read_out, startup_mode_text};
+pub use item::{cam_mask_text, direction_text, parameter_text, read_out, startup_mode_text};
 pub use write::{change_text, operation_texts, other_type, plan_error_text, severity_of, wear_warning, written_text};
 
 use crate::app::Text;

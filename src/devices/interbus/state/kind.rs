@@ -1,11 +1,11 @@
 //! INTERBUS as a kind of device that the studio offers.
 
 use super::staged::StagedEdits;
-use super::{Encoder, InterbusForm, report};
+use super::{Encoder, InterbusForm, items, report};
 use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
-use crate::app::{DeviceType, Text};
+use crate::app::{DeviceType, ItemValues, Text};
 use crate::devices::interbus::jobs::{Interbus, check_link};
 use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::profile::InterbusProfile;
@@ -29,6 +29,19 @@ impl DeviceType for Encoder {
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::entry_error_text(cause)
+    }
+
+    fn item_name(item: &str, _manual_name: Option<&str>) -> Option<Text> {
+        items::item_name(item)
+    }
+
+    fn item_group(item: &str) -> Option<Text> {
+        items::item_group(item)
+    }
+
+    fn item_values(profile: &InterbusProfile, _document: &ProfileDocument) -> ItemValues {
+        let profile = profile.clone();
+        Box::new(move |item, _| items::item_value(&profile, item))
     }
 
     fn report(

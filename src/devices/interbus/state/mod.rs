@@ -10,6 +10,7 @@ mod events;
 pub mod explain;
 pub mod format;
 pub mod forms;
+mod items;
 mod job;
 mod kind;
 mod model;

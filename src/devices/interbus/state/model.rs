@@ -1,14 +1,17 @@
 //! Implementation of the studio's device traits for INTERBUS encoders.
 
+use super::cams::labels::edit_error_text;
 use super::trace::FrameDecoder;
-use super::{Encoder, InterbusAction, TEXTS, TaskResult, status_lines};
+use super::{Edit, Encoder, InterbusAction, TEXTS, TaskResult, status_lines};
 use crate::app::action::OpenedConnection;
 use crate::app::report::{SessionResult, StatusLine};
 use crate::app::services::{JobState, Services};
 use crate::app::session::{HasProfile, SessionEvents};
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, EditStep, Recording, Severity, Tab, Text, explain};
 use crate::devices::interbus::jobs::{Interbus, InterbusJob};
+use crate::devices::interbus::profile::{InterbusProfile, Item};
 use crate::devices::interbus::protocol::Reply;
+use crate::profile::Body;
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Interbus");
@@ -91,6 +94,18 @@ impl DeviceModel for Encoder {
         } else {
             self.session.ask_where_to_save(services);
         }
+    }
+
+    fn accepts_item(&self, item: &str) -> bool {
+        item.parse::<Item>().is_ok_and(Item::is_writable)
+    }
+
+    fn take_item(&mut self, item: &str, from: &Body) -> Result<(), Text> {
+        let not_taken = || Text::new("comparison.not_taken");
+        let item: Item = item.parse().map_err(|_| not_taken())?;
+        let value = from.get::<InterbusProfile>().and_then(|profile| profile.image.value_of(item));
+        let edit = Edit::of_item(item, value.ok_or_else(not_taken)?).ok_or_else(not_taken)?;
+        self.staged.apply_edit(&edit).map(drop).map_err(|error| edit_error_text(&error))
     }
 
     fn memory(&self) -> Option<&dyn DeviceMemory> {

@@ -2,13 +2,13 @@
 
 use super::cams::{Chart, Lane, VisibleRange, grid_ticks, labels as cam_labels};
 use super::explain::{direction_text, error_word_text, startup_mode_text};
+use super::items::unit_text;
 use super::staged::StagedEdits;
 use super::{TEXTS, format};
 use crate::app::Text;
-use crate::app::explain::literal_text;
 use crate::app::report::{ReportContent, ReportContext, StatusLine};
 use crate::devices::interbus::jobs::logbook_key;
-use crate::devices::interbus::profile::{InterbusProfile, Item, ItemValue, Scale};
+use crate::devices::interbus::profile::{InterbusProfile, ItemValue, Scale};
 use crate::devices::interbus::protocol::{ErrorWord, Program, ProgramNumber, ReadOutValue};
 use crate::drawing::{Drawing, DrawingLabel, DrawingShape, FAINT_COLOUR, LabelAlign, PathSegment};
 use crate::profile::ProfileDocument;
@@ -98,16 +98,6 @@ fn parameter_section(context: &ReportContext<'_>, profile: &InterbusProfile) -> 
     let parameters = &profile.image.parameters;
     let range = context.fact(TEXTS.text("ib_card.range"), format::range_text(parameters.steps, parameters.revolutions));
     Section::new(context.say("report.settings")).with(Block::Facts(vec![range])).with(Block::Table(table))
-}
-
-fn unit_text(item: Item) -> Option<Text> {
-    Some(match item.unit() {
-        "" => return None,
-        "steps" => Text::new("unit.steps"),
-        "turns" => TEXTS.text("ib_item.revolutions"),
-        "bits" => TEXTS.text("report.ib_bits"),
-        symbol => literal_text(symbol),
-    })
 }
 
 fn program_section(

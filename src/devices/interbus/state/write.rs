@@ -99,6 +99,14 @@ impl HasProfile for Encoder {
         Some(Ok((Body::new(profile), remarks)))
     }
 
+    fn add_edits(&self, body: &mut Body) {
+        let wanted = self.staged.edited_values();
+        if let Some((profile, wanted)) = body.get_mut::<InterbusProfile>().zip(wanted) {
+            profile.image = wanted.image.clone();
+            profile.names = wanted.names.clone();
+        }
+    }
+
     fn restore_change(body: Body) -> Result<Change, ProfileError> {
         let profile = Box::new(body.into_profile()?);
         Ok(Change::Restore { profile, options: RestoreOptions::default() })

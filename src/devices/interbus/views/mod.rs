@@ -1,6 +1,7 @@
 //! The INTERBUS tab with one page for each task.
 
 mod cams;
+mod compared;
 mod connect_form;
 mod encoder;
 mod leds;
@@ -14,7 +15,8 @@ mod widgets;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Rgb, Studio};
+use crate::app::{Action, AnyDevice, Rgb, Studio, Text};
+use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::interbus::state::{Encoder, InterbusAction, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
@@ -68,6 +70,14 @@ impl TypedDeviceView for InterbusView {
 
     fn serial_number(encoder: &Encoder) -> Option<&str> {
         encoder.serial_number()
+    }
+
+    fn compared_picture() -> Option<Text> {
+        Some(TEXTS.text("ib_card.programs"))
+    }
+
+    fn compared_picture_ui(ui: &mut Ui, theme: &Theme, left: &InterbusProfile, right: &InterbusProfile) {
+        compared::programs_ui(ui, theme, left, right);
     }
 
     fn named_actions(theme: &Theme, encoder: &Encoder) -> Vec<NamedAction> {
@@ -124,7 +134,7 @@ impl TypedDeviceView for InterbusView {
                     theme.add_gap(ui);
                     leds::cards_ui(ui, theme, &mut view.lamps);
                 }
-                Page::Backups => backups::page_ui(ui, theme, device, actions),
+                Page::Backups => backups::page_ui(ui, theme, (studio, device), actions),
             }
         });
     }

@@ -2,26 +2,19 @@
 
 use super::SsiProfile;
 use crate::devices::ssi::protocol::{Range, Word};
-use crate::profile::{Comparison, Difference};
+use crate::profile::Comparison;
 
 /// Compares frame, direction, preset and reading settings. Missing entries have their default values.
 pub(super) fn compare(left: &SsiProfile, right: &SsiProfile) -> Comparison {
     let (left, right) = (compared_items(left), compared_items(right));
     let mut comparison = Comparison::default();
-    for (item, left) in &left {
-        match right.iter().find(|(other, _)| other == item) {
-            None => comparison.only_left.push(item.clone()),
-            Some((_, right)) => {
-                comparison.compared += 1;
-                if left != right {
-                    let (item, left, right) = (item.clone(), left.clone(), right.clone());
-                    comparison.differences.push(Difference { item, left, right });
-                }
-            }
-        }
+    let value = |side: &[(String, String)], item: &str| {
+        side.iter().find(|(own, _)| own == item).map(|(_, value)| value.clone())
+    };
+    let is_new = |item: &&(String, String)| value(&left, &item.0).is_none();
+    for (item, _) in left.iter().chain(right.iter().filter(is_new)) {
+        comparison.compare_item(item.clone(), value(&left, item), value(&right, item));
     }
-    let is_new = |item: &&(String, String)| left.iter().all(|(other, _)| *other != item.0);
-    comparison.only_right = right.iter().filter(is_new).map(|(item, _)| item.clone()).collect();
     comparison
 }
 
@@ -105,8 +98,8 @@ mod tests {
         SsiProfile::from_family(family, &settings.resolve(family).unwrap())
     }
 
-    fn listed(comparison: &Comparison) -> Vec<(&str, &str, &str)> {
-        comparison.differences.iter().map(|d| (d.item.as_str(), d.left.as_str(), d.right.as_str())).collect()
+    fn listed(comparison: &Comparison) -> Vec<(String, String, String)> {
+        comparison.differences().into_iter().map(|own| (own.item, own.left, own.right)).collect()
     }
 
     #[test]
@@ -126,11 +119,12 @@ mod tests {
             ("reading.clock_hz", "400000", "1000000"),
             ("reading.cable_metres", "none", "30"),
         ];
+        let expected = expected.map(|(item, left, right)| (item.to_owned(), left.to_owned(), right.to_owned()));
         assert_eq!(listed(&comparison), expected);
         // Family, clocks, turns and steps, seven of the frame, five of its error bit, two, four of the reading.
         assert_eq!(comparison.compared, 1 + 1 + 2 + 7 + 5 + 2 + 4);
         assert_eq!(comparison.one_sided_items(), Vec::<String>::new());
-        assert_eq!(compare(&right, &right).differences, []);
+        assert_eq!(compare(&right, &right).differences(), []);
     }
 
     #[test]
@@ -142,12 +136,12 @@ mod tests {
         let pattern = ["name", "word", "meaning"].map(|part| format!("patterns[0].{part}"));
         let expected =
             [vec!["family".to_owned()], bit(0).into(), bit(1).into(), bit(2).into(), pattern.into()].concat();
-        assert_eq!(comparison.only_left, expected);
-        assert_eq!(comparison.only_right, Vec::<String>::new());
-        assert_eq!(listed(&comparison), [("clocks", "21", "18")]);
+        assert_eq!(comparison.only_left(), expected);
+        assert_eq!(comparison.only_right(), Vec::<String>::new());
+        assert_eq!(listed(&comparison), [("clocks".to_owned(), "21".to_owned(), "18".to_owned())]);
         let range = compare(&profile("ahs36"), &profile("ahs36,steps=360"));
         assert_eq!(
-            (range.only_left, range.only_right),
+            (range.only_left(), range.only_right()),
             (vec!["multiturn".into(), "singleturn".into()], vec!["steps".into(), "turns".into()])
         );
     }

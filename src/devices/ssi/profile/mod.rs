@@ -6,6 +6,7 @@
 mod compare;
 mod entry_error;
 mod record;
+mod take;
 mod text;
 
 pub use entry_error::EntryError;

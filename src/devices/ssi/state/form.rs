@@ -224,18 +224,29 @@ impl LayoutDesigner {
     }
 }
 
+/// Returns the name of a direction. A linear encoder has another one than a rotary encoder.
+pub(super) fn direction_text(direction: Direction, is_length: bool) -> Text {
+    TEXTS.text(match (direction, is_length) {
+        (Direction::Clockwise, false) => "ssi_form.cw",
+        (Direction::CounterClockwise, false) => "ssi_form.ccw",
+        (Direction::Clockwise, true) => "ssi_form.forwards",
+        (Direction::CounterClockwise, true) => "ssi_form.backwards",
+    })
+}
+
+/// Describes the bits that a Gray code covers.
+pub(super) fn coverage_text(coded: GrayCoverage) -> Text {
+    TEXTS.text(match coded {
+        GrayCoverage::Position => "ssi_form.over_position",
+        GrayCoverage::Area => "ssi_form.over_area",
+        GrayCoverage::AreaAndErrors => "ssi_form.over_errors",
+    })
+}
+
 fn counting_group(designer: &LayoutDesigner) -> Group {
     let profile = &designer.design().profile;
     let is_length = matches!(profile.descriptor.range, Range::Length { .. });
-    let words = |direction| {
-        TEXTS.text(match (direction, is_length) {
-            (Direction::Clockwise, false) => "ssi_form.cw",
-            (Direction::CounterClockwise, false) => "ssi_form.ccw",
-            (Direction::Clockwise, true) => "ssi_form.forwards",
-            (Direction::CounterClockwise, true) => "ssi_form.backwards",
-        })
-    };
-    let all = [Direction::Clockwise, Direction::CounterClockwise].map(|own| (own, words(own)));
+    let all = [Direction::Clockwise, Direction::CounterClockwise].map(|own| (own, direction_text(own, is_length)));
     Group {
         title: "ssi_form.counting",
         rows: vec![
@@ -255,14 +266,7 @@ fn code_row(own: Code) -> Row {
 }
 
 fn coded_range_row(own: GrayCoverage) -> Row {
-    let words = |coded| {
-        TEXTS.text(match coded {
-            GrayCoverage::Position => "ssi_form.over_position",
-            GrayCoverage::Area => "ssi_form.over_area",
-            GrayCoverage::AreaAndErrors => "ssi_form.over_errors",
-        })
-    };
-    Row::with_choice(Field::Over, "ssi_form.over", &GRAY_COVERAGES.map(|coded| (coded, words(coded))), &own)
+    Row::with_choice(Field::Over, "ssi_form.over", &GRAY_COVERAGES.map(|coded| (coded, coverage_text(coded))), &own)
         .with_hint("ssi_form.over_hint")
 }
 

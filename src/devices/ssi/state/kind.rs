@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use super::design::LayoutDesigner;
 use super::families::families;
-use super::{Encoder, SsiForm, report};
+use super::{Encoder, SsiForm, items, report};
 use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, Session, Source};
 use crate::app::studio::SessionId;
-use crate::app::{DeviceType, Text};
+use crate::app::{DeviceType, ItemValues, Text};
 use crate::devices::ssi::jobs::{Ssi, check_link};
 use crate::devices::ssi::procedures::LinkParameters;
 use crate::devices::ssi::profile::SsiProfile;
@@ -33,6 +33,19 @@ impl DeviceType for Encoder {
 
     fn explain_rejection(cause: &Cause) -> Option<Text> {
         explain::entry_error_text(cause)
+    }
+
+    fn item_name(item: &str, _manual_name: Option<&str>) -> Option<Text> {
+        items::item_name(item)
+    }
+
+    fn item_group(item: &str) -> Option<Text> {
+        items::item_group(item)
+    }
+
+    fn item_values(profile: &SsiProfile, _document: &ProfileDocument) -> ItemValues {
+        let profile = profile.clone();
+        Box::new(move |item, value| items::item_value(&profile, item, value))
     }
 
     fn report(

@@ -12,6 +12,7 @@ pub mod explain;
 mod export;
 mod families;
 mod form;
+mod items;
 mod job;
 mod kind;
 mod model;

@@ -14,6 +14,7 @@ use crate::app::{
     explain,
 };
 use crate::devices::ssi::jobs::{Ssi, SsiJob};
+use crate::devices::ssi::profile::SsiProfile;
 use crate::link::LinkUrl;
 use crate::profile::{Body, ProfileDocument, ProfileError};
 
@@ -63,6 +64,16 @@ impl DeviceModel for Encoder {
 
     fn edited_body(&self) -> Option<Body> {
         Some(Body::new(self.edited_profile()))
+    }
+
+    fn accepts_item(&self, _item: &str) -> bool {
+        true
+    }
+
+    fn take_item(&mut self, item: &str, from: &Body) -> Result<(), Text> {
+        let from = from.get::<SsiProfile>().ok_or_else(|| Text::new("comparison.not_taken"))?;
+        self.apply_edit(Edit::Whole(Box::new(self.edited_profile().with_item(item, from))));
+        self.designer.problem().cloned().map_or(Ok(()), Err)
     }
 
     fn apply_profile(&mut self, body: Body, _services: &mut Services) -> Result<(), ProfileError> {

@@ -1,5 +1,6 @@
 //! The SSI tab: one page per task.
 
+mod compared;
 mod connect_form;
 mod encoder;
 mod export;
@@ -16,7 +17,8 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, DeviceModel, Rgb, Studio};
+use crate::app::{Action, AnyDevice, DeviceModel, Rgb, Studio, Text};
+use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::state::{Encoder, SsiAction, TEXTS};
 use crate::ui::controls::labelled_button;
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
@@ -63,6 +65,14 @@ impl TypedDeviceView for SsiView {
     type ConnectForm = connect_form::SsiConnectForm;
 
     const HAS_UNDO_KEYS: bool = true;
+
+    fn compared_picture() -> Option<Text> {
+        Some(TEXTS.text("report.ssi_frame"))
+    }
+
+    fn compared_picture_ui(ui: &mut Ui, theme: &Theme, left: &SsiProfile, right: &SsiProfile) {
+        compared::frames_ui(ui, theme, left, right);
+    }
 
     fn named_actions(theme: &Theme, encoder: &Encoder) -> Vec<NamedAction> {
         let own = |word, action| {

@@ -118,12 +118,13 @@ fn differences_are_named_by_drive() {
     right.image = image(&[1, 3, 4]).overlaid_with(&image_with_values(&[(24, 1), (166, 100), (366, 200)]));
     right.image.values.remove(&parameter(190));
     let comparison = profile().compare(&right);
+    let differences = comparison.differences();
     let differences: Vec<(&str, &str, &str)> =
-        comparison.differences.iter().map(|own| (own.item.as_str(), own.left.as_str(), own.right.as_str())).collect();
+        differences.iter().map(|own| (own.item.as_str(), own.left.as_str(), own.right.as_str())).collect();
     assert_eq!(differences, [("24", "0", "1"), ("166", "350", "100"), ("166 drive 3", "350", "200")]);
-    assert_eq!((comparison.compared, comparison.only_left.as_slice()), (27, &["190".to_owned()][..]));
-    assert_eq!(comparison.only_right.len(), 13);
-    assert_eq!(comparison.only_right[0], "152 drive 4");
+    assert_eq!((comparison.compared, comparison.only_left()), (27, vec!["190".to_owned()]));
+    assert_eq!(comparison.only_right().len(), 13);
+    assert_eq!(comparison.only_right()[0], "152 drive 4");
 }
 
 /// Steps per turn are 256 · numerator / denominator (reference 5): 256 · 400 / 256 = 400 of 0.01 mm in 4 mm; 256 · 20 /

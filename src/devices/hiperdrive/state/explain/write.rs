@@ -11,6 +11,7 @@ use crate::app::review::OperationTexts;
 use crate::devices::hiperdrive::jobs::{Change, ChangeKind};
 use crate::devices::hiperdrive::procedures::write::{InterruptedWrite, WrittenChanges};
 use crate::devices::hiperdrive::profile::{Item, NetworkSettings, Op, PlanError, Service, TypeMismatch, Warning};
+use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::network::address_error_text;
 
@@ -73,9 +74,15 @@ fn network_text(settings: &NetworkSettings) -> Text {
         .with("gateway", interface.gateway)
 }
 
-/// Returns the name of a parameter with its number and drive.
+/// Returns the name of a parameter with its number, and with its drive unless that is the first one.
 pub fn item_text(item: Item) -> Text {
-    TEXTS.text("hd_op.parameter").with("number", item).with_text("name", parameter_name_text(item.0))
+    let text = match item.0.drive() {
+        None | Some(DriveNumber::FIRST) => TEXTS.text("hd_op.parameter").with("number", item),
+        Some(drive) => {
+            TEXTS.text("hd_op.parameter_of").with("number", item.0.drive1_number()).with("drive", drive.get())
+        }
+    };
+    text.with_text("name", parameter_name_text(item.0))
 }
 
 pub fn other_type(types: &TypeMismatch) -> Text {

@@ -183,15 +183,16 @@ fn a_comparison_lists_the_differences() {
     let (left, mut right) = (profile(MINE), profile("7654321"));
     right.recorded.temperature_tenths = None;
     assert_eq!(left.compare(&right).compared, 78);
-    assert!(left.compare(&right).differences.is_empty());
+    assert!(left.compare(&right).differences().is_empty());
     right.image =
         image_with(&right.image, &[("direction", ItemValue::Direction(super::super::Direction::Counterclockwise))]);
     right.image = image_with(&right.image, &[("cam:2:5", Cam(cam_between(1, 2))), ("cam-mask:2", Mask(0x0F))]);
     right.image.shift = WindowShift::new(25);
     right.image.programs[7] = None;
     let comparison = left.compare(&right);
+    let differences = comparison.differences();
     let found: Vec<[&str; 3]> =
-        comparison.differences.iter().map(|own| [own.item.as_str(), own.left.as_str(), own.right.as_str()]).collect();
+        differences.iter().map(|own| [own.item.as_str(), own.left.as_str(), own.right.as_str()]).collect();
     let expected = [
         ["direction", "cw", "ccw"],
         ["shift", "0", "25"],
@@ -199,6 +200,6 @@ fn a_comparison_lists_the_differences() {
         ["cam:2:5", "502..551", "1..2"],
     ];
     assert_eq!((found, comparison.compared), (expected.to_vec(), 69));
-    assert_eq!((comparison.only_left.len(), comparison.only_right.len()), (9, 0));
-    assert_eq!(comparison.only_left[1], "cam:8:0");
+    assert_eq!((comparison.only_left().len(), comparison.only_right().len()), (9, 0));
+    assert_eq!(comparison.only_left()[1], "cam:8:0");
 }

@@ -32,7 +32,7 @@ pub fn direction_text(direction: Direction) -> Text {
     })
 }
 
-pub(super) fn cam_mask_text(mask: u8) -> Text {
+pub fn cam_mask_text(mask: u8) -> Text {
     let on: Vec<String> =
         CamNumber::all().map(CamNumber::get).filter(|cam| mask >> cam & 1 != 0).map(|cam| cam.to_string()).collect();
     if on.is_empty() { TEXTS.text("ib_item.no_cam") } else { literal_text(on.join(", ")) }

@@ -1,7 +1,7 @@
 //! Edits, their effect on the edited values, and the reasons why an edit is rejected.
 
 use super::{BaseSource, EditedValues};
-use crate::devices::interbus::profile::{Direction, Edge, ImportedProgram, LONGEST_NAME};
+use crate::devices::interbus::profile::{Direction, Edge, ImportedProgram, Item, ItemValue, LONGEST_NAME};
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, Gear, GearError, OutOfRange, Parameter, Program, ProgramNumber, Value, WindowShift,
 };
@@ -45,6 +45,12 @@ pub enum Edit {
         /// Whether the cam is active.
         on: bool,
     },
+    /// Sets which cams of a program are active.
+    Mask {
+        program: ProgramNumber,
+        /// Mask with bit i for cam i.
+        mask: u8,
+    },
     /// Sets the name of a cam. An empty name removes it.
     Name {
         program: ProgramNumber,
@@ -74,6 +80,25 @@ pub enum Edit {
     },
     /// Sets the programs of an imported table.
     Table(Vec<ImportedProgram>),
+}
+
+impl Edit {
+    /// Returns the edit that sets an item, or `None` if the item cannot be edited or cannot have the value.
+    pub fn of_item(item: Item, value: ItemValue) -> Option<Self> {
+        Some(match (item, value) {
+            (Item::Steps, ItemValue::Number(steps)) => Edit::Steps(steps),
+            (Item::Revolutions, ItemValue::Number(revolutions)) => Edit::Revolutions(revolutions),
+            (Item::Direction, ItemValue::Direction(direction)) => Edit::Direction(direction),
+            (Item::Preset, ItemValue::Number(preset)) => Edit::Preset(preset),
+            (Item::ZeroShift, ItemValue::Number(zero_shift)) => Edit::ZeroShift(zero_shift),
+            (Item::Shift, ItemValue::Number(shift)) => Edit::Shift(WindowShift::new(u8::try_from(shift).ok()?)?),
+            (Item::CamMask(program), ItemValue::Mask(mask)) => Edit::Mask { program, mask },
+            (Item::Cam(program, cam), ItemValue::Cam(edges)) => {
+                Edit::Cam { program, cam, start: edges.start.get(), stop: edges.stop.get(), on: false }
+            }
+            _ => return None,
+        })
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -143,6 +168,14 @@ pub(super) fn apply_edit(wanted: &EditedValues, edit: &Edit, ground: BaseSource)
                 return Err(EditError::NoCam { program, cam });
             }
             own.set_cam_enabled(cam, on);
+        }
+        Edit::Mask { program, mask } => {
+            let own = program_mut(&mut after, program, ground)?;
+            let missing = CamNumber::all().find(|cam| mask >> cam.get() & 1 == 1 && own.cam(*cam).is_none());
+            if let Some(cam) = missing {
+                return Err(EditError::NoCam { program, cam });
+            }
+            own.mask = mask;
         }
         Edit::Name { program, cam, ref name } => after.names.set_cam(program, cam, checked_name(name)?),
         Edit::ProgramName { program, ref name } => after.names.set_program(program, checked_name(name)?),

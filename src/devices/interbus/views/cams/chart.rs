@@ -62,6 +62,7 @@ pub(super) fn card_ui(
         let model = CamChart {
             label: &label,
             chart,
+            compared: None,
             scale: &encoder.scale,
             position: reading.and_then(WordReading::position),
             own: sends.and_then(|own| own.cams()).map(|cams| cams.outputs),

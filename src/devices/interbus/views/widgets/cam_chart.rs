@@ -16,6 +16,8 @@ pub(crate) struct CamChart<'a> {
     pub(crate) label: &'a str,
     /// Edited program. A drag does not change it.
     pub(crate) chart: &'a Chart,
+    /// Program with which the chart is compared. The lanes show its cams as outlines.
+    pub(crate) compared: Option<&'a Chart>,
     pub(crate) scale: &'a Scale,
     /// Encoder position in steps, or `None` if unknown.
     pub(crate) position: Option<u32>,

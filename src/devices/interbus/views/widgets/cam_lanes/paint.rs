@@ -38,6 +38,7 @@ impl LanePainter<'_> {
             let rect = place.lane_rect(lane.cam);
             painter.hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, theme.palette.line));
             self.cam(&within, lane);
+            self.draw_compared_cam(&within, lane.cam);
         }
         self.position();
         if let Some(drag) = drag {
@@ -114,6 +115,25 @@ impl LanePainter<'_> {
             let end = Rect::from_x_y_ranges(x - HATCHING_WIDTH..=x, lane.y_range());
             draw_hatching(painter, theme, end, theme.palette.bad.into());
             painter.rect_stroke(end, CornerRadius::ZERO, Stroke::new(1.0, theme.palette.bad), StrokeKind::Inside);
+        }
+    }
+
+    /// Draws the outline of a cam of the program with which the chart is compared. It is dashed if the cam is inactive.
+    fn draw_compared_cam(&self, painter: &Painter, cam: CamNumber) {
+        let Some((chart, lane)) = self.model.compared.and_then(|chart| Some((chart, chart.lane_of(cam)?))) else {
+            return;
+        };
+        let stroke = Stroke::new(if lane.on { 2.0 } else { 1.0 }, self.theme.palette.text);
+        for stretch in lane.on_ranges(chart.range) {
+            let Some(bar) = self.place.bar_rect(cam, stretch) else { continue };
+            let around = bar.expand(1.0);
+            let path =
+                [around.left_top(), around.right_top(), around.right_bottom(), around.left_bottom(), around.left_top()];
+            if lane.on {
+                painter.rect_stroke(around, CornerRadius::same(2), stroke, StrokeKind::Inside);
+            } else {
+                painter.extend(Shape::dashed_line(&path, stroke, 2.0, 4.0));
+            }
         }
     }
 

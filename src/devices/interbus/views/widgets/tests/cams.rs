@@ -58,6 +58,7 @@ fn draw_with_options(page: Page, ring: bool, snaps: bool) -> Harness<'static, Pa
         let model = CamChart {
             label: "Program 1",
             chart: &chart,
+            compared: None,
             scale: &page.scale,
             position: page.position,
             own: page.own,
@@ -285,6 +286,7 @@ fn the_chart_stays_within_its_width() {
             let model = CamChart {
                 label: "Program 1",
                 chart: &chart,
+                compared: None,
                 scale: &page.scale,
                 position: None,
                 own: None,

@@ -1,0 +1,285 @@
+//! Comparison of any two of an open device, an open profile, a file, a backup and an entry of the logbook. Values of the
+//! left side can become edits of the right side. Devices are not accessed: the values read last are compared.
+
+mod rows;
+mod side;
+
+pub(in crate::app) use rows::compare_documents;
+pub use rows::{ComparedGroup, ComparedRow, ComparedRows, ItemValue, ItemValues};
+pub use side::{ComparedSide, ComparisonSource, Side};
+
+use std::path::PathBuf;
+
+use super::action::{Action, ReadError, TaskResult};
+use super::documents::{read_error, read_profile};
+use super::file_question::FileQuestion;
+use super::studio::{SessionId, Studio};
+use super::{AnyDevice, Text, explain};
+use crate::profile::ProfileDocument;
+use crate::store::{Backup, DeviceKey, Entry, EntryFilter, Logbook, LogbookError, Store};
+
+/// An action of the comparison.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ComparisonAction {
+    /// Open the comparison. A side that is not given can be chosen in it.
+    Open {
+        left: Option<ComparisonSource>,
+        right: Option<ComparisonSource>,
+    },
+    Choose(Side, ComparisonSource),
+    AskFile(Side),
+    Swap,
+    /// List equal items too, or only those that differ.
+    ShowAll(bool),
+    /// Edit an item of the device on the right side so that it has the value of the left side.
+    Take(String),
+    Close,
+}
+
+/// The open comparison.
+#[derive(Debug, Default)]
+pub struct ComparisonView {
+    left: ComparedSide,
+    right: ComparedSide,
+    shows_all: bool,
+    rows: Option<Result<ComparedRows, Text>>,
+    refusal: Option<Text>,
+    moments: Moments,
+}
+
+/// Backups and entries of the logbook with a backup, for one kind of device.
+#[derive(Debug, Default)]
+pub struct Moments {
+    /// Kind of device, or `None` before it is known.
+    kind: Option<&'static str>,
+    /// Backups of the open devices that no entry lists, newest first.
+    backups: Vec<Backup>,
+    /// Entries with a backup, newest first.
+    entries: Vec<Entry>,
+}
+
+impl ComparisonView {
+    pub fn side(&self, side: Side) -> &ComparedSide {
+        match side {
+            Side::Left => &self.left,
+            Side::Right => &self.right,
+        }
+    }
+
+    fn side_mut(&mut self, side: Side) -> &mut ComparedSide {
+        match side {
+            Side::Left => &mut self.left,
+            Side::Right => &mut self.right,
+        }
+    }
+
+    pub fn shows_all(&self) -> bool {
+        self.shows_all
+    }
+
+    /// Returns the compared items, or the reason why the sides cannot be compared. Returns `None` unless both sides are
+    /// known.
+    pub fn rows(&self) -> Option<&Result<ComparedRows, Text>> {
+        self.rows.as_ref()
+    }
+
+    /// Returns the reason why the last value could not be taken over.
+    pub fn refusal(&self) -> Option<&Text> {
+        self.refusal.as_ref()
+    }
+
+    /// Returns the kind of device of a side that is known, the right one first.
+    pub fn kind(&self) -> Option<&'static str> {
+        [&self.right, &self.left].into_iter().find_map(|side| Some(side.document()?.body.kind()))
+    }
+
+    fn sessions(&self) -> impl Iterator<Item = SessionId> {
+        [&self.left, &self.right].into_iter().filter_map(ComparedSide::session)
+    }
+}
+
+impl Studio {
+    /// Returns the open comparison. It ends when a session of it is closed.
+    pub fn comparison(&self) -> Option<&ComparisonView> {
+        self.comparison.as_deref().filter(|view| view.sessions().all(|id| self.device(id).is_some()))
+    }
+
+    /// Returns what a side can be: the open devices and profiles of the kind of the other side, backups, and entries of
+    /// the logbook with a backup.
+    pub fn comparison_choices(&self) -> Vec<ComparisonSource> {
+        let Some(view) = self.comparison() else { return Vec::new() };
+        let kind = view.kind();
+        let is_of_kind = |device: &&AnyDevice| kind.is_none() || self.kind_of(*device) == kind;
+        let sessions = self.devices.iter().map(Box::as_ref).filter(is_of_kind);
+        let sessions = sessions.map(|device| ComparisonSource::Session(device.id()));
+        let Moments { backups, entries, .. } = &view.moments;
+        let backups = backups.iter().cloned().map(ComparisonSource::Backup);
+        sessions
+            .chain(backups)
+            .chain(entries.iter().cloned().map(|own| ComparisonSource::Entry(Box::new(own))))
+            .collect()
+    }
+
+    /// Returns the device on the right side whose edits can take over values of the left side.
+    pub fn edited_side(&self) -> Option<&AnyDevice> {
+        let device = self.device(self.comparison()?.right.session()?)?;
+        (!device.is_writing() && !device.is_reviewing()).then_some(device)
+    }
+
+    fn kind_of(&self, device: &AnyDevice) -> Option<&'static str> {
+        self.services.world.kinds.kind_for_tab(device.tab()).map(|kind| kind.keyword())
+    }
+
+    pub(super) fn close_comparison(&mut self) -> bool {
+        self.comparison.take().is_some()
+    }
+
+    pub(super) fn apply_comparison_action(&mut self, action: ComparisonAction) {
+        match action {
+            ComparisonAction::Open { left, right } => {
+                self.comparison = Some(Box::default());
+                for (side, source) in [(Side::Left, left), (Side::Right, right)] {
+                    source.into_iter().for_each(|source| self.choose_side(side, source));
+                }
+            }
+            ComparisonAction::Choose(side, source) => self.choose_side(side, source),
+            ComparisonAction::AskFile(side) => self.services.file_question = Some(FileQuestion::Compare(side)),
+            ComparisonAction::Swap => {
+                if let Some(view) = &mut self.comparison {
+                    std::mem::swap(&mut view.left, &mut view.right);
+                    view.rows = None;
+                }
+            }
+            ComparisonAction::ShowAll(all) => {
+                if let Some(view) = &mut self.comparison {
+                    view.shows_all = all;
+                }
+            }
+            ComparisonAction::Take(item) => self.take_over(&item),
+            ComparisonAction::Close => self.comparison = None,
+        }
+        self.refresh_comparison();
+    }
+
+    /// Opens the comparison of a device or profile, as the right side, with another source.
+    pub(super) fn compare_session(&mut self, id: SessionId, left: Option<ComparisonSource>) {
+        if let Some(tab) = self.device(id).map(AnyDevice::tab) {
+            self.show(tab, id);
+            let right = Some(ComparisonSource::Session(id));
+            self.apply_comparison_action(ComparisonAction::Open { left, right });
+        }
+    }
+
+    fn choose_side(&mut self, side: Side, source: ComparisonSource) {
+        let Some(view) = &mut self.comparison else { return };
+        let path = source.path().map(ToOwned::to_owned);
+        *view.side_mut(side) = ComparedSide::new(source);
+        (view.rows, view.refusal) = (None, None);
+        let Some(path) = path else { return };
+        let formats = self.services.world.kinds.formats;
+        self.services.tasks.run("compare", move || {
+            let result = read_profile(&path, formats).map(Box::new);
+            Action::Done(TaskResult::Compare { side, path, result })
+        });
+    }
+
+    /// Handles the profile of a side that was read. A result for another file is outdated.
+    pub(super) fn show_compared_profile(
+        &mut self,
+        side: Side,
+        path: PathBuf,
+        result: Result<Box<ProfileDocument>, ReadError>,
+    ) {
+        let kinds = self.services.world.kinds;
+        let Some(view) = &mut self.comparison else { return };
+        let own = view.side_mut(side);
+        if own.path() == Some(path.as_path()) {
+            own.set_content(result.map_err(|error| vec![read_error(&path, &error, kinds)]));
+            view.rows = None;
+            self.refresh_comparison();
+        }
+    }
+
+    /// Takes in what has changed in the compared sessions, and compares again if anything has.
+    pub(super) fn refresh_comparison(&mut self) {
+        let Some(mut view) = self.comparison.take() else { return };
+        for side in Side::BOTH {
+            let Some(device) = view.side(side).session().and_then(|id| self.device(id)) else { continue };
+            if view.side_mut(side).update(device) {
+                view.rows = None;
+            }
+        }
+        if view.rows.is_none() {
+            view.rows = self.compare_sides(&view);
+        }
+        let kind = view.kind().filter(|kind| view.moments.kind != Some(kind));
+        self.comparison = Some(view);
+        if let Some(kind) = kind {
+            self.list_moments(kind);
+        }
+    }
+
+    fn compare_sides(&self, view: &ComparisonView) -> Option<Result<ComparedRows, Text>> {
+        let (left, right) = view.left.document().zip(view.right.document())?;
+        let kinds = self.services.world.kinds;
+        if left.device() != right.device() {
+            let [left, right] = [left, right].map(|own| self.bus(own.device()).unwrap_or(own.device()));
+            return Some(Err(Text::new("comparison.other_kind").with("left", left).with("right", right)));
+        }
+        Some(compare_documents(kinds, left, right).map_err(|error| explain::profile_error_text(&error, kinds)))
+    }
+
+    /// Edits an item of the right side so that it has the value of the left side.
+    fn take_over(&mut self, item: &str) {
+        let target = self.edited_side().map(|device| device.id());
+        let Some(view) = &mut self.comparison else { return };
+        let Some((target, left)) = target.zip(view.left.document().cloned()) else { return };
+        let mut taken = Ok(());
+        self.with_device(target, |device, _| taken = device.take_item(item, &left.body));
+        let Some(mut view) = self.comparison.take() else { return };
+        if let (Ok(()), Some(device)) = (&taken, self.device(target)) {
+            view.right.update(device);
+            if let (Some(Ok(now)), Some(Ok(rows))) = (self.compare_sides(&view), &mut view.rows) {
+                rows.mark_taken(item, &now);
+            }
+        }
+        view.refusal = taken.err();
+        self.comparison = Some(view);
+    }
+
+    /// Starts a task that lists the backups and entries with which a kind of device can be compared.
+    fn list_moments(&mut self, kind: &'static str) {
+        let Some(view) = &mut self.comparison else { return };
+        view.moments = Moments { kind: Some(kind), ..Moments::default() };
+        let of_kind = self.devices.iter().filter_map(|device| device.logbook_key()).filter(|key| key.kind == kind);
+        let (devices, store): (Vec<DeviceKey>, _) = (of_kind.collect(), self.services.world.store.clone());
+        self.services.tasks.run("moments", move || {
+            let entries = entries_with_backup(&store, kind).unwrap_or_default();
+            let is_listed = |backup: &Backup| entries.iter().any(|own| own.backup.as_deref() == Some(&backup.path));
+            let of_device =
+                |key: &DeviceKey| store.backups().list_for(&key.kind, &key.serial_number).unwrap_or_default();
+            let backups = devices.iter().flat_map(of_device).filter(|backup| !is_listed(backup)).collect();
+            Action::Done(TaskResult::Moments(Box::new(Moments { kind: Some(kind), backups, entries })))
+        });
+    }
+
+    pub(super) fn show_moments(&mut self, moments: Moments) {
+        if let Some(view) = self.comparison.as_mut().filter(|view| view.moments.kind == moments.kind) {
+            view.moments = moments;
+        }
+    }
+}
+
+/// Returns the newest entries about a kind of device whose backup can be compared.
+fn entries_with_backup(store: &Store, kind: &str) -> Result<Vec<Entry>, LogbookError> {
+    const READ: u32 = 2_000;
+    const LISTED: usize = 100;
+    let path = store.logbook_path();
+    if matches!(path.try_exists(), Ok(false)) {
+        return Ok(Vec::new());
+    }
+    let filter = EntryFilter { kind: Some(kind.to_owned()), ..EntryFilter::default() };
+    let entries = Logbook::open(&path)?.entries(&filter, READ)?;
+    let is_own = |entry: &Entry| entry.backup.is_some() && entry.origin.other_bench().is_none();
+    Ok(entries.into_iter().filter(is_own).take(LISTED).collect())
+}
