@@ -18,9 +18,9 @@ use crate::units::Moment;
 /// Direction of transmission.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// From the computer to the device.
+    /// Sent by the computer to the device.
     Sent,
-    /// From the device to the computer.
+    /// Received by the computer from the device.
     Received,
 }
 

@@ -114,7 +114,7 @@ impl DeadMan {
         }
     }
 
-    /// Returns the setpoint to send now; `received` is the data received since the last call, or `None` if nothing
+    /// Returns the setpoint to send now. `received` is the data received since the last call, or `None` if nothing
     /// arrived.
     pub fn next(
         &mut self,

@@ -160,7 +160,7 @@ pub enum Error {
     /// The drive is not requested: parameter 152 is 0.
     #[error("drive {} is not requested: parameter 152 is 0", drive.get())]
     NotRequested { drive: DriveNumber },
-    /// The value is out of range; no data was sent.
+    /// The value is out of range, so no data was sent.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     /// The device rejected the value. The error contains the current range.
@@ -169,10 +169,10 @@ pub enum Error {
     /// The length of a number differs from the type of its parameter.
     #[error(transparent)]
     Length(#[from] WrongLength),
-    /// The value does not match the type of its parameter; no data was sent.
+    /// The value does not match the type of its parameter, so no data was sent.
     #[error("parameter {number}: {cause}")]
     Value { number: ParameterNumber, cause: ValueError },
-    /// The parameter is read-only; no data was sent.
+    /// The parameter is read-only, so no data was sent.
     #[error("parameter {number} ({name}) is read-only")]
     ReadOnly { number: ParameterNumber, name: &'static str },
     /// The parameter is write-only.

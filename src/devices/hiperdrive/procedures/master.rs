@@ -26,7 +26,7 @@ use crate::link::Ctx;
 use crate::link::line::{MAX_ATTEMPTS, SerialLine};
 use crate::units::Moment;
 
-/// Pause after bytes that are not a frame; the next bytes start a new frame.
+/// Pause after bytes that are not a frame. Bytes that follow the pause start a new frame.
 const RESYNC_PAUSE: Duration = Duration::from_millis(50);
 const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
 /// Margin added to the time that the manual states for a long operation.
@@ -426,7 +426,7 @@ const fn triggers_action(row: &ParameterRow) -> bool {
 }
 
 impl RetryPolicy {
-    /// Returns the time limit of a reply, excluding the line margin; `timeout` is the usual time limit.
+    /// Returns the time limit of a reply, excluding the line margin. `timeout` is the usual time limit.
     fn reply_timeout(self, timeout: Duration) -> Duration {
         match self {
             RetryPolicy::Never { takes: Some(takes) } => timeout.max(takes + REPLY_TIME_MARGIN),

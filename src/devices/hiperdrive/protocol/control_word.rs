@@ -194,8 +194,8 @@ impl ControlWord {
         }
     }
 
-    /// Returns this control word with the job paused; [`without_pause`](Self::without_pause) continues it. In speed
-    /// mode, bit 5 has another meaning, so the word is returned unchanged.
+    /// Returns this control word with the job paused. [`without_pause`](Self::without_pause) continues the job. In
+    /// speed mode, bit 5 has another meaning, so the word is returned unchanged.
     pub const fn with_pause(self) -> Self {
         if self.is_set(ControlBit::SpeedMode) { self } else { self.without_bit(ControlBit::NoPause) }
     }

@@ -23,7 +23,7 @@ pub const POSITION: u16 = 107;
 pub const NEWEST_ERROR: u16 = 108;
 /// Earliest stored error.
 pub const OLDEST_ERROR: u16 = 115;
-/// Variant of the drive; 0 if no drive is connected.
+/// Variant of the drive, or 0 if no drive is connected.
 pub const VARIANT: u16 = 120;
 /// Whether the drive is requested by the bus.
 pub const REQUESTED_BY_BUS: u16 = 152;

@@ -20,7 +20,7 @@ pub struct ParameterNumber(u16);
 /// Row of the parameter table.
 #[derive(Clone, Copy, Debug)]
 pub struct ParameterRow {
-    /// Parameter number; for a drive parameter, the number for drive 1.
+    /// Parameter number. A drive parameter has the number for drive 1.
     pub number: u16,
     /// Name of the parameter.
     pub name: &'static str,
@@ -110,7 +110,7 @@ pub struct OutOfRange {
     pub name: &'static str,
     /// Rejected value.
     pub value: i64,
-    /// Allowed values; never [`ParameterRange::Any`].
+    /// Allowed values, which are never [`ParameterRange::Any`].
     pub range: ParameterRange,
 }
 

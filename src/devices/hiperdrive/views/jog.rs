@@ -131,7 +131,7 @@ pub(super) fn jog_buttons_ui(
     });
 }
 
-/// Draws a button that moves a drive while it is held; `press` starts the motion.
+/// Draws a button that moves a drive while it is held. `press` starts the motion.
 pub(super) fn jog_button_ui(
     ui: &mut Ui,
     theme: &Theme,

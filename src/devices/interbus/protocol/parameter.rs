@@ -41,9 +41,9 @@ pub struct ParameterRow {
 enum Limit {
     /// Constant limits.
     Fixed(u32, u32),
-    /// From 1 to the number of steps that the disc has over the programmed turns.
+    /// The value is between 1 and the number of steps that the disc has over the programmed turns.
     StepsOfTurns,
-    /// From 0 to the last position of the measuring range.
+    /// The value is between 0 and the last position of the measuring range.
     WithinRange,
 }
 

@@ -44,7 +44,7 @@ impl Axis {
     }
 
     fn leave_step(&mut self, seen: &DriveFacts, skipped: bool, when: &str) {
-        // The fact that was just confirmed may differ from the earlier one.
+        // The value that was just confirmed may differ from the earlier one.
         self.reconcile_results(seen);
         if self.invalidated_step().is_some() {
             return;

@@ -1,4 +1,4 @@
-//! Tests that every error states what happened and what to do, in both languages and with its facts.
+//! Tests that every error states what happened and what to do, in both languages and with the relevant values.
 
 use std::path::Path;
 
