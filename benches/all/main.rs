@@ -51,7 +51,7 @@ const ALL: &[Benchmark] = &[
 ];
 
 fn main() {
-    // Cargo adds an option of its own.
+    // Cargo adds one more option.
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     let Some((name, parts)) = words.split_first() else {
         for (name, run) in ALL {

@@ -53,7 +53,7 @@ pub(crate) fn show(output: &Output, frames: &[FrameExplanation]) -> Result {
     Err(Failure::Failed(broken))
 }
 
-/// Parses hexadecimal bytes. An argument of three or more bytes is a frame of its own. Shorter arguments are joined
+/// Parses hexadecimal bytes. An argument of three or more bytes is a separate frame. Shorter arguments are joined
 /// into one frame.
 pub(crate) fn parse_frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     let parts: Vec<Vec<u8>> = words.iter().map(|word| bytes(word)).collect::<Result<_>>()?;

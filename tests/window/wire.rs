@@ -180,7 +180,7 @@ impl Wire {
         self.state().deadly = true;
     }
 
-    /// Holds the cable before a request with this command. `number` counts such requests from now on, starting with 1.
+    /// Holds the cable before a request with this command. `number` counts the following requests, starting with 1.
     pub(crate) fn hold_at(&self, command: u8, number: usize) {
         self.state().hold = Some((command, number - 1));
     }

@@ -67,7 +67,7 @@ fn parameters_are_set_in_one_parameterisation_with_one_store() {
         assert_eq!(stand.left(), (0, StartupMode::K3));
         let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
         assert_eq!((kept.gear().total_steps(), kept.gear().turns(), kept.preset()), (20_000, 4, 19_999));
-        // The session knows the gear from now on.
+        // The session now knows the gear.
         assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.total_steps()), Some(20_000));
         let backup = done.backup.unwrap();
         let document =

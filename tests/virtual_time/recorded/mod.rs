@@ -31,7 +31,7 @@ struct Ready {
 /// Frames as shown by the trace, with masked access codes.
 type Lines = Arc<Mutex<Vec<String>>>;
 
-/// Records every frame of the session from now on. Also returns the token that cancels its job.
+/// Records every following frame of the session. Also returns the token that cancels its job.
 fn listen<D: Device>(session: &mut Session<D>) -> (Lines, CancelToken) {
     let lines = Lines::default();
     let kept = lines.clone();

@@ -370,7 +370,7 @@ mod tests {
     #[test]
     fn the_adapters_clock_is_estimated_and_resynchronized() {
         let mut clocks = ClockOffsetBounds::default();
-        // The local clock is 1000 µs ahead. The request is sent at 2000, the adapter samples at 1100 of its own clock,
+        // The local clock is 1000 µs ahead. The request is sent at 2000, the adapter samples at 1100 of its clock,
         // and the reply arrives at 2400.
         assert_eq!(clocks.local_time_of(1100, at(2000), at(2400)), at(2200));
         // The bounds of the offset were 900 to 1300. This exchange yields 995 to 1395, so 995 to 1300 remain.

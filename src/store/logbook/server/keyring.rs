@@ -27,7 +27,7 @@ pub struct KeyringError {
 
 type Reply = Result<Option<Password>, KeyringError>;
 
-/// A request for a password, in a thread of its own.
+/// A request for a password, which runs in a separate thread.
 #[derive(Clone)]
 struct Request {
     account: String,
