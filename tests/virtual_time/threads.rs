@@ -15,7 +15,7 @@ use encoder_studio::worker::{Event, JobId, Session, SubmitError, Worker};
 use crate::support::{MARGIN, Tap, TestLink, bus};
 
 /// A time limit longer than any test takes, which reveals a hanging thread.
-pub(crate) const LONG: Duration = Duration::from_secs(60);
+pub(crate) const LONG: Duration = Duration::from_secs(20);
 
 pub(crate) struct Bench {
     pub(crate) worker: Worker<Hiperface>,

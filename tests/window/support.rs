@@ -33,7 +33,7 @@ use crate::texts;
 use crate::wire::{TestLink, Wire};
 
 /// A time limit longer than any test, to detect a thread that hangs.
-pub(crate) const LONG: Duration = Duration::from_secs(60);
+pub(crate) const LONG: Duration = Duration::from_secs(20);
 /// The reply margin of `sim:` links.
 pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 
