@@ -108,9 +108,12 @@ impl Hiperdrive {
         }
     }
 
-    /// Reads the limits of a newly selected drive before anything else.
+    /// Reads the limits of a newly selected drive before anything else. Those of the drive that was moved last are
+    /// refreshed while another drive is selected, so they remain valid, and a paused job of this drive can be resumed.
     pub(super) fn restart_refresh(&mut self, context: &mut SessionContext, drive: DriveNumber) {
-        self.control.motion().invalidate_limits(drive);
+        if drive != self.control.motion().requested_drive() {
+            self.control.motion().invalidate_limits(drive);
+        }
         self.refresh_rules(context);
     }
 

@@ -253,12 +253,25 @@ impl DeadMan {
         if intent.drive != self.drive || intent.number <= self.spent || waits {
             return;
         }
+        if let Some(how) = self.end_before_request(intent) {
+            self.spent = intent.number;
+            self.ended = Some((intent.number, how));
+            return;
+        }
         self.act = Some(UserAction { number: intent.number, request: intent.request, motion: None, watch: None });
         if self.is_out_of_contact && intent.request.needs_motion() {
             self.end_action(ActionEnd::Deaf);
         } else if let Err(refusal) = self.begin_action(now, actual, intent.request, permit) {
             self.end_action(ActionEnd::Refused(refusal));
         }
+    }
+
+    /// Returns how the last action ended if the next request is to pause or resume it. The user made this request before
+    /// the end was reported, and must learn the reason rather than that there is no job.
+    fn end_before_request(&self, intent: &MotionIntent) -> Option<ActionEnd> {
+        let concerns_last_action = matches!(intent.request, MotionRequest::Pause | MotionRequest::Resume);
+        let (number, how) = self.ended.filter(|_| concerns_last_action)?;
+        (intent.number == number + 1 && how.is_failure()).then_some(how)
     }
 
     fn begin_action(

@@ -131,6 +131,10 @@ impl HiperdriveDevice {
             _ => self.check_controllable()?,
         }
         let Some(permit) = self.moves.motion_permit(drive) else { return Err(TEXTS.text("hd_refused.not_taken")) };
+        if request == MotionRequest::Resume && permit.doubted {
+            // The dead-man would end the paused job.
+            return Err(explain::lock_text(MotionLock::Outdated));
+        }
         let place = |steps| self.position_text(drive, steps);
         let here =
             self.moves.actual_values(drive).map_or(Ok(()), |actual| permit.check_position_limits(request, actual));

@@ -169,6 +169,20 @@ pub enum ActionEnd {
     },
 }
 
+impl ActionEnd {
+    /// Returns whether an action that had begun was ended by something other than the user or the target.
+    pub(super) const fn is_failure(self) -> bool {
+        !matches!(
+            self,
+            ActionEnd::Done
+                | ActionEnd::Arrived
+                | ActionEnd::Stopped
+                | ActionEnd::Replaced
+                | ActionEnd::Refused(MotionRefusal::NothingToPause | MotionRefusal::NothingToResume)
+        )
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionRefusal {
     Locked(MotionLock),

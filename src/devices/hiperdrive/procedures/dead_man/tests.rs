@@ -228,6 +228,43 @@ fn doubted_limits_delay_the_start_of_a_motion() {
     assert_eq!(looks.man.last_end(), Some((2, doubted)));
 }
 
+/// A job may end by itself just before the user pauses or resumes it. The user then learns why it ended.
+#[test]
+fn a_late_pause_or_resume_reports_how_the_job_ended() {
+    for waits in [false, true] {
+        let mut looks = DeadManBench::new();
+        looks.act(MotionRequest::Move { target: 500, effort: FULL });
+        looks.look(5, 0x2A37, 0);
+        looks.look(5, 0x1A37, 100);
+        let (mut number, mut status) = (1, 0x1A37);
+        if waits {
+            (number, status) = (2, 0x3A37);
+            looks.act(MotionRequest::Pause);
+            looks.look(3, status, 100);
+        }
+        // The job is not refreshed for 250 ms.
+        let refreshed = looks.now;
+        for _ in 0..26 {
+            looks.now = looks.now + Duration::from_millis(10);
+            looks.intent.refreshed = refreshed;
+            looks.man.next(looks.now, heard(Some((status, 100))), &looks.intent, &looks.permit);
+        }
+        assert_eq!(looks.man.last_end(), Some((number, ActionEnd::Stale)));
+        looks.act(if waits { MotionRequest::Resume } else { MotionRequest::Pause });
+        assert!(looks.look(100, 0x2A37, 100).control.is_at_rest());
+        assert_eq!(looks.man.last_end(), Some((number + 1, ActionEnd::Stale)));
+    }
+    // After a stop by the user, there is no job.
+    let mut looks = DeadManBench::new();
+    looks.act(MotionRequest::Move { target: 500, effort: FULL });
+    looks.look(5, 0x2A37, 0);
+    looks.act(MotionRequest::Stop);
+    looks.look(100, 0x2A37, 0);
+    looks.act(MotionRequest::Resume);
+    looks.look(5, 0x2A37, 0);
+    assert_eq!(looks.man.last_end(), Some((3, ActionEnd::Refused(MotionRefusal::NothingToResume))));
+}
+
 /// Another master may change the limits, or the shaft may be pushed, just before a motion starts. If the drive is then
 /// outside its limits, it does not start and does not move further out (issue 21.4).
 #[test]
