@@ -291,7 +291,6 @@ fn a_link_lost_during_a_write_is_reported_with_the_backup() {
         let Some(encoder) = bench.kit(&["--silent-after", &after.to_string()]) else { return };
         let ran = ask(&bench, &encoder, &restore);
         assert_eq!((ran.status, ran.out.as_str()), (Some(1), ""), "cut after {after}: {ran:?}");
-        assert!(ran.took.as_secs() < 15, "{ran:?}");
         let backup = ran.err.contains("backups/biss/12345678");
         assert_eq!(backup, after > begins, "cut after {after}, writing begins after {begins}: {ran:?}");
     }

@@ -1,9 +1,11 @@
 //! Test support: runs the built program in a separate folder, with foreign encoders and hosts (`tests/foreign`).
 
+use std::ffi::OsStr;
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Output, Stdio};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -393,7 +395,7 @@ const ON_A_TERMINAL: &str = "import os, pty, sys; sys.exit(os.waitstatus_to_exit
 /// Runs the program on a terminal and types an answer.
 pub(crate) fn run_on_terminal(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
     let program = bench.program(arguments);
-    let mut command = Command::new("python3");
+    let mut command = Command::new(interpreter().unwrap());
     command.args(["-c", ON_A_TERMINAL]).arg(program.get_program()).args(program.get_args());
     command.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -407,16 +409,33 @@ pub(crate) fn skip(why: &str) {
     println!("skipped: {why}");
 }
 
+/// Returns the path of the Python interpreter, or `None` if Python is not installed. The command `python3` may be a
+/// script that searches for the interpreter, which takes much longer than to start the interpreter.
+fn interpreter() -> Option<&'static Path> {
+    static PATH: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let find = || {
+        let output = Command::new("python3").args(["-c", "import sys; print(sys.executable)"]).output().ok()?;
+        output.status.success().then(|| String::from_utf8(output.stdout).unwrap().trim_end().into())
+    };
+    PATH.get_or_init(find).as_deref()
+}
+
 /// Returns the command for a foreign program in Python. Prints a line and returns `None` if Python is missing.
 pub(crate) fn python(script: &str) -> Option<Command> {
-    let there = Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success());
-    if !there {
+    let Some(interpreter) = interpreter() else {
         skip("python3 is not installed");
         return None;
-    }
-    let mut command = Command::new("python3");
-    command.arg("-B").arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign").join(script));
-    Some(command)
+    };
+    Some(python_command(interpreter.as_os_str(), script))
+}
+
+/// Returns the command for a program in `tests/foreign`. Its compiled modules are kept outside the source folder.
+fn python_command(interpreter: &OsStr, script: &str) -> Command {
+    let mut command = Command::new(interpreter);
+    command.env_remove("PYTHONDONTWRITEBYTECODE");
+    command.env("PYTHONPYCACHEPREFIX", Path::new(env!("CARGO_TARGET_TMPDIR")).join("python"));
+    command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign").join(script));
+    command
 }
 
 /// Returns the command for a foreign program that uses pycomm3. Prints a line and returns `None` if pycomm3 is missing.
@@ -426,9 +445,7 @@ pub(crate) fn pycomm3(script: &str) -> Option<Command> {
         skip("ENCODER_STUDIO_PYCOMM3 names no Python with pycomm3 (.ci/run makes one)");
         return None;
     };
-    let mut command = Command::new(interpreter);
-    command.arg("-B").arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign").join(script));
-    Some(command)
+    Some(python_command(&interpreter, script))
 }
 
 /// Returns a frame in the format of the foreign encoder's log, with a checksum that is the XOR of all bytes.
