@@ -1,5 +1,5 @@
-//! The `do` command: save and recall, factory settings, the presence test, acknowledging a fault, setting the position,
-//! and the device check.
+//! The `do` command: saves and recalls parameters, restores factory settings, runs the presence test and the device
+//! check, acknowledges a fault, and sets the position.
 
 use super::args::{DoOptions, DriveOption, HiperdriveAction};
 use super::plan::{change_lines, commit_plan, operations_json, prepare_plan};
@@ -82,7 +82,7 @@ pub(super) fn run_action(common: &CommonArgs, output: &Output, act: &ActionArgs)
     Ok(done)
 }
 
-/// Checks that a drive no longer has a fault after its acknowledgement.
+/// Checks that a drive has no fault left after its fault was acknowledged.
 pub(super) fn check_acknowledged(runner: &mut Runner, output: &Output, drive: DriveNumber) -> Result<()> {
     let again = prepare_plan(runner, output, Change::Do(Service::Acknowledge(drive)))?;
     if again.plan.is_empty() {
@@ -96,7 +96,7 @@ fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
     Ok(result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity.drives))
 }
 
-/// Checks that the presence test has found at least one drive and every previously known drive.
+/// Checks that the presence test found at least one drive and did not lose any drive known before.
 fn check_present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
     if found.is_empty() {
         return Err(to_failure(&TEXTS.text("hd_cli.no_drives")));

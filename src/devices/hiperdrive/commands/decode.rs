@@ -68,8 +68,8 @@ fn meaning_lines(readings: &[WordMeaning]) -> DecodedBytes {
     DecodedBytes { lines: readings.iter().flat_map(WordMeaning::to_lines).collect(), more, data: None }
 }
 
-/// Decodes bytes as a packet, or as process data if their length matches a layout. With a known direction, bytes of a
-/// matching length are always process data.
+/// Decodes bytes as a packet, or as process data if their length matches a layout. If the direction is known, bytes of
+/// such a length are always decoded as process data.
 fn decode_bytes(bytes: &[u8], known: &DecodeContext) -> std::result::Result<DecodedBytes, String> {
     let fits = Layout::all_with_length(bytes.len()).next().is_some();
     let packet = ethernet_ip::explain_packet(bytes, Device::Known(parameter_words))

@@ -9,8 +9,8 @@ use crate::devices::hiperdrive::protocol::{
     ParameterRow, Pkw, Task, Value, to_turns_and_steps,
 };
 
-/// Decodes process data and returns one meaning for each layout whose length matches. If the direction is known, only
-/// layouts of that direction are used. The result is empty if no layout matches.
+/// Decodes process data, with one result for each layout of the same length. If the direction is known, only layouts of
+/// that direction are used. The result is empty if no layout matches.
 ///
 /// # Errors
 /// Returns an error with the reason if the data cannot have been sent in the known direction.
@@ -39,7 +39,8 @@ fn possible_layouts(length: usize, known: &DecodeContext) -> impl Iterator<Item 
     Layout::all_with_length(length).map(|layout| Layout { order: known.order, ..layout })
 }
 
-/// Returns whether any control word is nonzero. No drive sends 0 as a status word.
+/// Returns whether any control word is nonzero. All zeros can only be control words, since no drive sends 0 as a status
+/// word.
 fn has_nonzero_control(bytes: &[u8], layout: Layout) -> bool {
     OutputImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().any(|drive| drive.control != 0))
 }
@@ -49,8 +50,8 @@ fn is_input_image(bytes: &[u8], layout: Layout) -> bool {
     InputImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().all(|drive| drive.status.is_plausible()))
 }
 
-/// Returns the meanings of the process data in a cyclic packet. The packet's direction is used if no direction is
-/// known. The result is empty if no layout has the length of the data.
+/// Decodes the process data in a cyclic packet, once for each layout of the same length. An explicitly known direction
+/// takes precedence over the direction of the packet.
 pub(super) fn explain_cyclic(data: &[u8], to_target: bool, known: &DecodeContext) -> Vec<WordMeaning> {
     let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
     let reading = |layout: Layout| {
@@ -127,8 +128,8 @@ fn turns_text(position: i32) -> String {
     format!(" (turn {turn}, {:.3}° at 65536 steps a turn)", f64::from(steps) * 360.0 / 65536.0)
 }
 
-/// Decodes eight bytes as a parameter word, both as a request and as an answer. The result is empty if the manual does
-/// not list the parameter. A request for an element must name a string parameter, because only strings have elements.
+/// Decodes eight bytes as a parameter word, as a request and as an answer. The result is empty if the manual does not
+/// list the parameter. Only strings have elements, so a request for an element must refer to a string parameter.
 fn decode_parameter_word(bytes: &[u8], known: &DecodeContext) -> Vec<WordMeaning> {
     let Ok(bytes) = <[u8; 8]>::try_from(bytes) else { return Vec::new() };
     let pkw = Pkw::parse(bytes, known.order);
@@ -192,8 +193,8 @@ fn has_expected_width(pkw: Pkw, row: &ParameterRow) -> bool {
     }
 }
 
-/// Returns whether a word or a double word can be a value of the parameter. A double word can also hold four characters
-/// of a string.
+/// Returns whether a value of this width, one word or a double word, fits the parameter. A double word can also hold
+/// four characters of a string.
 fn matches_width(row: &ParameterRow, word: bool) -> bool {
     row.kind.byte_length().map_or(!word, |bytes| (bytes < 4) == word)
 }

@@ -123,7 +123,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &StatusArgume
 enum FactSeverity {
     Error,
     Warning,
-    /// A past error that is only present in the error buffer.
+    /// A past error that is still in the error buffer.
     Earlier,
 }
 
@@ -143,8 +143,8 @@ impl DriveFact {
 /// Returns the errors and warnings of a drive.
 ///
 /// Entries in the error buffer survive a power cycle, so only the entries since the last acknowledgement are treated as
-/// current errors. The fault counter determines how many there are, but during a fault there is at least one. A
-/// position outside the limits and a communication error are treated as warnings. See section 4 of the reference.
+/// current errors. The fault counter gives their number, which is at least one during a fault. A position outside the
+/// limits and a communication error are treated as warnings. See section 4 of the reference.
 fn drive_fact_list(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.is_set(StatusBit::Fault);
@@ -223,7 +223,8 @@ fn status_text(status: &Status, facts: &[DriveFact]) -> String {
     lines.text()
 }
 
-/// Formats a parameter value: words in hexadecimal with their meaning, tenths also in whole units.
+/// Formats a numeric parameter value. Status and error words are shown in hexadecimal with their meaning, and values in
+/// tenths of a unit are also converted to the unit.
 fn number_text(item: Item, number: i64) -> String {
     let (base, unit) = (item.0.drive1_number(), item.0.row().map_or("", |row| row.unit));
     let word = u16::try_from(number).ok();
@@ -256,7 +257,7 @@ fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedSc
     Ok(SpeedScale::new(part(SPEED_NUMERATOR)?, part(SPEED_DENOMINATOR)?).ok())
 }
 
-/// Formats a string parameter. If the string contains a number, the number and its unit follow.
+/// Formats a string parameter. If the string contains a number, the number is appended with its unit.
 fn nominal_text(text: &str, unit: &str) -> String {
     match nominal_value(text).filter(|_| !unit.is_empty()) {
         Some((number, decimals)) => format!("{text} = {number:.decimals$} {unit}"),

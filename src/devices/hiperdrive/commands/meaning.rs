@@ -39,8 +39,8 @@ impl WordMeaning {
     }
 }
 
-/// Returns the possible meanings of a word, or a single one if the direction is known. Otherwise, bit 11 usually
-/// decides: it is never set in a control word, and always set in the status word of a detected drive.
+/// Interprets a word as a control word, a status word or both. If the direction is unknown, bit 11 usually decides: it
+/// is never set in a control word, and always set in the status word of a detected drive.
 ///
 /// # Errors
 /// Returns an error with the reason if the direction shows that the word is a control word that must not be sent.
@@ -76,7 +76,7 @@ fn status_meaning(status: StatusWord) -> WordMeaning {
     WordMeaning { direction: "IN", lines, json: json!({"bits": names, "state": status.state().name()}) }
 }
 
-/// Formats a control word: its purpose, then its bits.
+/// Formats a control word: what it does, followed by its set bits.
 pub(super) fn control_word_text(control: ControlWord) -> String {
     let bits: Vec<String> = control.set_bits().map(|(bit, name)| format!("{bit} {name}")).collect();
     let bits = if bits.is_empty() { "no bit".to_owned() } else { format!("bits {}", bits.join(", ")) };
@@ -119,8 +119,8 @@ pub(super) fn status_word_text(status: StatusWord) -> String {
     format!("{}{present}: {bits}", status.state().name())
 }
 
-/// Returns the parameter to which an attribute belongs, with the value to write or the reason why the data does not
-/// match the parameter type.
+/// Returns the name of the parameter at this class and attribute, with the value in the data, or with an error message
+/// if the data does not match the parameter type.
 pub(super) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option<(String, Result<String, String>)> {
     let number = ParameterNumber::from_attribute(class, attribute)?;
     let row = number.row();
@@ -170,7 +170,7 @@ pub(super) fn number_meaning(row: &ParameterRow, number: i64) -> String {
     }
 }
 
-/// Returns a warning against writing the value, or an empty string if writing is permitted.
+/// Returns a warning if the value must not be written to the parameter, or an empty string otherwise.
 pub(super) fn warning(row: &ParameterRow, number: i64) -> String {
     let beyond = row.allowed_values(Travel::UNKNOWN).filter(|range| !range.contains(number));
     match (row.access, beyond) {

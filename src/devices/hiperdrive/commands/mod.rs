@@ -1,4 +1,4 @@
-//! Commands for HIPERDRIVE drives behind an adapter or a hub. Words and packets can also be decoded offline.
+//! Commands for HIPERDRIVE drives behind an adapter or a hub. Words and packets can also be decoded without a device.
 
 mod act;
 mod args;

@@ -1,5 +1,5 @@
-//! The `move` command, which moves a drive to a position. However the motion ends, the drive is stopped and switched
-//! off. No other command moves a drive.
+//! The `move` command, which moves a drive to a position and is the only command that moves a drive. However the motion
+//! ends, the drive is stopped and switched off.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -100,7 +100,7 @@ fn read_newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCod
     u16::try_from(code).ok().map(ErrorCode::new).filter(|code| *code != ErrorCode::NONE)
 }
 
-/// Describes the target and the limits in the current scale, so that the user notices a change of scale.
+/// Describes the target and the limits in the current scale, so that the user notices if the scale has changed.
 fn describe_range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option<PositionScale>) -> String {
     let turns = |steps: i32| match scale {
         Some(scale) => format!("{steps} ({:.2} turns)", f64::from(steps) / scale.steps_per_turn()),
@@ -109,8 +109,8 @@ fn describe_range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scal
     format!("drive {} moves to {}, within {} to {}", drive.get(), turns(target), turns(low), turns(high))
 }
 
-/// Reads the parameters of a drive and returns the resulting motion permit (locks and limits) along with the position
-/// scale.
+/// Reads the parameters of a drive and returns the resulting motion permit (locks and limits), together with the
+/// position scale.
 fn read_permit(
     runner: &mut Runner,
     identity: &Identity,
@@ -134,7 +134,7 @@ fn read_permit(
     Ok((limits.motion_permit(now, false), limits.scale()))
 }
 
-/// Checks that a target fits into 32 bits.
+/// Checks that a target fits in 32 bits.
 fn check_target(permit: &Permit, target: i64) -> Result<i32> {
     let (low, high) = permit.limits.unwrap_or((i32::MIN, i32::MAX));
     i32::try_from(target).map_err(|_| {

@@ -37,7 +37,7 @@ pub(super) fn prepare_plan(runner: &mut Runner, output: &Output, change: Change)
     Ok(prepared)
 }
 
-/// Asks for consent if required and executes the plan. An empty plan does not send anything.
+/// Asks for consent if required, then executes the plan. An empty plan sends nothing.
 pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,
@@ -60,7 +60,7 @@ pub(super) fn commit_plan(
     Ok(WriteSummary::from_commit(output, committed))
 }
 
-/// Returns the report of a plan as text and JSON: the old and new value of each parameter, and the cost.
+/// Formats a plan as text and JSON: the old and new value of each parameter, and the number of saves.
 pub(super) fn plan_report(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     let mut lines = Lines::default();

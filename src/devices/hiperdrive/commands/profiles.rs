@@ -1,4 +1,5 @@
-//! The `save` and `restore` commands for an adapter or a hub. Other commands read the device here to compare it.
+//! The `save` and `restore` commands for an adapter or a hub, and the reading of a device for other commands that
+//! compare it.
 
 use serde_json::json;
 
@@ -56,7 +57,6 @@ impl ProfileCommands for HiperdriveCommands {
         })
     }
 
-    /// Reads the complete device for comparison.
     fn read_for_comparison(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(read_profile(common)?))
     }
@@ -76,8 +76,8 @@ impl ProfileCommands for HiperdriveCommands {
         }
     }
 
-    /// Returns a message if the two profiles are from different devices or have different drives. A profile without a
-    /// serial number does not match any device.
+    /// Returns a message if the two profiles are from different devices or have different drives. Serial numbers are
+    /// compared only if the profile contains them.
     fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {
         let error =
             profile::check_device(profile.get::<HiperdriveProfile>()?, &device.get::<HiperdriveProfile>()?.identity)
@@ -95,8 +95,8 @@ fn read_profile(common: &CommonArgs) -> Result<HiperdriveProfile> {
     Ok(result_of!(Runner::open(common)?.run(HiperdriveJob::Save)?, HiperdriveOutput::Saved(profile) => *profile))
 }
 
-/// Lists the profile items that the device does not have. A port without a drive is listed as one item, regardless of
-/// the number of its parameters.
+/// Lists the profile items that the device does not have. An empty port is listed once, regardless of the number of its
+/// parameters.
 fn missing_items(prepared: &Prepared) -> Vec<String> {
     let missing = prepared.missing.iter().map(|name| (name, name.parse::<Item>().ok().and_then(|item| item.0.drive())));
     let words = missing.map(|(name, drive)| match drive.filter(|drive| prepared.identity.drive(*drive).is_none()) {

@@ -19,8 +19,8 @@ use crate::devices::hiperdrive::state::explain;
 use crate::result_of;
 use crate::worker::Session;
 
-/// Time to wait for the drives to stop. It is several times the longest send interval, so a stop word is sent before
-/// the program ends.
+/// Time to wait for the drives to stop. It is several times the longest send interval, so that a stop word is sent
+/// before the program ends.
 const STOP_TIME: Duration = Duration::from_millis(500);
 /// Time to wait until the drives are switched off and the connection is closed.
 const RELEASE_TIME: Duration = Duration::from_secs(1);
@@ -62,7 +62,7 @@ impl CliDevice for Hiperdrive {
         })
     }
 
-    /// Stops the motion and waits for standstill. If the program is about to end, also waits until the drives are
+    /// Stops the motion and waits for standstill. If the program is about to exit, also waits until the drives are
     /// switched off and released.
     fn interrupt_handler(motion: &Motion) -> Box<dyn Fn(bool) + Send> {
         let motion = motion.clone();

@@ -1,4 +1,4 @@
-//! The `simulate hiperdrive` command: virtual drives behind an adapter or a hub, acting as an EtherNet/IP target.
+//! The `simulate hiperdrive` command: simulates drives behind an adapter or a hub as an EtherNet/IP target.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 

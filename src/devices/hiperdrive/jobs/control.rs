@@ -1,5 +1,5 @@
-//! The cyclic connection of a session. The user opens and closes it; the drives' motion permits come from the
-//! parameters read last.
+//! The cyclic connection of a session. The user opens and closes it. The permits to move its drives come from the
+//! parameters that were read last.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -49,8 +49,8 @@ impl CyclicControl {
         self.motion.clone()
     }
 
-    /// Returns a drive's data from the cyclic connection, or `None` if the connection is closed or has not received
-    /// data yet.
+    /// Returns the data of a drive from the cyclic connection, or `None` if the connection is closed or has not
+    /// received any data yet.
     pub(super) fn actual_values(&self, drive: DriveNumber) -> Option<ActualValues> {
         let view = self.motion.snapshot();
         let speaks = view.open && view.link.received > 0;
@@ -68,7 +68,8 @@ impl CyclicControl {
         }))
     }
 
-    /// Returns the device and its drives, or `None` if the cyclic connection is closed and the drives cannot be moved.
+    /// Returns the device and its drives, or `None` if the cyclic connection is closed, in which case the drives cannot
+    /// be moved.
     pub(super) fn controlled_device(&self) -> Option<Identity> {
         self.open.as_ref().and(self.identity.clone())
     }
@@ -80,7 +81,8 @@ impl CyclicControl {
         }
     }
 
-    /// Updates the motion permits (locks and limits) of the drives from a survey that began at the given moment.
+    /// Updates the motion permits (locks and limits) of the drives from parameters whose reading began at the given
+    /// moment.
     pub(super) fn update_permits(&mut self, survey: &Survey, began: Moment) {
         for drive in &survey.identity.drives {
             let read = |base| match survey.values.get(&ParameterNumber::for_drive(base, drive.number)?)? {
@@ -100,7 +102,7 @@ impl CyclicControl {
         self.motion.with_limits(drive, DriveLimits::clear);
     }
 
-    /// Publishes a drive's limits, derived from its parameters, with the times at which these were read.
+    /// Publishes the limits of a drive, taken from its parameters, together with the times at which these were read.
     pub(super) fn publish_limits(
         &self,
         identity: &Identity,
@@ -165,8 +167,7 @@ impl Hiperdrive {
         closed
     }
 
-    /// Ends the session: stops and releases drives under control, and unregisters from the device if the session
-    /// controlled it.
+    /// Stops and releases the drives, then ends the EtherNet/IP session if drives were under control.
     pub(super) fn end_session(&mut self, context: &mut SessionContext) {
         let had_control = self.control.identity.is_some();
         if let Err(why) = self.release(context) {
@@ -183,8 +184,8 @@ impl Hiperdrive {
         self.control.open.is_some() && self.control.motion.is_shutting_down()
     }
 
-    /// Closes a lost cyclic connection at the target, and reports the loss once. A loss of explicit messaging is
-    /// treated in the same way, because motion is not allowed without access to the parameters.
+    /// Closes a lost cyclic connection at the target and reports the loss once. A lost session for explicit messages
+    /// has the same effect, because a drive must not move while its parameters are inaccessible.
     pub(super) fn release_lost_control(&mut self, context: &mut SessionContext) {
         if self.control.open.is_some() && self.wire.check_connection().is_err() {
             self.control.stop_after_session_loss();
@@ -203,7 +204,7 @@ impl Hiperdrive {
         }
     }
 
-    /// Executes a plan and reads the limits of the drives again. A drive must not move until its limits are known.
+    /// Executes a plan, then reads the limits of the drives again. No drive may move until its limits are known.
     pub(super) fn commit_plan(
         &mut self,
         context: &mut SessionContext,
@@ -231,8 +232,8 @@ impl Hiperdrive {
     }
 }
 
-/// Checks that packets can be sent at an interval. With a timer step of up to half the interval, a packet is late by
-/// half an interval at most, and the target waits for several intervals.
+/// Checks that the timer of this computer is fine enough for an interval. A packet is late by at most one timer step,
+/// which may be half an interval, since the target tolerates several intervals without a packet.
 fn check_timer(step: Duration, interval: Duration) -> Result<(), Error> {
     let milliseconds = |time: Duration| u64::try_from(time.as_millis()).unwrap_or(u64::MAX);
     if step > interval / 2 {

@@ -1,5 +1,5 @@
 //! The thread of a cyclic connection. It sends packets at absolute deadlines, receives in between, and checks the
-//! dead-man controls for every packet. A stop is sent with the next packet, at most one interval later.
+//! dead-man controls for every packet. A stop is sent in the next packet, at most one interval later.
 //!
 //! The thread ends on request, when its handle is dropped, when the connection is lost, or when the program exits. The
 //! drives are then stopped and switched off, and nothing more is sent. If sending or receiving fails, transmission ends
@@ -33,7 +33,7 @@ struct CyclicCommands {
     lost: Mutex<Option<ConnectionLoss>>,
 }
 
-/// Item type of a channel that never carries a value. The disconnection of the channel signals the end of the thread.
+/// Item type of a channel that never carries a value. The channel disconnects when the thread ends.
 enum Never {}
 
 /// A cyclic connection without a thread, driven by its owner. Tests run it in virtual time.
@@ -46,18 +46,18 @@ pub struct CyclicRunner {
     packet: Vec<u8>,
 }
 
-/// Maximum time to wait for the thread to end. It covers the stop sequence, three packets with the drives off, and a
-/// margin for the operating system.
+/// Maximum time to wait for the thread to end. It covers the stop sequence, three packets that switch the drives off,
+/// and a margin for the operating system.
 const END_TIMEOUT: Duration = Duration::from_millis(1500);
-/// Maximum number of received packets handled once the next send is due. The limit keeps a flooded port from delaying
-/// the send.
+/// Maximum number of received packets to handle once the next send is due. The maximum prevents a flood of packets from
+/// delaying the send.
 const MAX_PACKETS_AT_ONCE: usize = 64;
 
 impl Cyclic {
     /// Starts the thread for an open connection. `port` must be directed at the target.
     ///
     /// # Errors
-    /// Returns an error if the system cannot create a thread. In this case, no data has been sent.
+    /// Returns an error if the system cannot create a thread. Nothing has been sent in this case.
     pub fn start(
         port: Box<dyn DatagramChannel>,
         opened: &OpenedConnection,
@@ -84,8 +84,7 @@ impl Cyclic {
         Ok(Cyclic { motion: motion.clone(), commands, ended })
     }
 
-    /// Returns the reason for the loss if the connection was lost. In this case, the owner must close it through the
-    /// session's own connection.
+    /// Returns the reason if the connection was lost. The owner must then close it with an explicit message.
     pub fn connection_loss(&self) -> Option<ConnectionLoss> {
         self.motion.connection_loss()
     }
@@ -95,8 +94,8 @@ impl Cyclic {
         *self.commands.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
     }
 
-    /// Stops the drives, switches them off and ends the thread. The caller must still close the connection. Returns the
-    /// reason if the connection was lost.
+    /// Stops the drives, switches them off and ends the thread. The caller must still close the connection. If the
+    /// connection was lost, returns the reason.
     pub fn close(self) -> Option<ConnectionLoss> {
         self.commands.end.store(true, Ordering::SeqCst);
         // The channel disconnects when the thread ends. After the time-out, the thread is no longer awaited.

@@ -1,4 +1,4 @@
-//! Jobs for an adapter or a hub with its drives, and their results.
+//! Jobs for an adapter or a hub with its drives, and the results of these jobs.
 
 use std::fmt;
 
@@ -12,19 +12,19 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, ParameterNumber, V
 use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{CycleCount, total_cycles_to_report};
 
-/// Save count above which the user is warned of memory wear. The value is an assumption, since the manual gives no
+/// Number of saves above which the user is warned of memory wear. The value is an assumption, since the manual gives no
 /// limit (`U`).
 pub const WEAR_WARNING: u64 = 50_000;
 
-/// A job in a session with an adapter or a hub. Reading does not change anything; drives move only between
-/// [`Take`](Self::Take) and [`Give`](Self::Give), through the session's `Motion`.
+/// A job in a session with an adapter or a hub. Drives move only between [`Take`](Self::Take) and [`Give`](Self::Give),
+/// through the session's `Motion`.
 #[derive(Debug)]
 pub enum HiperdriveJob {
     Hello,
     Survey,
     Identify,
     Status,
-    /// Checks the device and its drives and reports one verdict per line.
+    /// Checks the device and its drives, and reports one result per line.
     Check,
     Position(DriveNumber),
     Read(ParameterNumber),
@@ -44,7 +44,7 @@ pub enum Change {
         profile: Box<HiperdriveProfile>,
         options: RestoreOptions,
     },
-    /// Writes and saves the given values. Parameters missing from the image stay unchanged.
+    /// Writes and saves the given values. All other parameters stay unchanged.
     Write(Box<Image>),
     /// Writes the given values without saving them.
     Try(Box<Image>),
@@ -52,7 +52,7 @@ pub enum Change {
         drive: DriveNumber,
         /// New position in scaled steps, rounded to a multiple of 64.
         position: i32,
-        /// Whether to save the position. All other unsaved values are saved as well.
+        /// Whether to save the position, which also saves all other unsaved values.
         save: bool,
     },
     Do(Service),
@@ -62,7 +62,7 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// A write of edits. Edits that were not written remain as edits.
+    /// Writes edited values. If the write fails, the remaining edits are kept.
     Edits,
     Try,
     Position,
@@ -100,25 +100,25 @@ pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: HiperdrivePlan,
     pub identity: Identity,
-    /// Values stored in the device, as read for the plan.
+    /// Values that the device stored when the plan was made.
     pub image: Image,
     /// Number of saves recorded for the device on this computer, or `None` if the logbook has no record.
     pub cycles_seen: Option<CycleCount>,
-    /// Number of items that already have the desired value.
+    /// Number of items that already have the requested value.
     pub unchanged: u64,
     /// Profile items that the device does not have.
     pub missing: Vec<String>,
-    /// Parameters that depend on the mounting of the drive and differ, but are left unchanged.
+    /// Parameters that differ but are left unchanged, because they depend on how the drive is mounted.
     pub mounting_left: Vec<Item>,
-    /// Type differences between the profile and the device or its drives.
+    /// Type mismatches between the profile on one side and the device or its drives on the other.
     pub other_types: Vec<TypeMismatch>,
-    /// Parameters from the profile of another device that depend on the mounting. They must be set up again after
-    /// writing.
+    /// Parameters that come from the profile of another device and depend on how the drive is mounted. They must be set
+    /// up again after the write.
     pub mounting_written: Vec<Item>,
 }
 
 impl Prepared {
-    /// Returns the number of saves after this plan if a wear warning is needed, or `None` otherwise.
+    /// Returns the total number of saves after this plan, or `None` if no wear warning is needed.
     pub fn wear_to_report(&self) -> Option<u64> {
         total_cycles_to_report(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
@@ -133,7 +133,7 @@ pub type Committed = crate::worker::CommitResult<WrittenChanges>;
 pub enum DeviceMessage {
     /// The cyclic connection was lost and the drives are being stopped. The session's `Motion` holds the cause.
     ControlLost,
-    /// The limits of a drive under control cannot be read. The reading is repeated until it succeeds.
+    /// The limits of a drive under control could not be read. Reading is retried until it succeeds.
     RulesUnread(Box<Error>),
     RulesRead,
 }
@@ -143,7 +143,7 @@ pub enum DeviceMessage {
 pub enum JobStep {
     Parameter(ParameterNumber),
     Step(CheckStep),
-    /// An operation of a plan, described by the item that it changes.
+    /// An operation of a plan, given by the item that it changes.
     Operation(String),
 }
 
@@ -186,8 +186,8 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// Returns the key of a device for backups and the logbook. Saves are counted per adapter or hub, whichever drives are
-/// connected.
+/// Returns the key of a device for backups and the logbook. The key does not depend on the connected drives, so saves
+/// are counted per adapter or hub.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     logbook_key(&identity.category, &identity.serial_number, is_virtual)
 }

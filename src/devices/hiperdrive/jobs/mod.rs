@@ -1,5 +1,4 @@
-//! The session device for HIPERDRIVE drives behind an adapter or a hub: its jobs, the cyclic connection that moves the
-//! drives, and the motion handle.
+//! HIPERDRIVE devices in a session: their jobs, the cyclic connection that moves the drives, and the motion handle.
 
 mod commit;
 mod control;
@@ -52,7 +51,7 @@ impl fmt::Debug for Hiperdrive {
     }
 }
 
-/// Interval between checks of the drives under control. It is a fraction of the maximum interval between two requests.
+/// Interval between checks of the drives under control. It must be well below the maximum interval between requests.
 const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
@@ -68,12 +67,12 @@ pub struct DeviceConnection {
     /// Port for cyclic data, or `None` if the link has none.
     pub port: Option<Box<dyn DatagramPort>>,
     pub station: Station,
-    /// Virtual device, if one runs in this process.
+    /// Virtual device, if it runs in this process.
     pub target: Option<Target>,
 }
 
 impl Session<Hiperdrive> {
-    /// Creates a session on an open connection. `target` is the virtual device if it runs in this process; its saves
+    /// Creates a session on an open connection. `target` is the virtual device if it runs in this process. Its saves
     /// are counted separately.
     pub fn for_target(way: DeviceConnection, clock: Arc<dyn Clock>, store: Store) -> Self {
         let DeviceConnection { wire, port, station, target } = way;
@@ -94,7 +93,7 @@ impl Session<Hiperdrive> {
         &self.device.station
     }
 
-    /// Returns the virtual device, if one runs in this process.
+    /// Returns the virtual device, if it runs in this process.
     pub fn target(&self) -> Option<Target> {
         self.device.target.clone()
     }
@@ -228,7 +227,7 @@ impl Device for Hiperdrive {
         self.remark.take()
     }
 
-    /// Stops the drives that are under control and releases them.
+    /// Stops and releases the drives that are under control.
     fn restore_state(&mut self, context: &mut SessionContext) {
         self.end_session(context);
     }

@@ -1,6 +1,5 @@
-//! The motion handle. Its requests pass through a cell that holds only the latest one, and the state of the drives is
-//! returned in the same way. The thread of the cyclic connection reads the requests and writes the state. Neither side
-//! waits for the other.
+//! The motion handle. A shared cell holds the latest request and the latest state of the drives. The thread of the
+//! cyclic connection reads the request and writes the state. Neither side waits for the other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -19,7 +18,7 @@ use crate::devices::hiperdrive::protocol::{ActualValues, DriveNumber, ParameterN
 use crate::link::Clock;
 use crate::units::Moment;
 
-/// Motion of the drives of a session, shared by all clones of the handle.
+/// Handle that moves the drives of a session. All clones share the same state.
 #[derive(Clone)]
 pub struct Motion(Arc<Shared>);
 
@@ -34,12 +33,12 @@ struct Cell {
     limits: BTreeMap<DriveNumber, DriveLimits>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
-    /// Parameters to read through the parameter words, with the time of the latest request for each.
+    /// Parameters to read through the parameter words, each with the time of the latest request.
     watched: BTreeMap<ParameterNumber, Moment>,
     session: ReplyMonitor,
     punctual: bool,
     view: MotionSnapshot,
-    /// Whether the program is shutting down. While it is, no motion is allowed.
+    /// Whether the program is shutting down. Motion is forbidden while this is set.
     is_shutting_down: bool,
     /// Whether the target holds a cyclic connection opened by this session.
     connected: bool,
@@ -80,7 +79,7 @@ pub struct DriveSnapshot {
     pub ended: Option<(u64, ActionEnd)>,
 }
 
-/// Time for which a parameter is read after the latest request. A reading is considered recent for the same time.
+/// Time for which a parameter is read after it was last requested. A reading is considered recent for equally long.
 const WATCH_DURATION: Duration = Duration::from_secs(5);
 
 impl Motion {
@@ -100,8 +99,8 @@ impl Motion {
         Motion(Arc::new(Shared { clock, cell: Mutex::new(cell) }))
     }
 
-    /// Requests a motion of a drive and returns the number of this action. The new action replaces the previous one and
-    /// stops its motion. The request must be [refreshed](Self::refresh). Without a cyclic connection it has no effect.
+    /// Requests a motion of a drive and returns the number of this action. The action replaces the previous one, whose
+    /// motion is stopped, and must be [refreshed](Self::refresh). Without a cyclic connection it has no effect.
     pub fn request_motion(&self, drive: DriveNumber, request: MotionRequest) -> u64 {
         let refreshed = self.0.clock.now();
         let mut cell = self.lock();
@@ -110,7 +109,7 @@ impl Motion {
         number
     }
 
-    /// Refreshes the last request. This is required every 100 ms while anything moves. After 250 ms without a refresh
+    /// Refreshes the last request. This is required every 100 ms while a drive moves. After 250 ms without a refresh
     /// the drive stops, and a later refresh has no effect, even if the connection thread was suspended in the meantime.
     pub fn refresh(&self) {
         let now = self.0.clock.now();
@@ -153,12 +152,13 @@ impl Motion {
         self.with_limits(drive, |own| *own = limits);
     }
 
-    /// Changes the limits of a drive atomically, so that a partial change is never read or confirmed.
+    /// Changes the limits of a drive atomically, so that a partial change can be neither read nor confirmed.
     pub(super) fn with_limits<T>(&self, drive: DriveNumber, change: impl FnOnce(&mut DriveLimits) -> T) -> T {
         change(self.lock().limits.entry(drive).or_default())
     }
 
-    /// Requires the limits of a drive to be read before its next motion, because another master may have changed them.
+    /// Requires that the limits of a drive are read before its next motion, because another master may have changed
+    /// them.
     pub fn invalidate_limits(&self, drive: DriveNumber) {
         let now = self.0.clock.now();
         self.with_limits(drive, |limits| limits.invalidate(now));
@@ -168,12 +168,12 @@ impl Motion {
         self.lock().intent.drive
     }
 
-    /// Requires the limits of a drive to be confirmed before it moves.
+    /// Requires that the user confirms the limits of a drive before it moves.
     pub fn revoke_limits_confirmation(&self, drive: DriveNumber) {
         self.with_limits(drive, DriveLimits::require_confirmation);
     }
 
-    /// Confirms the limits of a drive as shown to the user. Returns `false` and has no effect if the limits have
+    /// Confirms the limits of a drive as shown to the user. Returns `false` without any effect if the limits have
     /// changed since then.
     pub fn confirm_limits(&self, drive: DriveNumber, seen: DisplayedLimits) -> bool {
         self.with_limits(drive, |limits| limits.confirm_displayed(seen))
@@ -189,8 +189,8 @@ impl Motion {
         }
     }
 
-    /// Reads a parameter for some time through the parameter words of the cyclic connection. Returns the latest
-    /// reading, or `None` if the reading is outdated or the connection has no parameter words.
+    /// Requests that a parameter is read through the parameter words of the cyclic connection for the next few seconds.
+    /// Returns the latest reading, or `None` if the reading is outdated or the connection has no parameter words.
     pub fn watch_parameter(&self, number: ParameterNumber) -> Option<ParameterReading> {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -211,8 +211,8 @@ impl Motion {
         self.lock().motion_permit(drive, now)
     }
 
-    /// Marks the start of a connection and returns the number of the latest action. Actions up to this number cannot
-    /// move a drive over the new connection.
+    /// Marks the start of a connection and returns the number of the latest action. Actions numbered up to this one
+    /// cannot move a drive over the new connection.
     pub(super) fn open(&self) -> u64 {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -222,7 +222,7 @@ impl Motion {
         number
     }
 
-    /// Calls the closure that builds the next packet with the current request.
+    /// Calls `make`, which builds the next packet, with the current request and the motion permits.
     pub(super) fn with_motion_intent<T>(
         &self,
         make: impl FnOnce(&MotionIntent, &dyn Fn(DriveNumber) -> Permit) -> T,
@@ -232,7 +232,7 @@ impl Motion {
         make(&cell.intent, &|drive| cell.motion_permit(drive, now))
     }
 
-    /// Records a request or a reply of the explicit messages.
+    /// Records that an explicit message was requested or answered.
     pub(super) fn update_session_watch(&self, note: impl FnOnce(&mut ReplyMonitor)) {
         note(&mut self.lock().session);
     }
@@ -296,7 +296,7 @@ impl Motion {
         self.lock().connected
     }
 
-    /// Records that the cyclic connection was opened, or closed at both ends.
+    /// Records that the cyclic connection was opened or that both ends have closed it.
     pub(super) fn set_connected(&self, connected: bool) {
         self.lock().connected = connected;
     }
@@ -305,7 +305,7 @@ impl Motion {
         Arc::strong_count(&self.0) == 1
     }
 
-    /// Returns whether the last control word sent to every drive is a stop. Returns `true` without a connection.
+    /// Returns whether every drive was last sent a stop. Without a connection, returns `true`.
     pub fn is_at_rest(&self) -> bool {
         let cell = self.lock();
         !cell.view.open || cell.view.drives.iter().all(|drive| drive.sent.control.is_at_rest())
@@ -339,7 +339,8 @@ mod tests {
     use crate::devices::hiperdrive::procedures::dead_man::SpeedTorque;
     use crate::link::VirtualClock;
 
-    /// A window that resumes before the connection thread, after both were suspended, does not revive a stale request.
+    /// If the window and the connection thread were both suspended, and the window resumes first, it does not revive a
+    /// stale request.
     #[test]
     fn stale_intents_are_not_repeated() {
         let clock = Arc::new(VirtualClock::default());

@@ -26,7 +26,7 @@ pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
 /// recording. A recording has no cyclic connection.
 ///
 /// # Errors
-/// Returns an [`OpenError`] if the link cannot be opened. In this case, nothing has been sent.
+/// Returns an [`OpenError`] if the link cannot be opened. Nothing has been sent in this case.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenError> {
     let (station, config) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
@@ -55,7 +55,8 @@ fn open_virtual(config: &Config, station: Station, clock: Arc<dyn Clock>) -> Dev
     DeviceConnection { wire, port: Some(port), station, target: Some(target) }
 }
 
-/// Parses the settings of the station and of the virtual device. The latter apply only to a link to a virtual device.
+/// Parses the settings of the connection and of the virtual device. The latter are allowed only in a link to a virtual
+/// device.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Enip | LinkScheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, enip:, replay:"));
@@ -70,7 +71,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     Ok((station, config))
 }
 
-/// Removes session and request numbers, which differ on each run, so that a recording matches any run.
+/// Masks session and request numbers, which differ on each run, so that a recording matches any run.
 fn mask_numbers(entry: TraceEntry) -> TraceEntry {
     const NUMBERS: [usize; 12] = [4, 5, 6, 7, 12, 13, 14, 15, 16, 17, 18, 19];
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };

@@ -1,4 +1,4 @@
-//! Preparation of a plan from a change. The device is only read.
+//! Plans a change. The device is only read.
 
 use super::{Change, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::hiperdrive::procedures::write::{FaultReset, find_remedy};
@@ -93,7 +93,7 @@ pub(super) fn prepare_plan(
     })
 }
 
-/// Checks that the drives named by the user exist. A profile may name further drives.
+/// Checks that the drives selected by the user exist. A profile may contain other drives as well.
 fn ensure_drives_present(identity: &Identity, change: &Change) -> Result<(), Error> {
     let named = match change {
         Change::Write(wanted) | Change::Try(wanted) => wanted.drives(),

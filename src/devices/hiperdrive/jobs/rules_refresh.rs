@@ -1,5 +1,5 @@
-//! Repeated reading of the limits while drives may be moved, because another master may change them. Only the limits of
-//! the displayed drive and of the drive moved last are read. The interval is independent of other polling.
+//! Reads the limits repeatedly while drives may be moved, because another master may change them. Only the limits of
+//! the displayed drive and of the last moved drive are read. The interval does not depend on other polling.
 
 use std::time::Duration;
 
@@ -10,11 +10,10 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::units::Moment;
 use crate::worker::SessionContext;
 
-/// Length of a time slot while no drive moves. The groups of limit parameters take turns, with one slot per group per
-/// second.
+/// Length of a time slot while no drive moves. Each group of limit parameters has one slot per second.
 const TURN: Duration = Duration::from_millis(250);
-/// Length of a time slot while a drive moves. Each slot sends a request, and a device that does not reply ends the
-/// motion.
+/// Length of a time slot while a drive moves. Every slot sends a request, so that a device that stops replying is
+/// detected and the motion ends.
 const TURN_IN_MOTION: Duration = REQUEST;
 /// Pause after a failed reading.
 const RETRY_PAUSE: Duration = Duration::from_millis(500);
@@ -24,7 +23,7 @@ pub(super) struct RulesRefresh {
     rests: Option<Moment>,
 }
 
-/// Returns the groups whose slot has begun since their last reading, least recently read first.
+/// Returns the groups that have not been read since their last time slot began, least recently read first.
 fn due_groups(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
     let is_due = |(group, at): &(usize, Moment)| turns_begun(*group, now, turn) > turns_begun(*group, *at, turn);
     let mut groups: Vec<(usize, Moment)> = read.into_iter().enumerate().filter(is_due).collect();
@@ -40,8 +39,8 @@ fn turns_begun(group: usize, at: Moment, turn: Duration) -> u128 {
 }
 
 impl Hiperdrive {
-    /// Reads the limit parameters if they are due while drives may be moved. If reading fails, no drive may move until
-    /// reading succeeds, and the failure is reported once.
+    /// Reads the limit parameters that are due while drives may be moved. After a failure, which is reported once, no
+    /// drive may move until a reading succeeds.
     pub(super) fn refresh_rules(&mut self, context: &mut SessionContext) {
         let Some(identity) = self.control.controlled_device() else { return };
         if self.control.rules_refresh.rests.is_some_and(|until| context.clock.now() < until) {
@@ -108,8 +107,8 @@ impl Hiperdrive {
         }
     }
 
-    /// Reads the limits of a newly selected drive before anything else. Those of the drive that was moved last are
-    /// refreshed while another drive is selected, so they remain valid, and a paused job of this drive can be resumed.
+    /// Reads the limits of a newly selected drive before anything else. This is not needed for the last moved drive,
+    /// whose limits are read even while another drive is selected. A paused job of that drive can therefore be resumed.
     pub(super) fn restart_refresh(&mut self, context: &mut SessionContext, drive: DriveNumber) {
         if drive != self.control.motion().requested_drive() {
             self.control.motion().invalidate_limits(drive);
@@ -117,7 +116,7 @@ impl Hiperdrive {
         self.refresh_rules(context);
     }
 
-    /// Reads the limits of all drives. Cancellation is ignored, since the new state must be known after a change.
+    /// Reads the limits of all drives. This cannot be cancelled, because the limits must be known after a change.
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
@@ -139,7 +138,7 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
-    /// While a drive moves, one of the groups becomes due at least every 60 ms (issue 21.13).
+    /// While a drive moves, a group becomes due at least every 60 ms (issue 21.13).
     #[test]
     fn a_group_is_due_every_60_ms_during_motion() {
         let mut read = [at(0); GROUPS];

@@ -1,6 +1,5 @@
-//! Supervision of explicit messages while drives are under control. It measures how long the device has left a request
-//! without a reply. A device that stops replying ends a motion as fast as any other loss, even if its cyclic packets
-//! continue.
+//! Supervision of explicit messages while drives are under control. If the device stops replying, the motion ends as
+//! quickly as after any other loss, even if cyclic packets still arrive.
 //!
 //! | case | time |
 //! |---|---|
@@ -21,22 +20,22 @@ use crate::units::{CharacterFormat, Moment};
 
 /// Maximum interval between requests while a drive moves.
 pub(super) const REQUEST: Duration = Duration::from_millis(60);
-/// Maximum time for which a device may leave a request unanswered while a drive moves.
+/// Maximum time for which a request may stay unanswered while a drive moves.
 const REPLY_TIMEOUT: Duration = Duration::from_millis(130);
-/// Additional time after which a request is considered unanswered even if the line was not checked.
+/// Additional time after which a request counts as unanswered even if the line has not been checked since.
 const UNCHECKED_TIMEOUT: Duration = Duration::from_millis(250);
-/// Interval between checks of the line while a reply is awaited.
+/// Interval between checks of the line while a reply is pending.
 const CHECK_INTERVAL: Duration = Duration::from_millis(10);
-/// Maximum time allowed for a reply, regardless of how slow the device was before.
+/// Maximum time allowed for a reply, no matter how slowly the device replied before.
 const MAX_REPLY_TIMEOUT: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct ReplyMonitor {
     /// Time at which the oldest unanswered request was sent.
     requested: Option<Moment>,
-    /// Time of the last check of the line that found no new bytes.
+    /// Time at which the line was last checked and had no new bytes.
     looked: Moment,
-    /// Longest recent reply time. Each shorter reply lowers it by up to an eighth.
+    /// Longest recent reply time. Each shorter reply time lowers it by up to an eighth.
     slowest: Duration,
     /// Whether the last bytes received did not form a frame.
     broken: bool,
@@ -59,7 +58,7 @@ impl ReplyMonitor {
         }
     }
 
-    /// Records that nothing has arrived by the given time.
+    /// Records that nothing had arrived by the given time.
     pub(super) const fn record_silence(&mut self, now: Moment) {
         self.looked = now;
     }
@@ -68,8 +67,8 @@ impl ReplyMonitor {
         self.broken = true;
     }
 
-    /// Returns whether motion must end because the device has been silent for too long or has sent bytes that are not a
-    /// frame.
+    /// Returns whether motion must end because the device has been silent for too long or has sent bytes that do not
+    /// form a frame.
     pub(super) fn is_silent(&self, now: Moment) -> bool {
         let patience = (self.slowest * 2).clamp(REPLY_TIMEOUT, MAX_REPLY_TIMEOUT);
         let is_late = |asked| {
@@ -152,7 +151,7 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
-    /// 130 ms without a reply is too long, counted from the first unanswered request (issue 21.13).
+    /// The limit of 130 ms without a reply counts from the first unanswered request (issue 21.13).
     #[test]
     fn silence_counts_from_the_first_unanswered_request() {
         let mut watch = ReplyMonitor::default();
@@ -171,7 +170,7 @@ mod tests {
         assert!(!watch.is_silent(at(1001)));
     }
 
-    /// A line that only delivers the bytes stored in it.
+    /// A line that delivers only the bytes stored in it.
     #[derive(Default)]
     struct Line(Vec<u8>);
 
@@ -194,8 +193,8 @@ mod tests {
         }
     }
 
-    /// An unanswered request or bytes that are not a frame lock motion, and a reply unlocks it. The test receives the
-    /// reply to RegisterSession from the reference (section 9) in two parts (issue 21.13).
+    /// An unanswered request or bytes that do not form a frame lock motion until a reply arrives. The reply to
+    /// RegisterSession (reference, section 9) arrives in two parts (issue 21.13).
     #[test]
     fn a_silent_session_locks_motion() {
         let mut reply = vec![0x65, 0, 4, 0, 0x78, 0x56, 0x34, 0x12];
@@ -235,7 +234,8 @@ mod tests {
         assert!(!locked());
     }
 
-    /// A device that takes 300 ms for each reply is allowed 600 ms, and less once it has become faster.
+    /// A device that takes 300 ms for each reply is allowed 600 ms. The allowed time shrinks again when the device
+    /// becomes faster.
     #[test]
     fn a_slow_device_gets_a_longer_timeout() {
         let mut watch = ReplyMonitor::default();

@@ -1,4 +1,5 @@
-//! Device check: the findings about an adapter or a hub and its drives, each with a verdict. Nothing is set or moved.
+//! Device check: examines an adapter or a hub with its drives, and gives a verdict on each finding. It sets no value
+//! and moves no drive.
 
 use std::fmt;
 use std::time::Duration;
@@ -28,13 +29,13 @@ pub enum CheckStep {
     Supply,
     Temperature,
     Address,
-    /// Memory state according to parameter 47: intact, with no save in progress.
+    /// State of the memory (parameter 47): it must be intact, with no save in progress.
     Memory,
     Drives,
     Request(DriveNumber),
     /// RS-485 link to a drive.
     Line(DriveNumber),
-    /// RS-485 time-out of a drive, which stops a drive without communication.
+    /// RS-485 time-out, after which a drive that receives no more data stops.
     Timeout(DriveNumber),
     /// State and errors of a drive.
     Errors(DriveNumber),
@@ -66,7 +67,7 @@ impl fmt::Display for CheckStep {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
-    /// Reply times: the number of readings, the longest reply time, and the number of late frames.
+    /// Reply times measured over a number of readings.
     Replies {
         requested: u32,
         /// Longest reply time in milliseconds.
@@ -95,22 +96,22 @@ pub enum CheckFinding {
         serial_number: String,
     },
     NoDrives,
-    /// The drive is requested: parameter 152 is 1.
+    /// Parameter 152 (Requested) of the drive is 1.
     Requested,
-    /// The drive is not requested: parameter 152 is 0.
+    /// Parameter 152 (Requested) of the drive is 0.
     NotRequested,
-    /// Switch S3 of a hub must be at 0 for drives to move. The program cannot read its position.
+    /// Switch S3 of a hub must be at 0 for drives to move. It cannot be read and must be checked by the user.
     LookAtS3,
     /// The RS-485 link has no errors: parameter 118 is 0.
     LineGood,
-    /// Error of the RS-485 link, parameter 118. The value is FFFFh if there is no drive.
+    /// Error of the RS-485 link (parameter 118), or FFFFh if there is no drive.
     LineWord(u16),
     /// RS-485 time-out in tenths of a second, parameter 186.
     Timeout(i64),
-    /// Parameter 186 is not a time, so a drive without communication continues to move.
+    /// Parameter 186 is not a valid time, so the drive continues to move when communication is lost.
     NoTimeout,
     State(State),
-    /// The status word is implausible. The process data may use the other byte order.
+    /// The status word is implausible. Perhaps the process data use the other byte order.
     StrayStatus(u16),
     /// Drive error word, parameter 116, which is not 0.
     DriveWord(u16),
@@ -145,7 +146,7 @@ pub enum CheckFinding {
         /// Upper limit in scaled steps, parameter 160.
         upper: i64,
     },
-    /// A limit is farther from 0 than the travel of the drive.
+    /// A limit is beyond the travel of the drive.
     BeyondTravel {
         /// Limit in scaled steps, parameter 158 or 160.
         limit: i64,
@@ -162,15 +163,16 @@ pub enum CheckFinding {
     },
 }
 
-/// Number of readings used to measure the reply time.
+/// Number of readings over which the reply time is measured.
 const READING_COUNT: u32 = 20;
-/// Allowed supply voltage in tenths of a volt: 24 V, 15 % less or 20 % more (`U`: not documented).
+/// Allowed supply voltage in tenths of a volt: 24 V with a tolerance of −15 % to +20 %. The tolerance is not documented
+/// (`U`).
 const SUPPLY_RANGE: std::ops::RangeInclusive<i64> = 204..=288;
-/// Allowed temperature of a device or a drive, in degrees Celsius (`U`: the manual contradicts itself, reference,
+/// Allowed temperature of a device or a drive in degrees Celsius. The manual contradicts itself here (`U`; reference,
 /// section 8.9).
 const TEMPERATURE_RANGE: std::ops::RangeInclusive<i64> = -10..=70;
 
-/// Runs the check to its end, unless the device fails.
+/// Runs all checks. A problem found by one check does not end the others.
 ///
 /// # Errors
 /// Returns [`Error::NotHiperdrive`] for another device, or another error if the exchange fails.

@@ -1,5 +1,5 @@
-//! Originator side of the cyclic connection: sending, receiving, statistics and loss detection. Packets and times are
-//! arguments, and no call blocks.
+//! Originator side of the cyclic connection: sending, receiving, statistics and loss detection. The caller passes in
+//! packets and the time, and no call blocks.
 //!
 //! ```text
 //! drives: a dead-man each ── connection: counts, layout, intervals ──▶ packets (sent by the owner of a clock and a

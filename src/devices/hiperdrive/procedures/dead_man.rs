@@ -1,6 +1,6 @@
 //! The dead-man control, which is the only source of a drive's control word. In every interval, it derives the word
-//! from the drive's report, the user's request and the drive's permit (reference, section 3). Time is an argument, and
-//! no call blocks.
+//! from the drive's report, the user's request and the drive's permit (reference, section 3). The caller passes in the
+//! time, and no call blocks.
 //!
 //! Invariants for any input:
 //! - A word that could start a motion is sent only while a fresh action of the user requests that motion. All other
@@ -45,20 +45,21 @@ use crate::units::Moment;
 pub struct DeadMan {
     drive: DriveNumber,
     received: Option<(Moment, ActualValues)>,
-    /// Time of the first report from the drive.
+    /// Time at which the first report from the drive arrived.
     first: Option<Moment>,
     reports: u64,
     sent: Setpoint,
     stage: Stage,
     level: TargetState,
     act: Option<UserAction>,
-    /// Number of the last action that is no longer allowed to start.
+    /// Highest action number that can no longer start a motion.
     spent: u64,
     /// Speed and torque of the last motion.
     effort: SpeedTorque,
-    /// Whether speed mode was entered. The drive may remember the run and must first leave the operational state.
+    /// Whether a run was started in speed mode. The drive may still remember the run and must first leave the
+    /// operational state.
     after_run: bool,
-    /// Whether reports are currently missing. While they are, no motion may start.
+    /// Whether the drive's reports are missing. No motion may start in this state.
     is_out_of_contact: bool,
     ended: Option<(u64, ActionEnd)>,
 }
@@ -66,7 +67,7 @@ pub struct DeadMan {
 #[derive(Clone, Copy, Debug)]
 struct UserAction {
     number: u64,
-    /// Latest request of the action. A pause of the job is also a request.
+    /// Latest request within the action, which can be a pause of its job.
     request: MotionRequest,
     motion: Option<Motion>,
     watch: Option<ActionMonitor>,
@@ -78,24 +79,25 @@ struct Motion {
     kind: MotionKind,
 }
 
-/// Time allowed for a drive to stop at one level of the stop sequence before the next level is tried.
+/// Time allowed for a drive to stop before the next level of the stop sequence begins.
 pub const LEVEL_TIME: Duration = Duration::from_millis(200);
 /// Time allowed for a drive to obey a control word during a change of state.
 const STEP: Duration = Duration::from_secs(2);
-/// Time allowed for a drive to begin a motion.
+/// Time allowed for a drive to start moving.
 const START: Duration = Duration::from_secs(1);
-/// Time without a report after which no drive may move, more than three times the longest interval.
+/// Time without a report after which no drive may move. It exceeds three of the longest intervals.
 const CONTACT_TIMEOUT: Duration = Duration::from_millis(350);
-/// Maximum delay of a report between a hub and its drives (`U`: not documented).
+/// Maximum delay of a report on its way from a drive through a hub (`U`: not documented).
 pub const MAX_REPORT_DELAY: Duration = Duration::from_millis(100);
-/// Time for which positions must have been arriving before they are considered valid. A hub first queries all its
-/// drives (`U`: not documented).
+/// Time after the first report from which positions are considered valid. A hub first queries all its drives (`U`: not
+/// documented).
 pub const ARRIVAL_TIME: Duration = Duration::from_millis(250);
-/// Time at standstill after which a drive is considered to have missed its target.
+/// Time after which a drive at standstill is considered to have missed its target.
 const NOT_REACHED_TIME: Duration = Duration::from_millis(500);
 
 impl DeadMan {
-    /// Creates the state for a newly opened connection. Actions with numbers up to `spent` do not start a motion.
+    /// Creates the dead-man control for a newly opened connection. Actions numbered up to `spent` cannot start a
+    /// motion.
     pub const fn new(drive: DriveNumber, spent: u64) -> Self {
         DeadMan {
             drive,
@@ -181,18 +183,18 @@ impl DeadMan {
         }
     }
 
-    /// Returns whether every level of the stop sequence has failed. In this case, the connection must be closed, so
-    /// that the watchdog of the drives stops them.
+    /// Returns whether every level of the stop sequence has failed. The connection must then be closed, so that the
+    /// drives are stopped by their watchdogs.
     pub const fn has_exhausted_stop_levels(&self) -> bool {
         matches!(self.stage, Stage::Stop { level: StopLevel::Close, .. })
     }
 
-    /// Returns whether no action is running and the drive does not have to be stopped.
+    /// Returns whether no action is running and no drive motion has to be stopped.
     pub const fn is_idle(&self) -> bool {
         matches!(self.stage, Stage::Rest { moves: None })
     }
 
-    /// Handles the end or loss of the connection by ending the running action and stopping the motion.
+    /// Ends the running action and stops the motion when the connection has ended or was lost.
     pub fn connection_lost(&mut self, now: Moment) {
         if self.stage.has_motion() {
             self.stop(now, ActionEnd::Lost);
@@ -202,7 +204,7 @@ impl DeadMan {
         }
     }
 
-    /// Handles missing position reports. Motion is stopped, and no motion may start.
+    /// Stops the motion when position reports are missing. No motion may start in this state.
     pub fn handle_contact_loss(&mut self, now: Moment) {
         self.is_out_of_contact = true;
         if self.stage.has_motion() {
@@ -222,8 +224,8 @@ impl DeadMan {
         }
     }
 
-    /// Discards a request that must not start a motion, together with all earlier requests. This applies to requests to
-    /// rest or to stop, to a request for another drive, and to a request that was not refreshed in time.
+    /// Discards a request that must not start a motion, together with all earlier ones. Such requests are to rest or to
+    /// stop, are meant for another drive, or were not refreshed in time.
     fn discard_void_request(&mut self, now: Moment, intent: &MotionIntent) {
         let rests = matches!(intent.request, MotionRequest::Rest | MotionRequest::Stop);
         let stale = intent.is_stale(now);
@@ -243,7 +245,7 @@ impl DeadMan {
         }
     }
 
-    /// Starts a new action if one is requested and the last action has ended.
+    /// Starts a newly requested action if the last action has ended.
     fn accept_intent(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) {
         self.discard_void_request(now, intent);
         // A relative step starts from the present position.
@@ -266,8 +268,8 @@ impl DeadMan {
         }
     }
 
-    /// Returns how the last action ended if the next request is to pause or resume it. The user made this request before
-    /// the end was reported, and must learn the reason rather than that there is no job.
+    /// Returns how the last action failed if the new request is to pause or resume it. The user, who did not know of
+    /// the failure yet, then gets its reason instead of being told that there is no job.
     fn end_before_request(&self, intent: &MotionIntent) -> Option<ActionEnd> {
         let concerns_last_action = matches!(intent.request, MotionRequest::Pause | MotionRequest::Resume);
         let (number, how) = self.ended.filter(|_| concerns_last_action)?;
@@ -316,7 +318,7 @@ impl DeadMan {
         Ok(())
     }
 
-    /// Suppresses a control word that could start a motion while no motion is requested. This is the last safeguard.
+    /// Replaces a control word that could start a motion while none is requested. This is the last safeguard.
     fn run_guarded(&self, setpoint: Setpoint, actual: ActualValues) -> Setpoint {
         let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.is_moving();
         if is_commanded || setpoint.control.is_at_rest() { setpoint } else { Setpoint::holding(actual) }
@@ -336,5 +338,5 @@ impl MotionKind {
     }
 }
 
-/// Setpoint sent before the first report of a drive, which requests no control.
+/// Setpoint sent before the drive has sent its first report. It does not request control.
 const NONE: Setpoint = Setpoint { control: ControlWord::OFF, speed: Percent::NONE, torque: Percent::NONE, target: 0 };

@@ -16,17 +16,17 @@ pub struct DiscoveredDevice {
 }
 
 impl DiscoveredDevice {
-    /// Returns whether the vendor of the device is the manufacturer of HIPERDRIVE.
+    /// Returns whether the device is from the manufacturer of HIPERDRIVE, according to its vendor ID.
     pub const fn is_hiperdrive(&self) -> bool {
         self.identity.identity.vendor == VENDOR
     }
 }
 
-/// Time for collecting replies. A request may allow a device to delay its reply, but no delay is requested.
+/// Time for collecting replies. A discovery request can allow devices to delay their replies, but this one does not.
 const COLLECTION_TIME: Duration = Duration::from_secs(1);
 const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Broadcasts a request and collects replies for a second. Each device is returned once, in the order of addresses.
+/// Broadcasts a request and collects replies for a second. Each device is returned once, sorted by address.
 ///
 /// # Errors
 /// Returns a network error, or [`Error::Cancelled`] if the job is cancelled.
@@ -55,7 +55,7 @@ pub fn discover(
     Ok(found)
 }
 
-/// Parses a discovery reply, or returns `None` if the packet is not a discovery reply.
+/// Parses a discovery reply. Returns `None` for any other packet.
 fn parse_reply(packet: &[u8]) -> Option<IdentityItem> {
     let frame = Frame::parse(packet).ok().filter(|frame| frame.command == Command::LIST_IDENTITY)?;
     match frame.parse_body().ok()? {

@@ -1,4 +1,4 @@
-//! Errors of drives that are connected through EtherNet/IP. Each error contains the data for its message.
+//! Errors of drives that are connected over EtherNet/IP. Each error contains the data for its message.
 
 use std::fmt;
 use std::time::Duration;
@@ -59,7 +59,7 @@ pub enum ReplyDamage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LateReplyError {
     pub took: Duration,
-    /// Time limit of a reply, excluding the margin for the line.
+    /// Time limit for a reply, not including the margin for the line.
     pub waited: Duration,
 }
 
@@ -71,12 +71,12 @@ pub struct ErrorReply {
 }
 
 impl ErrorReply {
-    /// Returns the table row of the first extended status word, if the word is present and known.
+    /// Returns the table row for the first extended status word, if there is one and it is known.
     pub fn row(&self) -> Option<&'static ExtendedStatusTableRow> {
         find_extended_status(self.service, self.status, *self.extended.first()?)
     }
 
-    /// Returns the remedy for the extended status if it is known, and otherwise the remedy for the status.
+    /// Returns the remedy for the extended status if known, or else the remedy for the status.
     pub fn remedy(&self) -> Option<&'static str> {
         self.row().map(|row| row.remedy).or_else(|| self.status.row().map(|row| row.remedy))
     }
@@ -93,7 +93,7 @@ impl fmt::Display for ErrorReply {
     }
 }
 
-/// A number whose length differs from the type of its parameter. The number is not displayed.
+/// Error for a number whose length does not match the type of its parameter. The number itself is not shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("parameter {number} ({name}) has the wrong length (bytes received: {got}, expected: {expected})")]
 pub struct WrongLength {
@@ -109,7 +109,7 @@ pub enum Error {
     Link(LinkError),
     #[error("cancelled")]
     Cancelled,
-    /// Bytes that do not form frames keep arriving.
+    /// The device keeps sending bytes that do not form frames.
     #[error("the device keeps sending data that is not EtherNet/IP")]
     NeverSilent,
     #[error("no reply: {requested} (attempts: {tries})")]
@@ -130,8 +130,7 @@ pub enum Error {
         /// Extended status word, either 0100h or 0106h.
         extended: u16,
     },
-    /// The device only offers a longer send or receive interval than requested, at which a drive could not be stopped
-    /// in time.
+    /// The device offers only a longer interval than requested, at which a drive could not be stopped in time.
     #[error("the device offers cyclic data every {got_ms} ms instead of every {asked_ms} ms")]
     TooSlow {
         /// Requested interval in milliseconds.
@@ -147,7 +146,7 @@ pub enum Error {
     /// The link has no cyclic connection, for example because it is a recording.
     #[error("this link does not provide a cyclic connection")]
     NoCyclic,
-    /// The manual does not list a parameter with this number.
+    /// The manual lists no parameter with this number.
     #[error("parameter {0} does not exist")]
     Unknown(ParameterNumber),
     /// The number is not a valid parameter number.
@@ -157,36 +156,36 @@ pub enum Error {
     NoPlace { drive: DriveNumber, topology: Topology },
     #[error("no drive is connected to port {}", drive.get())]
     NoDrive { drive: DriveNumber },
-    /// The drive is not requested: parameter 152 is 0.
+    /// Parameter 152 (Requested) of the drive is 0.
     #[error("drive {} is not requested: parameter 152 is 0", drive.get())]
     NotRequested { drive: DriveNumber },
-    /// The value is out of range, so no data was sent.
+    /// The value is out of range, so nothing was sent.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// The device rejected the value. The error contains the current range.
+    /// The device rejected the value. The error contains the range that currently applies.
     #[error("{0}")]
     Refuses(OutOfRange),
-    /// The length of a number differs from the type of its parameter.
+    /// The length of a number does not match the type of its parameter.
     #[error(transparent)]
     Length(#[from] WrongLength),
-    /// The value does not match the type of its parameter, so no data was sent.
+    /// The value does not match the type of its parameter, so nothing was sent.
     #[error("parameter {number}: {cause}")]
     Value { number: ParameterNumber, cause: ValueError },
-    /// The parameter is read-only, so no data was sent.
+    /// The parameter is read-only, so nothing was sent.
     #[error("parameter {number} ({name}) is read-only")]
     ReadOnly { number: ParameterNumber, name: &'static str },
     /// The parameter is write-only.
     #[error("parameter {number} ({name}) is write-only")]
     WriteOnly { number: ParameterNumber, name: &'static str },
-    /// The parameter moves the drive and may be written only over the cyclic connection; no data was sent.
+    /// The parameter moves the drive and may be written only over the cyclic connection, so nothing was sent.
     #[error("parameter {number} ({name}) cannot be written as a value: drives move only over the cyclic connection")]
     Motion { number: ParameterNumber, name: &'static str },
     #[error("drive {} is moving", drive.get())]
     Moving { drive: DriveNumber },
-    /// The identity is not that of a HIPERDRIVE.
+    /// The device is not a HIPERDRIVE.
     #[error("the device {product:?} is not a HIPERDRIVE")]
     NotHiperdrive {
-        /// Category of the device, or the name in the identity object.
+        /// Category of the device, or its name from the identity object.
         product: String,
     },
     /// The value read back differs from the value written.
@@ -195,7 +194,7 @@ pub enum Error {
     /// The network settings read back differ from those written.
     #[error("attribute {attribute} of the TCP/IP object differs from the value that was written")]
     NetworkNotTaken { attribute: u16 },
-    /// The device stays busy: parameter 47 does not become 0.
+    /// The device is still busy, because parameter 47 has not become 0.
     #[error("parameter 47 is still {reads} after {milliseconds} ms")]
     Busy { reads: i64, milliseconds: u64 },
     #[error("{item} has changed since the plan was made")]
@@ -225,7 +224,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the device cannot be reached, which makes further attempts useless.
+    /// Returns whether the device is unreachable, so that further attempts are useless.
     pub const fn is_lost(&self) -> bool {
         matches!(self, Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent)
     }
@@ -234,7 +233,8 @@ impl Error {
         matches!(self, Error::Cancelled)
     }
 
-    /// Returns whether the value is unavailable at present or on this device. Other parameters may still be available.
+    /// Returns whether the value is currently unavailable or not provided by this device. Other parameters may still be
+    /// available.
     pub const fn is_unavailable(&self) -> bool {
         matches!(self, Error::Refused { .. } | Error::NotRequested { .. } | Error::NoDrive { .. })
     }

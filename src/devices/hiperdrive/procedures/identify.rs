@@ -1,4 +1,4 @@
-//! Reading the identity, the status, and everything else that can be read. Nothing is set. See section 4 of the
+//! Reads the identity, the status, and everything else that can be read, without setting anything. See section 4 of the
 //! reference.
 
 use std::collections::BTreeMap;
@@ -45,7 +45,7 @@ pub struct DriveIdentity {
     pub serial_number: String,
     /// Software version of the drive, parameter 125.
     pub version: String,
-    /// Whether the drive is requested (parameter 152).
+    /// Whether parameter 152 (Requested) is 1.
     pub requested: bool,
 }
 
@@ -53,9 +53,9 @@ pub struct DriveIdentity {
 pub struct Survey {
     pub identity: Identity,
     pub network: Network,
-    /// All parameters of the device and its drives, except those that the device rejects.
+    /// All parameters of the device and its drives, except those that the device refuses to read.
     pub values: BTreeMap<ParameterNumber, Value>,
-    /// Numbers whose length does not match the type of their parameter. They are missing from `values`.
+    /// Numeric parameters whose length does not match their type. They are not included in `values`.
     pub wrong_lengths: Vec<WrongLength>,
 }
 
@@ -75,26 +75,26 @@ pub struct DriveStatus {
     pub status: StatusWord,
     /// Errors stored in parameters 108 to 115, newest first. After power-up, they may be old (reference, section 4).
     pub buffer: Vec<ErrorCode>,
-    /// Drive error word, motion status and communication error, parameters 116 to 118. The value 0 means no error, and
-    /// FFFFh means no drive.
+    /// Drive error word, motion status and communication error, parameters 116 to 118. The value 0 stands for no error,
+    /// and FFFFh for no drive.
     pub words: [u16; 3],
     /// Number of faults since the last acknowledgement, parameter 197.
     pub faults: u8,
     /// Drive temperature in degrees Celsius, parameter 119.
     pub temperature: i64,
-    /// Whether the drive is requested, parameter 152.
+    /// Whether parameter 152 (Requested) is not 0.
     pub requested: bool,
 }
 
 impl DriveStatus {
-    /// Returns the number of newest entries in the error buffer that are present errors. The buffer survives a power
-    /// cycle, so all other entries are earlier errors. During a fault, there is at least one present error.
+    /// Returns how many of the newest entries in the error buffer are current errors, which is at least one during a
+    /// fault. The other entries are old, because the buffer survives a power cycle.
     pub fn present_error_count(&self) -> usize {
         usize::from(self.faults).max(usize::from(self.status.is_set(StatusBit::Fault)))
     }
 }
 
-/// Callback that receives the number of parameters read, their total, and the next parameter.
+/// Callback that receives the number of parameters read so far, their total number, and the next parameter.
 pub(super) type IdentifyProgress<'t> = &'t mut dyn FnMut(u64, u64, ParameterNumber);
 
 struct ProgressSteps<'t> {
@@ -128,7 +128,7 @@ impl Identity {
         self.drives.iter().find(|drive| drive.number == number)
     }
 
-    /// Returns the identity of a drive selected by the user.
+    /// Returns the identity of a drive by number.
     ///
     /// # Errors
     /// Returns [`Error::NoPlace`] if the device has no such port, or [`Error::NoDrive`] if the port is empty.
@@ -177,8 +177,8 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
     Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
 }
 
-/// Reads a string of a drive. Returns an empty string if the drive does not provide it, which may be the case while the
-/// drive is not requested (`U`: not documented).
+/// Reads a string from a drive. Returns an empty string if the drive does not provide it, for example because the drive
+/// is not requested (`U`: not documented).
 pub(super) fn read_drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
     match master.read_text(drive_parameter(base, drive)?) {
         Err(error) if error.is_unavailable() => Ok(String::new()),
@@ -186,7 +186,7 @@ pub(super) fn read_drive_text(master: &mut Master<'_>, base: u16, drive: DriveNu
     }
 }
 
-/// Reads the category of the device, or its name if the device has no category parameter.
+/// Reads the category of the device.
 fn read_category(master: &mut Master<'_>) -> Result<String, Error> {
     match master.read_text(device_parameter(13)?) {
         Err(Error::Refused { .. }) => {
@@ -197,7 +197,7 @@ fn read_category(master: &mut Master<'_>) -> Result<String, Error> {
     }
 }
 
-/// Reads identity and status of a device.
+/// Reads the identity and all readable parameters of a device.
 ///
 /// # Errors
 /// Returns an error from [`identify`] if the identity or the status cannot be read.
@@ -231,7 +231,7 @@ fn readable_parameters(identity: &Identity) -> impl Iterator<Item = ParameterNum
     device.chain(drives)
 }
 
-/// Number of parameters in a drive's status.
+/// Number of parameters read for the status of a drive.
 const STATUS_PARAMETERS: u64 = 15;
 
 /// Reads the errors and states of all drives.
@@ -290,7 +290,7 @@ fn read_drive_status(
     })
 }
 
-/// Reads parameters 105, 106 and 107 of a drive.
+/// Reads the status, speed and position of a drive (parameters 105 to 107).
 ///
 /// # Errors
 /// Returns [`Error::NoPlace`] or [`Error::NoDrive`] if the drive does not exist, or another error if the exchange
@@ -303,7 +303,7 @@ pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<DriveRead
     Ok(DriveReading { at: master.now(), drive, actual: ActualValues { status, speed, position } })
 }
 
-/// Returns the topology, which is read once per session.
+/// Returns the device type, reading it once per session.
 pub(super) fn read_topology(master: &mut Master<'_>) -> Result<Topology, Error> {
     if let Some(topology) = master.station().topology() {
         return Ok(topology);
@@ -326,7 +326,7 @@ pub(super) fn device_parameter(number: u16) -> Result<ParameterNumber, Error> {
     ParameterNumber::new(number).ok_or(Error::NoNumber(number))
 }
 
-/// Converts a parameter number for drive 1 to the number for another drive.
+/// Converts the number of a drive 1 parameter to the number for another drive.
 pub(super) fn drive_parameter(base: u16, drive: DriveNumber) -> Result<ParameterNumber, Error> {
     ParameterNumber::for_drive(base, drive).ok_or(Error::NoNumber(base))
 }

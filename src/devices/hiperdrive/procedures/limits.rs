@@ -1,8 +1,8 @@
-//! Motion limits of a drive. Scale, limits, confirmation, locks and time of reading form one value with a single owner.
+//! Motion limits of a drive. Scale, limits, confirmation, locks and reading times form a single value.
 //!
 //! The worker updates the value when parameters are read, and the window displays it. The dead-man control obtains a
-//! [`Permit`] from it for each packet. The settings store only the part that must outlast a session: the limits to be
-//! confirmed.
+//! [`Permit`] from it for each packet. Only the need for a confirmation is stored in the settings, since it must
+//! outlast a session.
 
 use std::time::Duration;
 
@@ -17,14 +17,15 @@ use crate::units::Moment;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DriveLimits {
     rules: MotionLimitParameters,
-    /// Whether the scale and limits have factory values, as far as the drive family is known.
+    /// Whether scale and limits are known to have their factory values.
     is_factory: bool,
     /// Whether the scale has changed since the user confirmed the limits.
     unconfirmed: bool,
-    /// Time at which each group of parameters was read, or `None` if they may have changed and must be read.
+    /// Time at which each group of parameters was read, or `None` if the parameters must be read again because they may
+    /// have changed.
     read: Option<[Moment; GROUPS]>,
-    /// Time at which the readings became doubtful. All groups must be read again after this time before the next motion
-    /// starts.
+    /// Time since which the readings are in doubt. Before the next motion starts, all groups must be read again after
+    /// this time.
     doubted: Option<Moment>,
 }
 
@@ -37,11 +38,11 @@ pub struct DisplayedLimits {
     pub limits: (i64, i64),
 }
 
-/// Time for which a reading of the limits is valid. Even a slow device replies to all requests within this time.
+/// Time for which a reading of the limits is valid. It is long enough to read all limits again even from a slow device.
 const VALIDITY: Duration = Duration::from_secs(4);
 
-/// Returns whether a drive with this value of parameter 186 stops when communication is lost. Values that the manual
-/// does not define do not qualify.
+/// Returns whether a drive with this RS-485 time-out (parameter 186) stops when communication is lost. Values that the
+/// manual does not define are assumed not to stop it.
 pub(super) fn stops_on_timeout(timeout: i64) -> bool {
     let row = ParameterNumber::new(TIMEOUT).and_then(ParameterNumber::row);
     timeout != NO_TIMEOUT && row.is_some_and(|row| row.range.contains(timeout))
@@ -55,8 +56,9 @@ impl DriveLimits {
         limits
     }
 
-    /// Adopts parameter readings. `times` contains the time at which the reading of each group began. If the scale has
-    /// changed, the limits denote other positions and must be confirmed. Readings older than a doubt do not clear it.
+    /// Stores newly read parameters. `times` contains the time at which the reading of each group began. A change of
+    /// scale requires confirmation, because the limits are then at other positions. A reading that began before
+    /// [`invalidate`](Self::invalidate) was called does not make the limits valid again.
     pub fn update(
         &mut self,
         rules: MotionLimitParameters,
@@ -79,7 +81,7 @@ impl DriveLimits {
         self.read.filter(|_| self.doubted.is_none())
     }
 
-    /// Requires the parameters to be read again before the next motion begins, because another master may have changed
+    /// Requires that the parameters are read again before the next motion, because another master may have changed
     /// them. A running motion continues while the last reading is valid.
     pub fn invalidate(&mut self, now: Moment) {
         // Each thread reads the clock before it stores the doubt, so the later time may be stored first.
@@ -101,7 +103,7 @@ impl DriveLimits {
         self.unconfirmed
     }
 
-    /// Confirms the limits as shown to the user. Returns `false` and has no effect if the limits have changed since
+    /// Confirms the limits as shown to the user. Returns `false` without any effect if the limits have changed since
     /// then.
     pub fn confirm_displayed(&mut self, seen: DisplayedLimits) -> bool {
         let counts = self.displayed_limits() == Some(seen);
@@ -109,26 +111,26 @@ impl DriveLimits {
         counts
     }
 
-    /// Returns the limits to show for a confirmation, or `None` if they have not been read.
+    /// Returns the limits to show to the user for confirmation, or `None` if they have not been read.
     pub fn displayed_limits(&self) -> Option<DisplayedLimits> {
         Some(DisplayedLimits { scale: self.rules.scale?, limits: self.rules.limits? })
     }
 
-    /// Returns the limits (parameters 158 and 160) in scaled steps. Returns `None` if they have not been read or do not
-    /// form a range.
+    /// Returns the limits (parameters 158 and 160) in scaled steps, or `None` if they have not been read or do not form
+    /// a range.
     pub fn limits(&self) -> Option<(i32, i32)> {
         let (lower, upper) = self.rules.limits?;
         let limits = (i32::try_from(lower).ok()?, i32::try_from(upper).ok()?);
         (limits.0 < limits.1).then_some(limits)
     }
 
-    /// Returns the position scale (parameters 154 and 156). Returns `None` if it has not been read or is invalid.
+    /// Returns the position scale (parameters 154 and 156), or `None` if it has not been read or is invalid.
     pub fn scale(&self) -> Option<PositionScale> {
         let (numerator, denominator) = self.rules.scale?;
         PositionScale::new(u16::try_from(numerator).ok()?, u16::try_from(denominator).ok()?).ok()
     }
 
-    /// Returns whether a motion may start based on this reading, which must be recent and not doubted.
+    /// Returns whether a motion may start with this reading, which must be recent and not invalidated.
     pub fn is_valid(&self, now: Moment) -> bool {
         self.doubted.is_none() && self.is_fresh(now)
     }
@@ -137,12 +139,12 @@ impl DriveLimits {
         self.read.is_some_and(|times| times.into_iter().all(|at| now.duration_since(at) <= VALIDITY))
     }
 
-    /// Returns whether scale and limits have factory values, so that an endless run is possible.
+    /// Returns whether scale and limits have their factory values, which an endless run requires.
     pub const fn is_endless_run_allowed(&self) -> bool {
         self.is_factory
     }
 
-    /// Returns the reasons why motion is locked, the most important first.
+    /// Returns the reasons why the drive may not move, most important first.
     pub fn motion_locks(&self) -> Vec<MotionLock> {
         let MotionLimitParameters { requested, timeout, .. } = self.rules;
         // An invalid scale or range is treated like one that was not read.
@@ -158,8 +160,8 @@ impl DriveLimits {
         .collect()
     }
 
-    /// Returns the motion permit (limits, locks and exceptions) of the drive at the given time. `expert` specifies
-    /// whether the user has allowed an endless run.
+    /// Returns the motion permit (limits, locks and exceptions) of the drive at the given time. `expert` is `true` if
+    /// the user has allowed an endless run.
     pub fn motion_permit(&self, now: Moment, expert: bool) -> Permit {
         let mut locks = self.motion_locks();
         locks.extend((!locks.contains(&MotionLock::Unread) && !self.is_fresh(now)).then_some(MotionLock::Outdated));
@@ -197,7 +199,8 @@ mod tests {
 
     const HDA30A: (Topology, Variant) = (Topology::Adapter, Variant::new(7));
 
-    /// Returns the factory value of an HDA30A parameter: ±511 turns of 65536 steps (reference, section 5).
+    /// Returns the factory value of an HDA30A parameter. The limits are ±511 turns of 65536 steps (reference, section
+    /// 5).
     fn factory(number: u16) -> Option<i64> {
         Some(match number {
             152 => 1,
@@ -253,9 +256,9 @@ mod tests {
         assert!(!other.is_endless_run_allowed(), "its factory values are not known");
     }
 
-    /// An invalid scale, range or time-out is treated like one that was not read. According to section 4 of the
-    /// reference, parameter 152 is 0 or 1, parameter 160 is above parameter 158, and parameter 186 is 1 to 100, or 255
-    /// for no time-out (issue 21.3).
+    /// An invalid scale, range or time-out permits no motion, as if it had not been read. Parameter 152 must be 0 or 1,
+    /// parameter 160 above parameter 158, and parameter 186 from 1 to 100, or 255 for no time-out (reference, section
+    /// 4; issue 21.3).
     #[test]
     fn invalid_parameter_values_permit_no_motion() {
         type Case<'c> = (&'c [(u16, Option<i64>)], MotionLock);
@@ -282,7 +285,7 @@ mod tests {
         }
     }
 
-    /// The later of two doubts applies, regardless of the order in which they arrive (issue 21.3).
+    /// If the limits are invalidated twice, the later time applies, in whichever order the calls arrive (issue 21.3).
     #[test]
     fn an_earlier_doubt_does_not_replace_a_later_one() {
         let mut limits = DriveLimits::from_rules(rules(&[]), HDA30A, at(0));
@@ -294,7 +297,7 @@ mod tests {
         assert!(limits.is_valid(at(100)));
     }
 
-    /// A reading contains its time, which the dead-man control checks (issue 21.3).
+    /// Each reading has a time stamp, which the dead-man control checks (issue 21.3).
     #[test]
     fn a_reading_is_valid_for_four_seconds() {
         let mut limits = DriveLimits::from_rules(rules(&[]), HDA30A, at(0));
@@ -320,8 +323,8 @@ mod tests {
         assert_eq!(limits.limits(), None);
     }
 
-    /// A confirmation applies to the limits and the scale that were shown, and is void when the scale changes (issue
-    /// 21.3).
+    /// A confirmation applies to the limits and the scale that were shown. It becomes void when the scale changes
+    /// (issue 21.3).
     #[test]
     fn limits_are_confirmed_as_they_were_shown() {
         let scaled = rules(&[(154, Some(400)), (156, Some(256)), (158, Some(-1000)), (160, Some(1000))]);

@@ -1,8 +1,8 @@
-//! Host side of explicit messages (reference, section 7). There is one session per connection. A numbered context
-//! matches replies to requests. Late replies are skipped and counted.
+//! Host side of explicit messages (reference, section 7). Each connection has one session. Replies are matched to
+//! requests by a number in the context field. Late replies are skipped and counted.
 //!
-//! Reads are repeated. A request that sets a value is sent once. If its reply is lost, the value is read back. The
-//! stream keeps the order, so the device answers this read after the lost request.
+//! A read without a reply is repeated. A request that sets a value is sent once, and if its reply is lost, the value is
+//! read back. TCP keeps the order, so the device handles this read after the lost request.
 
 mod connection;
 mod refusal;
@@ -26,13 +26,13 @@ use crate::link::Ctx;
 use crate::link::line::{MAX_ATTEMPTS, SerialLine};
 use crate::units::Moment;
 
-/// Pause after bytes that are not a frame. Bytes that follow the pause start a new frame.
+/// Pause after bytes that do not form a frame. The next byte is expected to start a new frame.
 const RESYNC_PAUSE: Duration = Duration::from_millis(50);
 const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
-/// Margin added to the time that the manual states for a long operation.
+/// Margin added to the time that the manual gives for a long operation.
 const REPLY_TIME_MARGIN: Duration = Duration::from_millis(500);
 
-/// Host side of a device's explicit messages, for one job.
+/// Host side of the explicit messages to a device, for the duration of one job.
 pub struct Master<'a> {
     line: SerialLine<'a>,
     station: &'a mut Station,
@@ -54,13 +54,13 @@ impl<D: Into<ReplyDamage>> From<D> for ExchangeError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RetryPolicy {
     Always,
-    /// The request is sent once. `takes` is the time limit for the reply, or `None` for the usual limit.
+    /// The request is sent once. `takes` is the time limit for the reply, or `None` for the usual time limit.
     Never {
         takes: Option<Duration>,
     },
 }
 
-/// Setting for requests that are sent once, with the usual time limit.
+/// Policy for requests that are sent once, with the usual time limit.
 const SEND_ONCE: RetryPolicy = RetryPolicy::Never { takes: None };
 
 impl<'a> Master<'a> {
@@ -85,7 +85,7 @@ impl<'a> Master<'a> {
         self.station.identified = Some((category.to_owned(), serial_number.to_owned()));
     }
 
-    /// Waits, but returns early if cancelled.
+    /// Waits, unless cancelled.
     ///
     /// # Errors
     /// Returns [`Error::Cancelled`] if the job is cancelled.
@@ -97,7 +97,7 @@ impl<'a> Master<'a> {
         Ok(self.line.check_cancel()?)
     }
 
-    /// Runs `work` to its end and ignores any cancellation until then. `work` must result in a safe state.
+    /// Runs `work` to its end, ignoring any cancellation until then. `work` must leave the device in a safe state.
     pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.ignore_cancellation(true);
         let result = work(self);
@@ -150,12 +150,12 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sets a parameter. If the reply is lost, the parameter is read back, and set again only if it does not have the
-    /// value yet. A parameter that triggers an action is never sent twice.
+    /// Sets a parameter. If the reply is lost, the parameter is read back and set again only if its value has not
+    /// changed yet. A parameter that triggers an action is never sent twice.
     ///
     /// # Errors
     /// Returns [`Error::OutOfRange`], [`Error::ReadOnly`] or [`Error::Motion`] without sending anything if the value
-    /// may not be set. Returns [`Error::Refuses`] or [`Error::Refused`] if the device rejects the value, or another
+    /// must not be set. Returns [`Error::Refuses`] or [`Error::Refused`] if the device rejects the value, or another
     /// error if the exchange fails.
     pub(super) fn set_parameter(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
         let row = writable_parameter(number)?;
@@ -226,7 +226,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Returns how long to wait for the operation that is started by setting a parameter to this value.
+    /// Returns how long to wait for the operation that setting a parameter to this value starts.
     pub(super) fn max_wait(&self, number: ParameterNumber, value: i64) -> Duration {
         let takes = number.row().and_then(|row| row.write_duration(value, self.station.known.topology));
         RetryPolicy::Never { takes }.reply_timeout(self.station.link.timeout)
@@ -236,8 +236,7 @@ impl<'a> Master<'a> {
         self.request_with_items(requested, request, &[], repeats).map(|(reply, _)| reply)
     }
 
-    /// Sends a request to an object, together with additional items. Returns the reply and the items sent along with
-    /// it.
+    /// Sends a request to an object, with additional items. Returns the reply and the additional items in it.
     fn request_with_items(
         &mut self,
         requested: RequestedItem,
@@ -262,7 +261,7 @@ impl<'a> Master<'a> {
         Err(Error::Refused { requested, refusal: ErrorReply { service, status, extended } })
     }
 
-    /// Returns the session number. The first request on a connection opens the session.
+    /// Returns the session number, opening the session on the first call.
     fn session(&mut self) -> Result<u32, Error> {
         if let Some(session) = self.station.session {
             return Ok(session);
@@ -285,7 +284,7 @@ impl<'a> Master<'a> {
         Ok(self.line.send(&bytes, MaskedBytes::unmasked(&bytes), now)?)
     }
 
-    /// Sends a request, and repeats it if this is useful and harmless.
+    /// Sends a request, and repeats it if the retry policy permits and a repetition is useful.
     fn send_with_retries<T>(
         &mut self,
         requested: RequestedItem,
@@ -338,7 +337,7 @@ impl<'a> Master<'a> {
         self.line.show(now, MaskedBytes::unmasked(&rest));
     }
 
-    /// Sends a frame under a new number, and waits for the reply with that number.
+    /// Sends a frame with a new number in its context field, and waits for the reply with the same number.
     fn exchange(&mut self, mut frame: Frame, repeats: RetryPolicy) -> Result<Result<Frame, ExchangeError>, Error> {
         self.line.start()?;
         let sent_at = self.line.now();
@@ -392,8 +391,8 @@ impl<'a> Master<'a> {
     }
 }
 
-/// Returns whether a rejection contains the session number. A stream has a single session. If the reply to the first
-/// RegisterSession was lost, the device rejects the next one and returns the number of the existing session.
+/// Returns whether an error reply contains the number of an existing session. A stream has a single session. If the
+/// reply to the first RegisterSession was lost, the device rejects the second one and returns this number.
 fn has_session(answer: &Frame) -> bool {
     answer.command == Command::REGISTER_SESSION
         && answer.status == EncapsulationStatus::UNSUPPORTED
@@ -410,7 +409,7 @@ fn parse_reply(request: &Request, frame: &Frame) -> Result<(Reply, ItemList), Ex
     }
 }
 
-/// Returns the table row of a parameter that may be set with explicit messages, or an error if it may not be.
+/// Returns the table row of a parameter. Returns an error if the parameter must not be set with explicit messages.
 fn writable_parameter(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     let row = number.row().ok_or(Error::Unknown(number))?;
     match (row.access, row.number) {
@@ -420,13 +419,13 @@ fn writable_parameter(number: ParameterNumber) -> Result<&'static ParameterRow, 
     }
 }
 
-/// Returns whether setting the parameter triggers an action, so that reading it back does not prove anything.
+/// Returns whether setting the parameter triggers an action. Reading it back then proves nothing.
 const fn triggers_action(row: &ParameterRow) -> bool {
     matches!(row.number, SERVICE | ACKNOWLEDGE | REFERENCE | RESET)
 }
 
 impl RetryPolicy {
-    /// Returns the time limit of a reply, excluding the line margin. `timeout` is the usual time limit.
+    /// Returns the time limit for a reply, without the margin for the line. `timeout` is the usual time limit.
     fn reply_timeout(self, timeout: Duration) -> Duration {
         match self {
             RetryPolicy::Never { takes: Some(takes) } => timeout.max(takes + REPLY_TIME_MARGIN),

@@ -1,5 +1,5 @@
-//! Procedures of HIPERDRIVE drives behind an EtherNet/IP adapter or hub. Explicit messages are used for all reading and
-//! writing, and the cyclic connection for all motion. Reading does not change anything. "Reference" is the project's
+//! Procedures for HIPERDRIVE drives behind an EtherNet/IP adapter or hub. Parameters are read and written with explicit
+//! messages, and drives are moved over the cyclic connection. Reading changes nothing. "Reference" is the project's
 //! reference "hiperdrive".
 //!
 //! ```text

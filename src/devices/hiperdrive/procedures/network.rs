@@ -1,4 +1,4 @@
-//! IP address and its source: address switches and TCP/IP object (reference, section 1).
+//! Reads the IP address and its source: address switches and TCP/IP object (reference, section 1).
 
 use super::error::RequestedItem;
 use super::identify::device_parameter;
@@ -7,7 +7,7 @@ use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfigu
 use crate::devices::hiperdrive::profile::NetworkSettings;
 use crate::devices::hiperdrive::protocol::AddressSwitch;
 
-/// IP address and its source. Values that the device does not report are missing.
+/// IP address and its source. Values that the device does not report are `None`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Network {
     /// Positions of S1 and S2 at power-up, parameter 12.
@@ -19,11 +19,11 @@ pub struct Network {
     pub mac: Option<[u8; 6]>,
 }
 
-/// Class and attribute of the network card's MAC address.
+/// Class and attribute that hold the MAC address.
 const MAC: (u16, u16) = (0xF6, 3);
 
 impl Network {
-    /// Returns the setting of the switches, or `None` for invalid digits.
+    /// Returns the setting of the address switches, or `None` if the value is not a valid setting.
     pub fn address_switch(&self) -> Option<AddressSwitch> {
         AddressSwitch::parse(u8::try_from(self.switch).ok()?)
     }
@@ -45,7 +45,7 @@ pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
     Ok(Network { switch, control, interface, mac })
 }
 
-/// Returns the network settings that a plan can change.
+/// Reads the network settings that a plan can change.
 ///
 /// # Errors
 /// Returns [`Error::Refused`] if the device has no such settings, or another error if the exchange fails.
@@ -66,7 +66,7 @@ fn read_attribute<T>(
     parse(&data).map_err(|cause| Error::Damaged { requested, tries: 1, cause: cause.into() })
 }
 
-/// Returns the value, or `None` if the request was rejected.
+/// Returns the value, or `None` if the device rejected the request.
 fn optional_if_refused<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
     match ended {
         Ok(value) => Ok(Some(value)),

@@ -1,4 +1,4 @@
-//! The parameters that limit the motion of a drive, read all at once or one group after another.
+//! Reads the parameters that limit the motion of a drive, either all at once or group by group.
 
 use super::identify::drive_parameter;
 use super::{Error, Master};
@@ -7,10 +7,10 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
     DENOMINATOR, LOWER_LIMIT, NUMERATOR, REFERENCE, REQUESTED_BY_BUS, TIMEOUT, UPPER_LIMIT,
 };
 
-/// Parameters that limit the motion of a drive. Parameters that were not read are `None`.
+/// Parameters that limit the motion of a drive. A parameter that was not read is `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MotionLimitParameters {
-    /// Request of the drive by the bus, parameter 152.
+    /// Parameter 152 (Requested). Only a requested drive can move.
     pub requested: Option<i64>,
     /// Numerator and denominator of the position scale, parameters 154 and 156.
     pub scale: Option<(i64, i64)>,
@@ -18,12 +18,13 @@ pub struct MotionLimitParameters {
     pub limits: Option<(i64, i64)>,
     /// RS-485 time-out, parameter 186.
     pub timeout: Option<i64>,
-    /// Number of the reference position (parameter 198). A change of the reference shifts every position.
+    /// Reference (parameter 198), the position number assigned to a location of the axis. A change of the reference
+    /// shifts every position.
     pub reference: Option<i64>,
 }
 
 impl MotionLimitParameters {
-    /// Creates the rules from parameters. `read` is called with the parameter numbers of drive 1.
+    /// Creates the value from parameters, which `read` returns by their numbers for drive 1.
     pub fn from_parameters(read: impl Fn(u16) -> Option<i64>) -> Self {
         MotionLimitParameters {
             requested: read(REQUESTED_BY_BUS),
@@ -53,10 +54,10 @@ pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<MotionL
     }))
 }
 
-/// Number of groups in which a drive's limit parameters are read again. Related parameters are read together.
+/// Number of groups in which the limit parameters of a drive are read again. Related parameters are in the same group.
 pub const GROUPS: usize = 4;
 
-/// Reads one group of a drive's limit parameters again.
+/// Reads one group of the limit parameters of a drive again.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.

@@ -1,4 +1,4 @@
-//! Reading the values that are saved or needed for planning.
+//! Reads the values that are saved or needed for planning.
 
 use super::identify::{IdentifyProgress, drive_parameter, identify};
 use super::{DriveIdentity, Error, Identity, Master};
@@ -30,7 +30,7 @@ impl Identity {
         }
     }
 
-    /// Returns all parameters that a device stores for itself and its connected drives.
+    /// Returns the numbers of all parameters that a device stores for itself and its connected drives.
     pub fn stored_parameters(&self) -> impl Iterator<Item = ParameterNumber> {
         let rows = || PARAMETERS.iter().filter(|row| Image::contains_row(row));
         let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));
@@ -42,7 +42,7 @@ impl Identity {
     }
 }
 
-/// Reads all values that can be restored. Parameters that the device does not report are omitted.
+/// Reads all values that can be restored. Values that the device does not report are omitted.
 ///
 /// # Errors
 /// Returns [`Error::NotHiperdrive`] for another device, or another error if the exchange fails.
@@ -52,7 +52,7 @@ pub fn save(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<H
     Ok(HiperdriveProfile::from_image(identity.profile(), image))
 }
 
-/// Reads all values that a plan requires: the stored values, the given additional parameters, and the drive positions.
+/// Reads all values needed for a plan: the stored values, the given additional parameters, and the drive positions.
 ///
 /// # Errors
 /// Returns [`Error::NotHiperdrive`] for another device, or another error if the exchange fails.

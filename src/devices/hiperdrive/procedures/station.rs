@@ -1,4 +1,4 @@
-//! State of an adapter or a hub that is kept between jobs.
+//! State of an adapter or a hub, kept between jobs.
 
 use std::collections::VecDeque;
 use std::collections::hash_map::RandomState;
@@ -36,24 +36,24 @@ pub struct Station {
     pub link: LinkParameters,
     /// UDP port of cyclic data, unless the device reports another.
     pub udp: u16,
-    /// Whether the replies come from a recording and therefore contain the recorded request numbers.
+    /// Whether the replies come from a recording and contain its request numbers.
     pub recorded: bool,
     pub(super) line: LineState,
     pub(super) session: Option<u32>,
     pub(super) next: u64,
-    /// The most recent unanswered requests: number, send time, and whether the operation takes the device a long time.
+    /// The latest unanswered requests: number, send time, and whether the requested operation takes long.
     open: VecDeque<(u64, Moment, bool)>,
-    /// Reply times, including late replies. Operations that take the device a long time are excluded.
+    /// Reply times, including those of late replies but not those of operations that take long.
     pub(super) replies: ReplyTimes,
-    /// Received bytes that do not yet form a complete frame.
+    /// Received bytes that do not form a complete frame yet.
     pub(super) receiver: Receiver,
-    /// Number of frames that arrived after their time limit.
+    /// Number of frames that arrived too late.
     pub(super) late: u64,
     /// Originator ID for connections, different for each session.
     pub(super) originator: u32,
     pub(super) connections: u16,
     pub(super) known: KnownState,
-    /// Category and serial number of the device that was identified last.
+    /// Category and serial number of the last identified device.
     pub identified: Option<(String, String)>,
 }
 
@@ -64,8 +64,8 @@ pub(super) struct KnownState {
 
 impl Station {
     pub const LONGEST_TIMEOUT: Duration = Duration::from_millis(LONGEST_TIMEOUT);
-    /// Maximum number of unanswered requests whose late replies can be recognised. The connection is abandoned before
-    /// this number is exceeded.
+    /// Maximum number of unanswered requests whose late replies can be recognised. A job gives up the connection before
+    /// reaching this number.
     const OPEN: usize = 8;
 
     pub fn new(margin: Duration) -> Self {
@@ -89,8 +89,8 @@ impl Station {
         }
     }
 
-    /// Creates the station from link parameters. `tcp` is the port for explicit messages. Parameters that do not
-    /// concern the connection are ignored.
+    /// Creates the station from the parameters of a link, ignoring those that do not concern the connection. `tcp` is
+    /// the port for explicit messages.
     ///
     /// # Errors
     /// Returns an error with the allowed values if a value is invalid.
@@ -113,7 +113,7 @@ impl Station {
         self.replies.clone()
     }
 
-    /// Records that a request is being sent, and returns its number.
+    /// Records that a request is sent, and returns a number for it.
     pub(super) fn begin_request(&mut self, at: Moment, takes_long: bool) -> u64 {
         let number = self.next;
         self.next = number.wrapping_add(1);
@@ -122,7 +122,7 @@ impl Station {
         number
     }
 
-    /// Records a reply, whether in time or late, to the request with the given number.
+    /// Records a reply to the request with the given number, in time or late.
     pub(super) fn record_reply(&mut self, number: u64, at: Moment) {
         if let Some(place) = self.open.iter().position(|(own, ..)| *own == number)
             && let Some((_, sent, false)) = self.open.remove(place)

@@ -1,4 +1,4 @@
-//! Temperatures of the device (parameter 11) and of a drive (parameter 119), which are watched together with the
+//! Temperatures of the device (parameter 11) and of a drive (parameter 119), which are polled together with the
 //! position.
 
 use super::identify::{device_parameter, drive_parameter};
@@ -41,8 +41,8 @@ impl Temperature {
     }
 }
 
-/// Reads a temperature with a single explicit message, which does not delay the cyclic connection. A device that
-/// rejects the request does not provide the temperature.
+/// Reads a temperature with an explicit message, which does not delay the cyclic connection. If the device rejects the
+/// request, the temperature is unavailable.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.

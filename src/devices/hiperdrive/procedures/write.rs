@@ -1,5 +1,5 @@
-//! Execution of a plan. The values on which the plan is based are read again. Each operation is then executed and read
-//! back (reference, section 4).
+//! Executes a plan. The values on which the plan is based are read again first. Each operation is executed and then
+//! read back (reference, section 4).
 
 use std::time::Duration;
 
@@ -19,12 +19,12 @@ use crate::devices::hiperdrive::protocol::{
 };
 use crate::profile::{ConfirmedPlan, Write};
 
-/// A write that ended early. Values written before the end may be lost at power-off unless they are saved.
+/// A write that was interrupted. Values written before the interruption may be lost at power-off unless they are saved.
 pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, ()>;
 
 impl InterruptedWrite {
-    /// Returns the change made by the unfinished operation if it may have been executed in part. Returns `None` if
-    /// the operation did not start, for example after a cancellation.
+    /// Returns the item changed by the unfinished operation, which may have been partly executed. Returns `None` if the
+    /// operation did not start, for example after a cancellation.
     pub fn uncertain_write(&self) -> Option<String> {
         self.unfinished.as_ref().filter(|_| !self.cause.is_cancelled()).map(Op::item_name)
     }
@@ -32,7 +32,7 @@ impl InterruptedWrite {
 
 /// Interval between two reads of parameter 47.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
-/// Wait before the first read after an operation that includes a reset. The reset may not have started before that.
+/// Delay before the first read after an operation that includes a reset, which may not start immediately.
 const RESET_START_DELAY: Duration = Duration::from_millis(100);
 
 pub struct DeviceWriter<'w, 'm> {
@@ -96,7 +96,7 @@ impl Write for DeviceWriter<'_, '_> {
     fn end_state(&mut self, _: &Error) {}
 }
 
-/// Returns the drives affected by a plan. These are all drives if the plan affects the device as a whole.
+/// Returns the drives affected by a plan: all drives if the plan affects the whole device.
 fn affected_drives(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
     let of_op = |op: &Op| match op {
         Op::Write { number, .. } => number.drive(),
@@ -113,8 +113,8 @@ fn affected_drives(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumbe
     drives
 }
 
-/// Returns whether the scale or limits of a drive are only partly written before this operation. A write must not stop
-/// in this state, because the same limits denote other positions under another scale.
+/// Returns whether the scale and limits of a drive are only partly written before this operation. A write must not stop
+/// at this point, because the same limits mean other positions under another scale.
 fn are_scale_or_limits_incomplete(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
         Op::Write { number, .. }
@@ -144,8 +144,8 @@ fn execute(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Resul
     Ok(())
 }
 
-/// Writes a parameter and reads it back. The drive rounds parameter 198 to 64 steps (reference, section 4) and adopts
-/// it as its position.
+/// Writes a parameter and reads it back. For parameter 198, the drive rounds the value to 64 steps (reference, section
+/// 4) and adopts it as its position.
 fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
     master.set_parameter(number, wanted)?;
     let reads = master.read_number(number)?;
@@ -186,7 +186,7 @@ fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written
     await_idle(master, service, patience)
 }
 
-/// Waits until parameter 47 is 0. The device may reply to the request before the service is complete.
+/// Waits until parameter 47 is 0. The device may reply to the request before it has finished the service.
 fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> Result<(), Error> {
     let begun = master.now();
     if matches!(service, Service::Reset | Service::FactoryAll) {
@@ -213,7 +213,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
 pub enum FaultReset {
     /// The drive has no fault.
     Nothing,
-    /// Setting parameter 197 to 0, which only clears an RS-485 fault.
+    /// Setting parameter 197 to 0, which clears nothing but an RS-485 fault.
     Acknowledgement,
     /// A reset of all drives before the acknowledgement.
     Reset,
@@ -236,8 +236,7 @@ pub fn find_remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<FaultR
     })
 }
 
-/// Clears the fault of a drive by writing 0 to parameter 197. A reset that is required beforehand is a separate
-/// operation.
+/// Clears the fault of a drive by writing 0 to parameter 197. If a reset is required first, it is a separate operation.
 fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
     let number = drive_parameter(ACKNOWLEDGE, drive)?;
     master.set_parameter(number, 0)?;
@@ -247,8 +246,8 @@ fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error>
     }
 }
 
-/// Writes the address source, then the addresses. The order matters because setting the source to *stored* stores the
-/// current address (reference, section 1).
+/// Writes the address source first and then the addresses, because setting the source to *stored* stores the current
+/// address (reference, section 1).
 fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSettings) -> Result<(), Error> {
     if from.source != to.source {
         let attribute = ConfigurationControl::ATTRIBUTE;

@@ -1,5 +1,5 @@
-//! Planning changes. Each change is checked against the rules of the device before anything is sent. A single save
-//! follows the changes.
+//! Plans changes. Each change is checked against the rules of the device before anything is sent. All changes are
+//! followed by a single save.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -16,16 +16,17 @@ use crate::devices::hiperdrive::protocol::{
 /// Positions of the drives in scaled steps, parameter 107.
 pub type Positions = BTreeMap<DriveNumber, i32>;
 
-/// Plans the changes that bring a device to the values of the wanted image. Only differences are written, and they are
-/// saved where possible. Values missing from the wanted image stay unchanged.
+/// Plans the changes that give a device the wanted values. Only differences are written, and they are saved where
+/// possible. All other values stay unchanged.
 ///
-/// `device` must contain all values of the wanted image. For each drive whose scale or limits change, it must contain
-/// all four of them (154 to 160). The position is checked if it is known, and the travel if the variant is known.
+/// The state must contain the current values of all wanted parameters. For each drive whose scale or limits change, it
+/// must contain all of parameters 154 to 160. The position is checked if it is known, and the travel if the variant is
+/// known.
 ///
-/// A drive is requested before anything else is written, because requesting resets it. Its request is removed last. In
-/// between, the values are written drive by drive. The position scale, the speed scale and the maximum speed come
-/// first. The limits follow in an order that the drive accepts at its current position, then all other values. The
-/// position in a new scale is calculated.
+/// Parameter 152 (Requested) is set first, because setting it resets the drive, and cleared last. In between, the
+/// values are written drive by drive. The position scale, the speed scale and the maximum speed come first. The limits
+/// follow in an order that the drive accepts at its current position, then all other values. The position in a new
+/// scale is calculated.
 ///
 /// # Errors
 /// Returns a [`PlanError`] if a change is not allowed.
@@ -70,8 +71,8 @@ pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan,
     Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
 }
 
-/// Plans to set the current position to a value, rounded to 64 steps, and to save it. Parameter 198 is written even if
-/// its value is unchanged, since writing it sets the position.
+/// Plans to set the current position to a value rounded to 64 steps, and to save it. Parameter 198 is written even if
+/// its value stays the same, since only the write sets the position.
 ///
 /// # Errors
 /// Returns an error if the rounded position is outside the limits or the travel of the drive, or if the drive is
@@ -100,8 +101,8 @@ pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32)
     Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
 }
 
-/// Plans a service. The base of the plan contains all values that the device stores, because the old values cannot be
-/// read after the service. For an acknowledgement, the base is empty.
+/// Plans a service. The plan is based on all values that the device stores, because the old values cannot be read after
+/// the service. Only an acknowledgement is based on no values.
 pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     let values = match service {
         Service::Acknowledge(_) => BTreeMap::new(),
@@ -110,7 +111,7 @@ pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     HiperdrivePlan { base: Base { values, network: None }, ops: vec![Op::Service(service)] }
 }
 
-/// Numbers of the parameters that must be consistent with each other: position scale and limits.
+/// Numbers of the parameters that must match each other: position scale and limits.
 const POSITION_PARAMETERS: [u16; 4] = [NUMERATOR, DENOMINATOR, LOWER_LIMIT, UPPER_LIMIT];
 
 #[derive(Clone, Copy)]
@@ -131,7 +132,7 @@ impl Write {
         Op::Write { number: self.number, old: Some(self.old), new: self.new }
     }
 
-    /// Returns the key by which writes are sorted. The lowest key is written first.
+    /// Returns the sort key of a write. The write with the lowest key comes first.
     fn sort_key(self, upper_first: bool) -> (u8, Option<DriveNumber>, u8, Reverse<bool>, u16) {
         let base = self.number.drive1_number();
         let turn = match (base, self.new) {
@@ -168,8 +169,8 @@ fn check_value(number: ParameterNumber, value: i64, travel: Travel) -> Result<()
     }
 }
 
-/// Checks that the limits of a drive are in order and include its position after all writes. Returns the order in which
-/// they must be written.
+/// Checks that, after all writes, the limits of a drive are in order and include its position. Returns the order in
+/// which the limits must be written.
 fn check_position_limits(
     device: &Image,
     after: &Image,
@@ -203,8 +204,8 @@ fn check_position_limits(
     Ok(if too_low { WriteOrder::UpperFirst } else { WriteOrder::LowerFirst })
 }
 
-/// Returns the position of a drive in steps of another scale, which has 256 · numerator / denominator steps per turn.
-/// The result is rounded down, as by the drive.
+/// Converts a position of a drive to another scale, which has 256 · numerator / denominator steps per turn. The result
+/// is rounded down, as the drive does.
 fn rescale_position(position: i32, old: PositionScale, new: PositionScale) -> i64 {
     let times = i128::from(new.numerator()) * i128::from(old.denominator());
     let by = i128::from(new.denominator()) * i128::from(old.numerator());

@@ -1,11 +1,11 @@
-//! Errors of planning a change.
+//! Errors in planning a change.
 
 use super::Item;
 use crate::buses::ethernet_ip::protocol::AddressError;
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, Topology, Variant};
 
-/// A type difference between profile and device. Either the adapter or hub differs (parameter 13), or the variant of a
-/// drive (parameter 120). The variant determines travel, speed and torque.
+/// A type mismatch between profile and device: of the adapter or hub (parameter 13), or of the variant of a drive
+/// (parameter 120), which determines its travel, speed and torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TypeMismatch {
     /// The profile is for another type of device. Adapters, hubs with four ports and hubs with eight ports are different
@@ -17,7 +17,7 @@ pub enum TypeMismatch {
         /// Topology of the device.
         device: Topology,
     },
-    /// The drive in a port has a different variant from the one in the profile.
+    /// The drive in this port is not of the variant in the profile.
     #[error(
         "drive {}: the profile is for variant {} ({}), but the drive has variant {} ({})",
         drive.get(),
@@ -69,19 +69,19 @@ pub enum PlanError {
         /// Read-only parameter.
         item: Item,
     },
-    /// Parameters 101 to 104 move drives and may be written only over the cyclic connection.
+    /// Parameters 101 to 104 move the drive and may be written only over the cyclic connection.
     #[error("parameter {item} ({}) moves the drive and cannot be written as a value", item.name())]
     Moves {
         /// Parameter that moves a drive.
         item: Item,
     },
-    /// Parameters 47 and 197 to 199 trigger actions, which are planned as services instead.
+    /// Parameters 47 and 197 to 199 trigger actions, which are planned as services.
     #[error("parameter {item} ({}) triggers an action and cannot be written as a value", item.name())]
     Acts {
         /// Parameter that triggers an action.
         item: Item,
     },
-    /// The current value is unknown because it has not been read or its drive is missing.
+    /// The current value is unknown, because it was not read or the drive is missing.
     #[error("parameter {item} ({}) cannot be changed because it has not been read", item.name())]
     NotRead {
         /// Parameter whose present value is unknown.
@@ -134,11 +134,11 @@ pub enum PlanError {
         /// Current upper limit.
         upper: i64,
     },
-    /// The device would be unreachable with these addresses.
+    /// The device would be unreachable at these addresses.
     #[error(transparent)]
     Address(#[from] AddressError),
-    /// The requested address source is unknown and therefore not written. Contains its number. An unknown source that
-    /// the device already uses is preserved.
+    /// The requested address source has an unknown number and cannot be written. A device that already uses an unknown
+    /// source keeps it.
     #[error("{0} is not an address source; valid sources are 0 (stored), 1 (BOOTP) and 2 (DHCP)")]
     Source(u8),
 }

@@ -1,4 +1,4 @@
-//! Values that a device stores for itself and its drives, to the extent that they can be read.
+//! Values that a device stores for itself and its drives, as far as they can be read.
 
 use std::collections::BTreeMap;
 
@@ -7,8 +7,8 @@ use crate::devices::hiperdrive::protocol::{
     DriveNumber, ParameterAccess, ParameterNumber, ParameterRow, PositionScale,
 };
 
-/// Parameter values by absolute number. The image of a device holds all saved and writable parameters of the device and
-/// its drives. Values are missing if they were not read, are not in the profile, or belong to an empty port.
+/// Parameter values by parameter number, such as all values that an adapter or a hub stores for itself and its drives.
+/// Values are missing if they were not read, are not in the profile, or belong to an empty port.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Image {
     /// Values by parameter number.
@@ -16,7 +16,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Returns whether an image contains a parameter. The parameter must be saved and writable.
+    /// Returns whether the parameter is stored by the device, that is, both saved and writable.
     pub fn contains_row(row: &ParameterRow) -> bool {
         row.saved && row.access == ParameterAccess::ReadWrite
     }
@@ -26,12 +26,12 @@ impl Image {
         self.values.get(&number).copied()
     }
 
-    /// Returns the value of a drive parameter. `number` is the parameter number for drive 1.
+    /// Returns the value of a drive parameter by its number for drive 1.
     pub fn for_drive(&self, drive: DriveNumber, number: u16) -> Option<i64> {
         self.get(ParameterNumber::for_drive(number, drive)?)
     }
 
-    /// Returns the drives with at least one known value.
+    /// Returns the drives that have at least one known value.
     pub fn drives(&self) -> Vec<DriveNumber> {
         // The numbers of a drive are adjacent.
         let mut drives: Vec<DriveNumber> = self.values.keys().filter_map(|number| number.drive()).collect();
@@ -55,7 +55,7 @@ impl Image {
         numbers.into_iter().filter_map(|number| Some((number, self.get(number)?))).collect()
     }
 
-    /// Returns a copy in which the values of `other` take precedence.
+    /// Returns a copy with the values of `other` added or replaced.
     pub fn overlaid_with(&self, other: &Image) -> Image {
         let mut image = self.clone();
         image.values.extend(&other.values);

@@ -1,18 +1,19 @@
-//! Parameter names as accepted by `read`: `158` of the device or drive 1, `158 drive 2` or `258` of another drive.
+//! Parameter names as accepted by `read`, such as `158` for the device or drive 1, and `158 drive 2` or `258` for
+//! another drive.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 
-/// A parameter by name.
+/// A parameter, displayed by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Item(pub ParameterNumber);
 
 /// Reason why a string does not name a parameter.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ItemError {
-    /// The string does not have the form of a parameter name.
+    /// The string is not in the form of a parameter name.
     #[error(
         "{0:?} is not a parameter; enter a number such as 47 or 158 (for another drive, use \"158 drive 2\" or 258)"
     )]
@@ -34,8 +35,8 @@ pub enum ItemError {
 }
 
 impl Item {
-    /// Returns the item for a parameter number and an optional drive. A number that already refers to another drive is
-    /// kept.
+    /// Creates an item from a parameter number and an optional drive. A number that already contains the drive, such as
+    /// 258, is kept.
     ///
     /// # Errors
     /// Returns [`ItemError`] if the parameter does not exist, or if the drive does not have it.
@@ -57,7 +58,7 @@ impl Item {
         own.row().map(|_| Item(own)).ok_or(ItemError::NoParameter(number))
     }
 
-    /// Returns the name from the parameter table, or an empty string if the table has no name.
+    /// Returns the name from the parameter table, or an empty string if the parameter is not in the table.
     pub fn name(self) -> &'static str {
         self.0.row().map_or("", |row| row.name)
     }
@@ -86,7 +87,7 @@ impl FromStr for Item {
 }
 
 impl Item {
-    /// Parses a parameter number without a sign, either decimal or hexadecimal with `0x`.
+    /// Parses a parameter number without a sign, in decimal or, with the prefix `0x`, in hexadecimal.
     pub fn parse_number(text: &str) -> Option<u16> {
         let (digits, radix) = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
             Some(digits) => (digits, 16),

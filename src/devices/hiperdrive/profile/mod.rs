@@ -1,5 +1,5 @@
-//! HIPERDRIVE profiles: the values that an adapter or a hub stores for itself and its drives, the differences between
-//! two profiles, and the plan of a write.
+//! HIPERDRIVE profiles: the values that an adapter or a hub stores for itself and its drives, the comparison of two
+//! profiles, and the planning of writes.
 
 #![warn(missing_docs)]
 

@@ -1,5 +1,5 @@
-//! Network settings of a device and their plan: TCP/IP object, CIP class F5h (reference, section 1). The settings apply
-//! if the address switch is at 0. The addresses also apply if it is at 97.
+//! Network settings of a device, stored in the TCP/IP object (CIP class F5h), and their plan (reference, section 1).
+//! All settings apply if the address switch is at 0. If it is at 97, only the addresses apply.
 
 use super::{Base, HiperdrivePlan, Op, PlanError};
 use crate::buses::ethernet_ip::protocol::{AddressSource, InterfaceConfiguration};
@@ -14,11 +14,11 @@ pub struct NetworkSettings {
     pub interface: InterfaceConfiguration,
 }
 
-/// Plans a change of the address source. Addresses are written only if the source is *stored*, since they are ignored
-/// otherwise. `switch` is parameter 12, if known.
+/// Plans a change of the network settings. The addresses are written only if the address source is *stored*, since any
+/// other source ignores them. `switch` is parameter 12, if known.
 ///
 /// # Errors
-/// Returns an error if the device would be unreachable at the addresses, or if the source is unknown.
+/// Returns an error if the device would be unreachable at these addresses, or if the source is unknown.
 pub fn plan_network(
     now: &NetworkSettings,
     switch: Option<i64>,

@@ -1,4 +1,4 @@
-//! Operations that change a device, their cost, and the values on which they are based.
+//! Operations that change a device, the number of saves they need, and the values on which they are based.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,8 @@ use crate::profile::{ChangedItem, Operation, Plan};
 /// A planned write to an adapter or a hub.
 pub type HiperdrivePlan = Plan<Base, Op>;
 
-/// Values on which a plan is based: everything that its operations change or depend on. Drive positions are excluded,
-/// since they can change without a write.
+/// Values on which a plan is based: all those that its operations change or depend on. Drive positions are not
+/// included, since they can change without a write.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Values by parameter number.
@@ -51,8 +51,8 @@ pub enum Op {
     },
     /// Executes a service.
     Service(Service),
-    /// Writes the TCP/IP object, attribute 3 before attribute 5, because setting attribute 3 to 0 stores the current
-    /// address.
+    /// Writes attribute 3 of the TCP/IP object, then attribute 5. Setting attribute 3 to 0 stores the current address,
+    /// so it must come first.
     Network {
         /// Current settings.
         from: NetworkSettings,
@@ -61,27 +61,26 @@ pub enum Op {
     },
 }
 
-/// A service of a device, requested through parameter 47 or 197 (reference, section 4).
+/// A service of a device, started through parameter 47 or 197 (reference, section 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Service {
-    /// Parameter 47 = 1: saves the current values of all saved parameters.
+    /// Parameter 47 = 1: saves the current values of all parameters that can be saved.
     Save,
-    /// Parameter 47 = −2: restores the last saved parameters of the adapter or hub, but not of its drives.
+    /// Parameter 47 = −2: recalls the saved parameters of the adapter or hub, but not those of its drives.
     Recall,
-    /// Parameter 47 = −1: restores the factory values of the adapter or hub itself without saving them. The values of
-    /// its drives stay unchanged.
+    /// Parameter 47 = −1: restores the factory values of the adapter or hub, but not those of its drives, without
+    /// saving them.
     Factory,
-    /// Parameter 47 = −3: restores and saves the factory values of all parameters, and DHCP.
+    /// Parameter 47 = −3: restores the factory values of all parameters, including DHCP, and saves them.
     FactoryAll,
     /// Parameter 47 = −4: tests for the presence of the drives and resets them.
     Reset,
-    /// Clears the fault of a drive by writing 197 = 0. If this alone is not sufficient, a reset (47 = −4) is performed
-    /// first.
+    /// Parameter 197 = 0: clears the fault of a drive, after a reset (47 = −4) if one is needed.
     Acknowledge(DriveNumber),
 }
 
 impl Service {
-    /// Returns the value of parameter 47 that requests the service, or `None` for an acknowledgement.
+    /// Returns the value of parameter 47 that starts the service, or `None` for an acknowledgement.
     pub const fn code(self) -> Option<i64> {
         match self {
             Service::Save => Some(1),
@@ -93,7 +92,7 @@ impl Service {
         }
     }
 
-    /// Returns the service requested by a value of parameter 47, or `None` if the value requests nothing.
+    /// Returns the service that a value of parameter 47 starts, or `None` if it starts none.
     pub const fn from_code(code: i64) -> Option<Self> {
         match code {
             1 => Some(Service::Save),
@@ -107,7 +106,7 @@ impl Service {
 }
 
 impl HiperdrivePlan {
-    /// Removes the final save from the plan. The written values are then lost at power-off unless they are saved later.
+    /// Removes the final save from the plan. The written values are lost at power-off unless they are saved later.
     pub fn without_save(mut self) -> Self {
         if self.ops.last() == Some(&Op::Service(Service::Save)) {
             self.ops.pop();
@@ -127,7 +126,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the name of the changed item, in a form that `read` accepts if the item is readable.
+    /// Returns the name of the changed item. If the item is readable, `read` accepts this name.
     pub fn item_name(&self) -> String {
         match self {
             Op::Write { number, .. } => Item(*number).to_string(),
@@ -138,7 +137,7 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes, counted as in a comparison. A save is not counted.
+    /// Returns the number of changes as counted in a comparison, where a save does not count.
     pub const fn change_count(&self) -> u64 {
         match self {
             Op::Write { .. } | Op::Network { .. } => 1,
@@ -146,8 +145,8 @@ impl Op {
         }
     }
 
-    /// Returns the changed items with their old and new values, for the logbook. The item names do not depend on the
-    /// language of the window.
+    /// Returns the changed items with their old and new values, for the logbook. Their names are the same in all window
+    /// languages.
     pub fn changed_items(&self) -> Vec<ChangedItem> {
         let text = |value: &i64| value.to_string();
         let name = |number: ParameterNumber| number.row().map(|row| row.name).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Saved content of an adapter or a hub with its drives: identities and stored values.
+//! Profile of an adapter or a hub with its drives: identities and stored values.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::profile::ron_text::UnknownValues;
 pub struct HiperdriveProfile {
     /// Identity of the device.
     pub identity: ProfileIdentity,
-    /// Stored parameter values. Parameters that are not in the profile are missing.
+    /// Stored parameter values. Parameters that are not in the profile have no value.
     pub image: Image,
     /// Marks of the values that depend on how a drive is mounted.
     pub mounting: Vec<MountingMark>,
@@ -20,7 +20,7 @@ pub struct HiperdriveProfile {
     pub unknown: UnknownEntries,
 }
 
-/// Identity of an adapter or a hub, empty in a profile written by hand.
+/// Identity of an adapter or a hub. It may be empty in a profile written by hand.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileIdentity {
     /// Topology, from parameter 13.
@@ -29,7 +29,7 @@ pub struct ProfileIdentity {
     pub name: String,
     /// Article number, parameter 16.
     pub article_number: String,
-    /// Serial number (parameter 17) in decimal, or empty if the profile belongs to no particular device.
+    /// Serial number (parameter 17) in decimal, or empty if the profile is for any device.
     pub serial_number: String,
     /// Version, parameter 19.
     pub version: String,
@@ -58,15 +58,15 @@ pub struct ProfileDrive {
     pub unknown: UnknownValues,
 }
 
-/// Mark of a value that is valid for one drive on one machine only.
+/// Marks a value as valid only for one drive on one machine.
 pub type MountingMark = crate::profile::MountingMark<Item>;
 
-/// Unknown entries among the parameters of the device (key `None`) and of its drives.
+/// Unknown entries among the parameters of the device (key `None`) or of a drive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries(pub(super) BTreeMap<Option<DriveNumber>, Vec<(ron::Value, ron::Value)>>);
 
 impl HiperdriveProfile {
-    /// Creates a profile from the values read and marks those that depend on how a drive is mounted.
+    /// Creates a profile from values that were read, and marks those that depend on how a drive is mounted.
     pub fn from_image(identity: ProfileIdentity, image: Image) -> Self {
         let mut profile =
             HiperdriveProfile { identity, image, mounting: Vec::new(), unknown: UnknownEntries::default() };
@@ -74,8 +74,8 @@ impl HiperdriveProfile {
         profile
     }
 
-    /// Marks the reference of each drive (parameter 198), since it depends on how the drive is mounted. Existing marks
-    /// are kept.
+    /// Marks the reference (parameter 198) of each drive as dependent on how the drive is mounted. Existing marks are
+    /// kept.
     pub fn mark_mounting_dependent_values(&mut self) {
         let references =
             self.image.values.keys().copied().filter(|number| number.drive1_number() == REFERENCE).map(Item);
@@ -87,8 +87,7 @@ impl HiperdriveProfile {
         }
     }
 
-    /// Returns whether an item depends on the mounting of the drive, which is the case for marked items and the
-    /// reference of each drive.
+    /// Returns whether an item depends on how the drive is mounted, as marked items and the reference of each drive do.
     pub fn depends_on_mounting(&self, item: Item) -> bool {
         item.0.drive1_number() == REFERENCE || self.is_marked(item)
     }
@@ -109,7 +108,7 @@ impl HiperdriveProfile {
 }
 
 impl ProfileIdentity {
-    /// Returns whether the profile contains no data about the adapter or hub itself.
+    /// Returns whether the profile contains no information about the adapter or hub itself.
     pub fn is_device_unknown(&self) -> bool {
         *self == ProfileIdentity { drives: self.drives.clone(), ..ProfileIdentity::default() }
     }

@@ -1,5 +1,5 @@
-//! Planning a restore. Only differences are written, with a single save at the end. The reference of a drive is never
-//! written, since it is valid for one machine only.
+//! Plans a restore. Only differences are written, followed by a single save. The reference of a drive is never written,
+//! since it is valid for one machine only.
 
 pub use crate::profile::RestoreOptions;
 
@@ -10,7 +10,7 @@ use super::{
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Travel};
 
-/// Current state of a device, to the extent that planning requires it.
+/// Current state of a device, as far as planning needs it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the device.
@@ -22,7 +22,7 @@ pub struct DeviceState {
 }
 
 impl DeviceState {
-    /// Returns the travel of the drive of a parameter, in the steps defined by an image.
+    /// Returns the travel of the drive to which a parameter belongs, in steps of the scale in `image`.
     pub(super) fn travel(&self, number: ParameterNumber, image: &Image) -> Travel {
         let Some(drive) = number.drive() else { return Travel::UNKNOWN };
         Travel { family: find_drive(&self.identity, drive).and_then(ProfileDrive::family), scale: image.scale(drive) }
@@ -32,12 +32,12 @@ impl DeviceState {
 /// Result of planning a restore.
 pub type Restore = crate::profile::Restore<HiperdrivePlan, Item>;
 
-/// Plans a restore for the ports that profile and device have in common. On another device, values that depend on the
-/// mounting are omitted. These are the items marked by the user and the reference of each drive (parameter 198), which
+/// Plans a restore for the ports that exist both in the profile and on the device. On another device, values that
+/// depend on how a drive is mounted are omitted: the items marked by the user and the reference (parameter 198), which
 /// is never written.
 ///
 /// # Errors
-/// Returns a [`PlanError`] if the restore is not possible. In this case, nothing has been written.
+/// Returns a [`PlanError`] if the restore is not possible. Nothing is written in this case.
 pub fn plan_restore(
     profile: &HiperdriveProfile,
     device: &DeviceState,
@@ -65,8 +65,8 @@ pub fn plan_restore(
     Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
-/// Checks that the adapter or hub and its drives have the type and identity stored in the profile. A profile without an
-/// identity fits any device. An empty port is accepted.
+/// Checks that the adapter or hub and its drives have the types and serial numbers in the profile. A profile without an
+/// identity fits any device. A drive may be missing.
 ///
 /// # Errors
 /// Returns [`PlanError::TypeMismatch`], [`PlanError::OtherDevice`] or [`PlanError::OtherDrive`] for the first
@@ -75,7 +75,8 @@ pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Re
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Returns the type differences between a profile and a device, first for the device itself and then for each drive.
+/// Returns the type mismatches between a profile and a device: first that of the device itself, then those of its
+/// drives.
 pub fn type_differences(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<TypeMismatch> {
     let whole = profile.topology.zip(device.topology).filter(|(profile, device)| profile != device);
     let drives = profile.drives.iter().filter_map(|own| {
@@ -85,7 +86,7 @@ pub fn type_differences(profile: &ProfileIdentity, device: &ProfileIdentity) -> 
     whole.into_iter().map(|(profile, device)| TypeMismatch::Device { profile, device }).chain(drives).collect()
 }
 
-/// Checks that the device is the one in the profile, unless the options allow another one.
+/// Checks that the device is the one in the profile, unless the options allow another device or type.
 fn check_allowed(
     profile: &HiperdriveProfile,
     device: &ProfileIdentity,
@@ -120,12 +121,12 @@ fn is_unchanged_on_device(
     item.0.drive1_number() == REFERENCE || !options.with_mounting && depends_on_other_mounting(profile, device, item)
 }
 
-/// Returns whether an item depends on the mounting of another device or drive.
+/// Returns whether an item depends on how a drive is mounted and the profile is not from this drive.
 fn depends_on_other_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     profile.depends_on_mounting(item) && !is_same_location(profile, device, item)
 }
 
-/// Returns whether the profile was read from this device and the parameter from this drive.
+/// Returns whether the profile is from this device and, for a drive parameter, from this drive.
 fn is_same_location(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     let types = type_differences(&profile.identity, device);
     let is_other = |own: &TypeMismatch| match own {

@@ -1,9 +1,9 @@
-//! Test profiles: a hub with drives, as a basis for changes.
+//! Test profiles: a hub with drives.
 
 use super::{HiperdriveProfile, Image, ProfileDrive, ProfileIdentity};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Variant};
 
-/// Factory values of a requested drive of type HDA30 (reference, sections 4 and 5).
+/// Factory values of an HDA30 drive that is requested (reference, sections 4 and 5).
 const DRIVE: [(u16, i64); 13] = [
     (152, 1),
     (154, 256),
@@ -61,7 +61,7 @@ pub(super) fn identity(serial_number: &str, drives: &[(u8, &str)]) -> ProfileIde
     }
 }
 
-/// Creates the profile of hub 100 with drives 4711 and 4712 in ports 1 and 3.
+/// Creates the profile of a hub with serial number 100, and drives 4711 and 4712 in ports 1 and 3.
 pub(super) fn profile() -> HiperdriveProfile {
     HiperdriveProfile::from_image(identity("100", &[(1, "4711"), (3, "4712")]), image(&[1, 3]))
 }

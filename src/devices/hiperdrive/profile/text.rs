@@ -1,7 +1,7 @@
-//! The text format of a HIPERDRIVE profile, which is readable and editable by hand. Errors name the entry.
+//! The text format of a HIPERDRIVE profile, which can be read and edited by hand. Errors give the name of the entry.
 //!
-//! The parameters of a drive have the numbers of drive 1. A profile without a hub may list them together with those of
-//! the device, which are below 100. In such a list, the number of another drive refers to that drive.
+//! The parameters of a drive have the numbers of drive 1. They may also be listed together with the device parameters,
+//! whose numbers are below 100. In this case, numbers from 200 refer to the other drives.
 
 use super::{EntryError, HiperdriveProfile, Image, Item, MountingMark, ProfileDrive, ProfileIdentity, UnknownEntries};
 use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER_LIMIT, UPPER_LIMIT};
@@ -120,7 +120,7 @@ impl HiperdriveProfile {
         writer.close('}');
     }
 
-    /// Returns the comment for a parameter: its name and, for a limit, the number of turns.
+    /// Returns the comment after a parameter: its name and, for a limit, the number of turns.
     fn parameter_comment(&self, number: ParameterNumber, value: i64) -> String {
         let Some(row) = number.row() else { return String::new() };
         let unit = if row.unit.is_empty() { String::new() } else { format!(" [{}]", row.unit) };
@@ -207,8 +207,8 @@ fn parse_mounting_item(text: &str) -> Result<Item, EntryError> {
     Ok(item)
 }
 
-/// Parses the parameters of the device, or those of a drive by the numbers of drive 1. A number that does not belong
-/// there is an error. A name is preserved as an unknown entry.
+/// Parses the parameters of the device, or those of a drive by their numbers for drive 1. A number that is not valid
+/// there is an error. A key that is not a number is kept as an unknown entry.
 fn read_parameters(
     entries: &mut Entries,
     drive: Option<DriveNumber>,
@@ -247,7 +247,7 @@ fn read_parameters(
     Ok(())
 }
 
-/// Explains why a number is not a valid parameter.
+/// Returns the error for a number that is not a valid parameter.
 fn invalid_parameter_error(number: &ron::value::Number, drive: Option<DriveNumber>) -> EntryError {
     let number = number.into_f64().to_string();
     match drive {

@@ -7,26 +7,26 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 };
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber, PositionScale};
 
-/// A side effect of a plan about which the user is warned.
+/// A side effect of a plan that the user is warned about.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
-    /// The scale changes, so the same limits mean different positions in turns (reference, section 3, *Scaling moves
-    /// soft limits*).
+    /// The scale changes, so that the same limits stand for different positions in turns (reference, section 3,
+    /// *Scaling moves soft limits*).
     LimitsMove {
         /// Number of the drive.
         drive: DriveNumber,
-        /// Current lower and upper limits.
+        /// Current lower and upper limits, in turns.
         now: (f64, f64),
-        /// Lower and upper limits after the plan.
+        /// Lower and upper limits after the plan, in turns.
         then: (f64, f64),
     },
     /// The change takes effect at the next reset (47 = −4 or a supply cycle).
     AfterReset(Item),
-    /// The time-out is disabled (186 = 255), so this program will not move the drive.
+    /// The time-out is disabled (186 = 255), so this program will refuse to move the drive.
     NoTimeout(DriveNumber),
-    /// The drive will no longer be requested (152 = 0) and cannot be moved over the bus.
+    /// Parameter 152 (Requested) becomes 0, so that the drive cannot be moved over the bus any more.
     NotRequested(DriveNumber),
-    /// The address switch of the device takes precedence over the setting.
+    /// The address switch of the device overrides the setting.
     SwitchDecides(AddressSwitch),
 }
 
@@ -50,7 +50,7 @@ pub fn plan_warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
     warnings
 }
 
-/// Returns a warning if a changed scale moves the limits of a drive by more than one step.
+/// Returns a warning if a new scale moves the limits of a drive by more than one step.
 fn moved_limits_warning(now: &Image, then: &Image, drive: DriveNumber) -> Option<Warning> {
     let (before, after) = (now.scale(drive)?, then.scale(drive)?);
     if before == after {

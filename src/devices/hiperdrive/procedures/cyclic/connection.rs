@@ -1,4 +1,5 @@
-//! Packets of a cyclic connection: numbered and timed when sent, verified when received (reference, section 7).
+//! Packets of a cyclic connection. They are numbered and timed on sending, and checked on reception (reference, section
+//! 7).
 
 use std::time::Duration;
 
@@ -27,15 +28,16 @@ pub struct Connection {
     figures: LinkStatistics,
 }
 
-/// Number of intervals without a packet after which no motion may start. If a drive is moving, the connection is lost.
+/// Number of intervals without a packet after which no motion may start. If a drive is already moving, the connection
+/// is treated as lost.
 const MAX_MISSED_PACKETS: u32 = 3;
-/// Time allowed for the first packet.
+/// Time allowed for the first packet to arrive.
 const FIRST: Duration = Duration::from_secs(1);
-/// Length in bytes of the header that a target may send before the data. The manual does not specify the length (`U`).
+/// Length in bytes of a header that a target may send before the data. The manual does not mention its length (`U`).
 const HEADER: usize = 4;
 
 impl Connection {
-    /// Creates the sender and receiver of a connection that was opened at `now`. The first packet is due immediately.
+    /// Creates both ends of a connection that was opened at `now`. The first packet is due immediately.
     pub fn new(opened: &OpenedConnection, now: Moment) -> Self {
         // An interval of 0 would loop forever.
         let interval = |interval: Duration| interval.max(Duration::from_millis(1));
@@ -71,17 +73,16 @@ impl Connection {
         self.next
     }
 
-    /// Returns whether no packet has arrived for three intervals. In this case, the positions of the drives are
-    /// unknown.
+    /// Returns whether no packet has arrived for three intervals, so that the positions of the drives are unknown.
     pub fn has_timed_out(&self, now: Moment) -> bool {
         self.began && now.duration_since(self.last_received) > self.come_interval * MAX_MISSED_PACKETS
     }
 
-    /// Returns the time without packets if it exceeds the limit.
+    /// Returns the time since the last packet if it exceeds the limit.
     ///
-    /// During motion, the limit is three intervals of listening, because packets may still be queued if a busy computer
-    /// could not listen. At rest, the limit is the time that the target itself waits for a packet. This is also the
-    /// absolute limit.
+    /// During motion, the limit is three intervals. Only time spent listening counts, because packets may still be
+    /// queued after the computer was busy. At rest, the limit is the time for which the target itself waits for a
+    /// packet. That time is also the upper limit during motion.
     pub fn excessive_silence(&mut self, now: Moment, moves: bool) -> Option<Duration> {
         if now.duration_since(self.next) > self.come_interval {
             self.awake = now;
@@ -93,7 +94,7 @@ impl Connection {
         (moves && self.began && listened > intervals || silence > most).then_some(silence)
     }
 
-    /// Handles a packet, and returns its data if the packet is valid and new.
+    /// Handles a received packet and returns its data if the packet is valid and new.
     pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> Option<InputImage> {
         let packet = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok();
         let packet = packet.filter(|packet| packet.connection == self.to_originator);
@@ -119,7 +120,7 @@ impl Connection {
         }
     }
 
-    /// Returns the packet that is due. After a delay, missed packets are skipped and a single one is returned.
+    /// Returns the packet that is due. After a delay, a single packet is returned instead of all those missed.
     pub fn next_packet(&mut self, now: Moment, image: &OutputImage) -> Vec<u8> {
         self.next = self.next + self.send_interval;
         if self.next <= now {

@@ -1,4 +1,4 @@
-//! The drives of a cyclic connection from opening to end, each with its dead-man control.
+//! The drives of a cyclic connection, each with its dead-man control, from the opening of the connection to its end.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use crate::units::Moment;
 pub struct Drives {
     connection: Connection,
     controlled: Vec<ControlledDrive>,
-    /// Parameter words, if the connection has them.
+    /// Parameter words, if the connection includes them.
     words: Option<ParameterWords>,
     places: usize,
     lost: Option<ConnectionLoss>,
@@ -22,11 +22,11 @@ pub struct Drives {
 #[derive(Clone, Debug)]
 struct ControlledDrive {
     dead_man: DeadMan,
-    /// Data received since the last packet.
+    /// Data received since the last packet was sent.
     received: Option<ActualValues>,
 }
 
-/// Shutdown of the connection: the drives are stopped, then switched off, and finally the transmission ends.
+/// Shutdown of the connection: the drives are stopped, then switched off, and finally transmission ends.
 #[derive(Clone, Copy, Debug)]
 struct ShutdownProgress {
     since: Moment,
@@ -35,11 +35,11 @@ struct ShutdownProgress {
 
 /// Time allowed for the stop sequence, including braking.
 const STOP_LADDER_TIME: Duration = Duration::from_millis(700);
-/// Number of packets that switch the drives off. More than one is sent, since a packet may be lost.
+/// Number of packets that switch the drives off. There are several, since a packet may be lost.
 const SWITCH_OFF_PACKETS: u32 = 3;
 
 impl Drives {
-    /// Creates the drives of a connection that was opened at `now`. Requests with numbers up to `spent` do not start a
+    /// Creates the drives of a connection that was opened at `now`. Requests numbered up to `spent` cannot start a
     /// motion.
     pub fn new(opened: &OpenedConnection, drives: &[DriveNumber], spent: u64, now: Moment) -> Self {
         let places = opened.layout.topology.drives();
@@ -64,7 +64,7 @@ impl Drives {
         self.connection.statistics()
     }
 
-    /// Sets the parameters to read through the parameter words, if the connection has them.
+    /// Sets the parameters to read through the parameter words, if the connection includes them.
     pub fn watch_parameters(&mut self, watched: &[ParameterNumber]) {
         if let Some(words) = &mut self.words {
             words.set_watched(watched);
@@ -76,7 +76,7 @@ impl Drives {
         self.words.as_ref().map(ParameterWords::readings)
     }
 
-    /// Returns the reason for the loss if the connection was lost.
+    /// Returns the reason if the connection was lost.
     pub const fn connection_loss(&self) -> Option<&ConnectionLoss> {
         self.lost.as_ref()
     }
@@ -91,7 +91,7 @@ impl Drives {
         off || matches!(self.lost, Some(ConnectionLoss::DoesNotStand(_) | ConnectionLoss::Port(_)))
     }
 
-    /// Starts to close the connection. The drives are stopped, then switched off.
+    /// Begins to close the connection by stopping the drives. They are switched off afterwards.
     pub fn close(&mut self, now: Moment) {
         if self.ending.is_none() {
             self.ending = Some(ShutdownProgress { since: now, off: 0 });
@@ -99,7 +99,7 @@ impl Drives {
         }
     }
 
-    /// Records that the connection was lost. Stop commands are still sent, since the drives may receive them.
+    /// Records that the connection was lost. Stop commands are still sent, since they may reach the drives.
     pub fn connection_lost(&mut self, now: Moment, why: ConnectionLoss) {
         if self.lost.is_none() && !self.is_finished() {
             self.lost = Some(why);
@@ -122,7 +122,7 @@ impl Drives {
         self.connection.poll_at()
     }
 
-    /// Returns the packet that is due now, if any. All packets received so far must have been handled before.
+    /// Returns the packet that is due now, if any. The caller must first handle all packets received so far.
     pub fn poll(
         &mut self,
         now: Moment,

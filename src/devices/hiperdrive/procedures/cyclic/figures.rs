@@ -13,9 +13,9 @@ pub struct LinkStatistics {
     pub received: u64,
     /// Number of packets that had not arrived when a later packet arrived.
     pub missed: u64,
-    /// Number of packets that were overtaken by a newer one, or received twice.
+    /// Number of packets that were received twice or after a newer one.
     pub stale: u64,
-    /// Number of packets that were malformed or belonged to another connection.
+    /// Number of packets that were malformed or did not belong to this connection.
     pub malformed: u64,
     pub intervals: Histogram,
 }
@@ -36,17 +36,17 @@ pub enum ConnectionLoss {
     Silent { after: Duration },
     #[error(transparent)]
     Port(#[from] LinkError),
-    /// The drive ignored every stop command, so the connection was closed to make it stop.
+    /// The drive ignored every stop command, so the connection was closed to stop it.
     #[error("drive {} did not stop", .0.get())]
     DoesNotStand(DriveNumber),
-    /// The session's own TCP connection is lost.
+    /// The TCP connection of the session was lost.
     #[error("the TCP connection of the session was lost")]
     Session,
     #[error("the thread of the connection has failed")]
     Failed,
 }
 
-/// Bucket boundaries of the deviation in microseconds.
+/// Bucket boundaries of the histogram: deviations in microseconds.
 const EDGES: [i64; 14] = [-5000, -2000, -1000, -500, -200, -100, -50, 50, 100, 200, 500, 1000, 2000, 5000];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +60,7 @@ pub struct Bucket {
 }
 
 impl Histogram {
-    /// Counts an interval with the actual duration `took` instead of the nominal duration `wanted`.
+    /// Counts an interval that took `took` instead of `wanted`.
     pub fn count(&mut self, wanted: Duration, took: Duration) {
         let nanoseconds = |duration: Duration| i64::try_from(duration.as_nanos()).unwrap_or(i64::MAX);
         let off = nanoseconds(took).saturating_sub(nanoseconds(wanted)) / 1000;
@@ -72,7 +72,7 @@ impl Histogram {
         self.greatest = Some(self.greatest.map_or(off, |greatest| greatest.max(off)));
     }
 
-    /// Returns the buckets, the shortest intervals first.
+    /// Returns the buckets, beginning with the shortest intervals.
     pub fn buckets(&self) -> impl Iterator<Item = Bucket> {
         let from = std::iter::once(None).chain(EDGES.iter().copied().map(Some));
         let below = EDGES.iter().copied().map(Some).chain(std::iter::once(None));

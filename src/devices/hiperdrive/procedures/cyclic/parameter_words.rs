@@ -1,5 +1,5 @@
-//! Parameters read cyclically through the parameter words of a connection, one at a time (reference, section 6). The
-//! words are only used for reading. Writing requires explicit messages and a plan.
+//! Parameters that are read one at a time through the parameter words of a cyclic connection (reference, section 6).
+//! The words are used for reading only. Writing requires explicit messages and a plan.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::devices::hiperdrive::protocol::{Answer, ParameterNumber, Pkw, PkwError, Task, Value};
 use crate::units::Moment;
 
-/// Reads the watched parameters in turn.
+/// Reads the watched parameters in turn through the parameter words.
 ///
 /// A request is repeated in every packet until its reply has arrived. Before the next request, the words are cleared in
 /// both directions. A late reply is therefore never mistaken for the reply to a later request for the same parameter.
@@ -24,7 +24,7 @@ pub type ParameterReadings = BTreeMap<ParameterNumber, ParameterReading>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ParameterReading {
-    /// Time at which the reply arrived or the time limit expired.
+    /// Time at which the reply arrived or was given up.
     pub at: Moment,
     pub result: ParameterResult,
 }
@@ -39,14 +39,14 @@ pub enum ParameterResult {
 
 #[derive(Clone, Copy, Debug, Default)]
 enum Phase {
-    /// Nothing is requested, but the device has not confirmed this yet.
+    /// The request has been cleared, but the device has not confirmed this yet.
     #[default]
     Clear,
-    /// The request has been cleared since the given time, and a parameter waits to be read.
+    /// As [`Clear`](Self::Clear), with a parameter that waits to be read since the given time.
     Clearing {
         since: Moment,
     },
-    /// Nothing is requested, and the device has confirmed this.
+    /// The device has confirmed that no request is pending.
     Ready,
     Reading {
         number: ParameterNumber,
@@ -54,11 +54,11 @@ enum Phase {
     },
 }
 
-/// Time limit for a reply. The manual gives no value (`U`).
+/// Time limit for a reply. The manual does not give one (`U`).
 const LIMIT: Duration = Duration::from_secs(1);
 
 impl ParameterWords {
-    /// Sets the parameters to read. Readings of all other parameters are dropped.
+    /// Sets the parameters to read. Readings of other parameters are dropped.
     pub fn set_watched(&mut self, watched: &[ParameterNumber]) {
         if self.watched != watched {
             self.watched = watched.to_vec();
@@ -122,7 +122,8 @@ fn read_request(number: ParameterNumber) -> Pkw {
     Pkw::request(Task::Read, number.get(), 0, 0)
 }
 
-/// Returns the result of an answer, or `None` if the answer is not a number. Shorter numbers are in the low bytes.
+/// Returns the reading that an answer contains, or `None` if the answer is not a number. Numbers shorter than 32 bits
+/// are in the low bytes.
 fn parameter_result(number: ParameterNumber, words: Pkw, answer: Answer) -> Option<ParameterResult> {
     if let Answer::Refused(why) = answer {
         return Some(ParameterResult::Refused(why));
@@ -154,7 +155,7 @@ mod tests {
     }
 
     const CLEAR: &str = "00 00 00 00 00 00 00 00";
-    /// Request to read parameter 166, and its reply with the value 350 (reference, section 9).
+    /// Request to read parameter 166, and the reply with the value 350 (reference, section 9).
     const READ_166: &str = "A6 10 00 00 00 00 00 00";
     const IS_350: &str = "A6 10 00 00 5E 01 00 00";
 

@@ -1,4 +1,4 @@
-//! Tests of the cyclic connection with the packets of the reference (section 9) and with arbitrary packets.
+//! Tests of the cyclic connection with packets from the reference (section 9) and with arbitrary packets.
 
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ fn at(ms: u64) -> Moment {
     Moment::START + Duration::from_millis(ms)
 }
 
-/// Returns the connection of the reference (section 9): ID 00020001 and an interval of 10 ms in both directions.
+/// Returns the connection from the reference (section 9): ID 00020001 and an interval of 10 ms in both directions.
 fn opened(topology: Topology, pkw: bool, order: ByteOrder) -> OpenedConnection {
     let owner = ConnectionOwner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
     let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: EPath::to_assemblies(104, 100, 101) };
@@ -74,8 +74,8 @@ fn packets_match_the_reference() {
     assert_eq!((connection.statistics().sent, connection.statistics().received), (2, 2));
 }
 
-/// The images match section 2 of the reference: 8 bytes per drive, followed by 8 bytes of parameter words if present. A
-/// packet contains 14 to 78 bytes of data.
+/// Process data have 8 bytes per drive, followed by 8 bytes of parameter words if the connection includes them
+/// (reference, section 2). A packet contains 14 to 78 bytes of data.
 #[test]
 fn the_connection_determines_the_image_layout() {
     for (topology, pkw, data) in [
@@ -99,8 +99,8 @@ fn the_connection_determines_the_image_layout() {
     }
 }
 
-/// Each deadline is one interval after the previous one, regardless of delays. After a long pause, only one of the
-/// missed packets is sent.
+/// Each deadline is one interval after the previous one, regardless of delays. After a long delay, only one packet is
+/// sent instead of all those missed.
 #[test]
 fn deadlines_do_not_drift() {
     let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(5));
@@ -118,7 +118,7 @@ fn permit(_: DriveNumber) -> Permit {
     Permit::for_range(-1_000_000, 1_000_000)
 }
 
-/// Adapter whose drive follows each command immediately.
+/// An adapter whose drive obeys each command immediately.
 struct Bench {
     drives: Drives,
     intent: MotionIntent,
@@ -179,9 +179,8 @@ impl Bench {
     }
 }
 
-/// Three intervals without a packet are a loss according to the reference, the issue and the manual. The stop word is
-/// still sent, since only the return path may be interrupted. Then the drives are switched off. Afterwards, nothing is
-/// sent, whatever arrives.
+/// Three intervals without a packet are a loss (reference, issue and manual). The stop word is still sent, since only
+/// the return path may be interrupted. Afterwards, the drives are switched off, and nothing more is sent.
 #[test]
 fn a_lost_connection_stops_and_stays_lost() {
     let mut bench = Bench::jogs();
@@ -199,8 +198,8 @@ fn a_lost_connection_stops_and_stays_lost() {
     assert_eq!(bench.cycles(100), Vec::<String>::new());
 }
 
-/// A computer that was busy for 70 ms does not know whether packets have arrived, because they may still be queued.
-/// After the target's time-out (80 ms in this test), the drives have stopped on their own.
+/// A computer that was busy for 70 ms may still have packets in its queue, so the connection is not lost yet. Once the
+/// target's time-out (80 ms in this test) has passed, the drives have stopped by themselves.
 #[test]
 fn a_delayed_thread_reads_pending_packets_before_giving_up() {
     for (away, lost) in [(70, false), (100, true)] {
@@ -226,7 +225,7 @@ fn a_delayed_thread_reads_pending_packets_before_giving_up() {
     assert!(bench.drives.connection_loss().is_some(), "listened for 40 ms");
 }
 
-/// At rest, missing packets are tolerated until the target's own time-out, which is 80 ms in this test (issue 21.13).
+/// At rest, a lack of packets is tolerated until the target's own time-out of 80 ms (issue 21.13).
 #[test]
 fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
     let mut bench = Bench::new();
@@ -249,7 +248,7 @@ fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
     assert_eq!(bench.drives.connection_loss(), Some(&ConnectionLoss::Silent { after: Duration::from_millis(90) }));
 }
 
-/// Closing sends stop words until standstill, and then switches the drives off with three packets.
+/// Closing the connection sends stop words until standstill, then three packets that switch the drives off.
 #[test]
 fn ending_the_connection_stops_and_switches_off() {
     let mut bench = Bench::jogs();
@@ -277,7 +276,7 @@ fn a_drive_that_does_not_stop_ends_the_connection() {
     assert_eq!(bench.drives.connection_loss(), Some(&ConnectionLoss::DoesNotStand(DriveNumber::FIRST)));
 }
 
-/// Only one drive moves at a time. An action for another drive stops the first.
+/// Only one drive moves at a time. An action for another drive stops the first one.
 #[test]
 fn only_one_drive_moves_at_a_time() {
     let second = DriveNumber::new(2).unwrap();
@@ -343,7 +342,7 @@ proptest! {
         prop_assert!(bench.drives.connection_loss().is_some());
     }
 
-    /// A truncated, damaged, repeated or late report does not panic and is counted at most once.
+    /// A truncated, damaged, repeated or late report causes no panic and is counted at most once.
     #[test]
     fn damaged_reports_count_at_most_once(
         reports in prop::collection::vec((0u32..40, 0usize..37, 0usize..400, 0u8..4), 1..60)

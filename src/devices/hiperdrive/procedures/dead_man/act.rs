@@ -1,4 +1,4 @@
-//! Motion requests to a drive, its permit, and the outcome of an action.
+//! Motion requests to a drive, the permit to move it, and the outcome of an action.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::units::Moment;
 pub struct MotionIntent {
     pub drive: DriveNumber,
     pub request: MotionRequest,
-    /// Number of the user's action, higher than all previous numbers.
+    /// Number of the user's action. It is higher than all previous numbers.
     pub number: u64,
     /// Time of the last refresh. No motion continues after [`MotionIntent::REFRESH_VALIDITY`].
     pub refreshed: Moment,
@@ -18,7 +18,7 @@ pub struct MotionIntent {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionRequest {
-    /// No request. A motion stops, and the state of the drive is held.
+    /// No request. The drive is stopped if it moves, and otherwise stays in its state.
     Rest,
     Lead(TargetState),
     Acknowledge,
@@ -27,7 +27,8 @@ pub enum MotionRequest {
         target: i32,
         effort: SpeedTorque,
     },
-    /// Moves by a number of scaled steps from the current position. The motion is a positioning job, which a stop ends.
+    /// Moves by a number of scaled steps from the current position. A stop ends this motion, which is a positioning
+    /// job.
     Step {
         /// Signed number of steps.
         by: i32,
@@ -35,12 +36,12 @@ pub enum MotionRequest {
     },
     Pause,
     Resume,
-    /// Turns while the button is held, at most up to the end of the range.
+    /// Turns while the button is held, but not past the end of the range.
     Jog {
         direction: Direction,
-        /// Speed and torque, which are limited to [`SpeedTorque::DEFAULT_JOG`] if `outward` is set.
+        /// Speed and torque. If `outward` is set, they are limited to [`SpeedTorque::DEFAULT_JOG`].
         effort: SpeedTorque,
-        /// Whether a drive outside its limits may move further outward. With a wrong reference, this can be the only
+        /// Whether a drive outside its limits may move further outward. If the reference is wrong, this may be the only
         /// way back.
         outward: bool,
     },
@@ -61,7 +62,7 @@ pub enum TargetState {
     Ready,
     /// Operational, 0401h.
     Operational,
-    /// The drive is enabled and at rest, 0409h.
+    /// Enabled and at rest, 0409h.
     Enabled,
 }
 
@@ -71,7 +72,7 @@ pub struct SpeedTorque {
     pub torque: Percent,
 }
 
-/// Permission of a drive to move: limits, locks and exceptions.
+/// Permission for a drive to move: limits, locks and exceptions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Permit {
     /// Lower and upper limit (parameters 158 and 160), or `None` if they have not been read.
@@ -79,9 +80,9 @@ pub struct Permit {
     pub locks: Vec<MotionLock>,
     /// Whether the drive may run past its limits.
     pub endless: bool,
-    /// Whether the parameters must be read again before a motion starts. A running motion continues.
+    /// Whether the parameters must be read again before the next motion starts. A running motion continues.
     pub doubted: bool,
-    /// Scaled steps per degree, at least 1. One degree is the repeatability of a drive (manual, technical data).
+    /// Scaled steps per degree, at least 1. The repeatability of a drive is one degree (manual, technical data).
     pub degree: u32,
 }
 
@@ -90,9 +91,9 @@ pub enum MotionLock {
     Unread,
     /// Parameter 186 is 255 or not a time, so the drive could continue to move after a loss of communication.
     NoTimeout,
-    /// The scale has changed, so the limits denote other positions. The user has not confirmed the limits yet.
+    /// The scale has changed, so the limits are at other positions, and the user has not confirmed them yet.
     LimitsUnconfirmed,
-    /// The drive is not requested: parameter 152 is not 1.
+    /// Parameter 152 (Requested) of the drive is not 1.
     NotRequested,
     /// The parameters were read too long ago, and another master may have changed them since.
     Outdated,
@@ -130,7 +131,7 @@ pub enum StopLevel {
     Operational,
     /// Switches the drive off by sending 0000h.
     Off,
-    /// Closes the cyclic connection. As a result, the watchdogs of the drives stop the drives.
+    /// Closes the cyclic connection, so that the drives are stopped by their watchdogs.
     Close,
 }
 
@@ -149,14 +150,14 @@ pub enum ActionEnd {
     Fault,
     /// The drive is no longer permitted to move.
     Locked(MotionLock),
-    /// The request was rejected, and no data was sent.
+    /// The request was rejected, and nothing was sent.
     Refused(MotionRefusal),
-    /// The drive did not follow a control word and remains in this state.
+    /// The drive did not obey a control word and stayed in this state.
     NoAnswer(State),
     NotStarted,
-    /// The drive has left the state that a motion requires.
+    /// The drive has left the state that is required for motion and is now in this one.
     Left(State),
-    /// The drive is at rest, but has not reached its target.
+    /// The drive is at rest but has not reached its target.
     Short,
     Beyond {
         /// Position in scaled steps.
@@ -170,7 +171,7 @@ pub enum ActionEnd {
 }
 
 impl ActionEnd {
-    /// Returns whether an action that had begun was ended by something other than the user or the target.
+    /// Returns whether the action failed, rather than being completed, stopped or replaced.
     pub(super) const fn is_failure(self) -> bool {
         !matches!(
             self,
@@ -186,7 +187,7 @@ impl ActionEnd {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionRefusal {
     Locked(MotionLock),
-    /// Speed or torque is 0 %.
+    /// The requested speed or torque is 0 %.
     NoEffort,
     Outside {
         /// Target position in scaled steps.
@@ -196,7 +197,7 @@ pub enum MotionRefusal {
         /// Upper limit in scaled steps, parameter 160.
         high: i32,
     },
-    /// The drive is outside its limits, and the motion would move the drive further outside.
+    /// The drive is outside its limits, and the motion would take it further outside.
     Outward {
         /// Position in scaled steps.
         position: i32,
@@ -205,8 +206,8 @@ pub enum MotionRefusal {
         /// Upper limit in scaled steps, parameter 160.
         high: i32,
     },
-    /// Status bit 15 reports that the drive is outside its limits, although its position is inside. The direction back
-    /// inside is unknown.
+    /// Status bit 15 reports the drive outside its limits, although its position is inside. It is unclear which
+    /// direction leads back inside.
     Unclear {
         /// Position in scaled steps.
         position: i32,
@@ -218,7 +219,7 @@ pub enum MotionRefusal {
     Endless,
     /// The drive has a fault, which must be acknowledged first.
     Fault,
-    /// The drive is in the switch-on lock and must leave this state first.
+    /// The drive is in the switch-on lock, which it must leave first.
     SwitchOnLock,
     /// No job is running.
     NothingToPause,
@@ -228,7 +229,7 @@ pub enum MotionRefusal {
 }
 
 impl MotionIntent {
-    /// Time for which a refresh is valid. Refreshes must be repeated every 100 ms.
+    /// Time for which a refresh is valid. A refresh is due every 100 ms.
     pub const REFRESH_VALIDITY: Duration = Duration::from_millis(250);
 
     /// Creates an intent that requests nothing.
@@ -285,7 +286,7 @@ impl TargetState {
         }
     }
 
-    /// Returns the target state that corresponds to a drive state. Faults and the switch-on lock rank lowest.
+    /// Returns the target state for a drive state. For a fault and the switch-on lock, this is the lowest one.
     pub(super) const fn from_state(state: State) -> TargetState {
         match state {
             State::NotReady | State::Fault | State::Locked => TargetState::Off,
@@ -297,12 +298,12 @@ impl TargetState {
 }
 
 impl SpeedTorque {
-    /// Zero speed and torque, with which no motion starts.
+    /// Zero speed and torque, which start no motion.
     pub const NONE: SpeedTorque = SpeedTorque { speed: Percent::NONE, torque: Percent::NONE };
-    /// Default speed and torque of a jog: 10 % and 25 %.
+    /// Default speed (10 %) and torque (25 %) of a jog.
     pub const DEFAULT_JOG: SpeedTorque = SpeedTorque { speed: percent(10), torque: percent(25) };
-    /// Default speed and torque of a move: 25 % speed and full torque. The low speed leaves time to stop after a
-    /// mistyped target, and an axis may need the full torque.
+    /// Default speed (25 %) and torque (100 %) of a move. The low speed leaves time to stop after a mistyped target,
+    /// whereas an axis may need the full torque.
     pub const DEFAULT_MOVE: SpeedTorque = SpeedTorque { speed: percent(25), torque: Percent::FULL };
 
     pub fn at_most(self, other: SpeedTorque) -> Self {
@@ -323,21 +324,20 @@ const fn percent(percent: u8) -> Percent {
 }
 
 impl Default for Permit {
-    /// Returns the motion permit that applies before the parameters of a drive have been read. It allows no motion.
+    /// Creates the permit that applies before the parameters of a drive have been read. It does not allow any motion.
     fn default() -> Self {
         Permit { limits: None, locks: vec![MotionLock::Unread], endless: false, doubted: false, degree: 1 }
     }
 }
 
 impl Permit {
-    /// Creates a motion permit for positions within the given limits. It has no locks and the factory scale of 65536
-    /// steps per turn.
+    /// Creates a permit for positions within the given limits, with no locks and the factory scale of 65536 steps per
+    /// turn.
     pub const fn for_range(low: i32, high: i32) -> Self {
         Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, doubted: false, degree: 183 }
     }
 
-    /// Checks whether a motion may begin or continue. `target` is the final position of the motion, if the motion has
-    /// one.
+    /// Checks whether a motion may begin or continue. `target` is the final position, if the motion has one.
     ///
     /// # Errors
     /// Returns the [`MotionRefusal`] if the motion is not permitted.

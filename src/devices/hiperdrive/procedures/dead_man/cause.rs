@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::{ActualValues, StatusBit};
 use crate::units::Moment;
 
 impl DeadMan {
-    /// Ends the running motion if one of its end conditions is met.
+    /// Ends the running motion if an end condition is met.
     pub(super) fn check_end_conditions(
         &mut self,
         now: Moment,
@@ -30,8 +30,8 @@ impl DeadMan {
         }
     }
 
-    /// Accepts a pause or a resume of the job. It must be the very next request, because a stop in between may have
-    /// been missed.
+    /// Pauses or resumes the job if requested. The request must directly follow the previous one, because a stop in
+    /// between may have been missed.
     fn accept_pause_or_resume(&mut self, intent: &MotionIntent, permit: &Permit, now: Moment) {
         let mark = self.mark_now(now);
         let Some(act) = &mut self.act else { return };
@@ -104,8 +104,7 @@ impl DeadMan {
         }
     }
 
-    /// Returns the end of a motion that the intent no longer requests, or `None` if the intent still requests the
-    /// motion.
+    /// Returns how a motion ends that is no longer requested, or `None` if it is still requested.
     fn superseded_end(
         &self,
         number: u64,

@@ -1,5 +1,5 @@
-//! Stages of the dead-man control and their control words: at rest, changing state, armed, started, moving, paused,
-//! stopping.
+//! Stages of the dead-man control and the control words sent in them: at rest, changing state, armed, started, moving,
+//! paused, stopping.
 
 use std::time::Duration;
 
@@ -14,14 +14,14 @@ use crate::units::Moment;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stage {
     Rest {
-        /// Time since which the drive has been moving although it should be at rest.
+        /// Time at which the drive was first seen moving, although it should be at rest.
         moves: Option<Moment>,
     },
     Lead(StateSequencer),
-    /// The drive has received the setpoints of a motion and the control word that precedes its start.
+    /// The drive has received the setpoints of a motion, with the control word that comes before its start.
     Arm {
         since: ReportMark,
-        /// Last reported value of status bit 12.
+        /// Status bit 12 as last reported.
         acknowledged: bool,
     },
     Start {
@@ -31,7 +31,7 @@ pub(super) enum Stage {
     Go {
         since: ReportMark,
         acknowledged: bool,
-        /// Point in time since which the drive has been at rest.
+        /// Time since when the drive has been at rest.
         standing_since: Option<ReportMark>,
     },
     Paused {
@@ -46,18 +46,18 @@ pub(super) enum Stage {
     },
 }
 
-/// A point in time, with the number of reports received until then.
+/// A point in time, with the number of reports received so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ReportMark {
     pub(super) at: Moment,
     pub(super) report: u64,
 }
 
-/// Number of reports to wait for after a mark. The last of these reports certainly describes the time after the mark.
+/// Number of reports to wait for after a mark. The last one is certain to describe a time after the mark.
 const REPORTS: u64 = 2;
 
 impl ReportMark {
-    /// Returns whether at least `time` has passed since `earlier`, and [`REPORTS`] reports have arrived.
+    /// Returns whether at least `time` has passed and [`REPORTS`] reports have arrived since `earlier`.
     pub(super) fn has_elapsed_since(self, earlier: ReportMark, time: Duration) -> bool {
         self.at.duration_since(earlier.at) >= time && self.report >= earlier.report + REPORTS
     }
@@ -159,8 +159,8 @@ impl DeadMan {
         }
     }
 
-    /// Escalates the stop until the drive is at rest, then holds its state. After a run, that state is ready, from
-    /// which the next motion brings the drive up again.
+    /// Escalates the stop until the drive is at rest, then holds its state. After a run, the held state is *ready*, and
+    /// the next motion enables the drive again.
     fn escalate_stop(&mut self, mark: ReportMark, actual: ActualValues) {
         let Stage::Stop { level, since, begun, word } = self.stage else { return };
         if level == StopLevel::Close {
@@ -175,8 +175,8 @@ impl DeadMan {
         }
     }
 
-    /// Supervises a drive at rest. If the drive falls to a lower state, that state is held. If the drive moves, it is
-    /// stopped.
+    /// Supervises a drive at rest. If the drive falls to a lower state, the lower state is held. If the drive moves, it
+    /// is stopped.
     fn supervise_at_rest(&mut self, now: Moment, actual: ActualValues, moves: Option<Moment>) {
         match actual.status.state() {
             State::Fault | State::Locked => self.level = self.level.min(TargetState::Operational),
@@ -195,7 +195,7 @@ impl DeadMan {
         }
     }
 
-    /// Returns the control word of a drive at rest. If the drive is enabled, this is a stop with bit 6 unchanged.
+    /// Returns the control word for a drive at rest. For an enabled drive, this is a stop with bit 6 unchanged.
     fn rest_control_word(&self) -> ControlWord {
         let sent = self.sent.control;
         let enabled = TargetState::from_word(sent) == TargetState::Enabled;

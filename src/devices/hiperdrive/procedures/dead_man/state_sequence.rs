@@ -1,5 +1,5 @@
-//! Sequences of control words that bring a drive to a requested state. Each control word is sent until the drive has
-//! followed or a time limit has expired. See section 3 of the reference and `devices/hiperdrive/protocol/recipe`.
+//! Sequences of control words that bring a drive to a requested state. Each word is sent until the drive obeys it or a
+//! time limit expires. See section 3 of the reference and `devices/hiperdrive/protocol/recipe`.
 
 use super::{
     ActionEnd, DeadMan, MAX_REPORT_DELAY, MotionKind, MotionRefusal, ReportMark, STEP, Stage, TargetState, UserAction,
@@ -11,7 +11,7 @@ use crate::units::Moment;
 pub(super) struct StateSequencer {
     goal: TargetState,
     acknowledges: bool,
-    /// Control word that is being sent, with the point in time at which sending began.
+    /// Control word that is being sent, and when it was first sent.
     word: Option<(ControlWord, ReportMark)>,
 }
 
@@ -58,12 +58,12 @@ impl StateSequencer {
         self.goal
     }
 
-    /// Returns whether the sequence only removes torque or keeps it off. If so, the sequence needs no refresh.
+    /// Returns whether the sequence only removes torque or keeps it off, which needs no refresh.
     pub(super) fn only_removes_torque(&self, state: State) -> bool {
         self.goal <= TargetState::from_state(state) || self.goal == TargetState::Off
     }
 
-    /// Returns the control word being sent, which is zero before the first step.
+    /// Returns the control word that is being sent, or zero before the first step.
     pub(super) fn control_word(&self) -> ControlWord {
         self.word.map_or(ControlWord::OFF, |(word, _)| word)
     }
@@ -102,7 +102,7 @@ impl StateSequencer {
 }
 
 impl DeadMan {
-    /// Starts to bring the drive to the requested state.
+    /// Begins to bring the drive to the requested state.
     pub(super) fn lead_to(
         &mut self,
         now: Moment,
@@ -158,7 +158,7 @@ impl DeadMan {
         self.stage = Stage::Arm { since: self.mark_now(now), acknowledged };
     }
 
-    /// Holds the current state or a lower one after a sequence was abandoned.
+    /// Holds the current state, or a lower one, when a sequence has been abandoned.
     pub(super) fn hold_state(&mut self, state: State) {
         let highest = if self.after_run { TargetState::Ready } else { TargetState::Enabled };
         self.level = match state {

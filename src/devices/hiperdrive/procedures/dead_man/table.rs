@@ -1,4 +1,4 @@
-//! Tests of the table in docs/motion.md, which specifies for each phase and event how a motion ends (issue 21, *What
+//! Tests of the table in docs/motion.md, which specifies how a motion ends for each phase and event (issue 21, *What
 //! must hold*).
 
 use std::time::Duration;
@@ -20,8 +20,7 @@ struct TestBench {
     is_connected: bool,
 }
 
-/// Status words for ready, enabled and at rest, enabled and moving, and at rest with the acknowledgement of a job or
-/// a run.
+/// Status words: ready; enabled and at rest; enabled and moving; at rest with a job or a run acknowledged.
 const READY: u16 = 0x2A31;
 const ENABLED: u16 = 0x2A37;
 const MOVING: u16 = 0x1A37;

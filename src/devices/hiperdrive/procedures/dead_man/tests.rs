@@ -15,22 +15,22 @@ use crate::units::Moment;
 
 const FULL: SpeedTorque = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
 
-/// Bits that are never sent: the reserved bits 1, 2, 11 and 13 to 15, and the bits of jog steps.
+/// Bits that are never sent: the reserved bits 1, 2, 11 and 13 to 15, and the jog bits.
 const NEVER: u16 = 0b1110_1011_0000_0110;
 
-/// Events of one interval.
+/// Everything that happens in one interval.
 #[derive(Clone, Debug)]
 struct Tick {
     ms: u64,
     /// Received status word and position, or `None` if nothing was received.
     heard: Option<(u16, i32)>,
-    /// A new action. The flag is set if it is for this drive.
+    /// A new action. The flag tells whether it is meant for this drive.
     act: Option<(bool, MotionRequest)>,
     /// Whether the action is refreshed.
     refreshed: bool,
     locked: bool,
     endless: bool,
-    /// A request that replaces the current one without a new number.
+    /// A request that replaces the current one but keeps its number.
     meddled: Option<MotionRequest>,
 }
 
@@ -57,7 +57,7 @@ fn wish() -> impl Strategy<Value = MotionRequest> {
     ]
 }
 
-/// Generates status words, realistic ones more often than arbitrary ones.
+/// Generates status words, mostly realistic ones.
 fn status() -> impl Strategy<Value = u16> {
     let said = [0x2A30, 0x2A31, 0x2A33, 0x2A37, 0x3A37, 0x1A37, 0x0A37, 0x3E37, 0x2E37, 0x2AB8, 0x2A70, 0, 0x0A30];
     prop_oneof![8 => prop::sample::select(said.to_vec()), 1 => any::<u16>()]
@@ -84,7 +84,7 @@ fn heard(said: Option<(u16, i32)>) -> Option<ActualValues> {
     said.map(|(status, position)| ActualValues { status: StatusWord::new(status), speed: 0, position })
 }
 
-/// A standing word starts no motion for any relevant status and previous control word.
+/// A control word for standstill starts no motion, for any relevant status and previous control word.
 #[test]
 fn a_standstill_word_starts_no_motion() {
     let befores: Vec<ControlWord> =
@@ -104,8 +104,8 @@ fn a_standstill_word_starts_no_motion() {
     assert_eq!(standing, 512 + 48 + 32);
 }
 
-/// After a run, no word clears bit 12 while the drive is enabled and bits 4 and 5 are set, and the drive leaves the
-/// operational state before it is enabled again. Otherwise, it would start a stale job (reference, section 3).
+/// After a run, the drive leaves the operational state before it is enabled again. If bit 12 were cleared while the
+/// drive is enabled and bits 4 and 5 are set, a stale job would start (reference, section 3).
 #[test]
 fn leaving_speed_mode_passes_through_ready() {
     let mut man = DeadMan::new(DriveNumber::FIRST, 0);
@@ -134,7 +134,8 @@ fn leaving_speed_mode_passes_through_ready() {
     assert_eq!((man.last_setpoint().target, man.last_end()), (77, Some((1, ActionEnd::Stopped))));
 }
 
-/// While the thread was suspended between two calls, a stop may have been requested and replaced by another request.
+/// While the thread was suspended between two calls, a stop may have been requested and then replaced by another
+/// request.
 #[test]
 fn an_unseen_stop_still_ends_the_job() {
     let permit = Permit::for_range(-1000, 1000);
@@ -164,7 +165,7 @@ fn an_unseen_stop_still_ends_the_job() {
     }
 }
 
-/// A test set-up with predefined reports from the drive. Each call takes ten milliseconds, and the request is always
+/// A dead-man control with predefined reports from the drive. Each call takes 10 ms, and the request is always
 /// refreshed.
 struct DeadManBench {
     man: DeadMan,
@@ -184,7 +185,7 @@ impl DeadManBench {
         self.intent = MotionIntent { request: wish, number: self.intent.number + 1, ..self.intent };
     }
 
-    /// Calls the dead-man control `times` times with the same report, and returns the last setpoint.
+    /// Calls the dead-man control `times` times with the same report and returns the last setpoint.
     fn look(&mut self, times: u32, status: u16, position: i32) -> Setpoint {
         for _ in 0..times {
             self.now = self.now + Duration::from_millis(10);
@@ -197,8 +198,8 @@ impl DeadManBench {
 
 const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FULL, outward: false };
 
-/// If parameters become doubtful while a drive is being enabled, they are read before the drive moves. A running motion
-/// continues, and a paused one does not resume (issue 21.3).
+/// If another master may have changed the limits while a drive is being enabled, the limits are read before the drive
+/// moves. A running motion continues, and a paused one does not resume (issue 21.3).
 #[test]
 fn doubted_limits_delay_the_start_of_a_motion() {
     let doubted = ActionEnd::Refused(MotionRefusal::Locked(MotionLock::Outdated));
@@ -228,7 +229,7 @@ fn doubted_limits_delay_the_start_of_a_motion() {
     assert_eq!(looks.man.last_end(), Some((2, doubted)));
 }
 
-/// A job may end by itself just before the user pauses or resumes it. The user then learns why it ended.
+/// A job may end just before the user pauses or resumes it. The user is then told why it ended.
 #[test]
 fn a_late_pause_or_resume_reports_how_the_job_ended() {
     for waits in [false, true] {
@@ -265,8 +266,8 @@ fn a_late_pause_or_resume_reports_how_the_job_ended() {
     assert_eq!(looks.man.last_end(), Some((3, ActionEnd::Refused(MotionRefusal::NothingToResume))));
 }
 
-/// Another master may change the limits, or the shaft may be pushed, just before a motion starts. If the drive is then
-/// outside its limits, it does not start and does not move further out (issue 21.4).
+/// Another master may change the limits, or the shaft may be pushed, just before a motion starts. A drive that is
+/// outside its limits as a result must not move further out (issue 21.4).
 #[test]
 fn a_drive_outside_its_limits_before_moving_does_not_start() {
     for (wish, direction) in [
@@ -293,7 +294,8 @@ fn a_drive_outside_its_limits_before_moving_does_not_start() {
     }
 }
 
-/// If both limits are within a degree, status bit 15 does not reveal which limit the drive has passed (issue 21.4).
+/// If both limits are within a degree of the position, status bit 15 does not tell which limit the drive has passed
+/// (issue 21.4).
 #[test]
 fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
     let at = |position| Permit::for_range(-150, 150).outside_limits(heard(Some((0xAA37, position))).unwrap());
@@ -312,7 +314,7 @@ fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
 }
 
 /// The first packets of a connection contain no valid position, because a hub first queries all its drives. A step
-/// therefore starts only after positions have been arriving for 250 ms (issue 21.6b).
+/// therefore waits until positions have arrived for 250 ms (issue 21.6b).
 #[test]
 fn a_step_is_not_counted_from_the_first_packets() {
     let mut looks = DeadManBench::new();

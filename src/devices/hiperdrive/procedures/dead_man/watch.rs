@@ -1,5 +1,5 @@
-//! Supervision of a motion: the position in every report is compared with the limits and the target, so that a drive
-//! that ignores its limits or turns the wrong way is stopped with the very next packet.
+//! Supervision of a motion: the position in every report is compared with the limits and the target. A drive that
+//! ignores its limits or turns the wrong way is stopped in the very next packet.
 //!
 //! | case | rule |
 //! |---|---|
@@ -27,31 +27,30 @@ pub enum LimitSide {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OutsideLimits {
     At(LimitSide),
-    /// Status bit 15 is set, but the position does not show which limit the drive has passed, because it is near both
-    /// limits or more than a degree inside them.
+    /// Status bit 15 is set, but the position does not show which limit the drive has passed, because it is close to
+    /// both limits or more than a degree inside them.
     Unclear,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ActionMonitor {
-    /// Position of the drive relative to its limits if it was outside them at the start, or `None` once it has been
-    /// inside.
+    /// Limit that the drive had passed at the start, or `None` once the drive has been inside.
     outside: Option<OutsideLimits>,
-    /// Smallest distance so far: to the target of a job, or in the direction of a run.
+    /// Shortest distance so far to the target of a job, or a measure of progress for a run.
     best: i64,
-    /// Position after braking while a job is paused.
+    /// Position after braking, while a job is paused.
     waits_at: Option<i32>,
-    /// Whether the user has allowed motion further outward while the button is pressed.
+    /// Whether the user allows motion further outward while the button is pressed.
     freed: bool,
-    /// Whether a run started at the end of the range towards which it moves, so that there may be no travel left.
+    /// Whether a run started at the end of the range in its own direction, so that there may be no travel left.
     pub(super) at_end: bool,
 }
 
-/// Accuracy in whole degrees: ±2.5° (manual, technical data; reference, section 5), rounded up.
+/// Positioning accuracy in whole degrees: ±2.5° (manual, technical data; reference, section 5), rounded up.
 const ACCURACY_DEG: i64 = 3;
 
 impl OutsideLimits {
-    /// Returns whether motion in the direction may take the drive further outside.
+    /// Returns whether motion in this direction may take the drive further outside.
     pub fn is_outward(self, direction: Direction) -> bool {
         match self {
             OutsideLimits::At(side) => side.outward_direction() == direction,
@@ -61,9 +60,9 @@ impl OutsideLimits {
 }
 
 impl Permit {
-    /// Returns on which side a drive is outside its limits, according to its position or, if that is inside, to status
-    /// bit 15. Bit 15 is assumed to refer to a limit within one degree. Returns `None` if the drive is inside or no
-    /// limits are known.
+    /// Returns which limit a drive has passed according to its position or, if the position is inside, to status bit
+    /// 15. Bit 15 is attributed to a limit within one degree. Returns `None` if the drive is inside or no limits are
+    /// known.
     pub fn outside_limits(&self, actual: ActualValues) -> Option<OutsideLimits> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
         let by_status = || {
@@ -85,7 +84,7 @@ fn nearest_side(position: i32, (low, high): (i32, i32)) -> Option<LimitSide> {
 }
 
 impl LimitSide {
-    /// Returns the number of steps beyond the limit on this side, negative if inside.
+    /// Returns the number of steps beyond this limit, negative if the position is inside.
     pub fn steps_beyond(self, position: i32, (low, high): (i32, i32)) -> i64 {
         match self {
             LimitSide::Above => i64::from(position) - i64::from(high),
@@ -110,7 +109,7 @@ impl Motion {
         permit.limits.filter(|_| !endless)
     }
 
-    /// Returns the distance of a job to its target in steps. For a run, which has no target, returns a value that
+    /// Returns the distance from the position to the target of a job, in steps. A run has no target; its result
     /// decreases as the drive moves in the direction of the run.
     fn distance_to_target(&self, actual: ActualValues) -> i64 {
         let position = i64::from(actual.position);
@@ -140,8 +139,7 @@ impl ActionMonitor {
         ActionMonitor { outside, best, waits_at: None, freed, at_end }
     }
 
-    /// Checks a position report against the limits and the target. Returns the reason to end the motion, or `None` if
-    /// the motion may continue.
+    /// Checks a position report against the limits and the target, and returns the reason if the motion must end.
     pub(super) fn check_report(&mut self, motion: &Motion, actual: ActualValues, permit: &Permit) -> Option<ActionEnd> {
         let degree = i64::from(permit.degree);
         let distance = motion.distance_to_target(actual);
@@ -158,7 +156,8 @@ impl ActionMonitor {
         beyond.or_else(|| leaves.then_some(ActionEnd::WrongWay { position: actual.position }))
     }
 
-    /// Detects motion while a job is paused: a change of more than a degree from the position after braking.
+    /// Checks whether the drive moves while its job is paused, that is, by more than a degree from the position after
+    /// braking.
     fn check_paused(&mut self, has_braked: bool, actual: ActualValues, permit: &Permit) -> Option<ActionEnd> {
         if !has_braked {
             self.waits_at = None;
@@ -192,12 +191,12 @@ impl ActionMonitor {
 }
 
 impl Permit {
-    /// Checks whether a motion may begin at this position. From outside the limits it may only move the drive back
-    /// inside. The user can allow motion further outward while the button is pressed.
+    /// Checks whether a motion may start at this position. A drive outside its limits may only move back inside, unless
+    /// the user allows outward motion while the button is pressed.
     ///
     /// # Errors
-    /// Returns [`MotionRefusal::Outward`] or [`MotionRefusal::Unclear`] if the motion would move the drive, or could move it,
-    /// further outside.
+    /// Returns [`MotionRefusal::Outward`] if the motion would take the drive further outside, or
+    /// [`MotionRefusal::Unclear`] if it could do so.
     pub fn check_position_limits(&self, request: MotionRequest, actual: ActualValues) -> Result<(), MotionRefusal> {
         let direction = match request {
             MotionRequest::Jog { outward: true, .. } | MotionRequest::Run { end: RunEnd::Endless, .. } => return Ok(()),

@@ -1,4 +1,4 @@
-//! Opening and closing the cyclic connection with explicit messages (reference, section 7). Its packets are handled in
+//! Opens and closes the cyclic connection with explicit messages (reference, section 7). Its packets are handled in
 //! `cyclic`.
 //!
 //! The connection sizes and types that a device accepts are not documented (`U`). They are tried in this order: with
@@ -22,28 +22,28 @@ pub struct OpenedConnection {
     pub to_originator_id: u32,
     pub to_target_interval: Duration,
     pub to_originator_interval: Duration,
-    /// Time without a packet after which the target ends the connection and the drives stop.
+    /// Time without a packet after which the target closes the connection and the drives stop.
     pub timeout: Duration,
     pub layout: Layout,
     pub port: u16,
-    /// Multicast group of the target's packets, if used.
+    /// Multicast group of the packets from the target, if multicast is used.
     pub group: Option<SocketAddrV4>,
     pub close: ForwardClose,
 }
 
-/// Vendor ID of this program, an unassigned number (reference, section 9).
+/// Vendor ID of this program. The number is not assigned to any vendor (reference, section 9).
 const VENDOR: u16 = 0x1234;
-/// Code of the time-out multiplier for eight intervals, which tolerates a single delay of the host. Long intervals use
-/// the code for four intervals, so that drives stop soon.
+/// Code for a time-out of eight intervals, which tolerates a single delay of the host. Long intervals use the code for
+/// four intervals, so that the drives stop soon enough.
 const TIMEOUT: u8 = 1;
 const LONG_TIMEOUT: u8 = 0;
-/// Shortest interval that is treated as long.
+/// Interval from which the time-out for long intervals is used.
 const LONG_INTERVAL: Duration = Duration::from_millis(35);
-/// Factor by which a device may extend the requested interval, up to the longest interval that may be requested.
+/// Factor by which a device may lengthen the requested interval, within the maximum interval.
 const MAX_INTERVAL_FACTOR: u32 = 2;
 const MAX_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Status code with which a device rejects a connection that is already in use.
+/// Extended status with which a device rejects a connection that is already in use.
 const CONNECTION_IN_USE: u16 = 0x0100;
 const OWNED_BY_OTHER: u16 = 0x0106;
 const KIND: u16 = 0x0108;
@@ -101,7 +101,8 @@ impl Master<'_> {
         }
     }
 
-    /// Closes an unusable connection that may be open. Errors are ignored, because the original error is reported.
+    /// Closes a possibly open connection that cannot be used. Errors are ignored, because the original error is
+    /// reported instead.
     fn close_without_reply(&mut self, close: &ForwardClose) {
         if let Err(why) = self.run_uncancellable(|master| master.forward_close(close)) {
             tracing::warn!("{why}");
@@ -181,7 +182,7 @@ fn is_connection_refusal(refusal: &ErrorReply) -> bool {
     refusal.status == GeneralStatus::CONNECTION
 }
 
-/// Returns whether a request with this layout and type would avoid the rejection.
+/// Returns whether this layout and network type avoid the reason for the rejection.
 fn avoids_refusal(refusal: &ErrorReply, layout: Layout, kind: NetworkType) -> bool {
     let first = refusal.extended.first().filter(|_| is_connection_refusal(refusal));
     match first {

@@ -1,5 +1,5 @@
-//! Diagnosis of a rejected parameter. It determines, as far as possible, whether the drive exists and is requested, and
-//! the current range of the value.
+//! Finds out why a parameter was rejected: whether the drive exists and is requested, and which range of values is
+//! currently allowed.
 
 use super::{Master, RetryPolicy, writable_parameter};
 use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};
@@ -14,7 +14,7 @@ use crate::devices::hiperdrive::protocol::{
 };
 
 impl Master<'_> {
-    /// Determines why a parameter was rejected, as far as possible.
+    /// Finds out why a parameter was rejected, as far as possible.
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
@@ -42,7 +42,7 @@ impl Master<'_> {
         Ok(Error::Refused { requested, refusal })
     }
 
-    /// Returns whether another parameter of the drive is known to be 0.
+    /// Reads another parameter of the drive and returns whether its value is 0.
     fn is_zero(&mut self, refused: ParameterNumber, base: u16, drive: DriveNumber) -> Result<bool, Error> {
         let Some(number) = ParameterNumber::for_drive(base, drive).filter(|own| *own != refused) else {
             return Ok(false);
@@ -75,9 +75,9 @@ impl Master<'_> {
         }
     }
 
-    /// Returns the current range of a parameter. The upper limit (parameter 160) is above the lower limit (parameter
-    /// 158), and the position and the reference lie between them (reference, section 4). No limit is farther from 0
-    /// than the turns of the drive (reference, section 5).
+    /// Returns the currently allowed range of a parameter. The upper limit (parameter 160) must be above the lower
+    /// limit (parameter 158), with the position and the reference between them (reference, section 4). Each limit must
+    /// be within the turns of the drive (reference, section 5).
     fn current_range(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<ParameterRange>, Error> {
         let travel = match number.drive().filter(|_| row.reach.is_some()) {
             Some(drive) => self.travel(drive)?,

@@ -1,11 +1,11 @@
-//! Tests of the order of writes, of rejections and of warnings, according to the rules of the manual.
+//! Tests of the order of writes, and of rejections and warnings, against the rules in the manual.
 
 use super::*;
 use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image, image_with_values, parameter};
 use crate::devices::hiperdrive::profile::{Warning, plan_warnings};
 use crate::devices::hiperdrive::protocol::{ParameterRange, Variant};
 
-/// Returns the writes of a plan in order. A service appears as a write of its code to parameter 47.
+/// Returns the writes of a plan in order. A service is listed as a write of its code to parameter 47.
 fn steps(plan: &HiperdrivePlan) -> Vec<(u16, i64)> {
     let step = |op: &Op| match op {
         Op::Write { number, new, .. } => (number.get(), *new),
@@ -78,8 +78,8 @@ fn a_drive_is_requested_first_and_released_last() {
     assert_eq!(plan_warnings(&plan), [Warning::NotRequested(drive(3))]);
 }
 
-/// Each case lists the old limits, the position, the new limits, and the order of writes that the drive accepts. After
-/// each write, 160 is above 158, and the drive is between both (reference, section 4).
+/// The cases list the old limits, the position, the new limits, and the order of writes that the drive accepts. After
+/// each write, parameter 160 must be above 158, with the position between them (reference, section 4).
 #[test]
 fn limits_are_written_in_the_order_the_drive_accepts() {
     let cases = [
@@ -112,7 +112,7 @@ fn limits_are_written_in_the_order_the_drive_accepts() {
 }
 
 proptest::proptest! {
-    /// For any limits and any position, each write leaves the limits in order and the drive between them.
+    /// For any limits and any position, each write leaves the limits in order and the position between them.
     #[test]
     fn any_limits_are_written_in_an_accepted_order(
         old in (-100i64..100, 1i64..100),
@@ -188,8 +188,8 @@ fn unwritable_parameters_are_refused_with_a_reason() {
     assert_eq!(error.range, ParameterRange::Within(-33_554_432, 33_554_432));
 }
 
-/// The ±512 turns of an HDA30 are 33554432 steps at 65536 steps per turn, and 204800 at 400 steps per turn. A step of
-/// the keys on the drive is at most the travel of 1024 turns (issue 21.10).
+/// The ±512 turns of an HDA30 are 33554432 steps at 65536 steps per turn, or 204800 at 400 steps per turn. A jog step
+/// of the keys on the drive can be up to the whole travel of 1024 turns (issue 21.10).
 #[test]
 fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
     let jogs = |image: Image| image.overlaid_with(&image_with_values(&[(170, 4096), (176, -4096)]));
@@ -264,7 +264,7 @@ fn side_effects_of_a_plan_are_warned_about() {
     assert_eq!(warned(&[(166, 200), (186, 100)]), []);
 }
 
-/// Positions are rounded as in section 5 of the reference: 31 → 0, 33 → 64, 100 → 128, −33 → −64.
+/// Positions are rounded to 64 steps (reference, section 5): 31 → 0, 33 → 64, 100 → 128, −33 → −64.
 #[test]
 fn a_position_is_set_to_the_next_multiple_of_64() {
     for (position, becomes) in [(31, 0), (33, 64), (100, 128), (-33, -64), (163_840, 163_840)] {

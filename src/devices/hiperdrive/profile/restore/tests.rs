@@ -1,4 +1,4 @@
-//! Restored, unchanged and rejected items, and differences.
+//! Tests of restored, unchanged and rejected items, and of comparisons.
 
 use super::*;
 use crate::devices::hiperdrive::profile::test_profiles::{
@@ -68,7 +68,7 @@ fn another_device_or_drive_is_refused() {
     assert!(plan_restore(&by_hand, &device, NONE).is_ok());
 }
 
-/// Issue 22.9: the serial number is the same in all of these, so that they need only the permission for another type.
+/// All of these have the same serial number, so that only the permission for another type is needed (issue 22.9).
 #[test]
 fn another_type_of_device_or_drive_is_refused() {
     let mut device = device();
@@ -127,10 +127,9 @@ fn differences_are_named_by_drive() {
     assert_eq!(comparison.only_right()[0], "152 drive 4");
 }
 
-/// Steps per turn are 256 · numerator / denominator (reference 5): 256 · 400 / 256 = 400 of 0.01 mm in 4 mm; 256 · 20 /
-/// 256 = 20 of 0.1 mm in 2 mm; 256 · 3600 / 256 = 3600 of 0.1 degree. 511 turns of them are 204400 and 10220; half a
-/// turn is
-/// 1800.
+/// Steps per turn are 256 · numerator / denominator (reference, section 5): 400 steps of 0.01 mm at a pitch of 4 mm, 20
+/// steps of 0.1 mm at a pitch of 2 mm, or 3600 steps of 0.1°. 511 turns are 204400 and 10220 steps. Half a turn is 1800
+/// steps.
 #[test]
 fn ready_made_profiles_plan_the_expected_writes() {
     let read = |name: &str| {

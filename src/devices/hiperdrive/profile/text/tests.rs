@@ -1,4 +1,4 @@
-//! Tests of handwritten profiles, round trips and error messages.
+//! Tests of handwritten profiles, unchanged round trips and error messages.
 
 use super::super::test_profiles::{drive, identity, image_with_values, parameter, profile};
 use super::*;
@@ -21,7 +21,7 @@ fn parse(text: &str) -> Result<HiperdriveProfile, ProfileError> {
     ProfileDocument::parse(text, HiperdriveProfile::FORMATS)?.body.into_profile()
 }
 
-/// Profile as written by a user, without a particular device.
+/// A profile written by hand that is not for a particular device.
 const SHORT: &str = r#"(
     schema: 1,
     device: "hiperdrive",
@@ -143,17 +143,17 @@ fn the_identity_round_trips() {
     assert_eq!(parse(&document(profile.clone()).emit()), Ok(profile));
 }
 
-/// Profile as written by a user, with comments.
+/// A profile written by hand, with comments.
 const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/hiperdrive.ron"));
 
-/// Changing a value changes the text in one place only (issue 22.26).
+/// Changing a value changes the text in only one place (issue 22.26).
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut HiperdriveProfile| assert_eq!(own.image.values.insert(parameter(166), 40), Some(50));
     assert_edit_in_place(COMMENTED, edit, "166: 50", "166: 40");
 }
 
-/// Adding or removing an entry affects only its own line (issue 22.26).
+/// Adding or removing an entry changes only the line of this entry (issue 22.26).
 #[test]
 fn adding_or_removing_an_entry_changes_only_its_line() {
     let (_, carried) = edit_profile(COMMENTED, |_, own: &mut HiperdriveProfile| {
