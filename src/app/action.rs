@@ -1,4 +1,4 @@
-//! The actions of the studio: from the user, a view or a finished task.
+//! The actions of the studio: requests from the user or a view, and results of finished tasks.
 
 use std::any::Any;
 use std::path::PathBuf;
@@ -30,12 +30,12 @@ pub enum Action {
     ShowTab(Tab),
     SetTheme(ColorScheme),
     SetLanguage(Language),
-    /// Set the form in which the logbook names the user.
+    /// Set how the logbook refers to the user.
     SetUserName(UserName),
     KeepLayout(String),
-    /// Open the lower panel, or reduce it to one line.
+    /// Open the lower panel, or collapse it to one line.
     OpenLowerPanel(bool),
-    /// Show live values with or without their plot.
+    /// Show live values without (`true`) or with their plot.
     ShowValuesAlone(bool),
     /// Store the new size of the window, in points.
     KeepSize(u32, u32),
@@ -44,62 +44,62 @@ pub enum Action {
     CloseSession(SessionId),
     Stop,
     StopMotion,
-    /// End all held motions, because the window has lost the keyboard focus or a dialog covers it.
+    /// End all motions that last while a button is held, because the window has lost the keyboard focus or a dialog
+    /// covers it.
     LetGo,
     /// Handle the Escape key: stop the running job, or else close the dialog.
     Escape,
     /// Close the window. The user is asked first if data would be lost.
     Close,
-    /// Close the window without a question, because the system ends the program.
+    /// Close the window without asking, because the system is ending the program.
     Quit,
     Confirm,
     Dismiss,
     Connect(connect::ConnectAction),
-    /// Act on the form for the server of the logbook.
+    /// Execute an action of the form for the logbook server.
     Server(ServerAction),
     Company(CompanyAction),
     OpenVirtual,
     Save(SessionId),
-    /// Resolve the conflict of a profile that another program has changed.
+    /// Resolve the conflict between a profile and its file, which another program has changed.
     Resolve(ConflictResolution),
-    /// Ask for a file to open: a capture in the Signals tab, a profile elsewhere.
+    /// Ask for a file to open: a capture in the Signals tab, or a profile in any other tab.
     AskOpen,
-    /// Open a file as a capture if it is a `.csv` file, or as a profile otherwise.
+    /// Open a `.csv` file as a capture, or any other file as a profile.
     Open(PathBuf),
     FileNotChosen,
     /// Ask for a path as text, because the system has no file dialog.
     TypePath(FileQuestion),
-    /// Use the path that the user typed. The user is asked before an existing file is replaced. A system dialog asks
-    /// this question itself.
+    /// Use the path that the user typed. Before an existing file is replaced, the user is asked, as a system dialog
+    /// would do.
     Typed(FileQuestion, PathBuf),
-    /// Use the file chosen in a system dialog. An existing file may be replaced.
+    /// Use the file chosen in a system dialog. It may be replaced without asking again.
     Chosen(FileQuestion, PathBuf),
     Comparison(ComparisonAction),
-    /// Show the entries of the logbook that match a filter.
+    /// Show the logbook entries that match a filter.
     SearchLogbook(EntryFilter),
     /// Add a note about a device to the logbook.
     AddNote(DeviceKey, String),
     Recorder(RecorderOwner, recorder::RecorderAction),
-    /// Clear a recording. If the recording is long, the user is asked first.
+    /// Clear a recording. The user is asked first if the recording is long.
     AskForget(RecorderOwner),
-    /// Ask for the name of the file to which a recording is exported as a table.
+    /// Ask for the file to which a recording is exported as a table.
     AskTable {
         owner: RecorderOwner,
         /// Whether the table contains only the visible part of the recording.
         visible: bool,
     },
-    /// Ask for the name of the file to which a report is written.
+    /// Ask for the file to which a report is written.
     AskReport(RecorderOwner),
     AskPicture(Picture),
-    /// Ask for the file name of the trace of a session.
+    /// Ask for the file to which a session's trace is written.
     AskTrace(SessionId),
     /// Report that no picture was taken, because the plot is not completely visible.
     PictureCut,
     Review(SessionId, ReviewAction),
-    /// Execute a command that every kind of device supports, for the given session, which may no longer be the one
-    /// shown.
+    /// Execute a command that every kind of device supports. The session need not be the one shown.
     Command(SessionId, DeviceCommand),
-    /// Execute an action of one kind of device. See [`Action::device`].
+    /// Execute an action specific to one kind of device. See [`Action::device`].
     Device(SessionId, Payload),
     /// Create an unsaved profile for the kind of device shown in a tab.
     New(Tab),
@@ -114,15 +114,15 @@ pub enum Action {
 pub enum ReviewAction {
     /// Execute the plan with this id, which the user has reviewed.
     Write(PlanId),
-    /// Grant or withdraw a permission for the write. The plan is created again with the new choice.
+    /// Grant or withdraw a permission for the write. The plan is then made again.
     Toggle(Permit),
-    /// Write even though the device has reached its limit of write cycles.
+    /// Set whether to write although the device has reached its limit of write cycles.
     ForceWear(bool),
     Close,
 }
 
 pub enum TaskResult {
-    /// The task that checked whether the target file of a save exists has ended.
+    /// The check whether the target file of a save exists has ended.
     Looked {
         question: FileQuestion,
         path: PathBuf,
@@ -130,9 +130,9 @@ pub enum TaskResult {
     },
     /// The attempt to open a link for a session has succeeded or failed.
     OpenedConnection(ConnectAttempt),
-    /// A search in the connection form of a tab has a result. See [`TaskResult::from_finder`].
+    /// A device search in the connection form of a tab has a result. See [`TaskResult::from_finder`].
     Finder(Tab, Payload),
-    /// A task without a session has ended. Contains the function that handles its result.
+    /// A task that belongs to no session has ended. The function handles its result.
     Shared(SharedResultHandler),
     Ports(Result<Vec<connect::PortEntry>, LinkError>),
     Read {
@@ -141,22 +141,22 @@ pub enum TaskResult {
         /// Function that opens the profile, or `None` if the window does not support its kind of device.
         open: Option<OpenProfile>,
     },
-    /// Reading a profile for a side of the comparison has succeeded or failed.
+    /// A profile for one side of the comparison was read, or could not be read.
     Compare {
         side: Side,
         path: PathBuf,
         result: Result<Box<ProfileDocument>, ReadError>,
     },
-    /// The backups and entries with which a kind of device can be compared were listed.
+    /// The backups and logbook entries that can be compared with a kind of device were listed.
     Moments(Box<Moments>),
     Written {
         saving: Box<SaveRequest>,
         file: ProfileFile,
         result: Result<(), FileError>,
     },
-    /// A profile was not saved, because its file has changed since it was opened.
+    /// A profile was not saved because its file has changed since it was opened.
     Diverged(Box<ProfileConflict>),
-    /// A profile was not saved, because these comments in its file would be lost.
+    /// A profile was not saved because these comments in its file would be lost.
     WouldLose(Box<SaveRequest>, Vec<String>),
     TableWritten(RecorderOwner, ExportResult),
     /// A picture, a report or a trace has been saved, or could not be saved. `message` names what was saved.
@@ -165,39 +165,39 @@ pub enum TaskResult {
         path: PathBuf,
         result: Result<Result<(), FileError>, Text>,
     },
-    /// The company of a form can be used in reports, or the reason why not.
+    /// The company name and logo were checked for use in reports. Contains the reason if they cannot be used.
     CompanyChecked(Box<Settings>, Result<(), Text>),
     FileSaved {
         message: Text,
         path: PathBuf,
         result: Result<(), FileError>,
     },
-    /// The time limit for a wait before closing has expired.
+    /// The time limit of a wait before closing has expired.
     Waited(ShutdownWait),
     Left,
-    /// The settings were read after the program had started.
+    /// The settings were read later than the start of the program.
     SettingsRead(LoadedSettings),
     SettingsKept(Result<SavedSettings, FileError>),
-    /// The settings were read while drives are under control. `None` means that there is no file.
+    /// The settings were read again while drives are under control. `None` means that there is no file.
     SettingsSeen(Result<Option<Box<Settings>>, FileError>),
     Draft(SessionId, DraftOutcome),
     Listed(SessionId, DeviceKey, Box<DeviceHistory>),
-    /// The logbook was searched. The number identifies the search.
+    /// A logbook search has ended. The number identifies the search.
     LogbookRead(u64, Result<LogbookMatches, LogbookError>),
     NoteAdded(Result<(), LogbookError>),
-    /// The connection to a server was tested. Contains the number of the test and the number of entries on the server.
+    /// A connection test has ended. Contains the number of the test and the number of entries on the server.
     ServerTested(u64, Result<Option<u64>, ServerError>),
-    /// The password of a server was saved in the keyring, or could not be saved.
+    /// The server password was saved in the keyring, or could not be saved.
     PasswordSaved(Result<(), KeyringError>),
-    /// Entries were exchanged with the server of the logbook, or that failed.
+    /// Entries were exchanged with the logbook server, or the exchange failed.
     EntriesExchanged {
-        /// Whether entries of other benches were received.
+        /// Whether entries from other computers were received.
         received: bool,
         state: ServerExchange,
     },
-    /// Reading a backup has succeeded or failed.
+    /// A backup was read, or could not be read.
     Backup(SessionId, Box<ReadBackup>),
-    /// A task of one kind of device has ended, for one session. See `TaskResult::device`.
+    /// A task started by a device has ended. See `TaskResult::device`.
     Device(SessionId, Payload),
     /// A task of a tool has ended. See [`TaskResult::from_tool`].
     Tool(Tab, Payload),
@@ -210,10 +210,10 @@ pub struct ConnectAttempt {
     pub(super) result: Result<Box<dyn OpenedSession>, Box<OpenFailure>>,
 }
 
-/// A session on its thread, with the ring buffer for its trace.
+/// An opened session, which runs on its thread, with the ring buffer for its trace.
 pub struct OpenedConnection<D: Kind> {
     pub(super) worker: Worker<D>,
-    /// Handle of the session that stays outside its thread.
+    /// Handle that stays with the window while the session runs on its thread.
     pub(crate) aside: D::SessionHandle,
     pub(super) url: crate::link::LinkUrl,
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
@@ -243,7 +243,7 @@ impl<D: Kind> OpenedSession for OpenedConnection<D> {
     }
 }
 
-/// The waits before the window closes, in order. Each one includes the previous ones.
+/// The waits before the window closes, in order. Each one includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ShutdownWait {
     Drives,
@@ -260,14 +260,14 @@ pub enum OpenFailure {
     Held,
 }
 
-/// Function that handles a result without a session.
+/// A function that handles the result of a task that belongs to no session.
 pub(crate) type SharedResultHandler = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice>]) + Send>;
 
-/// A backup that was read in order to be restored, or the error.
+/// A backup read for a restore, or the error.
 pub struct ReadBackup {
     pub of: DeviceKey,
     pub path: PathBuf,
-    /// Entry of the logbook that is to be undone with the backup, if any.
+    /// Logbook entry to be undone by restoring the backup, if any.
     pub undone: Option<Box<Entry>>,
     pub result: Result<Box<ProfileDocument>, ReadError>,
 }

@@ -1,6 +1,6 @@
 //! Stops the drives of all sessions when the program ends: when the window is closed, on a signal, or when the display
-//! is lost. The drives are stopped and switched off, and their connections are closed. This works even if the window no
-//! longer draws.
+//! is lost. The drives are stopped and switched off, and their connections are closed. This works even if the window is
+//! no longer drawn.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use crate::worker::WorkerStopHandle;
 
 /// A handle that stops the drives of a session when the program ends. It works from any thread and in any state of the
-/// session, even if the window no longer draws.
+/// session, even if the window is no longer drawn.
 pub trait DriveStopHandle: Send {
     /// Stops and switches off all drives, and closes their connection. Later requests cannot start a motion. This
     /// function does not block, and it may be called repeatedly.
@@ -25,7 +25,7 @@ pub trait DriveStopHandle: Send {
     fn is_orphaned(&self) -> bool;
 }
 
-/// All drives that this program can move. Clones share the same state.
+/// The stop handles of all sessions. Clones share the same state.
 #[derive(Clone, Default)]
 pub struct DriveStopHandles(Arc<Shared>);
 
@@ -44,7 +44,7 @@ struct Shared {
 const CHECK_INTERVAL: Duration = Duration::from_millis(5);
 
 impl DriveStopHandles {
-    /// Maximum time for stopping the drives and closing the connections. After this time, the program ends in any case.
+    /// Maximum time for stopping the drives and closing the connections. The program ends no later than this.
     pub const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(1);
 
     pub(crate) fn add(&self, brake: Box<dyn DriveStopHandle>, stop_handle: WorkerStopHandle) {
@@ -75,7 +75,7 @@ impl DriveStopHandles {
         !self.lock_sessions().iter().any(|(brake, _)| brake.is_connected())
     }
 
-    /// Waits for at most `patience` until all drives are disconnected. Returns whether they are.
+    /// Waits for at most `patience` until all drives are disconnected, and returns whether they are.
     pub fn wait_for_disconnect(&self, patience: Duration) -> bool {
         wait_for(patience, || self.is_done())
     }
@@ -84,7 +84,7 @@ impl DriveStopHandles {
         self.0.closing.store(true, Ordering::SeqCst);
     }
 
-    /// Waits for at most `patience` until the window has begun to close. Returns whether it has.
+    /// Waits for at most `patience` until the window begins to close, and returns whether it has.
     pub fn wait_for_window(&self, patience: Duration) -> bool {
         wait_for(patience, || self.0.closing.load(Ordering::SeqCst))
     }

@@ -1,5 +1,5 @@
-//! Closing a session or the window. The user is asked once if data would be lost or a job interrupted. Everything else
-//! is waited for.
+//! Closing of a session or the window. The user is asked once if data would be lost or a job interrupted. Everything
+//! else is waited for.
 
 use super::action::{Action, ShutdownWait, TaskResult};
 use super::brakes::DriveStopHandles;
@@ -9,7 +9,7 @@ use super::session::Source;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Text, recorder};
 
-/// Minimum duration of a recording, in nanoseconds, for which the user is asked before it is discarded.
+/// Minimum duration of a recording, in nanoseconds, for asking the user before it is discarded.
 pub(super) const LONG_RECORDING_NS: i64 = 120_000_000_000;
 
 impl Studio {
@@ -23,8 +23,9 @@ impl Studio {
         self.closing
     }
 
-    /// Returns whether the window may close now: either no drive is under control, nothing is running and all data are
-    /// on disk, or the grace period has expired. Released sessions that are still ending count as running.
+    /// Returns whether the window may close now. This is the case if no drive is under control, nothing is running and
+    /// all data are on disk, or if the grace period has expired. Released sessions that are still ending count as
+    /// running.
     pub fn can_close(&self) -> bool {
         let services = &self.services;
         let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(|device| device.is_draft_kept());
@@ -88,7 +89,7 @@ impl Studio {
         }
     }
 
-    /// Handles a request from the system to end the program. Edits are kept as drafts without asking the user.
+    /// Handles a request from the system to end the program. The user is not asked, and edits are kept as drafts.
     pub(super) fn force_quit(&mut self) {
         self.question = None;
         self.stop();
@@ -117,7 +118,7 @@ impl Studio {
         }
     }
 
-    /// Declines the open question. Returns whether a question was open.
+    /// Dismisses the open question. Returns whether a question was open.
     pub(super) fn dismiss_question(&mut self) -> bool {
         let Some(question) = self.question.take() else { return false };
         match question.then {

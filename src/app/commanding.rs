@@ -1,4 +1,4 @@
-//! Dispatch of requests to a device: actions of its kind, and commands that every device supports.
+//! Dispatch of commands that every device supports, and of actions specific to one kind of device.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use super::{AnyDevice, Severity, Text};
 const LIVE_INTERVAL: Duration = Duration::from_millis(50);
 
 impl Studio {
-    /// Executes a command that every device supports, including those that open a link or involve two sessions.
+    /// Executes a command that every device supports, even one that opens a link or involves two sessions.
     pub(super) fn command(&mut self, id: SessionId, command: DeviceCommand) {
         match command {
             DeviceCommand::Reconnect => self.reconnect(id),
@@ -92,7 +92,7 @@ impl Studio {
         self.report_wrong_kind(taken, id);
     }
 
-    /// Stops all motion if an action has reached a device of another kind, because the intended target does not exist.
+    /// Stops all motion if an action has reached the wrong kind of device, because the intended device does not exist.
     pub(super) fn report_wrong_kind(&mut self, done: Result<(), PayloadKindError>, id: SessionId) {
         if done.is_err() {
             let name = self.device(id).map(AnyDevice::name);
@@ -100,7 +100,7 @@ impl Studio {
         }
     }
 
-    /// Reports that an action was meant for another kind of device, and stops all motion.
+    /// Reports that an action has reached the wrong kind of device, and stops all motion.
     pub(super) fn notify_wrong_kind(&mut self, about: Option<&str>) {
         self.stop_motion();
         self.services.notify(Severity::Error, vec![Text::new("session.wrong_kind")], about);

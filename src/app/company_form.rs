@@ -1,4 +1,4 @@
-//! The form for the name and the logo of the company that appear in reports.
+//! The form for the company name and logo shown in reports.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use super::{Settings, Text};
 /// State of the open form.
 #[derive(Debug, Default)]
 pub struct CompanyForm {
-    /// Path of the logo that was chosen in the file dialog, until the form displays it.
+    /// Path of a logo chosen in the file dialog, until the form has displayed it.
     chosen: Option<PathBuf>,
     is_checking: bool,
     problem: Option<Text>,
@@ -24,7 +24,7 @@ pub enum CompanyAction {
     Close,
     /// Ask the user to choose a logo file.
     AskLogo,
-    /// Use the name and the logo in reports. If a text is empty, reports omit the name or the logo.
+    /// Use the name and the logo in reports. An empty string omits the item from reports.
     Save {
         name: String,
         logo: String,
@@ -41,7 +41,7 @@ impl CompanyForm {
         self.is_checking
     }
 
-    /// Returns the reason why the logo cannot be used, or `None` if there is no problem.
+    /// Returns the reason why the logo cannot be used, if any.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -73,7 +73,7 @@ impl Studio {
         }
     }
 
-    /// Starts a task that checks the logo before the company name and the logo are saved.
+    /// Starts a task that checks the logo. The company name and the logo are then saved.
     fn check_company(&mut self, name: &str, logo: &str) {
         let Some(form) = &mut self.company_form else { return };
         form.is_checking = true;

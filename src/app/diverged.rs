@@ -1,5 +1,5 @@
-//! Resolution of the conflict between an edited profile and its file, which another program has changed on disk. The
-//! two versions are compared entry by entry.
+//! Resolution of a conflict between an edited profile and its file, which another program has changed. The two versions
+//! are compared entry by entry.
 
 use super::KindRegistry;
 use super::action::ReadError;
@@ -10,7 +10,7 @@ use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Text};
 use crate::profile::{Change, ChangedSide, ProfileDocument, ProfileError, diverging_changes};
 
-/// A profile whose versions in the window and in the file differ.
+/// A profile that differs between the window and its file.
 #[derive(Debug)]
 pub struct ProfileConflict {
     saving: SaveRequest,
@@ -25,7 +25,7 @@ pub struct ProfileConflict {
 pub struct Row {
     change: Change,
     pub changed: ChangedSide,
-    /// The version chosen for the entry, if any.
+    /// Version chosen for the entry, if any.
     pub take: Option<Side>,
 }
 
@@ -108,8 +108,8 @@ impl ProfileConflict {
         self.theirs.is_ok()
     }
 
-    /// Returns whether the file can be overwritten. A file written by a newer version of the program cannot, because
-    /// its unknown content would be lost.
+    /// Returns whether the file may be overwritten. A file from a newer version of the program may not, because content
+    /// unknown to this version would be lost.
     pub fn can_overwrite_file(&self) -> bool {
         !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
     }

@@ -55,7 +55,7 @@ impl Studio {
         }
     }
 
-    /// Reports that the window does not support the kind of device of a profile.
+    /// Reports that the window does not support the profile's kind of device.
     fn report_unsupported_kind(&mut self, path: &Path, found: &str) {
         let error = ProfileError::Device {
             found: found.to_owned(),
@@ -68,7 +68,7 @@ impl Studio {
         );
     }
 
-    /// Handles the result of a task that accesses the draft of a session.
+    /// Handles the result of a task that reads or writes a session's draft.
     pub(super) fn finish_draft(&mut self, id: SessionId, done: DraftOutcome) {
         if let DraftOutcome::Kept { result, .. } = &done {
             self.services.drafts_on_their_way = self.services.drafts_on_their_way.saturating_sub(1);
@@ -82,7 +82,7 @@ impl Studio {
         self.with_device(id, |device, services| device.take_draft(done, services));
     }
 
-    /// Rejects saving or writing a profile with a newer schema. Returns whether the request was rejected.
+    /// Refuses to save or write a profile with a newer schema. Returns whether it was refused.
     pub(crate) fn refuse_if_read_only(&mut self, id: SessionId) -> bool {
         let refusal = self.device(id).and_then(|device| read_only_reason(device.source()));
         let Some(refusal) = refusal else { return false };
@@ -91,8 +91,8 @@ impl Studio {
     }
 }
 
-/// Returns the reason why a profile with a newer schema is neither saved nor written to a device. Returns `None` for
-/// other sources.
+/// Returns the reason why a profile with a newer schema can neither be saved nor written to a device. Returns `None`
+/// for any other source.
 pub(crate) fn read_only_reason(source: &Source) -> Option<Text> {
     let Source::File { path, document, .. } = source else { return None };
     document.is_newer().then(|| explain::newer_profile(path, document))
@@ -103,7 +103,7 @@ pub(crate) fn new_document(body: Body) -> ProfileDocument {
     ProfileDocument::new(whole_seconds(Timestamp::now()), body)
 }
 
-/// Returns a time as profiles contain it, without a fraction of a second.
+/// Returns a time without fractions of a second, as stored in profiles.
 pub(crate) fn whole_seconds(at: Timestamp) -> String {
     Timestamp::from_second(at.as_second()).unwrap_or(at).to_string()
 }

@@ -1,5 +1,5 @@
-//! Data about drives that the program stores for them: spindle pitch, position unit, limits that have not been
-//! confirmed since the scaling changed, and values that the drives have not saved.
+//! Stored data about drives: spindle pitch, position unit, limits not confirmed since the scaling changed, and values
+//! that the drives have not saved.
 //!
 //! A drive may also be open in another session or window. Changes made in one of them do not affect the others.
 //! However, limits marked as unconfirmed in one of them lock all of them, and must be confirmed in each.
@@ -42,14 +42,14 @@ pub struct RememberedDrives {
     pub pitches: BTreeMap<u8, u64>,
     pub measure: PositionUnit,
     unconfirmed: Vec<u8>,
-    /// Number of times that the limits of each drive have been marked, by drive number. It distinguishes a new mark
-    /// from an earlier one.
+    /// Number of times that the limits of each drive have been marked as unconfirmed, by drive number. It distinguishes
+    /// a new mark from an earlier one.
     marks: BTreeMap<u8, u64>,
     /// Written values that the drive has not saved, by parameter number.
     pub unsaved: BTreeMap<u16, i64>,
 }
 
-/// The readable part of a stored entry about a drive whose other parts are invalid.
+/// The readable part of a stored drive entry that is otherwise invalid.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct PartialDriveEntry {
@@ -57,7 +57,8 @@ pub(crate) struct PartialDriveEntry {
     marks: BTreeMap<u8, u64>,
 }
 
-/// Whether the settings have been read since control was taken. Another window may have marked limits in the settings.
+/// Whether the settings have been read since this window took control of the drives. Another window may have marked
+/// limits there as unconfirmed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SettingsReadState {
     Unread,
@@ -65,24 +66,24 @@ pub enum SettingsReadState {
     Read,
 }
 
-/// A device with drives about which the settings contain data.
+/// A device whose drives have data stored in the settings.
 pub trait StoredDriveData {
-    /// Returns the name of the device's entry in the settings, or `None` if the device has not been read.
+    /// Returns the name of the device's entry in the settings, or `None` until the device has been read.
     fn storage_name(&self) -> Option<String>;
 
-    /// Adopts the stored data about the drives. Returns the data to store next if they differ from the stored ones.
+    /// Adopts the stored data about the drives. Returns data that must be stored because they differ.
     ///
     /// All data are adopted once per device. Afterwards, only limits that were marked elsewhere are adopted.
     fn sync_remembered_drives(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
 
-    /// Locks the drives whose limits another session or window has marked as unconfirmed. This works even before the
-    /// mark is in the settings.
+    /// Locks the drives whose limits another session or window has marked as unconfirmed, even before the mark is in
+    /// the settings.
     fn lock_marked_drives(&mut self, found: &RememberedDrives);
 
-    /// Returns whether the settings have been read since control was taken.
+    /// Returns whether the settings have been read since this window took control.
     fn read_state(&self) -> SettingsReadState;
 
-    /// Records whether the settings have been read since control was taken. No drive moves until they have been read.
+    /// Records whether the settings have been read since this window took control. Until then, no drive moves.
     fn set_read_state(&mut self, marks: SettingsReadState);
 }
 
@@ -119,7 +120,7 @@ impl RememberedDrives {
         self.marks.insert(drive, self.control_count(drive).wrapping_add(times));
     }
 
-    /// Returns the drives whose limits were marked since `before`.
+    /// Returns the drives whose limits were marked as unconfirmed since `before`.
     ///
     /// A mark with the same number may already be confirmed here but not yet on disk. Settings written by a program
     /// version that does not count marks contain no numbers.
@@ -131,8 +132,8 @@ impl RememberedDrives {
         self.unconfirmed.iter().copied().filter(is_new).collect()
     }
 
-    /// Returns the data with the changes between `known` and `ours` applied. Limits marked in the meantime stay
-    /// unconfirmed, even if `ours` has confirmed them.
+    /// Applies the changes between `known` and `ours` to the data. Limits marked as unconfirmed in the meantime stay
+    /// so, even if `ours` has confirmed them.
     #[must_use]
     pub(crate) fn with_changes(mut self, known: &RememberedDrives, ours: &RememberedDrives) -> Self {
         let drives = |maps: [&BTreeMap<u8, u64>; 2]| -> BTreeSet<u8> {
@@ -159,7 +160,7 @@ impl RememberedDrives {
     }
 }
 
-/// Applies the changes between `known` and `ours`, key by key.
+/// Applies the changes between `known` and `ours` to a map, key by key.
 fn apply_changes<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &BTreeMap<K, V>, ours: &BTreeMap<K, V>) {
     for key in known.keys().chain(ours.keys()) {
         match (known.get(key), ours.get(key)) {
@@ -174,7 +175,7 @@ fn apply_changes<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &
 mod tests {
     use super::*;
 
-    /// Limits confirmed here are locked again by a new mark, but not by the mark that was confirmed.
+    /// A new mark locks limits that were confirmed here. The mark that was confirmed does not lock them again.
     #[test]
     fn marks_are_compared_by_number() {
         let of = |text: &str| ron::from_str::<RememberedDrives>(&format!("({text})")).unwrap();

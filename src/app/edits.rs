@@ -1,4 +1,4 @@
-//! Edited values of a device by location, with undo. The base supplies the values of the device and defines which of
+//! Edited values of a device, by location, with undo. The base supplies the device's own values and defines which of
 //! them can be edited.
 
 use std::collections::BTreeMap;
@@ -6,16 +6,16 @@ use std::collections::BTreeMap;
 use super::PendingEdits;
 use super::history::History;
 
-/// The values of a device as last read.
+/// The values last read from a device.
 pub trait EditBase: Default {
     type Location: Ord + Copy;
     type Value: Copy + PartialEq;
 
-    /// Returns whether a value differs from the one that was read, and is therefore an edit.
+    /// Returns whether a value differs from the one read, and is therefore an edit.
     fn is_edit(&self, at: Self::Location, value: Self::Value) -> bool;
 }
 
-/// The values of a device as last read, together with the edited values.
+/// The values last read from a device, together with the edited values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edits<B: EditBase> {
     base: B,
@@ -44,7 +44,7 @@ impl<B: EditBase> Edits<B> {
         self.edits.iter().map(|(at, value)| (*at, *value))
     }
 
-    /// Edits values as one undo step. A value that equals the one on the device is not an edit.
+    /// Edits values as one undo step. A value equal to the one on the device is not an edit.
     pub fn edit_values(&mut self, values: impl IntoIterator<Item = (B::Location, B::Value)>) {
         let mut after = self.edits.clone();
         for (at, value) in values {
@@ -57,14 +57,14 @@ impl<B: EditBase> Edits<B> {
         self.history.apply_step(&mut self.edits, after);
     }
 
-    /// Reverts the edits for which `is_meant` returns true, as one undo step. Returns `false` if there are none.
+    /// Reverts the edits for which `is_meant` returns `true`, as one undo step. Returns `false` if there are none.
     pub fn revert_matching(&mut self, is_meant: impl Fn(B::Location) -> bool) -> bool {
         let mut after = self.edits.clone();
         after.retain(|at, _| !is_meant(*at));
         self.history.apply_step(&mut self.edits, after)
     }
 
-    /// Adopts values that were read again. An edit is removed if the device now contains the same value.
+    /// Adopts newly read values. An edit is removed if the device now has the same value.
     pub fn update_base(&mut self, read: impl FnOnce(&mut B)) {
         read(&mut self.base);
         self.remove_redundant();
@@ -76,7 +76,7 @@ impl<B: EditBase> Edits<B> {
         *self = Edits::default();
     }
 
-    /// Removes edits that equal the value of the device. An undo step can restore such edits.
+    /// Removes edits that equal the device's value. An undo step can restore them.
     fn remove_redundant(&mut self) {
         let base = &self.base;
         self.edits.retain(|at, value| base.is_edit(*at, *value));

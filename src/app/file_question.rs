@@ -1,4 +1,4 @@
-//! Questions to the user for a file.
+//! Questions that ask the user for a file.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -11,14 +11,14 @@ use super::report::ReportFormat;
 use super::studio::SessionId;
 use super::{DeviceAction, Language, Picture, Text};
 
-/// A question for a file. The user answers it in a system dialog or by typing a path.
+/// A request for a file, which the user answers in a system dialog or by typing a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileQuestion {
     Open,
     Restore(SessionId),
     Compare(Side),
     OpenCapture,
-    /// The company's logo in reports.
+    /// The company logo for reports.
     Logo,
     Recording,
     Save {
@@ -45,7 +45,7 @@ pub enum FileQuestion {
     },
 }
 
-/// A file that a kind of device reads or writes, with the action that follows when it has been chosen.
+/// A file that a kind of device reads or writes, and the action to execute once it has been chosen.
 #[derive(Clone)]
 pub struct DeviceFile {
     session: SessionId,
@@ -57,7 +57,7 @@ pub struct DeviceFile {
 }
 
 impl DeviceFile {
-    /// Creates the question for a file to read. `title` is the title of the dialog, and `kind` is the name of the file
+    /// Creates a request for a file to read. `title` is the title of the dialog, and `kind` is the name of the file
     /// type, followed by its extensions.
     pub fn to_read<A: DeviceAction>(
         session: SessionId,
@@ -69,8 +69,8 @@ impl DeviceFile {
         DeviceFile { session, title, kind, endings, suggested: None, then: Arc::new(then) }
     }
 
-    /// Creates the question for a file to write, with a suggested name. The content of the file may be in the language
-    /// of the window.
+    /// Creates a request for a file to write, with a suggested name. The content may depend on the language of the
+    /// window.
     pub fn write_question<A: DeviceAction>(
         session: SessionId,
         (title, kind): (Text, Text),

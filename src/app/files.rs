@@ -1,4 +1,4 @@
-//! Handling of files that the user has chosen. The disk is accessed only in tasks.
+//! Handling of files chosen by the user. The disk is accessed only in tasks.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ use crate::link::{LinkScheme, LinkUrl};
 use crate::store::{BaseFolders, FileError, write_atomically};
 
 impl Studio {
-    /// Returns the action with absolute paths. Paths from the user enter the program only here.
+    /// Makes the paths of an action absolute. All paths from the user pass through here.
     pub(super) fn with_absolute_path(&self, action: Action) -> Action {
         let whole = |path: PathBuf| self.services.world.folders.absolute_path(&path);
         match action {
@@ -24,7 +24,7 @@ impl Studio {
         }
     }
 
-    /// Returns the link with an absolute path if it refers to a file.
+    /// Makes the path of a link absolute, if the link refers to a file.
     pub(super) fn with_absolute_file(&self, mut url: LinkUrl) -> LinkUrl {
         if url.scheme == LinkScheme::Replay {
             url.target = self.services.world.folders.absolute_path(Path::new(&url.target)).display().to_string();
@@ -139,7 +139,8 @@ impl Studio {
         });
     }
 
-    /// Suggests a file name with the encoder and the time of day, so that recordings get different names.
+    /// Suggests a file name that contains the encoder and the time of day, so that each recording gets a different
+    /// name.
     pub(super) fn suggested_path(&self, owner: Option<RecorderOwner>, ending: &str) -> PathBuf {
         let device = match owner {
             Some(RecorderOwner::Device(id)) => self.device(id),
@@ -193,7 +194,7 @@ impl Studio {
         self.services.notify(severity, texts, None);
     }
 
-    /// Reports that a file was saved, with `message`, or why it could not be saved.
+    /// Reports that a file was saved, or the reason why it was not. `message` names what was saved.
     pub(super) fn finish_file_save(&mut self, message: Text, path: &Path, result: Result<(), FileError>) {
         let (severity, text) = match result {
             Ok(()) => {
@@ -205,7 +206,7 @@ impl Studio {
         self.services.notify(severity, vec![text], None);
     }
 
-    /// Passes new samples to the tables that are being written.
+    /// Passes new samples to the running table exports.
     pub(super) fn feed_exports(&mut self) {
         for device in &mut self.devices {
             device.recorders_mut().into_iter().for_each(Recorder::pass_rows_to_export);

@@ -1,6 +1,6 @@
-//! Undo and redo for any type of state. The current state is stored by the owner.
+//! Undo and redo for any type of state. The owner stores the current state.
 
-/// Undo history, which contains earlier states and undone states.
+/// An undo history with the earlier and the undone states.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct History<T> {
     undo: Vec<T>,
@@ -25,7 +25,7 @@ impl<T> History<T> {
         !self.redo.is_empty()
     }
 
-    /// Records a step from the state `before`. Undone steps are discarded.
+    /// Records the step that led from the state `before`. Undone steps are discarded.
     pub(crate) fn record_step(&mut self, before: T) {
         self.redo.clear();
         self.undo.push(before);
@@ -34,7 +34,7 @@ impl<T> History<T> {
         }
     }
 
-    /// Undoes the last step by setting `now` to the state before it. Returns `false` if there is none.
+    /// Undoes the last step by restoring the state before it in `now`. Returns `false` if there is none.
     pub(crate) fn undo(&mut self, now: &mut T) -> bool {
         let Some(before) = self.undo.pop() else { return false };
         self.redo.push(std::mem::replace(now, before));
@@ -57,7 +57,7 @@ impl<T> History<T> {
 }
 
 impl<T: PartialEq> History<T> {
-    /// Changes `now` to `after` and records the step. Returns `false` if the two are equal.
+    /// Changes `now` to `after` and records the step. Returns `false` if nothing changes.
     pub(crate) fn apply_step(&mut self, now: &mut T, after: T) -> bool {
         if *now == after {
             return false;
@@ -66,8 +66,8 @@ impl<T: PartialEq> History<T> {
         true
     }
 
-    /// Applies `follow` to the current state and all earlier ones, because the data on which they are based have
-    /// changed. Steps that no longer change anything are removed.
+    /// Applies `follow` to the current state and all recorded ones, because the data on which they are based have
+    /// changed. Steps without any remaining effect are removed.
     pub(crate) fn update_all_states(&mut self, now: &mut T, follow: impl Fn(&mut T)) {
         self.undo.iter_mut().for_each(&follow);
         follow(now);

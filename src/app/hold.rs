@@ -1,31 +1,31 @@
 //! State of a button that is active while it is held, with the rules for the start and the end of a hold. Nothing is
 //! drawn here.
 //!
-//! | what comes | nothing is held | held by the pointer | held by a key |
+//! | Event | Not held | Held by the pointer | Held by a key |
 //! |---|---|---|---|
-//! | the pointer goes down on it | begins; not while Space or Enter is down | ends | ends |
-//! | the pointer goes down elsewhere, a second finger | – | ends | ends |
-//! | the pointer goes up, or leaves the button | – | ends | – |
-//! | a fresh press of Space or Enter, without modifiers | begins, while it has the keyboard, no pointer is down and nothing moves | ends | ends |
-//! | the same key again | a stop, while something moves | ends | goes on: it repeats itself |
-//! | any other key, modifiers | – | ends | ends |
-//! | the key goes up | – | – | ends |
-//! | the keyboard goes to another widget | keys are forgotten | keys are forgotten | ends |
-//! | the window loses or gets the keyboard; it is disabled, enabled, or was not in the last picture | keys are forgotten | ends | ends |
+//! | pointer pressed on the button | begins, unless Space or Enter is down | ends | ends |
+//! | pointer pressed elsewhere, or a second finger | – | ends | ends |
+//! | pointer released, or moved off the button | – | ends | – |
+//! | fresh press of Space or Enter, no modifiers | begins if focused, no pointer down, nothing moving | ends | ends |
+//! | same key again | stops a running motion | ends | continues (key repeat) |
+//! | any other key, or a modifier | – | ends | ends |
+//! | key released | – | – | ends |
+//! | another widget gets the focus | key states discarded | key states discarded | ends |
+//! | window focus changes; button disabled, enabled, or absent in the last frame | key states discarded | ends | ends |
 //!
 //! After a hold has ended, only another press starts a new one. The press of a key must be [fresh](KeyStates), which a
 //! press immediately after another key never is.
 
 use super::press::{KeyStates, PressKey};
 
-/// The state of a hold button and of the window at the start of a frame.
+/// The state of a hold button and its window at the start of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HoldContext {
     pub enabled: bool,
     pub window: bool,
     pub keyboard: bool,
-    /// Whether a motion that this button does not control is in progress or has just been stopped. If so, a key press
-    /// is a request to stop.
+    /// Whether a motion that this button does not control is running or has just been stopped. A key press is then a
+    /// request to stop.
     pub moving: bool,
 }
 
@@ -43,7 +43,7 @@ pub enum HoldInput {
     OtherKey,
     Modifiers,
     PointerDown {
-        /// Whether the press of the primary pointer button began on this button.
+        /// Whether the primary pointer button was pressed on this button.
         on: bool,
     },
     PointerMoved {
@@ -51,7 +51,7 @@ pub enum HoldInput {
     },
     PointerUp,
     PointerGone,
-    /// A finger has touched the screen. If the touch acts as the pointer, a pointer press follows.
+    /// A finger has touched the screen. If the touch acts as the pointer, a pointer press follows as a separate event.
     Finger,
 }
 
@@ -104,7 +104,7 @@ impl HoldState {
         }
     }
 
-    /// Handles one input event of the frame. `now` is the time on the window's clock.
+    /// Handles one input event of a frame. `now` is the time on the window's clock.
     pub fn handle_input(&mut self, now: f64, input: HoldInput) {
         let Some(scene) = self.scene else { return };
         match input {
@@ -143,8 +143,8 @@ impl HoldState {
         }
     }
 
-    /// Ends the frame and returns its effect on the hold. `pointer_down` states whether the pointer is pressed, and
-    /// `inside` whether it is on the button.
+    /// Ends the frame and returns what has happened to the hold. `pointer_down` states whether the pointer is pressed,
+    /// and `inside` whether it is on the button.
     pub fn end_frame(&mut self, now: f64, pointer_down: bool, inside: bool) -> Option<HoldEvent> {
         self.next_picture = self.keys.finish_ui_frame(now);
         self.pointer = pointer_down;
@@ -164,7 +164,7 @@ impl HoldState {
         }
     }
 
-    /// Returns the time in seconds after which another frame is needed to see that a key was released.
+    /// Returns the time in seconds until the next frame that is needed to detect the release of a key.
     pub const fn repaint_delay(&self) -> Option<f64> {
         self.next_picture
     }
@@ -177,8 +177,7 @@ impl HoldState {
         self.holder == Some(HoldSource::Pointer)
     }
 
-    /// Returns whether the button has the keyboard focus but is still waiting for a key to be released. In this state,
-    /// the first press is ignored.
+    /// Returns whether the button has the keyboard focus but ignores key presses until a key has been released.
     pub fn is_waiting_for_release(&self) -> bool {
         let has_keyboard = self.scene.is_some_and(|scene| scene.enabled && scene.window && scene.keyboard);
         let armed = self.keys.is_armed(PressKey::Space) || self.keys.is_armed(PressKey::Enter);

@@ -1,4 +1,5 @@
-//! The kinds of devices and the tools of a program. The studio receives this list and does not name any of them.
+//! The kinds of devices and the tools that a program supports. They are passed to the studio, which does not depend on
+//! any particular one.
 
 use super::devices::DeviceKind;
 use super::logbook::LOGBOOK_TAB;
@@ -43,8 +44,8 @@ impl KindRegistry {
         self.devices.iter().copied().find(|kind| kind.keyword() == word)
     }
 
-    /// Returns the reason why a kind of device rejects a profile. If no kind recognises the cause, its English message
-    /// is returned.
+    /// Returns the reason why a profile was rejected. If no kind of device recognises the cause, its English message is
+    /// returned.
     pub(super) fn explain_rejection(self, cause: &Cause) -> Text {
         self.devices
             .iter()
@@ -52,8 +53,8 @@ impl KindRegistry {
             .unwrap_or_else(|| explain::literal_text(cause))
     }
 
-    /// Returns the name of an item of a profile or of the logbook. `manual_name` is the name in the manual, if the item is
-    /// an address. The item of an unknown kind has the name that the command line uses.
+    /// Returns the display name of an item in a profile or the logbook. `manual_name` is the name in the manual, if the
+    /// item is an address. For an unknown kind of device, the name from the command line is returned.
     pub fn item_name(self, kind: &str, item: &str, manual_name: Option<&str>) -> Text {
         self.for_profile(kind).and_then(|kind| kind.item_name(item, manual_name)).unwrap_or_else(|| match manual_name {
             Some(name) => explain::literal_text(format!("{item} {name}")),
@@ -61,8 +62,8 @@ impl KindRegistry {
         })
     }
 
-    /// Returns a link as it may be displayed and stored. Parameters that are secret for any kind of device are removed,
-    /// because the link may be meant for another kind.
+    /// Returns a link in the form in which it may be displayed and stored. Parameters that are secret for any kind of
+    /// device are removed, because the link may be meant for another kind.
     pub fn display_link(self, url: &LinkUrl) -> String {
         let secrets: Vec<&str> = self.devices.iter().flat_map(|kind| kind.secret_parameters()).collect();
         let query: Vec<String> =
@@ -71,7 +72,7 @@ impl KindRegistry {
         format!("{}:{}{question}{}", url.scheme.keyword(), url.target, query.join("&"))
     }
 
-    /// Returns the first tab of a device, or of a tool if there are no devices.
+    /// Returns the first device tab, or the first tool tab if there are no devices.
     pub(super) fn first_tab(self) -> Tab {
         let device = self.devices.first().map(|kind| kind.tab());
         device.or_else(|| self.tools.first().map(|kind| kind.tab())).unwrap_or_default()

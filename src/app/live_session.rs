@@ -1,5 +1,5 @@
-//! A session that runs on its own thread, from the perspective of the window: the running job, the trace and the
-//! samples. It is the same for all kinds of devices.
+//! A session on its own thread, as seen by the window: the running job, the trace and the samples. It is the same for
+//! all kinds of devices.
 
 use std::time::Duration;
 
@@ -71,7 +71,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.poll(interval);
     }
 
-    /// Starts reading the given values in addition to the samples.
+    /// Starts reading the given values between the samples.
     pub(crate) fn watch_values(&self, watched: Vec<(D::Watch, Duration)>) {
         self.worker.watch_values(watched);
     }
@@ -104,8 +104,7 @@ impl<D: Kind> LiveSession<D> {
         Some(event)
     }
 
-    /// Returns whether the thread has ended although the session was not released, and all of its events have been
-    /// received.
+    /// Returns whether the thread has ended unexpectedly and all of its events have been received.
     pub(crate) fn is_dead(&self) -> bool {
         self.worker.is_finished() && self.worker.events().is_empty()
     }
@@ -125,7 +124,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.stop_handle()
     }
 
-    /// Returns the worker. Closing a worker can take time, so do it where blocking is harmless.
+    /// Returns the worker. Closing a worker can take time and should not be done on the window's thread.
     pub(crate) fn into_worker(self) -> Worker<D> {
         self.worker
     }

@@ -1,5 +1,4 @@
-//! The logbook as a page: the filter, the entries that match it, and the user's notes. The file is read and written in
-//! tasks.
+//! The logbook page: the filter, the matching entries and the user's notes. The file is read and written in tasks.
 
 use std::path::PathBuf;
 
@@ -24,7 +23,7 @@ pub const MAX_NOTE: usize = 1_000;
 pub struct LogbookPage {
     filter: EntryFilter,
     matches: Option<Result<LogbookMatches, Text>>,
-    /// Number of the latest search. Results of earlier searches are dropped.
+    /// Number of the latest search. Results of earlier searches are ignored.
     search: u64,
     is_searching: bool,
     /// Whether entries may have been added since the last search.
@@ -33,31 +32,31 @@ pub struct LogbookPage {
     exchange: ServerExchange,
 }
 
-/// Entries that match the filter, and all devices of the logbook.
+/// Entries that match a filter, and all devices in the logbook.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct LogbookMatches {
     /// Entries, newest first.
     pub entries: Vec<Entry>,
-    /// Whether the logbook contains older matching entries that are not listed.
+    /// Whether there are older matching entries that are not listed.
     pub has_more: bool,
-    /// Devices that have entries, in the order of their kinds and serial numbers.
+    /// Devices with entries, ordered by kind and serial number.
     pub devices: Vec<DeviceKey>,
-    /// Assets to which a device was ever assigned, in their order.
+    /// Assets to which a device was ever assigned, in order.
     pub assets: Vec<String>,
-    /// A damaged file that was replaced. Its entries are missing.
+    /// Damaged file that was replaced. Its entries are missing.
     pub damaged: Option<PathBuf>,
 }
 
 impl LogbookPage {
-    /// Maximum number of entries that are shown.
+    /// Maximum number of entries shown.
     pub const LIMIT: u32 = 2_000;
 
     pub fn filter(&self) -> &EntryFilter {
         &self.filter
     }
 
-    /// Returns the result of the last search: the entries, or the reason why the logbook cannot be read. Returns `None`
-    /// before the first search has ended.
+    /// Returns the result of the last search: the matches, or the reason why the logbook cannot be read. Returns `None`
+    /// until the first search has ended.
     pub fn matches(&self) -> Option<&Result<LogbookMatches, Text>> {
         self.matches.as_ref()
     }
@@ -99,7 +98,7 @@ impl LogbookMatches {
     }
 }
 
-/// Returns the id of the name of a kind of entry.
+/// Returns the text id of the name of an entry kind.
 pub const fn entry_kind_text(kind: EntryKind) -> &'static str {
     match kind {
         EntryKind::Connected => "logbook.kind_connected",
@@ -126,17 +125,18 @@ pub fn outcome_text(entry: &Entry) -> Option<Text> {
 }
 
 impl Studio {
-    /// Returns the name of the bus for a kind of device, or `None` if this program does not support that kind.
+    /// Returns the bus name of a kind of device, or `None` if this program does not support that kind.
     pub fn bus(&self, kind: &str) -> Option<&'static str> {
         self.services.world.kinds.for_profile(kind).map(|kind| kind.bus_name())
     }
 
-    /// Returns the name of an item of a profile or of the logbook, for a kind of device.
+    /// Returns the display name of an item of a kind of device.
     pub fn item_name(&self, kind: &str, item: &str, manual_name: Option<&str>) -> Text {
         self.services.world.kinds.item_name(kind, item, manual_name)
     }
 
-    /// Returns the changed items of an entry with their old and new values, or its description if it has no items.
+    /// Returns the changed items of an entry with their old and new values. An entry without items yields its
+    /// description.
     pub fn entry_text(&self, entry: &Entry) -> Text {
         if entry.items.is_empty() {
             return explain::literal_text(&entry.description);
@@ -174,7 +174,7 @@ impl Studio {
         }
     }
 
-    /// Starts a task that reads the entries which match the filter.
+    /// Starts a task that reads the entries matching the filter.
     pub(super) fn search_logbook(&mut self, filter: EntryFilter) {
         let page = &mut self.logbook;
         page.search += 1;
@@ -195,7 +195,7 @@ impl Studio {
         }
     }
 
-    /// Starts a task that adds a note about a device. An empty note is not added.
+    /// Starts a task that adds a note about a device. Empty notes are ignored.
     pub(super) fn add_note(&mut self, device: DeviceKey, note: &str) {
         let note: String = note.trim().chars().take(MAX_NOTE).collect();
         if note.is_empty() || self.logbook.is_saving_note {

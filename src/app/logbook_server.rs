@@ -1,5 +1,5 @@
-//! The server of a shared logbook: which one it is, and the thread that exchanges entries with it. The window never waits
-//! for the server.
+//! The connection to a server for a shared logbook: its address, and the thread that exchanges entries with it. The
+//! window never waits for the server.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -13,17 +13,18 @@ use super::tasks::ActionMailbox;
 use super::{Settings, Severity, explain};
 use crate::store::{Contact, Logbook, ServerAddress, ServerAddressError, ServerError, ServerErrorKind, Store};
 
-/// Environment variable that names the server instead of the settings.
+/// Environment variable that overrides the server address from the settings.
 const VARIABLE: &str = "ENCODER_STUDIO_LOGBOOK";
 
 /// Interval at which the thread looks for entries to send.
 const SEND_INTERVAL: Duration = Duration::from_secs(1);
-/// Interval at which the thread asks for entries of other benches.
+/// Interval at which the thread fetches entries from other computers.
 const RECEIVE_INTERVAL: Duration = Duration::from_secs(10);
-/// Maximum time for an exchange. The first one copies all entries of other benches. A silent server is noticed earlier.
+/// Maximum time for an exchange, long enough for the first one to copy all entries from other computers. A server that
+/// does not reply is noticed earlier.
 const TIMEOUT: Duration = Duration::from_secs(60);
 
-/// Returns the server that the environment or else the settings name, or `None` if there is none.
+/// Returns the server address from the environment, or else from the settings. Returns `None` if neither contains one.
 pub(super) fn server_address(settings: &Settings) -> Option<Result<ServerAddress, ServerAddressError>> {
     match given_server() {
         Some(address) => Some(ServerAddress::from_environment(&address)),
@@ -32,7 +33,8 @@ pub(super) fn server_address(settings: &Settings) -> Option<Result<ServerAddress
     }
 }
 
-/// Returns the server while the settings cannot be read: that of the environment, or one that counts as away.
+/// Returns the server address from the environment while the settings cannot be read. Without it, the server counts as
+/// unreachable.
 pub(super) fn server_address_without_settings() -> Option<Result<ServerAddress, ServerAddressError>> {
     let unknown = || Err(ServerAddressError::SettingsUnreadable);
     Some(given_server().map_or_else(unknown, |address| ServerAddress::from_environment(&address)))
@@ -42,7 +44,7 @@ fn given_server() -> Option<String> {
     std::env::var(VARIABLE).ok().filter(|address| !address.trim().is_empty())
 }
 
-/// Returns whether the environment names the server, so that the setting does not apply.
+/// Returns whether the environment overrides the server address from the settings.
 pub(super) fn is_server_given() -> bool {
     given_server().is_some()
 }
@@ -51,7 +53,7 @@ pub(super) fn is_server_given() -> bool {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ServerExchange {
     pub contact: Contact,
-    /// Number of entries that the server does not have yet.
+    /// Number of entries not yet sent to the server.
     pub waiting: u64,
 }
 
@@ -101,12 +103,12 @@ fn exchange(store: &Store, mailbox: &ActionMailbox, stopped: &Receiver<()>) {
 }
 
 impl Studio {
-    /// Returns the state of the exchange with the server of the logbook, or `None` if entries are not shared.
+    /// Returns the state of the exchange with the logbook server, or `None` if the logbook is not shared.
     pub fn server_exchange(&self) -> Option<&ServerExchange> {
         self.services.world.store.logbook_server().is_set().then_some(self.logbook.exchange())
     }
 
-    /// Starts the thread that exchanges entries, as soon as there is a server.
+    /// Starts the thread that exchanges entries, once a server is set.
     pub(super) fn start_exchange(&mut self) {
         let store = &self.services.world.store;
         if self.server_thread.is_none() && store.logbook_server().is_set() {
@@ -114,7 +116,7 @@ impl Studio {
         }
     }
 
-    /// Takes in the state of the exchange. A server that is away is reported once, until it was reached again.
+    /// Updates the state of the exchange. An unreachable server is reported once until it has been reached again.
     pub(super) fn show_exchange(&mut self, received: bool, state: ServerExchange) {
         let before = std::mem::replace(self.logbook.exchange_mut(), state);
         if received {

@@ -1,4 +1,4 @@
-//! State and logic of the program without drawing: the window with its actions, texts, and theme data.
+//! State and logic of the program, without drawing: actions, sessions, texts and theme data.
 
 pub(crate) mod action;
 mod brakes;

@@ -1,4 +1,4 @@
-//! Stops or releases motion in all sessions.
+//! Stopping and releasing of motion in all sessions.
 
 use super::devices::MotionControl;
 use super::studio::Studio;
@@ -12,18 +12,17 @@ impl Studio {
         self.devices.iter_mut().filter_map(|device| device.motion_mut())
     }
 
-    /// Returns whether any session has a connected drive. If so, the STOP button must be reachable.
+    /// Returns whether any session has a connected drive. The STOP button must then be reachable.
     pub fn has_drives(&self) -> bool {
         self.devices.iter().any(|device| device.motion().is_some() && device.is_connected())
     }
 
-    /// Returns whether a drive is moving or about to move, as far as this is known.
+    /// Returns whether any drive is known to be moving or about to move.
     pub fn is_moving(&self) -> bool {
         self.motion_controls().any(MotionControl::is_moving)
     }
 
-    /// Returns whether a motion that was requested in this window is running. The Escape key stops this motion before
-    /// it closes anything.
+    /// Returns whether a motion requested in this window is running. The Escape key stops it before closing anything.
     pub fn is_turned_by_hand(&self) -> bool {
         self.motion_controls().any(MotionControl::is_turned_by_hand)
     }
@@ -33,13 +32,13 @@ impl Studio {
         self.motion_controls().any(MotionControl::is_motion_active)
     }
 
-    /// Returns whether this program controls any drive. A controlled drive sends its values without being asked.
+    /// Returns whether this program controls any drive. A controlled drive sends its values without being polled.
     pub fn has_control(&self) -> bool {
         self.motion_controls().any(MotionControl::has_control)
     }
 
-    /// Returns whether STOP has an effect on drives. This is the case if this window controls a drive, or has requested
-    /// a motion that has not ended. STOP cannot stop the motion of another controller.
+    /// Returns whether STOP has an effect on drives, because this window controls a drive or has requested a motion
+    /// that has not ended. STOP cannot stop the motion of another controller.
     pub fn can_stop_motion(&self) -> bool {
         self.has_control() || self.is_turned_by_hand()
     }
@@ -48,14 +47,13 @@ impl Studio {
         self.motions_mut().for_each(MotionControl::stop);
     }
 
-    /// Ends all motions that last while a button is held, and all continuous runs, because the window has lost the
+    /// Ends all continuous runs and all motions that last while a button is held. Called when the window loses the
     /// keyboard focus or a dialog covers it.
     pub(super) fn release_jogs(&mut self) {
         self.motions_mut().for_each(MotionControl::release_motion);
     }
 
-    /// Ends a jog or run whose panel is no longer visible. Another tab or device, a dialog or a question can hide
-    /// it.
+    /// Ends a jog or run whose panel is hidden by another tab or device, a dialog or a question.
     pub(super) fn stop_hidden_motion(&mut self) {
         let asks = self.question.is_some() || self.services.file_question.is_some();
         let is_covered = self.connect.is_some() || self.has_form() || asks;

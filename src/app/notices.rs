@@ -1,4 +1,4 @@
-//! Notices to the user. The latest one is displayed until it has been read, and the log contains all of them.
+//! Notices to the user. The latest one stays on display until it has been read, and the log contains all of them.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -17,8 +17,8 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Returns the remaining display time of a notice that has been displayed for `shown`. Returns `None` if the notice
-    /// is displayed until the user closes it.
+    /// Returns for how much longer a notice is displayed that has been visible for `shown`. Returns `None` if it stays
+    /// until the user closes it.
     pub fn display_time(self, shown: Duration) -> Option<Duration> {
         let seconds = match self {
             Severity::Note | Severity::Good => 6,
@@ -39,7 +39,7 @@ pub struct Notice {
 }
 
 impl Notice {
-    /// Returns a prefix with the names of the device and the part, or an empty string if the notice names neither.
+    /// Returns a prefix with the names of the device and the part. The prefix is empty if the notice has neither.
     pub fn device_prefix(&self, words: impl Fn(&Text) -> String) -> String {
         let names = self.about.clone().into_iter().chain(self.part.as_ref().map(words));
         let names: Vec<String> = names.collect();
@@ -47,18 +47,18 @@ impl Notice {
     }
 }
 
-/// The log of notices, newest last. When it is full, the oldest ones are removed.
+/// The log of notices, newest last. If it is full, the oldest ones are removed.
 #[derive(Debug, Default)]
 pub struct NoticeLog {
     notices: VecDeque<Notice>,
-    /// The notice that the window displays, if any.
+    /// Notice displayed in the window, if any.
     standing: Option<Notice>,
 }
 
 impl NoticeLog {
     const CAPACITY: usize = 2_000;
 
-    /// Adds a notice. It is displayed until the user closes it or another notice replaces it.
+    /// Adds a notice and displays it until the user closes it or another one replaces it.
     pub fn add(&mut self, notice: Notice) {
         // A success does not replace a warning or an error.
         if notice.severity >= Severity::Warning
@@ -89,7 +89,7 @@ impl NoticeLog {
         self.standing.as_ref()
     }
 
-    /// Removes a notice about a session from the window, because it is no longer valid.
+    /// Removes a notice about a session from the window because it no longer applies.
     pub(crate) fn remove_from_window(&mut self, id: &str, about: Option<&str>) {
         let is_it =
             |notice: &Notice| notice.about.as_deref() == about && notice.texts.iter().any(|text| text.id() == id);
@@ -98,14 +98,14 @@ impl NoticeLog {
         }
     }
 
-    /// Removes a notice about a session from the window unless it is an error, because a more important message about
-    /// the session is displayed elsewhere.
+    /// Removes a notice about a session from the window, unless it is an error. A more important message is now
+    /// displayed elsewhere.
     pub(crate) fn remove_minor(&mut self, about: &str) {
         let is_it = |notice: &Notice| notice.severity < Severity::Error && notice.about.as_deref() == Some(about);
         self.standing.take_if(|notice| is_it(notice));
     }
 
-    /// Removes an error about a file from the window, because the file has now been read or written.
+    /// Removes an error about a file from the window because the file has now been read or written.
     pub(crate) fn remove_file_notices(&mut self, path: &Path) {
         let is_it = |notice: &Notice| {
             notice.severity == Severity::Error && notice.texts.first().is_some_and(|text| text.refers_to(path))

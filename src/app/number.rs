@@ -1,9 +1,9 @@
-//! Parsing of numbers entered by the user. Both decimal point and comma are accepted. Numbers are always finite, and
+//! Parsing of numbers typed by the user. Both decimal point and comma are accepted. Numbers are always finite, and
 //! errors name the allowed range.
 
 use super::Text;
 
-/// Maximum number of signal periods per revolution that can be entered. No known encoder has more.
+/// Maximum number of signal periods per revolution that can be entered, more than any known encoder has.
 pub(crate) const MAX_PERIODS: u32 = 65_536;
 
 /// Parses a decimal number with an optional exponent. Returns `None` if the text is invalid.
@@ -14,7 +14,7 @@ pub fn parse_decimal(text: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| plain && value.is_finite())
 }
 
-/// Parses a number from `least` to `most`. Errors refer to the entry as `what`.
+/// Parses a number from `least` to `most`. Errors refer to it as `what`.
 ///
 /// # Errors
 /// Returns the reason why the entry is invalid.
@@ -69,7 +69,7 @@ pub(crate) fn parse_number_or_hex(what: impl Into<Text>, text: &str, last: u64) 
     value.filter(|value| *value <= last).ok_or_else(refused)
 }
 
-/// Parses a quantity in the notation printed on components, or returns `None` if the text is invalid.
+/// Parses a quantity as printed on components, or returns `None` if the text is invalid.
 ///
 /// An SI prefix from f to G may follow the number or replace its decimal point, and the unit may be omitted: `10k`, `10
 /// kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`. An exponent is also accepted: `22e-12`.

@@ -1,5 +1,5 @@
-//! Opening of links. A link is opened on a thread as soon as the previous user of the connection has released it. If a
-//! session already uses the connection, the link is opened in that session.
+//! Opening of links. A link is opened on a thread as soon as the connection is free. If a session already uses the
+//! connection, that session opens the link.
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
@@ -16,13 +16,13 @@ use super::{AnyDevice, Severity, Text};
 use crate::link::{LinkScheme, LinkUrl, TraceEntry, UrlError};
 use crate::worker::{OpenError, Ring, Session, Worker};
 
-/// Maximum number of frames that can wait for the window. This is enough for ten seconds at 2,000 frames per second.
+/// Maximum number of trace frames that wait for the window, enough for ten seconds at 2,000 frames per second.
 const FRAMES: usize = 20_000;
-/// Maximum memory used by waiting frames, in bytes.
+/// Maximum memory for waiting trace frames, in bytes.
 const FRAME_BYTES: usize = 8 << 20;
 
 impl Studio {
-    /// Returns the tab of the device to which a link refers.
+    /// Returns the tab of the kind of device to which a link refers.
     ///
     /// If several kinds of devices are possible, a tab in which the link has been used takes precedence, followed by
     /// kinds of devices for which such links are usual. Among equal candidates, the open tab comes first. Without a
@@ -49,8 +49,8 @@ impl Studio {
         tabs().find(used).or_else(|| find(&fits)).or_else(|| find(&leads_there)).unwrap_or(shown)
     }
 
-    /// Opens a link to a kind of device. If a session of this kind uses the connection, the link is opened there,
-    /// otherwise in a new session. A session of another kind releases the connection.
+    /// Opens a link to a kind of device. A session of this kind that uses the connection is reused. A session of
+    /// another kind is released.
     pub(super) fn open_link(&mut self, tab: Tab, url: LinkUrl) {
         let url = self.with_absolute_file(url);
         if let Some(id) = self.prepare_session_for_link(tab, &url) {
@@ -58,7 +58,8 @@ impl Studio {
         }
     }
 
-    /// Opens a link to a device found by a search. The search has already asked the user about other masters.
+    /// Opens a link to a device that was found by a search. The search has already asked about other masters on the
+    /// line.
     pub(super) fn open_discovered(&mut self, tab: Tab, url: LinkUrl) {
         let was_asked =
             self.services.world.kinds.kind_for_tab(tab).is_some_and(|kind| kind.may_have_other_master(&url));
@@ -67,7 +68,7 @@ impl Studio {
         }
     }
 
-    /// Selects the session for a link and returns its id, or `None` if the link must not be opened.
+    /// Selects or creates the session for a link. Returns `None` if the link must not be opened.
     fn prepare_session_for_link(&mut self, tab: Tab, url: &LinkUrl) -> Option<SessionId> {
         let mut own = None;
         for device in &mut self.devices {
@@ -104,7 +105,7 @@ impl Studio {
         Some(id)
     }
 
-    /// Releases the connection that a session uses, unless the session is writing.
+    /// Releases the connection of a session, unless the session is writing.
     ///
     /// If the link of the session is still being opened, the returned channel closes when the attempt has ended.
     ///
@@ -136,8 +137,8 @@ impl Studio {
         self.open_session_link(id, url);
     }
 
-    /// Opens a link for a session. If a drive may be on the line, the user is asked first. It is not enough to listen
-    /// on the line, because a drive may read the encoder only at power-up and then be silent.
+    /// Opens a link for a session. If a drive may be on the line, the user is asked first. Listening is not enough,
+    /// because a drive may read the encoder only at power-up and be silent afterwards.
     fn open_session_link(&mut self, id: SessionId, url: LinkUrl) {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
@@ -154,7 +155,7 @@ impl Studio {
         }
     }
 
-    /// Starts an attempt to open a link for a session. From then on, results of earlier attempts are ignored.
+    /// Starts an attempt to open a link for a session. Results of earlier attempts are ignored from now on.
     fn start_open_attempt(&mut self, id: SessionId, url: LinkUrl, is_sole_master: bool) {
         let attempt = self.next_number();
         self.release_tool_connections(&url);
@@ -192,8 +193,8 @@ impl Studio {
 }
 
 impl Services {
-    /// Opens a link on a thread after earlier attempts and other users of the connection have ended. The returned
-    /// channel closes when the connection is free again.
+    /// Opens a link on a thread once the connection is free. The returned channel closes when the connection is free
+    /// again.
     pub(crate) fn open_task<D: Kind>(
         &mut self,
         url: LinkUrl,

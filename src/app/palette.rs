@@ -1,14 +1,13 @@
-//! The command palette: search and ranking of actions by their name.
+//! The command palette: search and ranking of actions by name.
 
-/// Returns how well a name matches the typed text, or `None` if a typed word is missing. The best match is 0. Case and
-/// word order do not matter.
+/// Returns how well a name matches the typed text: 0 is best, and `None` means that a word is missing. Case and word
+/// order do not matter.
 pub(crate) fn match_score(typed: &str, name: &str) -> Option<usize> {
     let (typed, name) = (typed.to_lowercase(), name.to_lowercase());
     typed.split_whitespace().map(|word| match_quality(word, &name)).sum()
 }
 
-/// Returns how well a name matches a word: 0 at the beginning of the name, 1 at the beginning of a word, and 2 within a
-/// word.
+/// Returns how well a name matches a word: 0 at the start of the name, 1 at the start of a word, 2 within a word.
 fn match_quality(word: &str, name: &str) -> Option<usize> {
     name.match_indices(word)
         .map(|(at, _)| match name.get(..at).and_then(|before| before.chars().next_back()) {

@@ -1,5 +1,5 @@
-//! Actions that pass through code that does not know the type of the device. [`Payload::open`] is the only place that
-//! detects an action for another kind of device.
+//! Actions and results passed through code that does not know the type of the device. Only [`Payload::open`] detects an
+//! action for another kind of device.
 
 use std::any::Any;
 use std::fmt;
@@ -11,10 +11,10 @@ use super::tab::Tab;
 
 pub trait DeviceAction: Any + Send {}
 
-/// An action or the result of a task, for any kind of device.
+/// A type-erased action or task result for any kind of device.
 pub struct Payload(Box<dyn Any + Send>);
 
-/// The error for a payload that has reached a device of another kind.
+/// The error for a payload that has reached the wrong kind of device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the action is for another kind of device")]
 pub struct PayloadKindError;
@@ -50,12 +50,12 @@ impl Action {
 }
 
 impl TaskResult {
-    /// Wraps the result of a device task, whose type depends on the kind of device.
+    /// Wraps the result of a task that a device has started.
     pub(crate) fn device(id: SessionId, done: impl Any + Send) -> Self {
         TaskResult::Device(id, Payload::new(done))
     }
 
-    /// Wraps the result of a search task that a kind of device has started for its connection form.
+    /// Wraps the result of a task started by the device search of a connection form.
     pub fn from_finder<F: Finder>(tab: Tab, done: F::TaskResult) -> Self {
         TaskResult::Finder(tab, Payload::new(done))
     }

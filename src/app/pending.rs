@@ -1,4 +1,4 @@
-//! Edits that have not been written, in a form common to all kinds of devices.
+//! Unwritten edits, in a form common to all kinds of devices.
 
 use super::history::History;
 
@@ -21,11 +21,11 @@ pub trait PendingEdits {
     /// Discards all edits as one undo step. Returns `false` if there are none.
     fn discard_all(&mut self) -> bool;
 
-    /// Discards the undo steps, because the edits have been written or saved.
+    /// Discards the undo steps because the edits have been written or saved.
     fn clear_undo_steps(&mut self);
 }
 
-/// Edits that are stored as a complete copy of the values, with their undo steps.
+/// Edits stored as a complete copy of the values, with their undo steps.
 pub(crate) trait SnapshotEdits {
     type Values: Clone + PartialEq;
 

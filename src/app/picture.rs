@@ -22,8 +22,7 @@ impl fmt::Debug for Picture {
 }
 
 impl Picture {
-    /// Creates an image from RGB pixels. Returns `None` if the number of bytes does not match the size, or if the size
-    /// is zero.
+    /// Creates an image from RGB pixels. Returns `None` if the size is zero or the number of bytes does not match it.
     pub fn new(width: u32, height: u32, bytes: Vec<u8>) -> Option<Self> {
         let wanted = u64::from(width) * u64::from(height) * 3;
         let fits = wanted > 0 && u64::try_from(bytes.len()) == Ok(wanted);
@@ -33,7 +32,7 @@ impl Picture {
     /// Saves the image as a PNG file.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be written. In this case, an existing file stays unchanged.
+    /// Returns an error if the file cannot be written. An existing file then stays unchanged.
     pub(super) fn save(&self, path: &Path) -> Result<(), FileError> {
         let refused = |error: std::io::Error| FileError {
             path: path.to_owned(),

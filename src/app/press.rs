@@ -1,4 +1,4 @@
-//! Detection of fresh key presses. A press is fresh if the user has just made it. Repetitions of a held key are not
+//! Detection of fresh key presses. A press is fresh if the user has just pressed the key. Repeats of a held key are not
 //! fresh.
 //!
 //! A press event alone does not prove that the press is fresh. Toolkits forget which keys are down when the window
@@ -28,8 +28,7 @@ enum KeyState {
     #[default]
     Nothing,
     Down,
-    /// Time at which the key was released or another key was pressed. The key has not been up for long enough since
-    /// then.
+    /// Time at which this key was released or another key was pressed, not yet long enough ago.
     Released(f64),
     Up,
 }
@@ -41,16 +40,16 @@ pub struct KeyStates {
 }
 
 impl KeyStates {
-    /// The state in which both keys are up and the keyboard focus has not been lost.
+    /// The state with both keys known to be up.
     pub const ALL_UP: KeyStates = KeyStates { space: KeyState::Up, enter: KeyState::Up };
 
-    /// Discards the states of the keys, because the keyboard focus has moved or now serves another purpose.
+    /// Discards the known key states because the keyboard focus has moved or serves another purpose now.
     pub fn reset_keys(&mut self) {
         *self = KeyStates::default();
     }
 
-    /// Handles a key press and returns whether it is a new press rather than a key repeat. A press is new if the key
-    /// had been up for a minimum time in an earlier frame.
+    /// Handles a key press and returns whether it is fresh. A press is fresh if the key had been up for a minimum time
+    /// in an earlier frame.
     pub fn is_fresh_press(&mut self, key: PressKey) -> bool {
         std::mem::replace(self.state_mut(key), KeyState::Down) == KeyState::Up
     }
@@ -60,8 +59,8 @@ impl KeyStates {
         *self.state_mut(key) = KeyState::Released(now);
     }
 
-    /// Records that another key was pressed. The system repeats only the most recently pressed key, so a later press of
-    /// a key in an unknown state is not a repetition.
+    /// Records that another key was pressed. The system repeats only the last key pressed, so a later press of a key in
+    /// an unknown state is not a repeat.
     pub fn record_other_key_press(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.state_mut(key);
@@ -71,8 +70,8 @@ impl KeyStates {
         }
     }
 
-    /// Records that another key was pressed outside a text entry. A press immediately after it is not fresh, because
-    /// only a barcode scanner types digits and Enter that fast.
+    /// Records that another key was pressed outside a text entry. A press immediately after it is not fresh: only a
+    /// barcode scanner types that fast.
     pub fn mark_suspect(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.state_mut(key);
@@ -82,8 +81,8 @@ impl KeyStates {
         }
     }
 
-    /// Ends a frame. Returns the time in seconds after which another frame is needed to determine the state of a key.
-    /// The toolkit does not draw another frame after a release unless one is requested.
+    /// Ends a frame. Returns the time in seconds until the next frame that is needed to determine the state of a key.
+    /// After a release, the toolkit draws no further frame unless one is requested.
     #[must_use]
     pub fn finish_ui_frame(&mut self, now: f64) -> Option<f64> {
         let mut next: Option<f64> = None;
@@ -100,8 +99,8 @@ impl KeyStates {
         next
     }
 
-    /// Returns whether the key is known to be up. If so, the next press is fresh, unless it follows a release or
-    /// another key immediately.
+    /// Returns whether the key is known to be up. The next press is then fresh, unless it immediately follows a release
+    /// or another key.
     pub fn is_armed(&self, key: PressKey) -> bool {
         matches!(self.get(key), KeyState::Released(_) | KeyState::Up)
     }
@@ -138,7 +137,7 @@ mod tests {
         }
     }
 
-    /// A press that the toolkit reports as new is not fresh unless the key was known to be up.
+    /// A press that the toolkit reports as new is not fresh unless the key is known to be up.
     #[test]
     fn a_press_is_fresh_only_after_a_release() {
         let mut keys = KeyStates::default();
@@ -161,8 +160,7 @@ mod tests {
         assert!(!keys.is_fresh_press(Space), "the keyboard was elsewhere meanwhile");
     }
 
-    /// A release followed immediately by a press is a repetition, whether both arrive in one frame or in two, and
-    /// however far apart the frames are.
+    /// A release followed immediately by a press is a repeat, whether both arrive in one frame or in two.
     #[test]
     fn a_release_and_an_immediate_press_are_a_repeat() {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
@@ -182,7 +180,7 @@ mod tests {
         }
     }
 
-    /// A user's press is fresh even if nothing else happens after the release, because the release requests a frame.
+    /// The release of a key requests a frame, so the next press is fresh even if nothing else happens in between.
     #[test]
     fn a_press_by_the_user_is_fresh_after_the_requested_frame() {
         for apart in [0.001, 0.016, 0.05, 1.0] {

@@ -1,5 +1,4 @@
-//! A question to the user before data are lost, a job is interrupted, or bytes are sent on a line to which a drive may
-//! be connected.
+//! Questions to the user before data are lost, a job is interrupted, or bytes are sent on a line that may have a drive.
 
 use std::path::PathBuf;
 
@@ -26,7 +25,7 @@ pub(crate) enum FollowUpAction {
     Forget(RecorderOwner),
     Save(Box<SaveRequest>),
     OpenLink(SessionId),
-    /// Continue the search that was started in the connection dialog from the form of this tab.
+    /// Continue the device search that was started from this tab's connection form.
     Find(Tab),
 }
 
@@ -35,7 +34,7 @@ impl Question {
         Question { text, confirm, decline: Text::new("question.stay"), then }
     }
 
-    /// Creates the question whether another master may be on the line to which a link refers.
+    /// Asks whether another master may be on the line to which a link refers.
     pub(crate) fn other_master(link: String, then: FollowUpAction) -> Self {
         Question {
             text: Text::new("question.drive").with("link", link),

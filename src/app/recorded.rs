@@ -1,5 +1,5 @@
-//! Tests of the names stored in users' files: recorded settings and edits must be read and written unchanged. Tests of
-//! drafts are in the folders of their devices.
+//! Tests that stored names never change: settings and edits from existing files must be read and written back
+//! unchanged. Tests of drafts are in the folders of their devices.
 
 use std::fmt::Debug;
 

@@ -1,4 +1,4 @@
-//! Exchange of stored data between the settings and the drives. Other windows write to the same settings file.
+//! Exchange of stored data between the settings and the drives. Other windows also write to the settings file.
 
 use std::time::Duration;
 
@@ -8,9 +8,10 @@ use super::drives::{SettingsReadState, StoredDriveData};
 use super::studio::Studio;
 use crate::store::FileError;
 
-/// Interval at which the settings are read again while drives are under control.
+/// Interval at which the settings are reread while drives are under control.
 const REFRESH_INTERVAL: Duration = Duration::from_secs(1);
-/// Time for which settings remain valid after they were read. It equals the validity of values read from the drives.
+/// Time for which the settings remain valid after they were read. Values read from the drives are valid for the same
+/// time.
 const VALIDITY: Duration = Duration::from_secs(4);
 
 impl Studio {
@@ -23,8 +24,8 @@ impl Studio {
         }
     }
 
-    /// Reads the settings periodically while drives are under control. Another window may have marked limits as
-    /// unconfirmed.
+    /// Rereads the settings periodically while drives are under control, because another window may have marked limits
+    /// as unconfirmed.
     pub(super) fn refresh_settings(&mut self) {
         let now = self.services.current_time();
         let is_old = self.settings_store.is_last_read_older(&now, VALIDITY);
@@ -52,7 +53,7 @@ impl Studio {
         self.controlled_drives().filter(reading).for_each(|drives| drives.set_read_state(SettingsReadState::Read));
     }
 
-    /// Handles a failure to read the settings. Drives under control do not move until the settings have been read.
+    /// Handles a failure to read the settings. Drives under control do not move until a read has succeeded.
     pub(super) fn handle_settings_error(&mut self, error: &FileError) {
         tracing::warn!("{error}");
         self.settings_store.handle_read_failure();

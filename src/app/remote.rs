@@ -1,7 +1,7 @@
 //! Detection of remote sessions, in which the window is operated from another computer.
 
 /// Returns whether the user operates this computer over a remote desktop. A remote desktop may report the release of a
-/// button late. Until then, the window shows the button as pressed.
+/// button late; until then, the button appears pressed.
 #[cfg(windows)]
 pub(super) fn is_remote_session() -> bool {
     // The variable is set at logon and may be outdated, because a session can be continued from another computer.

@@ -1,5 +1,5 @@
-//! Reports from the window: of a profile as saved, of the values read last from a device with the results of the session,
-//! or of a capture. The device is not accessed.
+//! Reports from the window: on a saved profile, on the last values read from a device with the results of its session,
+//! or on a capture. The device is not accessed.
 
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ impl Studio {
         self.services.file_question = Some(FileQuestion::Report { owner, suggested });
     }
 
-    /// Starts a task that writes a report. The extension of the file determines its format.
+    /// Starts a task that writes a report. The file extension determines the format.
     pub(super) fn write_report(&mut self, owner: RecorderOwner, path: PathBuf) {
         let (name, prepared) = match owner {
             RecorderOwner::Device(session) => {

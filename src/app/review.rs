@@ -1,4 +1,5 @@
-//! The review of a write for any kind of device. It shows the effect, asks for approval, and reports the result.
+//! The review of a write before it is executed, for any kind of device. It shows the effect, asks for approval, and
+//! reports the result.
 
 mod notices;
 mod permit;
@@ -41,7 +42,7 @@ pub enum ReviewState<K: Reviewable> {
     Done(Box<K::Prepared>, CommitResult<K::Written>),
     /// The write is impossible or was aborted.
     Failed {
-        /// Texts that state what happened and what to do.
+        /// Messages that state what happened and what to do.
         texts: Vec<Text>,
         /// Whether the device had been written to before the write was aborted.
         begun: bool,
@@ -67,7 +68,7 @@ impl<K: Reviewable> Review<K> {
         }
     }
 
-    /// Makes this the review of an undo, which is never allowed on a different device.
+    /// Turns this into the review of an undo, which may never be written to another device.
     pub(in crate::app) fn undoing(mut self, undone: UndoneEntry) -> Self {
         self.title = undone.title();
         self.permits.clear();
@@ -80,7 +81,7 @@ impl<K: Reviewable> Review<K> {
         self.undone.as_ref().map(UndoneEntry::uid)
     }
 
-    /// Returns a review of the given change that waits for a new plan.
+    /// Returns a review of the given change, still without a plan.
     pub(crate) fn renewed(&self, change: K::Change) -> Self {
         let again = Review::new(change, self.is_for_another, self.is_for_other_type);
         match &self.undone {
@@ -89,8 +90,8 @@ impl<K: Reviewable> Review<K> {
         }
     }
 
-    /// Adopts a plan, unless it undoes a write whose values have changed since then. An undo reports items that are
-    /// left unchanged only if they belong to the original write.
+    /// Adopts a plan, unless it undoes a write whose values have changed since then. An undo reports skipped items only
+    /// if they belong to the original write.
     pub(in crate::app) fn adopt_plan(&mut self, mut prepared: Box<K::Prepared>) {
         if let Some(undone) = &self.undone {
             if let Some(texts) = undone.rejection(&*prepared) {
@@ -101,7 +102,7 @@ impl<K: Reviewable> Review<K> {
         self.state = ReviewState::Ready(prepared);
     }
 
-    /// Returns the displayed plan. It exists until the review ends.
+    /// Returns the displayed plan. It is available until the review fails.
     pub fn prepared_plan(&self) -> Option<&K::Prepared> {
         match &self.state {
             ReviewState::Ready(prepared) | ReviewState::Writing(prepared) | ReviewState::Done(prepared, _) => {
@@ -123,18 +124,18 @@ impl<K: Reviewable> Review<K> {
         matches!(self.state, ReviewState::Writing(_))
     }
 
-    /// Returns whether a plan is requested or ready and has not been started.
+    /// Returns whether a plan has been requested or is ready, but has not been started.
     pub(in crate::app) fn is_pending_plan(&self) -> bool {
         matches!(self.state, ReviewState::Planning | ReviewState::Ready(_))
     }
 
-    /// Aborts the review. If the execution had begun, `done` operations had been completed.
+    /// Aborts the review. `done` is the number of completed operations, if the execution had begun.
     pub(in crate::app) fn end_early(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
         let cut_off = self.plan_in_progress().filter(|_| begun).cloned().map(|prepared| (Box::new(prepared), done));
         self.state = ReviewState::Failed { texts, begun, cut_off };
     }
 
-    /// Returns the change with a permission granted or withdrawn. An undo has no permissions.
+    /// Returns the change with a permission granted or withdrawn. Returns `None` for an undo, which has no permissions.
     pub(crate) fn with_toggled_permit(&self, permit: Permit) -> Option<K::Change> {
         if self.undone.is_some() {
             return None;
@@ -150,7 +151,7 @@ impl<K: Reviewable> Review<K> {
         of_undo.chain(K::warnings(prepared)).collect()
     }
 
-    /// Returns the permissions to offer to the user: those already granted, and those that would change the plan.
+    /// Returns the permissions to offer: those already granted, and those that would change the plan.
     fn permit_toggles(&self) -> Vec<PermitToggle> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
@@ -167,7 +168,7 @@ impl<K: Reviewable> Review<K> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperationTexts {
     pub item: Text,
-    /// Changes in order. The list is never empty.
+    /// Changes in order, never empty.
     pub changes: Vec<ChangeTexts>,
 }
 
@@ -193,7 +194,7 @@ impl OperationTexts {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
     pub title: Text,
-    /// Label of the answer that denies the permission.
+    /// Label of the button that denies the permission.
     pub no: Text,
     pub yes: Text,
     pub permit: Permit,
@@ -203,9 +204,9 @@ pub struct Question {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutionMode {
     Writes,
-    /// The plan is executed step by step, and the user acts at the device.
+    /// The plan is executed step by step, with actions by the user at the device.
     Guided,
-    /// The plan is executed step by step and only tests the device, without writing to it.
+    /// The plan only tests the device step by step, without writing to it.
     Tests,
 }
 
@@ -218,7 +219,7 @@ impl ExecutionMode {
         }
     }
 
-    /// Returns the id of the text that describes the next action.
+    /// Returns the id of the text that describes what to do next.
     pub const fn summary_id(self) -> &'static str {
         match self {
             ExecutionMode::Writes => "review.way",
@@ -228,18 +229,18 @@ impl ExecutionMode {
     }
 }
 
-/// A review as it is displayed, for any device.
+/// A review in displayable form, for any kind of device.
 #[derive(Clone, Debug)]
 pub struct ReviewSheet {
     pub title: Text,
     pub stage: Stage,
     pub lines: Vec<OperationTexts>,
     pub warnings: Vec<Text>,
-    /// Actions at the device that the plan requires from the user.
+    /// What the user has to do at the device for this plan.
     pub needs: Vec<Text>,
-    /// Values from another device that must be set up again later. The text is displayed from planning to the end.
+    /// States which values from another device must be set up again later, from planning to the end.
     pub redo: Option<Text>,
-    /// Wear in addition to the write cycles counted by this computer.
+    /// Wear caused by this write, in addition to the write cycles counted so far.
     pub cost: Option<Text>,
     /// How the write can be undone later.
     pub undo: Vec<Text>,
@@ -247,8 +248,8 @@ pub struct ReviewSheet {
     pub toggles: Vec<PermitToggle>,
     /// Questions that the user must answer before the plan is executed.
     pub questions: Vec<Question>,
-    /// Whether to write although the limit of write cycles is reached or the number of earlier cycles is unknown.
-    /// `None` if the user does not have to decide.
+    /// Whether to write although the device has reached its limit of write cycles, or the number of earlier cycles is
+    /// unknown. `None` if the user need not decide.
     pub force_wear: Option<bool>,
     /// Whether the number of earlier write cycles is unknown.
     pub is_uncounted: bool,
@@ -278,17 +279,17 @@ pub enum Stage {
     },
 }
 
-/// A kind of device with writable memory, and the texts for the review of its writes.
+/// A kind of device with writable memory, and the texts for reviewing its writes.
 pub trait Reviewable: Kind<Review = Review<Self>> {
     type Change: Clone;
     type Prepared: PlannedWrite + Clone;
     type Written;
 
     fn change_title(change: &Self::Change) -> Text;
-    /// Returns the flag in a change that grants a permission, or `None` if the permission does not apply.
+    /// Returns the flag in a change that grants a permission, or `None` if the change has no such flag.
     fn permit_flag(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
     fn operation_texts(prepared: &Self::Prepared, op: &Op<Self>) -> OperationTexts;
-    /// Returns whether some values differ but are not written, because they depend on the mounting.
+    /// Returns whether the write skips some values because they depend on how the device is mounted.
     fn skips_mounting_values(_prepared: &Self::Prepared) -> bool {
         false
     }
@@ -302,15 +303,15 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
-    /// Removes items that the write does not concern from the list of missing items. The default implementation is for
-    /// kinds of device whose backups contain the complete device.
+    /// Removes items that are not part of the write from the list of missing items. The default is for kinds of devices
+    /// with complete backups.
     fn retain_missing(_prepared: &mut Self::Prepared, _concerns: &dyn Fn(&str) -> bool) {}
 
     fn warnings(_prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
 
-    /// Returns the actions at the device that the plan requires from the user.
+    /// Returns what the user has to do at the device for this plan.
     fn requirements(_change: &Self::Change, _prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
@@ -345,12 +346,12 @@ pub fn written_texts<K: Reviewable>(committed: &CommitResult<K::Written>) -> (Se
 }
 
 impl<K: Reviewable> Review<K> {
-    /// Returns the review as it is displayed after `done` completed operations.
+    /// Returns the review in displayable form, after `done` completed operations.
     pub fn to_sheet(&self, done: usize) -> ReviewSheet {
         self.review_sheet(done, K::operation_texts)
     }
 
-    /// Returns the review as it is displayed. `op` describes the operations for the connected device.
+    /// Returns the review in displayable form. `op` describes the operations for the connected device.
     pub(in crate::app) fn review_sheet(
         &self,
         done: usize,

@@ -1,5 +1,5 @@
-//! The form for the server of the logbook: its address, its password, and a test of the connection. The password goes to
-//! the keyring of the system and into no setting.
+//! The form for the logbook server: its address, its password, and a connection test. The password is stored in the
+//! system's keyring, never in the settings.
 
 use std::time::Duration;
 
@@ -9,13 +9,13 @@ use super::studio::Studio;
 use super::{Severity, Text, explain};
 use crate::store::{KeyringError, LogbookServer, Password, ServerAddress, ServerError};
 
-/// Maximum time for a test.
+/// Maximum duration of a connection test.
 const TEST_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// The open form.
+/// State of the open form.
 #[derive(Debug, Default)]
 pub struct ServerForm {
-    /// Number of the running test. Results of earlier tests are dropped.
+    /// Number of the running test. Results of earlier tests are ignored.
     test: u64,
     is_testing: bool,
     outcome: Option<Result<Text, Text>>,
@@ -26,12 +26,12 @@ pub struct ServerForm {
 pub enum ServerAction {
     Open,
     Close,
-    /// Connect to the server once. Nothing is changed there.
+    /// Test the connection to the server. Nothing is changed on the server.
     Test {
         address: String,
         password: Option<Password>,
     },
-    /// Share the logbook over this server, or over none if the address is empty.
+    /// Share the logbook through this server. An empty address stops sharing.
     Save {
         address: String,
         password: Option<Password>,
@@ -43,18 +43,18 @@ impl ServerForm {
         self.is_testing
     }
 
-    /// Returns the result of the last test, or the reason why the address is not valid.
+    /// Returns the result of the last test, or the reason why the address is invalid.
     pub fn outcome(&self) -> Option<&Result<Text, Text>> {
         self.outcome.as_ref()
     }
 
-    /// Returns whether an environment variable names the server, so that the setting does not apply.
+    /// Returns whether an environment variable overrides the server address from the settings.
     pub fn is_server_given(&self) -> bool {
         is_server_given()
     }
 }
 
-/// Parses an address that was typed. A password in it is taken out of it.
+/// Parses a typed address. A password in the address is moved out of it.
 fn parse(address: &str, password: Option<Password>) -> Result<ServerAddress, Text> {
     let parsed = ServerAddress::from_environment(address);
     parsed.map(|address| address.with_password(password)).map_err(|error| explain::server_address_error_text(&error))
@@ -127,7 +127,7 @@ impl Studio {
         }
     }
 
-    /// Reports a password that could not be saved. It is used until the program ends.
+    /// Reports a password that could not be saved. It remains in use until the program ends.
     pub(super) fn finish_password(&mut self, saved: Result<(), KeyringError>) {
         if let Err(error) = saved {
             let text = Text::new("server_form.no_keyring").with("why", error.why);

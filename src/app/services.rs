@@ -1,5 +1,4 @@
-//! Services that the application provides to sessions: the environment, threads for blocking tasks, the log, and the
-//! list of jobs.
+//! Services that the application provides to sessions: the environment, task threads, the notice log and the job list.
 
 use std::any::{Any, TypeId};
 use std::collections::{HashMap, VecDeque};
@@ -25,7 +24,7 @@ use crate::worker::JobId;
 #[derive(Clone)]
 pub struct StudioEnvironment {
     pub store: Store,
-    /// Values supplied from outside for kinds of devices.
+    /// Values supplied by the caller for kinds of devices.
     pub given: TypeMap,
     pub kinds: KindRegistry,
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
@@ -34,7 +33,7 @@ pub struct StudioEnvironment {
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
     /// Whether the window is operated over a remote desktop.
     pub is_remote: Arc<dyn Fn() -> bool + Send + Sync>,
-    /// Maximum waiting times when sessions or the window are closed.
+    /// Maximum waiting times for closing sessions or the window.
     pub patience: GracePeriods,
 }
 
@@ -90,12 +89,12 @@ pub struct Services {
 impl Services {
     const JOBS: usize = 500;
 
-    /// Returns the data shared by all sessions of a kind of device, or `None` if there are none yet.
+    /// Returns the value of this type that is shared by all sessions of a kind of device, if any.
     pub fn shared_data<T: Any>(&self) -> Option<&T> {
         self.shared.get(&TypeId::of::<T>())?.downcast_ref()
     }
 
-    /// Shares data with all sessions of a kind of device. Earlier data are replaced.
+    /// Shares a value with all sessions of a kind of device, replacing an earlier value of the same type.
     pub fn share_value<T: Any>(&mut self, value: T) {
         self.shared.insert(TypeId::of::<T>(), Box::new(value));
     }
@@ -130,7 +129,7 @@ impl Services {
         self.log.add(self.create_notice(severity, texts, about));
     }
 
-    /// Adds a notice about a part of a device to the log and displays it in the window.
+    /// Adds a notice about one part of a device to the log, and displays it in the window.
     pub(crate) fn notify_part(
         &mut self,
         severity: Severity,
@@ -140,7 +139,7 @@ impl Services {
         self.log.add(Notice { part, ..self.create_notice(severity, texts, about) });
     }
 
-    /// Adds a notice to the log without displaying it, because the window already shows the same text elsewhere.
+    /// Adds a notice to the log only, because the window already shows the same text elsewhere.
     pub(crate) fn log_only(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.add_to_log(self.create_notice(severity, texts, about));
     }

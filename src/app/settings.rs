@@ -1,5 +1,5 @@
-//! Settings that are stored between runs: appearance, language, links and layout of the panels. If they cannot be read,
-//! the defaults apply. Files are not accessed here.
+//! Settings stored between runs: appearance, language, links and panel layout. If they cannot be read, the defaults
+//! apply. This module does not access files.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -35,7 +35,7 @@ pub struct Settings {
     pub size: Option<(u32, u32)>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub lower_open: bool,
-    /// Whether the user has stopped live values. If so, they no longer start automatically.
+    /// Whether the user has stopped live values. They then no longer start automatically.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub live_stopped: bool,
     /// Whether the Live panel shows values without a plot.
@@ -47,13 +47,13 @@ pub struct Settings {
     /// Path of the company's logo in reports, a PNG file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub company_logo: Option<String>,
-    /// Name of the user in the logbook.
+    /// How the logbook refers to the user.
     #[serde(skip_serializing_if = "is_default")]
     pub user_name: UserName,
-    /// Address of the server that shares the logbook, empty without a server. It contains no password.
+    /// Address of the server for a shared logbook, empty without a server. It contains no password.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub logbook: String,
-    /// Data about drives, by the name of the device to which the drives are connected.
+    /// Stored data about drives, by the name of the device to which they are connected.
     drives: BTreeMap<String, RememberedDrives>,
 }
 
@@ -147,7 +147,7 @@ impl Settings {
         }
     }
 
-    /// Returns the settings with the changes from `known` to `ours`. Another window may have changed other parts in the
+    /// Applies the changes from `known` to `ours` to these settings. Another window may have changed other parts in the
     /// meantime.
     #[must_use]
     pub(super) fn with_changes(mut self, known: &Settings, ours: &Settings) -> Self {
@@ -191,7 +191,7 @@ impl Settings {
         self.drives = from.drives.clone();
     }
 
-    /// Returns the first name in a valid file that is not that of a setting. It may be misspelt, or of a newer version.
+    /// Returns the first unknown name in a valid file. It may be misspelt or come from a newer version.
     pub(super) fn unknown_name(text: &str) -> Option<String> {
         let ron::Value::Map(entries) = ron::from_str(text).ok()? else { return None };
         let known = setting_names();
@@ -201,7 +201,7 @@ impl Settings {
         })
     }
 
-    /// Returns whether the address of the server can be read in a file, or is not in it.
+    /// Returns whether a file contains a readable server address or none at all.
     pub(super) fn is_logbook_readable(text: &str) -> bool {
         #[derive(Deserialize)]
         struct Own {
@@ -247,7 +247,7 @@ impl Settings {
 
 /// Returns the names of the settings in a file.
 fn setting_names() -> &'static [&'static str] {
-    /// Takes the names of the fields that a structure expects.
+    /// A deserialiser that only collects the field names of a structure.
     struct FieldNames<'n>(&'n mut &'static [&'static str]);
     impl<'de> Deserializer<'de> for FieldNames<'_> {
         type Error = serde::de::value::Error;
@@ -280,7 +280,7 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// Links used in each tab. Tabs are in the order of their first use.
+/// Links used in each tab. The tabs are in order of first use.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Links(Vec<(Tab, Vec<String>)>);
 
@@ -303,8 +303,7 @@ impl Links {
         self.0.iter().map(|(tab, _)| *tab)
     }
 
-    /// Moves links from an old file to the first tab. Such files date from the time when there was only one kind of
-    /// device.
+    /// Moves links from an old file to the first tab. Such a file dates from when there was only one kind of device.
     fn move_old_links(&mut self, first: Tab) {
         let Some(at) = self.0.iter().position(|(tab, _)| *tab == Tab::default()) else { return };
         let (_, links) = self.0.remove(at);
@@ -340,7 +339,7 @@ impl<'de> Deserialize<'de> for Links {
     }
 }
 
-/// Returns the links of `ours` that were used since `known`. They precede the unchanged links.
+/// Returns the links in `ours` that were used since `known`. They precede the unchanged ones.
 fn links_used_since<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
     let is_rest = |at: &usize| {
         let (used, rest) = ours.split_at(*at);

@@ -20,12 +20,12 @@ use super::{Settings, Severity, Text, explain};
 use crate::profile::find_location;
 use crate::store::{FileError, FileErrorKind, ServerAddress, ServerAddressError, UserName, read_text, update_text};
 
-/// Maximum time to wait for the settings at the start of the program.
+/// Maximum time to wait for the settings when the program starts.
 const START_TIMEOUT: Duration = Duration::from_millis(300);
 
 const SETTINGS_NOT_SAVED_ID: &str = "session.settings_not_kept";
 
-/// Time between a failed attempt to read the settings and the next one.
+/// Minimum time between a failed read of the settings and the next attempt.
 const RETRY_INTERVAL: Duration = Duration::from_secs(1);
 
 #[derive(Debug)]
@@ -34,7 +34,7 @@ pub(crate) struct SettingsStore {
     known: Settings,
     failed: Option<Settings>,
     writing: Option<Settings>,
-    /// Whether the file has been read, or copied because it is invalid. Before that, the file is not overwritten.
+    /// Whether the file may be overwritten, because it has been read or, if invalid, copied.
     may_write: bool,
     is_failure_reported: bool,
     reading_since: Option<Zoned>,
@@ -47,7 +47,7 @@ pub enum LoadedSettings {
     /// The file was valid and complete.
     Whole(Box<Settings>),
     Missing,
-    /// The file is invalid. Contains its readable part, and the copy that was made.
+    /// The file is invalid. Contains its readable part and the copy that was made.
     Broken {
         settings: Box<Settings>,
         path: PathBuf,
@@ -58,14 +58,14 @@ pub enum LoadedSettings {
     Unreadable(FileError),
 }
 
-/// Settings as a command uses them. It never changes the file.
+/// Settings as read by a command. The file is never changed.
 #[derive(Debug)]
 pub struct CommandSettings {
-    /// The readable settings. Without a readable rule for the name of the user, it is left out.
+    /// The readable settings. If the setting for the user name cannot be read, no name is used.
     pub settings: Settings,
-    /// The server of the logbook. Unless it can be read, it counts as a server that is away.
+    /// The logbook server. If its address cannot be read, the server counts as unreachable.
     pub server: Option<Result<ServerAddress, ServerAddressError>>,
-    /// Reason why the file cannot be read completely.
+    /// Reason why the file could not be read completely.
     pub problem: Option<Text>,
 }
 
@@ -77,7 +77,7 @@ pub struct SavedSettings {
 }
 
 impl SettingsStore {
-    /// Reads the settings. If the disk does not respond in time, they arrive later as an action.
+    /// Reads the settings. If the disk does not respond in time, the result arrives later as an action.
     pub(super) fn load(services: &mut Services) -> (Settings, Self) {
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         let mailbox = services.tasks.mailbox();
@@ -109,7 +109,7 @@ impl SettingsStore {
         (settings, store)
     }
 
-    /// Adopts settings that were read. Changes of the user in the meantime are kept.
+    /// Adopts settings that were read. Changes made by the user in the meantime are kept.
     pub(super) fn adopt(&mut self, read: LoadedSettings, settings: &mut Settings, services: &mut Services) {
         services.log.remove_from_window("session.settings_slow", None);
         let kinds = services.world.kinds;
@@ -158,7 +158,7 @@ impl SettingsStore {
             .run("settings", move || Action::Done(TaskResult::SettingsKept(write(&path, &known, &ours, kinds))));
     }
 
-    /// Handles the result of a write. A failure is reported only the first time.
+    /// Handles the result of a write. Only the first of several failures is reported.
     pub(super) fn finish_write(
         &mut self,
         result: Result<SavedSettings, FileError>,
@@ -190,8 +190,7 @@ impl SettingsStore {
         }
     }
 
-    /// Starts to read the settings again, because another window may have changed them. Returns whether a read has
-    /// started.
+    /// Starts rereading the settings, because another window may have changed them. Returns whether a read has started.
     pub(crate) fn begin_read(&mut self, services: &Services) -> bool {
         let has_failed = |at: &Zoned| at.duration_until(&services.current_time()).unsigned_abs() < RETRY_INTERVAL;
         if self.reading_since.is_some() || self.last_failed_read.as_ref().is_some_and(has_failed) {
@@ -206,13 +205,13 @@ impl SettingsStore {
         true
     }
 
-    /// Handles a failed read. The settings remain unread, because they may contain locks.
+    /// Handles a failed read. The settings count as unread, because they may contain locks.
     pub(crate) fn handle_read_failure(&mut self) {
         self.last_failed_read = self.reading_since.take();
     }
 
-    /// Merges settings that were read. While a write is in progress they are returned instead, because the result of
-    /// the write is merged later.
+    /// Merges settings that were read. During a write they are returned instead, because the result of the write is
+    /// merged later.
     pub(crate) fn merge_read_settings(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
         self.last_read = self.reading_since.take();
         if self.writing.is_some() {
@@ -224,7 +223,7 @@ impl SettingsStore {
         None
     }
 
-    /// Returns whether the last read of the settings is older than the given time.
+    /// Returns whether the settings were last read longer ago than `than`.
     pub(crate) fn is_last_read_older(&self, now: &Zoned, than: Duration) -> bool {
         // The clock of the system may be set back, so the difference has no sign.
         let age = self.last_read.as_ref().map(|looked| looked.duration_until(now).unsigned_abs());
@@ -320,7 +319,7 @@ fn parse_settings(text: Result<String, FileError>, kinds: KindRegistry) -> Resul
     }
 }
 
-/// Reads the settings. Returns `None` if no window can have written any.
+/// Reads the settings. Returns `None` if there is no file that a window could have written.
 fn read_settings(path: &Path, kinds: KindRegistry) -> Result<Option<Settings>, FileError> {
     use FileErrorKind::{IsFolder, NoFolder, NotAFile, NotFolder};
     match parse_settings(read_text(path), kinds) {
@@ -335,7 +334,7 @@ fn broken_copy_path(path: &Path) -> PathBuf {
     PathBuf::from(aside)
 }
 
-/// Writes the changes from `known` to `ours` into the present file.
+/// Applies the changes from `known` to `ours` to the current file.
 fn write(path: &Path, known: &Settings, ours: &Settings, kinds: KindRegistry) -> Result<SavedSettings, FileError> {
     update_text(path, |text| {
         let (there, is_whole) = match parse_settings(text, kinds)? {
@@ -350,7 +349,7 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: KindRegistry) ->
     })
 }
 
-/// Copies an invalid file, unless this has been done before. Returns the paths of the file and of the copy.
+/// Copies an invalid file unless an identical copy exists. Returns the paths of the file and the copy.
 fn copy_broken_settings(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> {
     let aside = broken_copy_path(path);
     let is_there = fs::read(path).is_ok_and(|broken| fs::read(&aside).is_ok_and(|before| before == broken));

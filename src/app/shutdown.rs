@@ -1,5 +1,5 @@
-//! Sessions that have been released and are still ending. Until they have ended, the window cannot close, and their
-//! connections are not free.
+//! Released sessions that are still ending. Until they have ended, the window cannot close and their connections are
+//! not free.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -16,15 +16,14 @@ use crate::link::{LinkUrl, Wire};
 use crate::worker::stream::StreamEnd;
 use crate::worker::{EndingWorker, JobId, Worker};
 
-/// Maximum waiting times for closing sessions or the window, and for opening a link whose connection is still in use.
+/// Maximum waiting times for closing a session or the window, and for a connection that is still in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GracePeriods {
     pub drives: Duration,
     pub disk: Duration,
     /// Maximum waiting time for a job that does not write anything.
     pub job: Duration,
-    /// Maximum waiting time for a write. Within this time, the write must reach a point at which it can stop, and must
-    /// lock the memory again.
+    /// Maximum waiting time for a write, which must first reach a safe point and lock the memory again.
     pub write: Duration,
 }
 
@@ -55,7 +54,7 @@ pub(crate) trait ClosingWorker: Send + Sync {
     /// Returns whether the thread has ended and the connection is free.
     fn is_finished(&self) -> bool;
 
-    /// Waits for at most `patience` until the session has ended. Returns whether it has ended.
+    /// Waits for at most `patience` until the session has ended, and returns whether it has.
     fn wait_for_end(&self, patience: Duration) -> bool;
 
     fn job_completions(&self) -> Vec<JobCompletion>;
@@ -94,8 +93,8 @@ pub(crate) fn is_same_connection(one: &LinkUrl, other: &LinkUrl) -> bool {
 }
 
 impl Services {
-    /// Releases the thread of a session. When the thread ends, `turn` is dropped, and the next user of the connection
-    /// can continue.
+    /// Releases the thread of a session. When the thread ends, `turn` is dropped, which frees the connection for its
+    /// next user.
     pub(crate) fn release_worker<D: Kind>(
         &mut self,
         worker: Worker<D>,
@@ -105,7 +104,7 @@ impl Services {
         self.close_session_thread(Arc::new(worker.end()), info, turn);
     }
 
-    /// Releases a stream without a session.
+    /// Releases a stream that belongs to no session.
     pub(crate) fn close_stream(&mut self, end: StreamEnd, url: LinkUrl) {
         let info = ClosingSessionInfo { session: SessionId::default(), about: String::new(), url, write: None };
         self.close_session_thread(Arc::new(end), info, None);
@@ -151,12 +150,12 @@ impl Services {
         }
     }
 
-    /// Returns whether a session that is ending is still writing.
+    /// Returns whether any session that is ending is still writing.
     pub(super) fn has_closing_write(&self) -> bool {
         self.closing_sessions.iter().any(|closing| closing.info.write.is_some())
     }
 
-    /// Returns the sessions that are still ending on the connection of a link, with the maximum waiting time for each.
+    /// Returns the sessions that are still ending on a link's connection, each with its maximum waiting time.
     pub(crate) fn sessions_closing_on_link(&self, url: &LinkUrl) -> Vec<(Arc<dyn ClosingWorker>, Duration)> {
         let own = self.closing_sessions.iter().filter(|closing| is_same_connection(&closing.info.url, url));
         own.map(|closing| (closing.ending.clone(), self.closing_timeout(closing.info.write.is_some()))).collect()

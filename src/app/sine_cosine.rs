@@ -1,5 +1,5 @@
-//! Interface of a device that provides sine and cosine signals in addition to its absolute position. It is used by the
-//! Signals tool.
+//! Interface for devices that provide sine and cosine signals in addition to an absolute position. Used by the Signals
+//! tool.
 
 use super::action::Action;
 use super::studio::SessionId;
@@ -43,6 +43,6 @@ pub trait SineCosineSource {
 
     fn origin(&self) -> SineCosineOrigin;
 
-    /// Takes the requested reading, or the reason why it failed. Returns `None` if there is no new result.
+    /// Takes the requested reading, or the reason why it failed. Returns `None` if there is no new reading.
     fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>>;
 }

@@ -1,8 +1,8 @@
 //! Detection of repeated presses of a stop button. A user who stops a machine may press twice, hold the key, or release
-//! the button after the machine has stopped. Such presses must have no other effect. They still stop a motion that has
+//! it only after the machine has stopped. Such presses must have no other effect, but they still stop a motion that has
 //! started in the meantime. Times are frame times in seconds.
 
-/// Time in seconds after a stop during which another press is also a stop.
+/// Time in seconds after a stop during which another press counts as a stop too.
 const REPEAT_WINDOW_S: f64 = 0.5;
 
 /// Times of the last stop and of the last press of a stop button.
@@ -13,7 +13,7 @@ pub struct StopPressTracker {
 }
 
 impl StopPressTracker {
-    /// Returns whether a press at the given time counts as a stop because a motion is running or has just been stopped.
+    /// Returns whether a press counts as a stop, because a motion is running or has just been stopped.
     pub fn register_stop_press(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
         let means = moves || self.has_recently_stopped(pressed);
         if means {
@@ -22,7 +22,7 @@ impl StopPressTracker {
         means
     }
 
-    /// Returns whether the last stop was so recent that a press must be a repetition of it.
+    /// Returns whether the last stop was so recent that a press must belong to it.
     pub fn has_recently_stopped(&self, pressed: f64) -> bool {
         self.stopped.is_some_and(|stopped| pressed - stopped <= REPEAT_WINDOW_S)
     }

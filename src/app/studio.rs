@@ -1,4 +1,4 @@
-//! State of the program and its actions. A window is not required: tests send actions and read the state.
+//! State of the program and its actions. No window is needed: tests send actions and read the state.
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ use super::tool::{Tool, ToolKind};
 use super::{Settings, Severity, Text, explain};
 use crate::link::LinkUrl;
 
-/// Number of a session. Sessions are counted from the start of the program.
+/// The number of a session, counted from the start of the program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SessionId(pub(crate) u32);
 
@@ -31,7 +31,7 @@ pub struct Studio {
     pub settings: Settings,
     pub connect: Option<ConnectDialog>,
     pub question: Option<Question>,
-    /// A profile whose file has changed since it was opened.
+    /// Profile whose file has changed since it was opened.
     pub diverged: Option<ProfileConflict>,
     pub services: Services,
     pub(super) tools: Vec<(Tab, Box<dyn Tool>)>,
@@ -174,7 +174,7 @@ impl Studio {
         self.write_if_changed();
     }
 
-    /// Handles all events since the last call. Must be called in every frame.
+    /// Handles all events received since the last call. Must be called in every frame.
     pub fn poll(&mut self) {
         while let Some(action) = self.services.tasks.next() {
             self.handle_action(action);
@@ -215,7 +215,7 @@ impl Studio {
         self.services.file_question.take()
     }
 
-    /// Takes the pending question for a file whose path the user must type, if any.
+    /// Takes the pending request for a file whose path the user must type, if any.
     pub fn take_path_question(&mut self) -> Option<FileQuestion> {
         self.path_question.take()
     }
@@ -233,7 +233,7 @@ impl Studio {
         self.devices.iter().map(Box::as_ref).find(|device| device.id() == id)
     }
 
-    /// Returns the device shown in the open tab, or else the device shown last.
+    /// Returns the device shown in the open tab, or else the one shown last.
     pub fn selected_device(&self) -> Option<&AnyDevice> {
         let tab = self.settings.tab;
         let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.session_of(tab) };
@@ -254,7 +254,8 @@ impl Studio {
         Some(self.services.world.kinds.kind_for_tab(tab)?.virtual_link())
     }
 
-    /// Shows a tab. If no device is open in it, an unsaved profile is created, provided that its kind supports this.
+    /// Shows a tab. If no device is open in it, an unsaved profile is created, provided the kind of device supports
+    /// this.
     fn show_tab(&mut self, tab: Tab) {
         if tab == LOGBOOK_TAB {
             // Another window or a command may have added entries.
@@ -278,7 +279,7 @@ impl Studio {
         }
     }
 
-    /// Returns the source of sine and cosine signals among the devices that are shown in their tabs, if any.
+    /// Returns the source of sine and cosine signals, if one of the devices shown in their tabs has them.
     pub fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
         let kinds = self.services.world.kinds.devices().iter();
         kinds.into_iter().find_map(|kind| self.device(self.shown.session_of(kind.tab())?)?.sine_cosine())
@@ -289,18 +290,18 @@ impl Studio {
         self.shown.select_session(tab, id);
     }
 
-    /// Returns whether a job, polling, a search or a tool can be stopped.
+    /// Returns whether there is anything to stop: a job, polling, a device search or a tool.
     pub fn can_stop(&self) -> bool {
         self.devices.iter().any(|device| device.is_active()) || self.has_active_search() || self.can_stop_tools()
     }
 
-    /// Returns whether a job or a measurement is running. Polling is not included.
+    /// Returns whether a job or a measurement is running. Polling does not count.
     pub fn is_working(&self) -> bool {
         let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
         self.devices.iter().map(Box::as_ref).any(device) || self.has_active_search() || self.can_stop_tools()
     }
 
-    /// Returns whether live values are arriving. If so, the window must be drawn continuously.
+    /// Returns whether live values are arriving. The window must then be drawn continuously.
     pub fn is_live(&self) -> bool {
         self.devices.iter().any(|device| device.is_polling()) || self.has_control()
     }

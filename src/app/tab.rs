@@ -7,12 +7,12 @@ use std::sync::{Mutex, PoisonError};
 use serde::de::{EnumAccess, Error, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A tab of the window for a kind of device or a tool. It is stored in the settings under its name.
+/// A tab of the window, for a kind of device or a tool. The settings store it by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Tab(&'static str);
 
 impl Tab {
-    /// Creates a tab with a name. The name is written to users' settings and must never change.
+    /// Creates a tab with a name. The name is stored in the users' settings and must never change.
     pub const fn named(name: &'static str) -> Self {
         Tab(name)
     }
@@ -22,7 +22,7 @@ impl Tab {
     }
 }
 
-/// The default is the first tab. It is used if the settings do not name a tab.
+/// The first tab is the default if the settings name none.
 impl Default for Tab {
     fn default() -> Self {
         Tab("First")
@@ -57,7 +57,7 @@ impl<'de> Visitor<'de> for TabVisitor {
     }
 }
 
-/// Name of a tab as stored in the settings.
+/// The name of a tab, as stored in the settings.
 struct TabName(String);
 
 impl<'de> Deserialize<'de> for TabName {
@@ -78,7 +78,7 @@ impl<'de> Deserialize<'de> for TabName {
     }
 }
 
-/// Returns a static string with the given name of a tab.
+/// Returns a static string with the given tab name.
 ///
 /// Unknown names are included, because another version of the program may still use the links of such a tab. Each name
 /// is stored once and kept until the process ends.

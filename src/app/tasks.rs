@@ -1,4 +1,4 @@
-//! Blocking tasks, such as file access, opening links, and system dialogs. Each task runs on a thread and returns its
+//! Blocking tasks, such as file access, opening links, and system dialogs. Each task runs on a thread and delivers its
 //! result as an action.
 
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use super::Action;
 /// A callback that wakes the window when there are new events.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// A runner that executes tasks on threads and delivers the result of each one as an action.
+/// A runner for tasks on threads. The result of each task is delivered as an action.
 pub struct TaskRunner {
     sender: Sender<Action>,
     receiver: Receiver<Action>,
@@ -32,7 +32,7 @@ impl TaskRunner {
         TaskRunner { sender, receiver, wake }
     }
 
-    /// Runs a task on a thread. Its result is returned as an action.
+    /// Runs a task on a thread and delivers its result as an action.
     pub(crate) fn run(&self, name: &str, task: impl FnOnce() -> Action + Send + 'static) {
         let mailbox = self.mailbox();
         let spawned = thread::Builder::new().name(name.to_owned()).spawn(move || mailbox.send(task()));

@@ -1,5 +1,5 @@
-//! Texts in English and German, taken from the catalogues in `assets/texts`. There is a common catalogue, and one for
-//! each device, the adapter and the Signals tool. Each text refers to its catalogue.
+//! Texts in English and German from the catalogues in `assets/texts`: a common one, and one each for the devices, the
+//! adapter and the Signals tool. Each text refers to its catalogue.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -14,7 +14,7 @@ pub enum Language {
     German,
 }
 
-/// A text of a catalogue with its arguments, independent of the language.
+/// A text from a catalogue with its arguments, independent of the language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
     catalogue: &'static Catalogue,
@@ -25,7 +25,7 @@ pub struct Text {
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum TextArgument {
     Words(String),
-    /// A number with a decimal point, as in English.
+    /// A number with a decimal point, as written in English.
     Number(String),
     Name(String, String),
     Text(Text),
@@ -61,7 +61,7 @@ pub struct Catalogue {
     rows: OnceLock<BTreeMap<String, Row>>,
 }
 
-/// The catalogue of texts that do not belong to a single device.
+/// The catalogue of texts that are not specific to a device.
 pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/common.ron"));
 
 #[derive(Debug, Deserialize)]
@@ -69,7 +69,7 @@ pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/c
 struct Row {
     en: String,
     de: String,
-    /// The English text for the command line, or an empty string if it is the same as in the window.
+    /// English text for the command line, or an empty string if it is the same as in the window.
     #[serde(default)]
     terminal: String,
 }
@@ -85,7 +85,7 @@ impl Text {
         COMMON.text(id)
     }
 
-    /// Replaces `{name}` with a word, a number or a name.
+    /// Replaces `{name}` with a value that is the same in every language.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.arguments.push((name, TextArgument::Words(value.to_string())));
@@ -99,28 +99,28 @@ impl Text {
         self
     }
 
-    /// Replaces `{name}` with a name that is not in a catalogue, given in English and German.
+    /// Replaces `{name}` with a name given in English and German.
     #[must_use]
     pub fn with_name(mut self, name: &'static str, english: &str, german: &str) -> Self {
         self.arguments.push((name, TextArgument::Name(english.to_owned(), german.to_owned())));
         self
     }
 
-    /// Replaces `{name}` with a number with the given decimals, such as 1.5 in English and 1,5 in German.
+    /// Replaces `{name}` with a number rounded to the given decimals, such as 1.5 in English and 1,5 in German.
     #[must_use]
     pub fn with_number(mut self, name: &'static str, value: f64, decimals: usize) -> Self {
         self.arguments.push((name, TextArgument::Number(format!("{value:.decimals$}"))));
         self
     }
 
-    /// Replaces `{name}` with a number that is already formatted, except for the decimal separator of the language.
+    /// Replaces `{name}` with a formatted number. Only the decimal separator is adapted to the language.
     #[must_use]
     pub(crate) fn with_formatted_number(mut self, name: &'static str, digits: impl ToString) -> Self {
         self.arguments.push((name, TextArgument::Number(digits.to_string())));
         self
     }
 
-    /// Replaces `{name}` with other texts, separated by commas.
+    /// Replaces `{name}` with several texts, separated by commas.
     #[must_use]
     pub fn with_list(mut self, name: &'static str, texts: impl IntoIterator<Item = Text>) -> Self {
         self.arguments.push((name, TextArgument::List(texts.into_iter().collect())));
@@ -149,7 +149,7 @@ impl Text {
         self.text_for(Output::Window(language))
     }
 
-    /// Returns the text for the command line. It is in English and contains hints for the command line.
+    /// Returns the text for the command line, in English and with hints for the command line.
     pub fn terminal_text(&self) -> String {
         self.text_for(Output::Terminal)
     }
@@ -178,12 +178,12 @@ impl Text {
     }
 }
 
-/// Formats a number that is given with a decimal point, using the decimal separator of a language.
+/// Adapts the decimal point of a formatted number to a language.
 pub(crate) fn localize_number(number: &str, language: Language) -> String {
     TextArgument::Number(number.to_owned()).text_for(Output::Window(language))
 }
 
-/// Formats a number with the given number of decimals, using the decimal separator of a language.
+/// Formats a number with the given number of decimals and the decimal separator of a language.
 pub fn format_decimal(value: f64, decimals: usize, language: Language) -> String {
     TextArgument::Number(format!("{value:.decimals$}")).text_for(Output::Window(language))
 }
@@ -199,7 +199,7 @@ impl Catalogue {
         Catalogue { source, rows: OnceLock::new() }
     }
 
-    /// Returns the text with the given id from this catalogue, or from the common catalogue if it is not in this one.
+    /// Returns the text with the given id from this catalogue, or else from the common one.
     pub fn text(&'static self, id: &'static str) -> Text {
         let is_own = *self != COMMON && self.rows().contains_key(id);
         let catalogue = if is_own { self } else { &COMMON };
@@ -208,7 +208,7 @@ impl Catalogue {
         Text { catalogue, id, arguments: Vec::new() }
     }
 
-    /// Returns the text for a numbered table entry, such as `hd_parameter.158`.
+    /// Returns the text for an entry of a numbered table, such as `hd_parameter.158`.
     pub(crate) fn numbered_text(&'static self, area: &str, number: u16) -> Option<Text> {
         let (id, _) = self.rows().get_key_value(&format!("{area}.{number}"))?;
         Some(Text { catalogue: self, id, arguments: Vec::new() })

@@ -1,5 +1,4 @@
-//! Theme data from `assets/theme.ron`: colours by meaning, sizes and spacing. Drawing code reads these data; this
-//! module does not draw anything.
+//! Theme data from `assets/theme.ron`: colours by meaning, sizes and spacing. This module does not draw anything.
 
 use std::sync::LazyLock;
 
@@ -73,7 +72,7 @@ impl ThemeData {
     /// Returns the built-in theme.
     ///
     /// # Errors
-    /// Returns a description of the error in the theme file. A test ensures that there is none.
+    /// Returns a description of the error in the theme file. A test ensures that the file has no error.
     pub fn built_in() -> Result<&'static ThemeData, &'static str> {
         BUILT_IN.as_ref().map_err(String::as_str)
     }

@@ -1,5 +1,5 @@
-//! A tab that does not need a device. The application uses all tools through the same trait and does not refer to any
-//! specific tool.
+//! Tabs that need no device. The application uses all tools through the same trait and does not depend on any
+//! particular one.
 
 #![warn(missing_docs)]
 
@@ -27,7 +27,7 @@ pub trait ToolKind: Sync {
     fn create_tool(&self, links: &[String]) -> Box<dyn Tool>;
 }
 
-/// A tab that does not need a device.
+/// A tab that needs no device.
 pub trait Tool: Any {
     /// Executes an action.
     ///
@@ -47,7 +47,7 @@ pub trait Tool: Any {
     /// Returns whether the tool has a running job.
     fn can_stop(&self) -> bool;
 
-    /// Stops all running jobs of the tool.
+    /// Stops the running job of the tool.
     fn stop(&mut self, services: &mut Services);
 
     /// Returns the recorder of the tool.
@@ -56,13 +56,13 @@ pub trait Tool: Any {
     /// Returns the recorder of the tool, mutably.
     fn recorder_mut(&mut self) -> &mut Recorder;
 
-    /// Adopts the next reading that a source has taken at standstill, if any.
+    /// Adopts the next reading, if any, that a source has taken at standstill.
     fn adopt_reading(&mut self, source: &mut dyn SineCosineSource);
 
-    /// Releases a connection that is needed elsewhere.
+    /// Releases a connection because it is needed elsewhere.
     fn release_connection(&mut self, url: &LinkUrl, services: &mut Services);
 
-    /// Returns the function that creates a report of the displayed data, or `None` if no data is displayed.
+    /// Returns the function that creates a report on the displayed data, if any.
     fn report(&self) -> Option<CreateReport>;
 
     /// Returns whether the tool can open the given file.
@@ -72,7 +72,7 @@ pub trait Tool: Any {
     fn open(&mut self, path: PathBuf, services: &mut Services);
 }
 
-/// An action of a tool. Such actions can be passed as a payload.
+/// An action of a tool, which can be passed as a payload.
 pub trait ToolAction: Any + Send {
     /// Tab in which the tool is shown.
     const TAB: Tab;
@@ -86,7 +86,7 @@ impl Action {
 }
 
 impl dyn Tool {
-    /// Returns the tool as `T`, or `None` if it has another type.
+    /// Returns the tool as `T`, or `None` if it is of another type.
     pub fn get<T: Any>(&self) -> Option<&T> {
         (self as &dyn Any).downcast_ref()
     }
@@ -99,7 +99,7 @@ pub struct ToolContext<'a> {
 }
 
 impl ToolContext<'_> {
-    /// Returns the services shared by all devices and tools.
+    /// Returns the services common to all devices and tools.
     pub fn services(&mut self) -> &mut Services {
         &mut self.studio.services
     }
@@ -129,7 +129,7 @@ impl Studio {
         self.tools.iter().find(|(own, _)| *own == tab).map(|(_, tool)| tool.as_ref())
     }
 
-    /// Returns whether the tool in a tab displays data that can be reported.
+    /// Returns whether the tool in a tab can create a report on its data.
     pub fn can_report(&self, tab: Tab) -> bool {
         self.tool(tab).is_some_and(|tool| tool.report().is_some())
     }
@@ -159,8 +159,8 @@ impl Studio {
         Ok(())
     }
 
-    /// Opens a capture in the open tab if it is a tool, otherwise in the first tool. A tab that is opened in the
-    /// meantime stays open.
+    /// Opens a capture in the open tab if that is a tool, or else in the first tool. If another tab is opened in the
+    /// meantime, it stays open.
     pub(super) fn open_capture(&mut self, path: PathBuf) {
         let tab = self.settings.tab;
         let at = self.tools.iter().position(|(own, _)| *own == tab).unwrap_or_default();

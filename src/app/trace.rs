@@ -1,4 +1,4 @@
-//! Traffic on a line, decoded for the trace panel. Each frame is decoded when it arrives, not when it is drawn.
+//! Traffic on a line, decoded for the trace panel. Each frame is decoded once, when it arrives.
 
 use std::collections::VecDeque;
 
@@ -13,9 +13,9 @@ pub struct TraceLine {
     /// Time of the first byte on the session's clock.
     pub at: Moment,
     pub direction: Direction,
-    /// Bytes of the frame. A masked byte is `**`.
+    /// Bytes of the frame. A masked byte is shown as `**`.
     pub bytes: String,
-    /// Number of bytes at the beginning of the frame that belong to the transport.
+    /// Number of bytes at the start that belong to the transport.
     pub header: usize,
     pub meaning: Vec<Text>,
     /// Fault at the end of the frame, if any.
@@ -24,15 +24,15 @@ pub struct TraceLine {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceFault {
-    /// The frame reports an error or a warning from the device.
+    /// The frame contains an error or a warning from the device.
     Reported,
-    /// The bytes are not a valid frame or not a reply to the preceding request.
+    /// The bytes are not a valid frame, or do not reply to the request before them.
     Broken,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FrameExplanation {
-    /// Number of bytes at the beginning of the frame that belong to the transport.
+    /// Number of bytes at the start that belong to the transport.
     pub header: usize,
     pub meaning: Vec<Text>,
     pub fault: Option<TraceFault>,
@@ -67,12 +67,12 @@ impl TraceLine {
     }
 }
 
-/// Criteria that select the frames to show.
+/// Criteria for the frames to show.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TraceFilter {
     /// Text to search for in the bytes or in the meaning of a frame, ignoring case.
     pub search: String,
-    /// Whether to show only frames that are broken or report an error or a warning.
+    /// Whether to show only broken frames and those with an error or a warning.
     pub faults_only: bool,
 }
 
@@ -91,7 +91,7 @@ impl TraceFilter {
     }
 }
 
-/// The frames of a log that match a filter. Each frame is compared once, not each time it is drawn.
+/// The frames of a log that match a filter. Each frame is compared only once, not each time it is drawn.
 #[derive(Debug, Default)]
 pub struct TraceMatches {
     filter: TraceFilter,
@@ -100,13 +100,12 @@ pub struct TraceMatches {
     numbers: VecDeque<u64>,
     /// Number of matching frames that the log has removed since the filter was set.
     removed: u64,
-    /// Number of the first frame that has not been compared yet.
+    /// Number of the first frame not yet compared.
     next: u64,
 }
 
 impl TraceMatches {
-    /// Compares the frames numbered below `end` with the filter. A new filter or language discards the previous
-    /// matches.
+    /// Compares the frames before `end` with the filter. A new filter or language discards the previous matches.
     pub fn update_matches(&mut self, log: &TraceLog, filter: &TraceFilter, language: Language, end: u64) {
         if self.filter != *filter || self.language != Some(language) || self.next > end {
             *self = TraceMatches { filter: filter.clone(), language: Some(language), ..TraceMatches::default() };
@@ -134,7 +133,7 @@ impl TraceMatches {
     }
 }
 
-/// A log of the newest frames on a line.
+/// A log of the newest trace frames.
 #[derive(Debug, Default)]
 pub struct TraceLog {
     lines: VecDeque<TraceLine>,
@@ -148,7 +147,7 @@ impl TraceLog {
     /// Maximum memory of the log in bytes, enough for about 40,000 position readings.
     const MAX_BYTES: usize = 16 << 20;
 
-    /// Adds frames with their explanations. `dropped` is the number of frames that arrived too fast to be included.
+    /// Adds frames with their explanations. `dropped` is the number of frames that arrived too fast to be logged.
     pub fn add_frames(&mut self, entries: impl IntoIterator<Item = (TraceEntry, FrameExplanation)>, dropped: u64) {
         self.dropped += dropped;
         for (entry, FrameExplanation { header, meaning, fault }) in entries {
@@ -190,7 +189,7 @@ impl TraceLog {
         self.lines.get(usize::try_from(number.checked_sub(self.gone)?).ok()?)
     }
 
-    /// Returns the content of a trace file with all frames of the log.
+    /// Returns the content of a trace file with all logged frames.
     pub fn file_content(&self) -> String {
         let mut text = format!("{HEADER}\n");
         if self.gone > 0 {
@@ -297,7 +296,7 @@ mod tests {
         assert!(log.line_by_number(0).is_none() && log.line_by_number(2).is_some() && log.line_by_number(3).is_none());
     }
 
-    /// A file saved in the window equals one written on the command line, and can be opened with `replay:`.
+    /// A trace saved in the window equals one written on the command line, and can be opened with `replay:`.
     #[test]
     fn a_saved_log_is_a_trace_file() {
         let text = three_frame_log().file_content();

@@ -1,5 +1,5 @@
-//! The recording of a device that is being read: position without wrap-around, speed, acceleration and watched values.
-//! The kind of device supplies the meaning of positions and values.
+//! The recording of a device that is being read: unwrapped position, speed, acceleration and watched values. The kind
+//! of device defines what positions and values mean.
 
 use std::time::Duration;
 
@@ -22,14 +22,14 @@ pub use watchable::{Watchable, WatchedValue};
 
 /// Maximum number of positions, enough for more than a day at the highest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
-/// Maximum time in nanoseconds between two positions that are joined by a line. A longer line would suggest a motion
-/// that was not observed.
+/// Maximum interval in nanoseconds between two positions joined by a line. A longer line would suggest a motion that
+/// was not observed.
 const MAX_JOINED_GAP_NS: i64 = 5_000_000_000;
-/// Delay of a position, in nanoseconds, that is tolerated in addition to four intervals. This is the delay caused by a
-/// lost reply that is requested again.
+/// Tolerated delay of a position, in nanoseconds, on top of four intervals. A lost reply that is requested again causes
+/// such a delay.
 const TOLERATED_DELAY_NS: i64 = 400_000_000;
-/// Maximum time in nanoseconds between two watched values that are joined by a line. Watched values arrive less often
-/// than positions.
+/// Maximum interval in nanoseconds between two watched values joined by a line. Watched values arrive less often than
+/// positions.
 const MAX_WATCHED_GAP_NS: i64 = MAX_JOINED_GAP_NS;
 /// Maximum number of samples of a watched value.
 const MAX_WATCHED_SAMPLES: usize = 500_000;
@@ -57,16 +57,16 @@ pub struct DeviceRecorder<W> {
     positions: GroupId,
     lines: [SeriesId; 3],
     watched: Vec<WatchedSeries<W>>,
-    /// Tracking of positions, or `None` if no position has been received.
+    /// Tracker of the positions, or `None` until one has been received.
     follower: Option<PositionTracker>,
     dropped: u64,
-    /// Start of the first session, and offset of the current session's clock from it.
+    /// Start of the first session, from which the current session's clock is offset.
     began: Option<Zoned>,
     shift: i64,
     newest: Option<SampleTime>,
     /// Last received position.
     last: i64,
-    /// Maximum time in nanoseconds between two positions that are joined by a line.
+    /// Maximum interval in nanoseconds between two positions joined by a line.
     apart: i64,
 }
 
@@ -75,7 +75,7 @@ struct WatchedSeries<W> {
     value: W,
     group: GroupId,
     line: SeriesId,
-    /// Whether the value is being recorded. If not, only its earlier samples are kept.
+    /// Whether the value is being recorded. Otherwise only its earlier samples are kept.
     active: bool,
 }
 
@@ -143,7 +143,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         }
     }
 
-    /// Begins a session. Earlier recordings are kept. New samples are shifted by the difference between the clocks.
+    /// Begins a session. Earlier recordings are kept, and the times of new samples are shifted to continue them.
     pub fn begin_session(&mut self, began: &Zoned) {
         let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
         let later = i64::try_from(since.as_nanos()).unwrap_or(0);
@@ -157,7 +157,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.follower.as_ref().map(|own| &own.meaning)
     }
 
-    /// Sets the polling interval. When polling begins, the positions before and after are not joined.
+    /// Sets the polling interval. Positions before and after a start of polling are not joined.
     pub fn poll(&mut self, interval: Option<Duration>, begins: bool) {
         let interval = interval.and_then(|interval| i64::try_from(interval.as_nanos()).ok());
         self.apart = interval.map_or(MAX_JOINED_GAP_NS, |interval| {
@@ -222,7 +222,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         columns.push(time, next.steps, rates, flags);
     }
 
-    /// Selects the values that are recorded in addition to the position. Earlier recordings of other values are kept.
+    /// Selects the values to record in addition to the position. Earlier recordings of other values are kept.
     pub fn set_watched(&mut self, watched: &[W]) {
         let mut kept = Vec::new();
         for mut own in std::mem::take(&mut self.watched) {
@@ -300,8 +300,8 @@ impl<W: Watchable> DeviceRecorder<W> {
         all.map_or(0, |all| all.end - all.start)
     }
 
-    /// Discards the recording of the previous device unless it contains minutes of unexported data. The selection of
-    /// values is kept.
+    /// Discards the recording of the previous device, unless it contains minutes of unexported data. The selected
+    /// values are kept.
     pub fn clear_unless_long(&mut self) {
         let watched = self.watched_values();
         if self.recorder.unexported_duration() >= LONG_RECORDING_NS {
@@ -316,8 +316,8 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.set_watched(&watched);
     }
 
-    /// Prepares for decoding the last `kept` stored words again. The times do not change. If words are missing, the old
-    /// recording is kept as well.
+    /// Prepares for decoding the last `kept` position words again, with the same times. If older words are no longer
+    /// stored, the old recording is kept as well.
     pub fn prepare_redecoding(&mut self, kept: usize) {
         if usize::try_from(self.position_count()).is_ok_and(|own| own > kept) {
             self.replace_series(&PositionScales::for_steps(None));
@@ -329,7 +329,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.recorder.handle_action(recorder::RecorderAction::SetSpan(span));
     }
 
-    /// Sets the scales of subsequent positions. Lines of positions on other scales end here.
+    /// Sets the scales of the following positions. If they no longer apply to the same positions, the current lines end.
     fn set_scales(&mut self, meaning: &PositionScales) {
         if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_location(meaning)) {
             if own.meaning != *meaning {
@@ -343,7 +343,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.follower = Some(PositionTracker::new(meaning.clone()));
     }
 
-    /// Replaces the lines with new ones for positions on the given scales.
+    /// Replaces the lines with new ones on the given scales.
     fn replace_series(&mut self, meaning: &PositionScales) {
         let has_samples = self.position_count() > 0;
         let group = self.recorder.add_group(&COLUMNS, CAPACITY, Some(MAX_JOINED_GAP_NS));
@@ -366,7 +366,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.recorder.end_line(line, name, heading);
     }
 
-    /// Returns the name and heading for a line that ends now.
+    /// Returns the name and heading of a line that is about to end.
     fn ended_line_name(&self, line: SeriesId) -> (Text, String) {
         let newest = self.newest.map_or(0, SampleTime::as_nanoseconds);
         let until = self.began.as_ref().and_then(|own| own.checked_add(SignedDuration::from_nanos(newest)).ok());

@@ -1,5 +1,5 @@
-//! Values supplied to a kind of device from outside: start options, or substitutes in a test. The application does not
-//! know the types of these values.
+//! Values supplied to a kind of device from outside: start options, or substitutes in tests. The application does not
+//! know their types.
 
 use std::any::{Any, TypeId};
 use std::collections::HashMap;
@@ -27,7 +27,7 @@ impl TypeMap {
     }
 }
 
-/// Prints only the number of values, because values can be secret.
+/// Prints only the number of values, because they may be secret.
 impl fmt::Debug for TypeMap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Given({})", self.0.len())
@@ -36,7 +36,7 @@ impl fmt::Debug for TypeMap {
 
 type OpenFn<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync;
 
-/// A function that replaces the usual way in which a kind of device opens links, for tests.
+/// A function that replaces the usual way of opening links for a kind of device, in tests.
 pub struct LinkOpener<D: Device>(Box<OpenFn<D>>);
 
 impl<D: Device> LinkOpener<D> {

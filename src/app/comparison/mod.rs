@@ -1,5 +1,5 @@
-//! Comparison of any two of an open device, an open profile, a file, a backup and an entry of the logbook. Values of the
-//! left side can become edits of the right side. Devices are not accessed: the values read last are compared.
+//! Comparison of any two sources: an open device, an open profile, a file, a backup or a logbook entry. Values of the
+//! left side can be copied to the right side as edits. Devices are not accessed: the last values read are compared.
 
 mod rows;
 mod side;
@@ -18,10 +18,10 @@ use super::{AnyDevice, Text, explain};
 use crate::profile::ProfileDocument;
 use crate::store::{Backup, DeviceKey, Entry, EntryFilter, Logbook, LogbookError, Store};
 
-/// An action of the comparison.
+/// An action of the comparison page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ComparisonAction {
-    /// Open the comparison. A side that is not given can be chosen in it.
+    /// Open the comparison. A missing side can be chosen there.
     Open {
         left: Option<ComparisonSource>,
         right: Option<ComparisonSource>,
@@ -29,9 +29,9 @@ pub enum ComparisonAction {
     Choose(Side, ComparisonSource),
     AskFile(Side),
     Swap,
-    /// List equal items too, or only those that differ.
+    /// Show all items, or only those that differ.
     ShowAll(bool),
-    /// Edit an item of the device on the right side so that it has the value of the left side.
+    /// Copy the value of an item from the left side to the device on the right side, as an edit.
     Take(String),
     Close,
 }
@@ -47,12 +47,12 @@ pub struct ComparisonView {
     moments: Moments,
 }
 
-/// Backups and entries of the logbook with a backup, for one kind of device.
+/// Backups, and logbook entries with a backup, for one kind of device.
 #[derive(Debug, Default)]
 pub struct Moments {
     /// Kind of device, or `None` before it is known.
     kind: Option<&'static str>,
-    /// Backups of the open devices that no entry lists, newest first.
+    /// Backups of the open devices that belong to no listed entry, newest first.
     backups: Vec<Backup>,
     /// Entries with a backup, newest first.
     entries: Vec<Entry>,
@@ -77,18 +77,18 @@ impl ComparisonView {
         self.shows_all
     }
 
-    /// Returns the compared items, or the reason why the sides cannot be compared. Returns `None` unless both sides are
-    /// known.
+    /// Returns the compared items, or the reason why the sides cannot be compared. Returns `None` until both sides have
+    /// been read.
     pub fn rows(&self) -> Option<&Result<ComparedRows, Text>> {
         self.rows.as_ref()
     }
 
-    /// Returns the reason why the last value could not be taken over.
+    /// Returns the reason why the last value could not be copied.
     pub fn refusal(&self) -> Option<&Text> {
         self.refusal.as_ref()
     }
 
-    /// Returns the kind of device of a side that is known, the right one first.
+    /// Returns the kind of device being compared. The right side takes precedence.
     pub fn kind(&self) -> Option<&'static str> {
         [&self.right, &self.left].into_iter().find_map(|side| Some(side.document()?.body.kind()))
     }
@@ -99,13 +99,13 @@ impl ComparisonView {
 }
 
 impl Studio {
-    /// Returns the open comparison. It ends when a session of it is closed.
+    /// Returns the open comparison. It closes when one of its sessions is closed.
     pub fn comparison(&self) -> Option<&ComparisonView> {
         self.comparison.as_deref().filter(|view| view.sessions().all(|id| self.device(id).is_some()))
     }
 
-    /// Returns what a side can be: the open devices and profiles of the kind of the other side, backups, and entries of
-    /// the logbook with a backup.
+    /// Returns the sources that can be chosen for a side: the open devices and profiles of the same kind, backups, and
+    /// logbook entries with a backup.
     pub fn comparison_choices(&self) -> Vec<ComparisonSource> {
         let Some(view) = self.comparison() else { return Vec::new() };
         let kind = view.kind();
@@ -120,7 +120,7 @@ impl Studio {
             .collect()
     }
 
-    /// Returns the device on the right side whose edits can take over values of the left side.
+    /// Returns the device on the right side, if values can be copied to it.
     pub fn edited_side(&self) -> Option<&AnyDevice> {
         let device = self.device(self.comparison()?.right.session()?)?;
         (!device.is_writing() && !device.is_reviewing()).then_some(device)
@@ -161,7 +161,7 @@ impl Studio {
         self.refresh_comparison();
     }
 
-    /// Opens the comparison of a device or profile, as the right side, with another source.
+    /// Opens the comparison with a device or profile on the right side, and `left` on the other, if given.
     pub(super) fn compare_session(&mut self, id: SessionId, left: Option<ComparisonSource>) {
         if let Some(tab) = self.device(id).map(AnyDevice::tab) {
             self.show(tab, id);
@@ -183,7 +183,7 @@ impl Studio {
         });
     }
 
-    /// Handles the profile of a side that was read. A result for another file is outdated.
+    /// Shows the profile that was read for a side. If another file has been chosen since, the result is ignored.
     pub(super) fn show_compared_profile(
         &mut self,
         side: Side,
@@ -200,7 +200,7 @@ impl Studio {
         }
     }
 
-    /// Takes in what has changed in the compared sessions, and compares again if anything has.
+    /// Updates the compared sessions, and compares again if one of them has changed.
     pub(super) fn refresh_comparison(&mut self) {
         let Some(mut view) = self.comparison.take() else { return };
         for side in Side::BOTH {
@@ -229,7 +229,7 @@ impl Studio {
         Some(compare_documents(kinds, left, right).map_err(|error| explain::profile_error_text(&error, kinds)))
     }
 
-    /// Edits an item of the right side so that it has the value of the left side.
+    /// Copies the value of an item from the left side to the right side, as an edit.
     fn take_over(&mut self, item: &str) {
         let target = self.edited_side().map(|device| device.id());
         let Some(view) = &mut self.comparison else { return };
@@ -247,7 +247,7 @@ impl Studio {
         self.comparison = Some(view);
     }
 
-    /// Starts a task that lists the backups and entries with which a kind of device can be compared.
+    /// Starts a task that lists the backups and logbook entries that can be compared with a kind of device.
     fn list_moments(&mut self, kind: &'static str) {
         let Some(view) = &mut self.comparison else { return };
         view.moments = Moments { kind: Some(kind), ..Moments::default() };
@@ -270,7 +270,7 @@ impl Studio {
     }
 }
 
-/// Returns the newest entries about a kind of device whose backup can be compared.
+/// Returns the newest logbook entries about a kind of device that have a backup on this computer.
 fn entries_with_backup(store: &Store, kind: &str) -> Result<Vec<Entry>, LogbookError> {
     const READ: u32 = 2_000;
     const LISTED: usize = 100;

@@ -1,10 +1,10 @@
-//! The items of a comparison as rows with names and values in words.
+//! The compared items as rows, with readable names and values.
 
 use crate::app::explain::literal_text;
 use crate::app::{DeviceKind, KindRegistry, Text};
 use crate::profile::{ComparedItem, ProfileDocument, ProfileError};
 
-/// Value of an item for lists.
+/// A value as shown in lists.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ItemValue {
     Bytes(Vec<u8>),
@@ -12,17 +12,17 @@ pub enum ItemValue {
     Text(Text),
 }
 
-/// A function that describes the value of an item of one profile. It takes the item and its value, and returns `None` if
-/// the value needs no description.
+/// A function that describes the value of an item. It takes the item and its value, and returns `None` if the value
+/// needs no description.
 pub type ItemValues = Box<dyn Fn(&str, &str) -> Option<ItemValue>>;
 
-/// Items of a comparison by group.
+/// Compared items in groups.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ComparedRows {
     pub groups: Vec<ComparedGroup>,
     /// Number of compared values.
     pub compared: u64,
-    /// Number of items that differ or are only on one side.
+    /// Number of items that differ or exist on only one side.
     pub different: usize,
 }
 
@@ -37,14 +37,15 @@ pub struct ComparedGroup {
 /// An item with its value on both sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComparedRow {
-    /// Name of the item on the command line.
+    /// Name of the item as used on the command line.
     pub item: String,
     pub name: Text,
     /// Value on the left side, or `None` if that side does not have the item.
     pub left: Option<ItemValue>,
     pub right: Option<ItemValue>,
     pub differs: bool,
-    /// Whether the value on the right side was taken over from the left side. Such a row stays in its place.
+    /// Whether the value on the right side was copied from the left side. The row then stays in place, although the
+    /// values are equal.
     pub is_taken: bool,
 }
 
@@ -53,8 +54,8 @@ impl ComparedRows {
         self.groups.iter_mut().flat_map(|group| &mut group.rows)
     }
 
-    /// Marks an item as taken over, and adopts the values of the other items from a new comparison. Consecutive bytes
-    /// that are equal now stay separate rows.
+    /// Marks an item as copied, and updates the other items from a new comparison. Bytes that were separate rows stay
+    /// separate, even if they are now equal.
     pub(super) fn mark_taken(&mut self, item: &str, now: &ComparedRows) {
         let find = |item: &str| now.groups.iter().flat_map(|group| &group.rows).find(|row| row.item == item);
         for row in self.rows_mut() {

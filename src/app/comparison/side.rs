@@ -18,19 +18,19 @@ impl Side {
     pub const BOTH: [Side; 2] = [Side::Left, Side::Right];
 }
 
-/// What is compared on one side.
+/// The source of the values on one side.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ComparisonSource {
     /// An open device or profile, with its edits.
     Session(SessionId),
     File(PathBuf),
     Backup(Backup),
-    /// An entry of the logbook with a backup: the values before a write, or a profile that was saved.
+    /// A logbook entry with a backup, which contains the values before a write or a saved profile.
     Entry(Box<Entry>),
 }
 
 impl ComparisonSource {
-    /// Returns the path of the profile, or `None` for an open device or profile.
+    /// Returns the path of the file, or `None` for an open device or profile.
     pub fn path(&self) -> Option<&Path> {
         match self {
             ComparisonSource::Session(_) => None,
@@ -41,11 +41,11 @@ impl ComparisonSource {
     }
 }
 
-/// One side of a comparison, with the values that are known of it.
+/// One side of a comparison: its source and, once read, its values.
 #[derive(Debug, Default)]
 pub struct ComparedSide {
     source: Option<ComparisonSource>,
-    /// Profile of the side, or the reasons why there is none. `None` while a file is read.
+    /// Profile to compare, or the reasons why there is none. `None` while a file is being read.
     content: Option<Result<Box<ProfileDocument>, Vec<Text>>>,
     edits: usize,
 }
@@ -55,7 +55,7 @@ impl ComparedSide {
         ComparedSide { source: Some(source), content: None, edits: 0 }
     }
 
-    /// Returns what was chosen, or `None` if nothing has been chosen yet.
+    /// Returns the chosen source, if any.
     pub fn source(&self) -> Option<&ComparisonSource> {
         self.source.as_ref()
     }
@@ -67,7 +67,7 @@ impl ComparedSide {
         }
     }
 
-    /// Returns the path of the profile, or `None` for an open device or profile.
+    /// Returns the path of the file, or `None` for an open device or profile.
     pub fn path(&self) -> Option<&Path> {
         self.source.as_ref()?.path()
     }
@@ -81,7 +81,7 @@ impl ComparedSide {
         self.content.as_ref().and_then(|content| content.as_ref().err()).map(Vec::as_slice).unwrap_or_default()
     }
 
-    /// Returns the number of edits of the device or profile that are part of the comparison and not written yet.
+    /// Returns the number of unwritten edits that are included in the comparison.
     pub fn edit_count(&self) -> usize {
         self.edits
     }
@@ -90,7 +90,7 @@ impl ComparedSide {
         self.content = Some(content);
     }
 
-    /// Takes in the present values of the device, with its edits. Returns whether they have changed.
+    /// Updates the values from the device, including its edits. Returns whether they have changed.
     pub(super) fn update(&mut self, device: &AnyDevice) -> bool {
         self.edits = device.edit_count();
         let body = match device.edited_values() {

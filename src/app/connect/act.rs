@@ -1,4 +1,4 @@
-//! Execution of the actions of the connection dialog.
+//! Execution of actions in the connection dialog.
 
 use super::context::{FinderContext, NextAction};
 use super::form::AnyForm;
@@ -95,7 +95,7 @@ impl Studio {
         }
     }
 
-    /// Continues the search after the user has confirmed that there is no other master on the line.
+    /// Continues the search once the user has confirmed that there is no other master on the line.
     pub(in crate::app) fn start_confirmed_search(&mut self, tab: Tab) {
         let at = |connect: &ConnectDialog| connect.forms.iter().position(|(own, _)| *own == tab);
         if let Some(place) = self.connect.as_ref().and_then(at) {
@@ -118,8 +118,7 @@ impl Studio {
         forms.iter().enumerate().find_map(|(at, (tab, form))| is_it(form.as_ref()).then_some((*tab, at)))
     }
 
-    /// Calls `act` with a form of the dialog and the resources for a search, and then carries out the actions requested
-    /// by the form.
+    /// Calls `act` with a form and the resources for a search, and then carries out what the search has requested.
     fn with_form_context(
         &mut self,
         tab: Tab,

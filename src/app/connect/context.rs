@@ -1,4 +1,4 @@
-//! Resources that a search uses in addition to its connection form.
+//! Resources for a device search beyond its connection form.
 
 use crossbeam_channel::Receiver;
 
@@ -9,7 +9,7 @@ use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 use crate::link::LinkUrl;
 
-/// The resources that a search uses in addition to its connection form.
+/// The resources that a device search uses in addition to its connection form.
 pub struct FinderContext<'a> {
     studio: &'a mut Studio,
     tab: Tab,
@@ -18,7 +18,7 @@ pub struct FinderContext<'a> {
     problem: Option<Text>,
 }
 
-/// The actions of the dialog that a search has requested.
+/// What a device search has requested from the dialog.
 #[derive(Default)]
 pub(super) struct NextAction {
     pub(super) found: Option<LinkUrl>,
@@ -47,13 +47,13 @@ impl<'a> FinderContext<'a> {
         self.link.clone()
     }
 
-    /// Returns a number that is unique among searches and sessions.
+    /// Returns a number that no other search or session has.
     pub fn next_number(&mut self) -> u32 {
         self.studio.next_number()
     }
 
-    /// Releases the connection, which a session or a tool may be using. Sessions other than a writing one show `why` as
-    /// the reason. The returned channel, if any, closes when the connection is free.
+    /// Releases a connection that a session or tool may be using. The session shows `why` as the reason. The returned
+    /// channel, if any, closes when the connection is free.
     ///
     /// # Errors
     /// Returns an error if a session is writing. Such a session is not released.
@@ -75,7 +75,8 @@ impl<'a> FinderContext<'a> {
         self.problem = Some(problem);
     }
 
-    /// Closes the dialog and connects to a device that was found. The line has already been checked for other masters.
+    /// Closes the dialog and connects to a device that was found. The search has already asked about other masters on
+    /// the line.
     pub fn open_discovered(&mut self, url: LinkUrl) {
         self.found = Some(url);
     }

@@ -1,5 +1,5 @@
-//! The connection form of a kind of device, and the search for devices. The folder of a device implements both with its
-//! own types, and an adapter passes them to the dialog as trait objects.
+//! The connection form of a kind of device, and the search for devices. Each kind of device implements both with its
+//! own types. An adapter passes them to the dialog as trait objects.
 
 #![warn(missing_docs)]
 
@@ -14,12 +14,12 @@ use crate::app::payload::{Payload, PayloadKindError};
 use crate::app::services::Services;
 use crate::link::LinkUrl;
 
-/// A form with entries that define a link to a kind of device. Entries for other types of connections are preserved.
+/// A form that defines a link to a kind of device. Entries for other types of connection are preserved.
 pub trait FormModel: Clone + PartialEq + Send + 'static {
     /// The search for devices, or [`NoFinder`] if the form does not support one.
     type Finder: Finder<Form = Self>;
 
-    /// Returns the link to the virtual device, with which the form is initialised.
+    /// Returns the link to the virtual device, which initialises the form.
     fn default_link() -> LinkUrl;
 
     /// Fills in a new form from a link.
@@ -50,16 +50,16 @@ pub trait Finder: Default + 'static {
     /// Executes a user action in the search.
     fn handle_action(&mut self, action: Self::Action, form: &mut Self::Form, context: &mut FinderContext<'_>);
 
-    /// Handles the result of a task. `finder` is `None` if the dialog has been closed in the meantime.
+    /// Handles the result of a task. `finder` is `None` if the dialog has since been closed.
     fn handle_result(finder: Option<&mut Self>, done: Self::TaskResult, services: &mut Services);
 
-    /// Continues the search after the user has confirmed that there is no other master on the line.
+    /// Continues the search once the user has confirmed that there is no other master on the line.
     fn handle_confirmation(&mut self, _context: &mut FinderContext<'_>) {}
 
     /// Processes all events received since the last call.
     fn process_events(&mut self) {}
 
-    /// Returns whether the search is occupying the connection of the form.
+    /// Returns whether the search is using the form's connection.
     fn is_running(&self) -> bool {
         false
     }
@@ -116,7 +116,7 @@ pub trait AnyForm {
     fn set_file(&mut self, file: String);
     /// Returns an example link to show as a hint.
     fn example_link(&self) -> &'static str;
-    /// Returns whether the payload contains entries of this form.
+    /// Returns whether the payload contains the entries of this kind of form.
     fn accepts_entries(&self, entries: &Payload) -> bool;
     /// Returns whether the payload contains an action of this form's finder.
     fn is_finder_action(&self, action: &Payload) -> bool;
@@ -125,16 +125,16 @@ pub trait AnyForm {
     /// # Errors
     /// Returns an error if the entries belong to a different kind of device.
     fn replace_entries(&mut self, entries: Payload) -> Result<(), PayloadKindError>;
-    /// Passes an action to the finder. Returns whether the finder has changed the form.
+    /// Passes an action to the finder. Returns whether the form has changed.
     ///
     /// # Errors
     /// Returns an error if the action belongs to a different kind of device.
     fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, PayloadKindError>;
-    /// Continues the search after the user has confirmed that there is no other master on the line.
+    /// Continues the search once the user has confirmed that there is no other master on the line.
     fn handle_confirmation(&mut self, context: &mut FinderContext<'_>);
     /// Processes pending events of the finder.
     fn process_events(&mut self);
-    /// Returns whether the finder is occupying the connection.
+    /// Returns whether the finder is using the connection.
     fn is_running(&self) -> bool;
     /// Stops the finder.
     fn stop(&mut self);

@@ -1,5 +1,5 @@
-//! The connection dialog, which consists of a form for the link, the serial ports of this computer, and the search for
-//! devices. Each kind of device provides its own form.
+//! The connection dialog: a form for the link, a list of serial ports, and the search for devices. Each kind of device
+//! provides its own form.
 
 mod act;
 pub mod context;
@@ -30,9 +30,9 @@ pub enum ConnectAction {
     Close,
     ListPorts,
     Device(Tab),
-    /// The entries of the form for a kind of device were edited. See [`ConnectAction::edit_form`].
+    /// The entries of a form were edited. See [`ConnectAction::edit_form`].
     Edit(Payload),
-    /// The user made a request to the search for devices. See [`ConnectAction::find`].
+    /// The user requested an action of the device search. See [`ConnectAction::find`].
     Find(Payload),
     /// A link was typed, pasted or selected. A valid link fills in the form.
     Use(String),
@@ -56,7 +56,7 @@ pub struct ConnectDialog {
     pub device: Tab,
     kinds: KindRegistry,
     forms: Vec<(Tab, Box<dyn AnyForm>)>,
-    /// The link as entered, or `None` after the form has been edited. In that case, the form defines the link.
+    /// The link as entered. `None` after the form has been edited: the form then defines the link.
     pub typed: Option<String>,
     /// Serial ports of this computer, or `None` while they are being listed.
     pub ports: Option<Result<Vec<PortEntry>, Text>>,
@@ -64,7 +64,7 @@ pub struct ConnectDialog {
 }
 
 impl ConnectDialog {
-    /// Creates the dialog for a kind of device. `last` returns the most recently used link of a tab.
+    /// Creates the dialog for a kind of device. `last` returns a tab's most recently used link.
     pub(super) fn new(kinds: KindRegistry, device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
         let forms = kinds.devices().iter().map(|kind| (kind.tab(), kind.create_form(last(kind.tab())))).collect();
         ConnectDialog { device, kinds, forms, typed: None, ports: None, problem: None }
@@ -114,13 +114,12 @@ impl ConnectDialog {
         self.typed = Some(link);
     }
 
-    /// Returns whether a search for a device is running on the connection of the form.
+    /// Returns whether a device search is using the form's connection.
     pub fn is_searching(&self) -> bool {
         self.forms.iter().any(|(_, form)| form.is_running())
     }
 
-    /// Returns the link as entered or, if none was entered, the link of the form. The string is empty if the form does
-    /// not yield a valid link.
+    /// Returns the link as entered, or else the link of the form. The string is empty if the form yields no valid link.
     pub fn typed_link(&self) -> String {
         match &self.typed {
             Some(link) => link.clone(),

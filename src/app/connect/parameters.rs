@@ -10,8 +10,8 @@ use crate::parameter::Entry;
 /// The name and value of a link parameter.
 pub(crate) type NameAndValue = (String, String);
 
-/// Returns the parameters of a link that have no entry in the form. `take` fills in an entry and returns whether the
-/// entry exists.
+/// Returns the link parameters that have no entry in the form. `take` fills in an entry and returns whether the entry
+/// exists.
 pub(crate) fn parameters_without_entry(
     query: &UrlQuery,
     mut take: impl FnMut(&str, &str) -> bool,
@@ -19,12 +19,12 @@ pub(crate) fn parameters_without_entry(
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
 }
 
-/// The values typed into the entries of a form, by parameter name.
+/// The strings typed into a form, by parameter name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EnteredValues(BTreeMap<&'static str, String>);
 
 impl EnteredValues {
-    /// Returns the typed value of a parameter. An empty string means the default.
+    /// Returns the string typed for a parameter. An empty string means the default.
     pub fn get(&self, key: &str) -> &str {
         self.0.get(key).map_or("", String::as_str)
     }
@@ -59,7 +59,7 @@ impl Parameters {
         self.0.extend(non_empty(entry).map(|value| (name.to_owned(), value)));
     }
 
-    /// Adds typed entries, converting decimal commas to points.
+    /// Adds the strings typed into the form, converting decimal commas to points.
     pub(crate) fn add_entered(&mut self, entries: &[Entry], typed: &EnteredValues) {
         for entry in entries {
             match entry.is_decimal {
@@ -74,8 +74,8 @@ impl Parameters {
         self.entry(name, &entry.replace(',', "."));
     }
 
-    /// Adds the parameters that have no entry in the form. Parameters of a virtual device are added only if the link
-    /// refers to a virtual device.
+    /// Adds the parameters that have no entry in the form. Parameters of a virtual device are added only to a link to a
+    /// virtual device.
     pub(crate) fn add_remaining(
         &mut self,
         rest: &[NameAndValue],
@@ -85,7 +85,7 @@ impl Parameters {
         self.add_others(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
     }
 
-    /// Adds those parameters without an entry that belong to the link. An entry overrides an older parameter of the
+    /// Adds the parameters without an entry that are valid for the link. An entry overrides an older parameter of the
     /// same name.
     pub(crate) fn add_others(&mut self, rest: &[NameAndValue], belongs: impl Fn(&str) -> bool) {
         for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
@@ -117,7 +117,7 @@ impl Parameters {
 pub(crate) mod tests {
     use super::*;
 
-    /// Checks that each link yields an equivalent link after it has been filled into a form.
+    /// Checks that filling each link into a form yields an equivalent link.
     pub(crate) fn assert_round_trip(links: &[&str], through: impl Fn(&LinkUrl) -> Result<LinkUrl, Text>) {
         let sorted = |url: &LinkUrl| {
             let mut pairs = url.query.pairs().to_vec();

@@ -9,7 +9,7 @@ pub struct PortEntry {
     /// Description of the adapter as reported by the system. It may be empty.
     pub description: String,
     pub used: bool,
-    /// Whether the port currently exists: either the system lists it, or its path exists, as for a pseudo-terminal. A
+    /// Whether the port currently exists: the system lists it, or its path exists, as for a pseudo-terminal. A
     /// previously used port may have been unplugged.
     pub listed: bool,
 }

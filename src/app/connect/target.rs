@@ -1,4 +1,4 @@
-//! Helpers common to all connection forms: mandatory entries, host and port, and the reasons why a link cannot be used.
+//! Helpers for all connection forms: mandatory entries, host and port, and the reasons why a link cannot be used.
 
 use std::net::Ipv6Addr;
 use std::num::NonZeroU16;
@@ -46,7 +46,7 @@ pub(crate) fn validated_link(
     Ok(url)
 }
 
-/// Returns the reason why a link cannot be used. The message names the invalid entry, if any.
+/// Returns the reason why a link cannot be used. The message names the invalid entry, if there is one.
 pub(crate) fn rejection_text(url: &LinkUrl, error: &OpenError) -> Text {
     let (name, value, allowed) = match error {
         OpenError::Url(UrlError::Value { name, value, allowed })
@@ -68,7 +68,7 @@ pub(crate) fn rejection_text(url: &LinkUrl, error: &OpenError) -> Text {
     }
 }
 
-/// Returns the message for a link that cannot be used although each entry is valid.
+/// Returns the message for a link that cannot be used although every entry is valid.
 pub(crate) fn unusable_link_text(why: Text) -> Text {
     Text::new("form.other").with_text("why", why)
 }
@@ -118,15 +118,15 @@ pub(crate) fn split_host_default_port(place: &str, usual: &str) -> (String, Stri
     (host, Some(port).filter(|port| port != usual).unwrap_or_default())
 }
 
-/// Prefix of the link target for an adapter in the network.
+/// Prefix in the link of an adapter on the network.
 const TCP: &str = "tcp:";
 
-/// Returns the network address of an adapter, or `None` for an adapter on a serial port.
+/// Returns the network address of an adapter, or `None` if it is on a serial port.
 pub(crate) fn network_address_of_adapter(target: &str) -> Option<&str> {
     target.strip_prefix(TCP)
 }
 
-/// Returns the link target for an adapter in the network.
+/// Returns the target part of the link to an adapter on the network.
 ///
 /// # Errors
 /// Returns the same errors as [`host_and_port`].

@@ -1,4 +1,4 @@
-//! Methods of all devices, based on their common interface.
+//! Methods common to all open devices.
 
 use std::any::Any;
 use std::path::PathBuf;
@@ -18,7 +18,7 @@ use crate::app::trace::TraceLog;
 use crate::store::{Backup, DeviceKey, Entry};
 
 impl AnyDevice {
-    /// Returns the device as the type `M`, or `None` if it is of another kind.
+    /// Returns the device as `M`, or `None` if it is of another kind.
     pub fn get<M: Any>(&self) -> Option<&M> {
         (self as &dyn Any).downcast_ref()
     }
@@ -36,7 +36,7 @@ impl AnyDevice {
         self.state().name()
     }
 
-    /// Returns the source of the data without secrets.
+    /// Returns where the data come from, without secrets.
     pub fn data_source(&self) -> String {
         self.state().data_source()
     }
@@ -45,7 +45,7 @@ impl AnyDevice {
         &self.state().source
     }
 
-    /// Returns the time at which the displayed values were read, or `None` if they were not read.
+    /// Returns the time at which the displayed values were read, if they were.
     pub fn values_read_at(&self) -> Option<Timestamp> {
         self.state().values_read_at
     }
@@ -70,24 +70,23 @@ impl AnyDevice {
         &self.state().trace
     }
 
-    /// Returns whether this is the latest attempt to open the link of the device.
+    /// Returns whether this attempt to open the device's link is the latest one.
     pub(in crate::app) fn is_current_attempt(&self, attempt: u32) -> bool {
         self.state().is_current_attempt(attempt)
     }
 
-    /// Returns the backups or the reason why they cannot be listed. Returns `None` before the backups have been
-    /// requested.
+    /// Returns the backups, or the reason why they cannot be listed. Returns `None` until they have been requested.
     pub fn backups(&self) -> Option<&Result<Vec<Backup>, Text>> {
         self.state().backups.as_ref()
     }
 
-    /// Returns the writes in the logbook or the reason why they cannot be listed. Returns `None` before the writes have
-    /// been requested.
+    /// Returns the writes recorded in the logbook, or the reason why they cannot be listed. Returns `None` until they
+    /// have been requested.
     pub fn logged_writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
         self.state().writes.as_ref()
     }
 
-    /// Returns the key of the device in the logbook. Returns `None` before the device has been read.
+    /// Returns the key of the device in the logbook, or `None` until the device has been read.
     pub fn logbook_key(&self) -> Option<DeviceKey> {
         self.memory()?.logbook_key()
     }
@@ -97,7 +96,7 @@ impl AnyDevice {
         self.state().asset.as_deref()
     }
 
-    /// Returns the status codes of this device in the logbook, newest first.
+    /// Returns the status codes recorded for this device in the logbook, newest first.
     pub fn logged_status_codes(&self) -> &[Entry] {
         &self.state().statuses
     }
@@ -143,7 +142,7 @@ impl AnyDevice {
         }
     }
 
-    /// Returns whether the recording contains minutes of data that have not been exported.
+    /// Returns whether the recording contains minutes of unexported data.
     pub(in crate::app) fn has_long_unsaved_recording(&self) -> bool {
         self.recorders().into_iter().any(|recorder| recorder.unexported_duration() >= LONG_RECORDING_NS)
     }
@@ -152,7 +151,7 @@ impl AnyDevice {
         self.state().suggested_file()
     }
 
-    /// Marks a save as waiting for an answer from the user, so that another save may begin.
+    /// Marks a save as waiting for the user's answer, so that another save may begin.
     pub(in crate::app) fn mark_save_waiting(&mut self) {
         self.state_mut().is_saving = false;
     }

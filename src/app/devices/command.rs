@@ -16,7 +16,7 @@ pub enum DeviceCommand {
     Read,
     AskSave,
     Review,
-    /// Start to poll the position at this interval, or stop polling.
+    /// Poll the position at this interval, or stop polling.
     Poll(Option<Duration>),
     ReadPosition,
     Undo,
@@ -25,14 +25,14 @@ pub enum DeviceCommand {
     /// Assign the device to an asset in the logbook.
     Assign(AssetName),
     Restore(PathBuf),
-    /// Show the effect of undoing a write of the logbook.
+    /// Open the review of undoing a write recorded in the logbook.
     UndoWrite(Box<Entry>),
     AskRestore,
     AskCompare,
     AskReport,
-    /// Compare with this, which becomes the left side.
+    /// Compare the device with this source, which becomes the left side.
     Compare(Box<ComparisonSource>),
-    /// Show the effect of writing this profile to the device of the given session.
+    /// Open the review of writing this profile to the device of the given session.
     WriteInto(SessionId),
 }
 

@@ -1,5 +1,5 @@
-//! A kind of device before a device is open: its tab, its links and its profiles. Each kind implements [`DeviceType`],
-//! and an adapter provides it to the studio as a [`DeviceKind`].
+//! A kind of device as the studio knows it before any device is open: its tab, links and profiles. Each kind implements
+//! [`DeviceType`], and an adapter provides it to the studio as a [`DeviceKind`].
 
 #![warn(missing_docs)]
 
@@ -30,13 +30,13 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Name of the bus, which is the same in every language.
     const BUS: &'static str;
 
-    /// Profile in which a device of this kind is saved.
+    /// Profile type in which devices of this kind are saved.
     type Profile: Profile;
 
     /// Type of the form in the connection dialog.
     type Form: FormModel;
 
-    /// Tables that are needed in addition to the file to read profiles of this kind.
+    /// Tables that are needed, besides the file, to read profiles of this kind.
     type Tables: Send + 'static;
 
     /// Checks whether a link can refer to a device of this kind. The link is not opened.
@@ -45,22 +45,22 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Returns the reason why the link cannot refer to such a device.
     fn check_link(url: &LinkUrl) -> Result<(), OpenError>;
 
-    /// Returns the secret parameters of a link. Their values are neither displayed nor stored.
+    /// Returns the parameters of a link that are secret. Their values are neither displayed nor stored.
     fn secret_parameters() -> Vec<&'static str>;
 
-    /// Returns whether another master may be connected to the line of a link. If so, the user is asked before anything
-    /// is sent.
+    /// Returns whether another master may be on the line to which a link refers. If so, the user is asked before
+    /// anything is sent.
     fn may_have_other_master(_url: &LinkUrl) -> bool {
         false
     }
 
-    /// Returns whether such a link usually refers to a device of this kind, rather than to one of another kind for
-    /// which it is valid as well.
+    /// Returns whether such a link usually refers to this kind of device. The link may be valid for other kinds as
+    /// well.
     fn is_typical_link(_url: &LinkUrl) -> bool {
         true
     }
 
-    /// Creates a device from an opened profile and the tables for reading it, or a device about which nothing is known.
+    /// Creates a device from an opened profile and its tables, or an empty device.
     fn create(
         session: Session<Self::Device>,
         profile: Option<(&Self::Profile, Self::Tables)>,
@@ -89,8 +89,8 @@ pub trait DeviceType: DeviceModel + Sized {
         own
     }
 
-    /// Returns the name of an item of a profile or of the logbook, for comparisons, lists and reports. `manual_name` is
-    /// the name in the manual, if the item is an address. Returns `None` if there is no better name than the item.
+    /// Returns the display name of an item in a profile or the logbook. `manual_name` is the name in the manual, if the
+    /// item is an address. Returns `None` if no name is better than the item itself.
     fn item_name(_item: &str, _manual_name: Option<&str>) -> Option<Text> {
         None
     }
@@ -105,7 +105,7 @@ pub trait DeviceType: DeviceModel + Sized {
         Box::new(|_, _| None)
     }
 
-    /// Returns the values of a profile with their meaning, for a report.
+    /// Returns the values of a profile and what they mean, for a report.
     ///
     /// # Errors
     /// Returns a message if a table of the user cannot be read.
@@ -115,12 +115,12 @@ pub trait DeviceType: DeviceModel + Sized {
         context: &ReportContext<'_>,
     ) -> Result<ReportContent, Text>;
 
-    /// Returns the reason why a profile was rejected, or `None` if the cause belongs to another kind of device.
+    /// Returns the reason why a profile was rejected, or `None` if this kind of device does not know the cause.
     fn explain_rejection(_cause: &Cause) -> Option<Text> {
         None
     }
 
-    /// Creates a profile that is not stored in a file. Returns `None` if profiles of this kind only come from devices.
+    /// Creates a profile without a file. Returns `None` if profiles of this kind can only be read from devices.
     ///
     /// `is_taken` returns whether a file name is in use.
     fn new_profile(_id: SessionId, _is_taken: &dyn Fn(&Path) -> bool, _services: &mut Services) -> Option<Self> {
@@ -147,26 +147,26 @@ pub trait DeviceKind: Sync {
     /// # Errors
     /// Returns the reason why the link cannot refer to such a device.
     fn check_link(&self, url: &LinkUrl) -> Result<(), OpenError>;
-    /// Returns the secret parameters of a link. Their values are neither displayed nor stored.
+    /// Returns the parameters of a link that are secret. Their values are neither displayed nor stored.
     fn secret_parameters(&self) -> Vec<&'static str>;
     /// Returns the link to the virtual device of this kind.
     fn virtual_link(&self) -> LinkUrl;
-    /// Returns whether another master may be connected to the line of a link.
+    /// Returns whether another master may be on the line to which a link refers.
     fn may_have_other_master(&self, url: &LinkUrl) -> bool;
-    /// Returns whether such a link usually refers to a device of this kind.
+    /// Returns whether such a link usually refers to this kind of device.
     fn is_typical_link(&self, url: &LinkUrl) -> bool;
-    /// Returns the reason why a profile was rejected, or `None` if the cause belongs to another kind of device.
+    /// Returns the reason why a profile was rejected, or `None` if this kind of device does not know the cause.
     fn explain_rejection(&self, cause: &Cause) -> Option<Text>;
-    /// Returns the name of an item of a profile or of the logbook. Returns `None` if there is no better name than the
-    /// item.
+    /// Returns the display name of an item in a profile or the logbook, or `None` if no name is better than the item
+    /// itself.
     fn item_name(&self, item: &str, manual_name: Option<&str>) -> Option<Text>;
     /// Returns the heading under which a comparison lists an item.
     fn item_group(&self, item: &str) -> Option<Text>;
-    /// Returns a function that describes the values of a profile. It describes nothing if the profile is of another kind
-    /// of device.
+    /// Returns a function that describes the values of a profile. For a profile of another kind of device, it describes
+    /// nothing.
     fn item_values(&self, document: &ProfileDocument) -> ItemValues;
-    /// Returns the values of a profile with their meaning, for a report. Returns `None` if the profile is of another
-    /// kind of device.
+    /// Returns the values of a profile and what they mean, for a report. Returns `None` for a profile of another kind
+    /// of device.
     fn report(&self, document: &ProfileDocument, context: &ReportContext<'_>) -> Option<Result<ReportContent, Text>>;
     /// Returns the form for the connection dialog, filled in from a link.
     fn create_form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;

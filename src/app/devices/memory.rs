@@ -1,4 +1,5 @@
-//! The memory of a device as the studio uses it, implemented for every kind of device whose memory is a profile.
+//! The memory of a device as seen by the studio. Implemented for every kind of device whose memory is saved as a
+//! profile.
 
 #![warn(missing_docs)]
 
@@ -12,9 +13,9 @@ use crate::app::session::{DeviceHistory, HasMemory, HasProfile};
 use crate::profile::{Body, ProfileError};
 use crate::store::{AssetName, DeviceKey, Entry};
 
-/// A device memory, which is written after a review, and saved and restored as a profile.
+/// A device memory that can be saved as a profile and restored from one. Writes are reviewed by the user first.
 pub trait DeviceMemory {
-    /// Opens the review of the edits.
+    /// Opens the review in which the user checks the edits before they are written.
     fn review_edits(&mut self, services: &mut Services);
 
     /// Returns whether a review is open.
@@ -44,7 +45,7 @@ pub trait DeviceMemory {
     /// Returns a message for each value that a profile requires but that has not been read.
     fn edited_values(&self) -> Option<Result<Body, Vec<Text>>>;
 
-    /// Opens the review of restoring a profile.
+    /// Opens the review of restoring this profile.
     ///
     /// # Errors
     /// Returns an error if the profile belongs to another kind of device.
@@ -59,16 +60,16 @@ pub trait DeviceMemory {
     /// Assigns the device to an asset in the logbook.
     fn assign_asset(&mut self, asset: AssetName, services: &mut Services);
 
-    /// Reads a backup that is to be restored, or from which an entry of the logbook is to be undone.
+    /// Reads a backup, either to restore it or to undo a logbook entry.
     fn read_backup(&mut self, path: PathBuf, undone: Option<Box<Entry>>, services: &mut Services);
 
-    /// Returns the device as the logbook names it. Returns `None` before the device has been read.
+    /// Returns the key of the device in the logbook, or `None` until the device has been read.
     fn logbook_key(&self) -> Option<DeviceKey>;
 
-    /// Stores the lists of backups and writes. Lists of another device are ignored.
+    /// Stores the lists of backups and writes. Lists that belong to another device are ignored.
     fn set_history(&mut self, of: &DeviceKey, listed: DeviceHistory);
 
-    /// Handles a backup that was read, or the error. A backup of another device is ignored.
+    /// Handles a backup that was read, or the error. A backup that belongs to another device is ignored.
     fn apply_backup(&mut self, read: ReadBackup, services: &mut Services);
 }
 

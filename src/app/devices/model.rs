@@ -33,12 +33,12 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// Results of the tasks that a device starts.
     type TaskResult: Any + Send;
 
-    /// Returns a function that prepares the session before it moves to its thread.
+    /// Returns a function that prepares the session before it is moved to its thread.
     fn prepare_session(&self, _world: &StudioEnvironment) -> PrepareFn<Self::Device> {
         Box::new(|_| ())
     }
 
-    /// Adopts the session of the opened link.
+    /// Adopts the session after its link has been opened.
     fn connect(&mut self, opened: OpenedConnection<Self::Device>, services: &mut Services);
 
     /// Executes an action specific to this kind of device.
@@ -110,7 +110,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         }
     }
 
-    /// Reads everything that the pages of the device display.
+    /// Reads all values that the device's pages display.
     fn read_device(&mut self, services: &mut Services) {
         self.submit(Self::Device::survey_job(), services);
     }
@@ -120,12 +120,12 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         step(self.pending_mut());
     }
 
-    /// Asks the user for the file in which to save a profile.
+    /// Asks the user where to save a profile.
     fn ask_where_to_save(&mut self, services: &mut Services) {
         self.session().ask_where_to_save(services);
     }
 
-    /// Returns whether thousands of positions per second can be streamed.
+    /// Returns whether the device can stream thousands of positions per second.
     fn can_stream(&self) -> bool {
         false
     }
@@ -140,7 +140,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         self.session_mut().stop(services);
     }
 
-    /// Switches to another link that uses the same wire.
+    /// Switches to another link on the same wire.
     fn switch_link(&mut self, _url: &LinkUrl) {}
 
     /// Returns the memory of the device, or `None` for a kind that is never written to.
@@ -152,7 +152,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// Returns the reason why nothing can be written to this kind of device.
     fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text>;
 
-    /// Calls `act` with the memory of the device, or reports why the device has no writable memory.
+    /// Calls `act` with the memory of the device, or reports that the device has no writable memory.
     fn with_memory<R>(
         &mut self,
         services: &mut Services,
@@ -167,13 +167,13 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         }
     }
 
-    /// Returns the edited profile that is to be written to another device, if any.
+    /// Returns the edited profile for writing to another device, if any.
     fn edited_body(&self) -> Option<Body> {
         self.memory()?.edited_body()
     }
 
-    /// Returns the profile for comparisons, or `None` if no data has been read. This is the edited profile, or else the
-    /// one read last.
+    /// Returns the profile to compare, or `None` if no data has been read. This is the edited profile, or else the one
+    /// read last.
     ///
     /// # Errors
     /// Returns a message for each value that a profile requires but that has not been read.
@@ -181,7 +181,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         self.edited_body().map(Ok).or_else(|| self.memory()?.last_read_profile())
     }
 
-    /// Returns the profile with all edits, also of a device, or `None` if no data has been read.
+    /// Returns the profile or the device's values with all edits, or `None` if no data has been read.
     ///
     /// # Errors
     /// Returns a message for each value that a profile requires but that has not been read.
@@ -189,12 +189,12 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         self.edited_body().map(Ok).or_else(|| self.memory()?.edited_values())
     }
 
-    /// Returns whether an item can be edited so that it has the value of another profile.
+    /// Returns whether an item can be edited to take its value from another profile.
     fn accepts_item(&self, _item: &str) -> bool {
         false
     }
 
-    /// Edits an item so that it has the value of another profile, as one undo step.
+    /// Edits an item to take its value from another profile, as one undo step.
     ///
     /// # Errors
     /// Returns the reason why the value cannot be adopted.
@@ -202,17 +202,18 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         Err(Text::new("comparison.not_taken"))
     }
 
-    /// Returns the errors and warnings that were read last, for a report. Returns `None` if they have not been read.
+    /// Returns the errors and warnings read last, for a report. Returns `None` if none have been read.
     fn reported_status(&self) -> Option<Vec<StatusLine>> {
         None
     }
 
-    /// Returns the results of the session that a profile does not contain, for a report.
+    /// Returns the results of this session for a report. Profiles do not contain them.
     fn session_results(&self) -> Vec<SessionResult> {
         Vec::new()
     }
 
-    /// Adopts a profile. Depending on the kind of device, this opens the review of a write or edits the layout.
+    /// Adopts the values of a profile. Depending on the kind of device, this opens the review of a write or edits the
+    /// layout.
     ///
     /// # Errors
     /// Returns an error if the profile belongs to another kind of device.
@@ -250,13 +251,13 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         None
     }
 
-    /// Returns the access to stored data about drives, or `None` for a kind without drives.
+    /// Returns the interface to the stored data about drives, or `None` for a kind without drives.
     fn drive_memory(&mut self) -> Option<&mut dyn StoredDriveData> {
         None
     }
 }
 
-/// A function that prepares a session before it moves to its thread.
+/// A function that prepares a session before it is moved to its thread.
 pub(crate) type PrepareFn<D> = Box<dyn FnOnce(&mut worker::Session<D>) + Send>;
 
 /// Resources that an action may use in addition to the device.
@@ -280,7 +281,7 @@ impl<'a> ActionContext<'a> {
         self.next
     }
 
-    /// Returns the profile as edited in another session, if there is one.
+    /// Returns the profile as edited in another session, if any.
     ///
     /// # Errors
     /// Returns a message if the profile is read-only.
@@ -290,24 +291,24 @@ impl<'a> ActionContext<'a> {
     }
 }
 
-/// Control of the motion requested in this window. STOP and the release of a key act only through this interface, never
-/// through an action of a kind of device.
+/// Control of motion requested in this window. STOP and the release of a key always use this interface, never an action
+/// specific to a kind of device.
 pub trait MotionControl {
     /// Stops all motion.
     fn stop(&mut self);
 
-    /// Ends every motion that would otherwise continue without an end or until a button is released.
+    /// Ends every motion that would otherwise last forever or until a button is released.
     fn release_motion(&mut self);
 
     /// Returns whether a drive is moving or about to move.
     fn is_moving(&self) -> bool;
 
-    /// Returns whether a drive is moving, or about to move, because this window has requested it.
+    /// Returns whether a drive is moving, or about to move, because of a request from this window.
     fn is_turned_by_hand(&self) -> bool;
 
     /// Returns whether a motion requested in this window has not ended yet.
     fn is_motion_active(&self) -> bool;
 
-    /// Returns whether this window has control of the drives. If so, their values arrive without a request.
+    /// Returns whether this window controls the drives. If so, they send their values without being polled.
     fn has_control(&self) -> bool;
 }

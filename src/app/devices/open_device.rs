@@ -1,4 +1,4 @@
-//! A device of any kind, as seen by the studio, the shared parts of the window, and other devices. One implementation
+//! A device of any kind, as seen by the studio, the shared parts of the window and other devices. One implementation
 //! covers all kinds.
 
 #![warn(missing_docs)]
@@ -54,7 +54,7 @@ pub trait OpenDevice: Any {
     fn is_readable(&self) -> bool;
     /// Returns whether a profile can currently be saved.
     fn is_savable(&self) -> bool;
-    /// Returns whether thousands of positions per second can be streamed.
+    /// Returns whether the device can stream thousands of positions per second.
     fn can_stream(&self) -> bool;
     /// Returns the running job, if any.
     fn running_job(&self) -> Option<JobProgress>;
@@ -66,9 +66,9 @@ pub trait OpenDevice: Any {
     fn can_undo(&self) -> bool;
     /// Returns whether there is an edit to redo.
     fn can_redo(&self) -> bool;
-    /// Returns whether edits are restored if the device is closed and opened again.
+    /// Returns whether edits are restored when the device is closed and opened again.
     fn preserves_edits(&self) -> bool;
-    /// Returns whether every edit has been stored on disk. A failed write is disregarded.
+    /// Returns whether every edit is stored on disk. A failed write is disregarded.
     fn is_draft_kept(&self) -> bool;
     /// Returns the number of samples that were dropped before they could be recorded.
     fn dropped_count(&self) -> u64;

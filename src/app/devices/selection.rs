@@ -1,4 +1,4 @@
-//! The selection of the device that each tab shows.
+//! The device selected in each tab.
 
 use std::collections::HashMap;
 
@@ -18,7 +18,7 @@ impl Selection {
         self.by_tab.get(&tab).copied()
     }
 
-    /// Returns the most recently shown device of any tab.
+    /// Returns the device shown most recently in any tab.
     pub(in crate::app) fn last(&self) -> Option<SessionId> {
         self.last
     }

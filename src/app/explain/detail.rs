@@ -1,5 +1,5 @@
-//! Reasons why a link, a setting, a profile, a table or the logbook cannot be used, phrased as parts of a sentence.
-//! Messages from the operating system or a library are quoted unchanged.
+//! Reasons why a link, setting, profile, table or logbook cannot be used, as parts of a sentence. Messages from the
+//! operating system or a library are quoted unchanged.
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -12,7 +12,7 @@ use crate::profile::{ProfileError, SyntaxErrorKind};
 use crate::sim::{ConfigError, FaultError, VirtualDevice};
 use crate::store::{LogbookError, LogbookErrorKind};
 
-/// Returns the reason why a string is not a valid link, or why a link does not accept a parameter.
+/// Returns the reason why a string is not a valid link, or why a link parameter is rejected.
 pub fn url_error_text(error: &UrlError) -> Text {
     match error {
         UrlError::Scheme(text) => Text::new("url.no_link").with("text", format!("{text:?}")),

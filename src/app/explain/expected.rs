@@ -1,4 +1,4 @@
-//! Descriptions of the values accepted by a parameter, a setting or an entry.
+//! Descriptions of the values that a parameter, setting or entry accepts.
 
 use crate::app::Text;
 use crate::expected::{AllowedValues, Quantity};

@@ -1,4 +1,4 @@
-//! Error messages for the user: what happened, and what to do. Errors of a single kind of device have a separate
+//! Error messages for the user: what happened, and what to do. Errors specific to one kind of device are in a separate
 //! module.
 
 mod detail;
@@ -27,14 +27,14 @@ use crate::worker::{NotStarted, OpenError};
 /// Maximum number of remarks of one kind that are listed.
 const MAX_LISTED_REMARKS: usize = 3;
 
-/// Lists the first few items, and the number of the remaining ones.
+/// Lists the first few items and states how many more there are.
 pub(crate) fn truncated_list<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
     let more = things.len().saturating_sub(MAX_LISTED_REMARKS);
     let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));
     things.iter().take(MAX_LISTED_REMARKS).map(words).chain(rest).collect()
 }
 
-/// Returns the instruction for an item that cannot be undone.
+/// Returns what to do instead for an item that cannot be undone.
 pub fn redo_text(redo: &Redo) -> Text {
     match redo {
         Redo::Write(value) => Text::new("undo.write").with("value", value),
@@ -48,7 +48,7 @@ pub fn redo_text(redo: &Redo) -> Text {
     }
 }
 
-/// Describes why an entry of the logbook cannot be undone.
+/// Describes why a logbook entry cannot be undone.
 pub fn undo_obstacle_text(why: UndoObstacle) -> Text {
     Text::new(match why {
         UndoObstacle::NoItems => "undo.no_items",
@@ -124,8 +124,8 @@ pub fn file_error_text(error: &FileError) -> Text {
     }
 }
 
-/// Returns the message for an error in the folders of the program. Errors in files of a kind of device are explained by
-/// the code that reads them.
+/// Returns the message for an error in the program's folders. Errors in device-specific files are explained where those
+/// files are read.
 pub fn store_error_text(error: &StoreError) -> Text {
     match error {
         StoreError::NoHome => Text::new("store.no_home"),
@@ -152,7 +152,7 @@ pub fn profile_file_error_text(path: &Path, error: &ProfileError, kinds: KindReg
     }
 }
 
-/// Returns remarks about an opened profile if it has a newer schema or entries that are not in the schema.
+/// Returns remarks about a profile that has a newer schema, or entries unknown to its schema.
 pub fn profile_remarks(path: &Path, document: &ProfileDocument) -> Vec<Text> {
     if document.is_newer() {
         return vec![newer_profile(path, document)];
@@ -162,7 +162,7 @@ pub fn profile_remarks(path: &Path, document: &ProfileDocument) -> Vec<Text> {
     if document.beyond.is_empty() { Vec::new() } else { vec![beyond()] }
 }
 
-/// Returns the message about a profile with a newer schema and its unknown content.
+/// Returns the message that a profile has a newer schema and possibly unknown entries.
 pub fn newer_profile(path: &Path, document: &ProfileDocument) -> Text {
     let id = if document.beyond.is_empty() { "profile.newer" } else { "profile.newer_entries" };
     Text::new(id)
@@ -190,7 +190,7 @@ pub fn logbook_error_text(why: &LogbookError) -> Text {
     Text::new("write.logbook").with_text("why", logbook_problem(why))
 }
 
-/// Returns a number of write cycles: at least those that are known.
+/// Formats a number of write cycles, as “at least …” if some may be missing from the logbook.
 pub fn cycle_count_text(count: CycleCount) -> Text {
     match count.is_complete {
         true => literal_text(count.seen),
@@ -203,7 +203,7 @@ pub fn logbook_unreadable_text(why: &LogbookError) -> Text {
     Text::new("backups.no_logbook").with_text("why", logbook_problem(why))
 }
 
-/// Describes why a name of an asset is refused.
+/// Describes why an asset name is rejected.
 pub fn asset_name_error_text(why: AssetNameError) -> Text {
     match why {
         AssetNameError::Empty => Text::new("asset_card.empty"),

@@ -1,4 +1,4 @@
-//! Reasons why the server of the logbook cannot be used: what happened, and what to do.
+//! Reasons why the logbook server cannot be used, and what to do.
 
 use super::{literal_text, logbook_problem};
 use crate::app::Text;

@@ -54,7 +54,7 @@ fn capture_error_text(path: &Path, error: &CaptureError) -> Text {
     }
 }
 
-/// Returns the reason why samples cannot be analysed. `path` is the file that contains them.
+/// Returns the reason why samples cannot be analysed. `path` is their file.
 pub fn analysis_error_text(path: &Path, error: &AnalysisError) -> Text {
     let text = |id| Text::new(id).with("path", path.display());
     match error {
@@ -90,7 +90,7 @@ pub fn spectrum_error_text(error: &SpectrumError) -> Text {
     }
 }
 
-/// Returns the reason why the deviation over one revolution cannot be determined from a reference.
+/// Returns the reason why the deviation over one revolution cannot be determined from a reference encoder.
 pub fn revolution_error_text(error: &RevolutionError) -> Text {
     match error {
         RevolutionError::Periods { found, given } => {

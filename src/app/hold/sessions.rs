@@ -1,6 +1,6 @@
-//! Random sessions with a keyboard and a mouse, and the events that the system reports for them. These include key
-//! repeats, possibly reported as releases followed by presses and continuing across a change of focus, missing releases
-//! while another window has the keyboard focus, and synthetic releases when the window loses it.
+//! Random keyboard and mouse input, with the events that the system reports for it. These include key repeats, possibly
+//! reported as releases followed by presses and continuing across a change of focus. Releases are missing while another
+//! window has the keyboard focus, and synthetic when the window loses it.
 
 use super::*;
 
@@ -8,15 +8,15 @@ const SESSIONS: u64 = 60;
 const FRAMES: u64 = 3_000;
 const READY: HoldContext = HoldContext { enabled: true, window: true, keyboard: true, moving: false };
 const KEYS: [PressKey; 2] = [PressKey::Space, PressKey::Enter];
-/// Index of a key that cannot hold the button. It follows the indices of [`KEYS`].
+/// Index of a key that does not operate the button. It follows the indices of [`KEYS`].
 const OTHER: usize = 2;
 /// Index of the pointer.
 const POINTER: usize = 3;
 
-/// The actual state of the keys and the pointer, which may differ from the reported one.
+/// The actual state of the keys and the pointer, which may differ from the reported state.
 #[derive(Default)]
 struct TestOperator {
-    /// Times at which each key and the pointer were pressed, or `None` while they are up.
+    /// Times at which each key and the pointer were pressed, or `None` if released.
     down: [Option<f64>; 4],
     /// The most recently pressed key. Only this key repeats.
     last: Option<usize>,

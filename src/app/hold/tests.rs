@@ -33,7 +33,7 @@ impl TestButton {
         pad
     }
 
-    /// Draws a frame in which keys are released, followed by another frame.
+    /// Draws one frame in which keys are released, and another one after it.
     fn release_keys(&mut self, inputs: &[HoldInput]) -> Option<HoldEvent> {
         let event = self.picture(inputs);
         assert_eq!(self.picture(&[]), None);
@@ -55,8 +55,7 @@ impl TestButton {
     }
 }
 
-/// These are the events that X11 reports when Space is held while the window loses and regains the keyboard focus
-/// (issue 21.2).
+/// X11 reports these events if Space is held while the window loses and regains the keyboard focus (issue 21.2).
 #[test]
 fn a_key_held_while_focus_returns_starts_no_hold() {
     let mut pad = TestButton::armed();
@@ -81,7 +80,7 @@ fn a_key_held_while_focus_returns_starts_no_hold() {
     assert_eq!(pad.picture(&[DOWN]), None);
 }
 
-/// After any change of the button, a key counts only once it is known to be up (issue 21.2).
+/// After any change of the button's state, a key must be released before it can start a hold (issue 21.2).
 #[test]
 fn after_any_change_a_key_counts_only_once_released() {
     type Change = fn(&mut TestButton);
@@ -120,8 +119,7 @@ fn after_any_change_a_key_counts_only_once_released() {
     }
 }
 
-/// A pointer that is already pressed does not start a hold, even if the button becomes available in the meantime (issue
-/// 21.2).
+/// A pointer that is already down does not start a hold when the button becomes enabled (issue 21.2).
 #[test]
 fn a_hold_begins_only_with_a_new_pointer_press() {
     let mut pad = TestButton::armed();
@@ -148,7 +146,7 @@ fn a_hold_begins_only_with_a_new_pointer_press() {
     assert_eq!(pad.picture(&[]), None);
 }
 
-/// Any key ends a hold by the pointer, and any second input ends a hold by a key (issue 21.2).
+/// Any key ends a hold by the pointer, and any other input ends a hold by a key (issue 21.2).
 #[test]
 fn any_other_input_ends_a_hold() {
     let beside = [
@@ -186,8 +184,7 @@ fn any_other_input_ends_a_hold() {
     assert_eq!(pad.picture(&[DOWN]), None);
 }
 
-/// A key press during a motion is a request to stop, even if the button does not know yet that the key was up (issue
-/// 21.2).
+/// A key press during a motion stops it, even if the key was never seen released (issue 21.2).
 #[test]
 fn a_key_stops_motion_and_starts_no_hold() {
     for armed in [false, true] {
@@ -204,7 +201,7 @@ fn a_key_stops_motion_and_starts_no_hold() {
     assert_eq!(pad.picture(&[DOWN]), None, "not meant for it");
 }
 
-/// A key repeat may be reported as a release and an immediate press in two frames, however far apart (issue 21.2).
+/// A key repeat may be reported as a release in one frame and a press in the next (issue 21.2).
 #[test]
 fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
@@ -232,7 +229,8 @@ fn a_press_right_after_another_key_starts_no_hold() {
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
 }
 
-/// A user presses the key a tenth of a second after releasing it, with no other event in between (issue 21.2).
+/// A tenth of a second after a release, the next press starts a hold, even without any other event in between (issue
+/// 21.2).
 #[test]
 fn a_release_requests_the_frame_that_rearms_the_key() {
     let mut pad = TestButton::armed();

@@ -1,4 +1,4 @@
-//! Two cursors and the statistics of the samples between them. The statistics use all samples, not only the drawn ones.
+//! Two cursors, and statistics of the samples between them. The statistics use all samples, not only those drawn.
 
 use super::{Recorder, Series};
 use crate::analysis::SampleTime;
@@ -21,13 +21,13 @@ impl Cursor {
     }
 }
 
-/// The readings of both cursors on a line, in the unit of the line. A reading is `None` if there is no valid sample.
+/// The readings of both cursors on a line, in the line's unit. A reading is `None` if there is no valid sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CursorReadings {
     pub a: Option<f64>,
     pub b: Option<f64>,
     pub difference: Option<f64>,
-    /// Statistics of the samples from one cursor to the other, both included.
+    /// Statistics of the samples between the cursors, including those at the cursors.
     pub between: Option<CursorStatistics>,
 }
 
@@ -97,10 +97,10 @@ impl Recorder {
         })
     }
 
-    /// Returns the sample of a line nearest to a point in time, or `None` if nothing was recorded at that time.
+    /// Returns the sample of a line nearest to a time, or `None` if nothing was recorded around that time.
     pub fn sample_at(&self, line: &Series, time: SampleTime) -> Option<Sample> {
-        /// Divisor of the visible range. The resulting time is the maximum distance of a cursor from the first or last
-        /// sample.
+        /// Fraction of the visible range, as a divisor, by which a cursor may be outside the recording and still read
+        /// the first or last sample.
         const EDGE_DIVISOR: i64 = 200;
         let history = self.history(line)?;
         let all = history.indices();
@@ -111,8 +111,8 @@ impl Recorder {
             .flatten()
     }
 
-    /// Moves a cursor to the nearest sample. If nothing was recorded at that time, the cursor is placed at the time
-    /// itself.
+    /// Moves a cursor to the sample nearest to a time. If nothing was recorded around that time, the cursor is placed
+    /// at the time itself.
     pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<SampleTime>) {
         let nearest = |time: SampleTime| {
             let samples = self.visible_series().filter_map(|line| self.sample_at(line, time)).map(|sample| sample.time);
@@ -126,7 +126,7 @@ impl Recorder {
         }
     }
 
-    /// Places both cursors at one third and two thirds of the visible samples, or hides them.
+    /// Places the cursors at one third and two thirds of the visible samples, or hides them.
     pub(super) fn show_cursors(&mut self, shown: bool) {
         if !shown {
             self.cursors = [None; 2];

@@ -1,12 +1,12 @@
-//! Lines that have ended because later samples have different units or no longer arrive. They keep their samples and
-//! units and are listed after the active lines.
+//! Ended lines, whose samples no longer arrive or now have other units. They keep their samples and units, and are
+//! listed after the active lines.
 
 use super::{Recorder, Scale, Series, SeriesId};
 use crate::app::Text;
 
 impl Recorder {
-    /// Replaces a line with a new one of the same colour and, if possible, the same unit. The old line ends and
-    /// receives the given name.
+    /// Replaces a line with a new one of the same colour and, if possible, the same unit. The old line ends under the
+    /// given name.
     pub(in crate::app) fn replace_line(
         &mut self,
         old: SeriesId,
@@ -37,7 +37,7 @@ impl Recorder {
         Some(self.lines.remove(at))
     }
 
-    /// Ends a line. No more samples are added to it, and it is listed after the active lines.
+    /// Ends a line. It receives no more samples and is listed after the active lines.
     pub(in crate::app) fn end_line(&mut self, id: SeriesId, name: Text, heading: String) {
         if let Some(line) = self.remove_series(id) {
             self.lines.push(Series { ended: true, remark: None, name, heading, ..line });

@@ -1,4 +1,4 @@
-//! Export of samples as CSV. A thread receives the rows in batches and writes them, so neither the window nor the
+//! Export of samples as CSV. A thread receives the rows in batches and writes them, so that neither the window nor the
 //! recording waits for the disk.
 
 use std::io::{self, Write};
@@ -18,7 +18,7 @@ use crate::store::{FileError, write_atomically_with};
 const ROWS: usize = 16_384;
 const QUEUED_CHUNKS: usize = 2;
 
-/// A table that is being written. If it is dropped before all rows have been passed on, no file is written.
+/// A running export to a table. If it is dropped before all rows have been passed on, no file is written.
 #[derive(Debug)]
 pub struct TableExport {
     pub path: PathBuf,
@@ -31,7 +31,7 @@ pub struct TableExport {
     heads: Vec<ExportPosition>,
     columns: Vec<Column>,
     lost: u64,
-    /// Time up to which the recording is exported, or `None` if only the visible part is exported.
+    /// Time up to which the recording is exported, or `None` for an export of the visible part only.
     until: Option<SampleTime>,
 }
 
@@ -54,7 +54,7 @@ pub struct ExportResult {
     pub rows: Result<Option<u64>, FileError>,
 }
 
-/// The position in a group's samples up to which they have been passed on.
+/// How far the samples of a group have been passed on.
 #[derive(Debug)]
 struct ExportPosition {
     group: GroupId,
@@ -69,7 +69,7 @@ struct Column {
     column: usize,
     factor: f64,
     range: Option<i64>,
-    /// Whether the values are calculated from another line. If so, a missing value does not indicate a faulty sample.
+    /// Whether the values are calculated from another line. A missing value then does not indicate a faulty sample.
     derived: bool,
 }
 
@@ -87,7 +87,7 @@ struct Rows {
     cells: Vec<Cell>,
 }
 
-/// A cell of a table. It is empty if the line has no sample at that time. The sample may be invalid.
+/// A cell of a table. It is empty if the line has no sample at that time, and its sample may be invalid.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
     value: Option<f64>,
@@ -110,7 +110,7 @@ impl TableExport {
         (self.written.load(Ordering::Relaxed).min(self.total), self.total)
     }
 
-    /// Returns the number of samples that were removed from the recording before they could be written.
+    /// Returns the number of samples that were dropped from the recording before they could be written.
     pub fn dropped_samples(&self) -> u64 {
         self.lost
     }
@@ -188,7 +188,7 @@ impl Recorder {
         Some(writing)
     }
 
-    /// Passes on as many rows as possible between two frames, without blocking.
+    /// Passes on as many rows as possible without blocking. Called between two frames.
     pub(in crate::app) fn pass_rows_to_export(&mut self) {
         let Some(mut export) = self.export.take() else { return };
         if let Some(sender) = export.sender.clone() {
@@ -209,7 +209,7 @@ impl Recorder {
     }
 
     /// Handles the end of the thread. Returns the number of lost samples, or `None` if the thread belongs to an earlier
-    /// table.
+    /// export.
     pub(in crate::app) fn end_export(&mut self, number: ExportNumber, written: bool) -> Option<u64> {
         let export = self.export.take_if(|export| export.number == number)?;
         if written && export.until.is_some() {
@@ -224,8 +224,7 @@ impl Recorder {
         last.nanoseconds_since(self.saved.map_or(first, |saved| saved.max(first)))
     }
 
-    /// Returns the next rows. Samples of all groups are in chronological order, and samples with the same time share a
-    /// row.
+    /// Returns the next rows, in chronological order over all groups. Samples with the same time share a row.
     fn next_rows(&self, heads: &mut [ExportPosition], columns: &[Column], lost: &mut u64) -> Chunk {
         // The histories have the order of the heads. A group that was removed no longer has samples.
         let histories: Vec<Option<&History>> =

@@ -10,11 +10,11 @@ pub struct SeriesId(pub(super) u32);
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     pub unit: Text,
-    /// Size of this unit in units of the samples, never 0.
+    /// Size of this unit relative to the unit of the samples, never 0.
     pub factor: f64,
-    /// Useful number of decimals.
+    /// Number of decimals to display.
     pub decimals: usize,
-    /// Range of the samples after which the displayed value wraps to 0, or `None` for continuous values.
+    /// Number of counts after which the displayed value wraps to 0, or `None` for continuous values.
     pub range: Option<i64>,
 }
 
@@ -24,7 +24,7 @@ impl Scale {
         Scale { unit: Text::new(unit), factor, decimals, range: None }
     }
 
-    /// Restricts displayed values to a range, without unwrapping.
+    /// Wraps the displayed values at a range of counts.
     #[must_use]
     pub fn within(self, range: i64) -> Self {
         Scale { range: Some(range.max(1)), ..self }
@@ -37,13 +37,13 @@ pub struct Series {
     pub name: Text,
     /// Heading of the column in an exported table.
     pub heading: String,
-    /// Index of the colour, 0 to 7. More than eight lines reuse the colours.
+    /// Index of the colour, 0 to 7. Further lines reuse the colours.
     pub colour: usize,
     pub shown: bool,
-    /// Displayed range of values in the unit of the line. `None` means a range that fits all visible samples.
+    /// Displayed range in the unit of the line, or `None` to fit all visible samples.
     pub range: Option<(f64, f64)>,
     pub ended: bool,
-    /// Whether the values are calculated from another line. If so, a missing value does not indicate a fault of the
+    /// Whether the values are calculated from another line. A missing value then does not indicate a fault of the
     /// device.
     pub derived: bool,
     /// The reason why there are no samples, if known.
@@ -105,7 +105,7 @@ impl Series {
         self.scale().filter(|_| self.scale > 0).map(|scale| scale.unit.clone())
     }
 
-    /// Selects the unit of the displayed values, or the default unit if the given one does not exist.
+    /// Selects the unit in which values are displayed. If it does not exist, the default unit is used.
     pub(super) fn choose_unit(&mut self, unit: Option<&Text>) {
         self.scale = self.scales.iter().position(|scale| Some(&scale.unit) == unit).unwrap_or_default();
     }
@@ -128,7 +128,8 @@ impl Series {
         within_range(sample.value, self.range_of_samples()) * self.factor()
     }
 
-    /// Returns `later` minus `earlier` in the displayed unit. Counts are subtracted before rounding.
+    /// Returns `later` minus `earlier` in the displayed unit. Counts are subtracted as integers before they are
+    /// rounded.
     pub fn difference(&self, earlier: &Sample, later: &Sample) -> f64 {
         let difference = match (earlier.value, later.value) {
             (Value::Whole(earlier), Value::Whole(later)) => (i128::from(later) - i128::from(earlier)) as f64,

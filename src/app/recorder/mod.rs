@@ -1,5 +1,5 @@
-//! A chart recorder, which shows incoming samples as lines over time. It can follow the samples and zoom, and it has
-//! two cursors, a trigger and CSV export. It does not depend on devices or drawing. The owner defines the source, unit
+//! A chart recorder that shows incoming samples as lines over time. It can follow the samples and zoom, and it has two
+//! cursors, a trigger and CSV export. It depends neither on devices nor on drawing. The owner defines the source, unit
 //! and number of the samples.
 
 mod cursors;
@@ -31,11 +31,11 @@ use crate::app::Text;
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecorderAction {
     Show(SeriesId, bool),
-    /// Display a line in the unit with this index.
+    /// Display the values of a line in the unit with this index.
     SetScale(SeriesId, usize),
-    /// Set the displayed range of values of a line. `None` means a range that fits all visible samples.
+    /// Set the displayed range of a line. `None` fits the range to all visible samples.
     SetRange(SeriesId, Option<(f64, f64)>),
-    /// Draw all lines on a common axis, or each line on a separate axis.
+    /// Draw all lines on a common axis, or each line on its own axis.
     ShareAxis(bool),
     Follow,
     Pause,
@@ -54,10 +54,10 @@ pub enum RecorderAction {
     CancelExport,
 }
 
-/// Assumed time between two samples whose interval is unknown, in nanoseconds.
+/// Interval in nanoseconds between two displayed samples without time stamps.
 pub const SAMPLE: i64 = 1_000;
 
-/// The number of a group of samples that are acquired together.
+/// The number of a group of samples that are recorded together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct GroupId(u32);
 
@@ -70,8 +70,8 @@ struct Group {
     longest_pause: Option<i64>,
 }
 
-/// An identifier of the samples of a group. It is unique among all groups, including cleared ones and those of other
-/// recorders.
+/// An identifier of the samples in a group. Unlike a group number, it changes when the group is cleared, and is unique
+/// among all recorders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleGroupStamp(u64);
 
@@ -121,14 +121,13 @@ impl Recorder {
         Recorder { view: TimeWindow::Follow { span: span.max(1) }, ..Recorder::default() }
     }
 
-    /// Creates a recorder for samples without time stamps. The sample with index n is displayed at n times [`SAMPLE`].
-    /// The view follows the samples and shows the given number of them.
+    /// Creates a recorder for samples without time stamps. Sample n is displayed at n times [`SAMPLE`]. The view
+    /// follows the samples and shows the given number of them.
     pub fn without_times(samples: i64) -> Self {
         Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
     }
 
-    /// Marks the recording as complete. A trigger that has not fired is marked as missed, because no more samples
-    /// arrive.
+    /// Marks the recording as complete. A trigger that has not fired by then is marked as missed.
     pub(crate) fn finish(&mut self) {
         self.finished = true;
     }
@@ -137,8 +136,8 @@ impl Recorder {
         self.counts
     }
 
-    /// Adds a group of samples with the given columns, for at most `capacity` samples. Samples that are more than
-    /// `longest_pause` nanoseconds apart are not joined.
+    /// Adds a group for at most `capacity` samples with the given columns. Samples more than `longest_pause`
+    /// nanoseconds apart are not joined.
     pub fn add_group(&mut self, columns: &[Kind], capacity: usize, longest_pause: Option<i64>) -> GroupId {
         let history = Group::history(columns, capacity, longest_pause);
         let id = GroupId(self.next_number());
@@ -147,7 +146,7 @@ impl Recorder {
         id
     }
 
-    /// Adds a line for a column of a group. The first of its scales is displayed.
+    /// Adds a line for a column of a group, displayed in the first of its units.
     pub fn add_line(&mut self, line: Series) -> SeriesId {
         let id = SeriesId(self.next_number());
         let taken = |colour: &usize| self.lines.iter().all(|own| own.colour != *colour);
@@ -156,7 +155,7 @@ impl Recorder {
         id
     }
 
-    /// Removes a line and its samples, unless another line displays samples of the same group.
+    /// Removes a line. Its samples are removed too, unless another line displays samples of the same group.
     pub(in crate::app) fn remove_line(&mut self, id: SeriesId) {
         let Some(at) = self.lines.iter().position(|line| line.id == id) else { return };
         let group = self.lines.remove(at).group;
@@ -176,7 +175,7 @@ impl Recorder {
         self.with_line(id, |line| line.remark = remark);
     }
 
-    /// Appends samples to a group. The whole batch is ignored if it would displace samples of a held view.
+    /// Appends samples to a group. If they would displace samples of a held view, the whole batch is ignored.
     ///
     /// # Errors
     /// Returns an error if the samples do not have the columns of the group, or if a time is earlier than the previous
@@ -243,7 +242,7 @@ impl Recorder {
         self.lines.iter().find(|line| line.id == id)
     }
 
-    /// Returns the displayed lines. A line that has ended is included only if it has samples in the visible range.
+    /// Returns the displayed lines. An ended line is included only if it has samples in the visible range.
     pub fn visible_series(&self) -> impl Iterator<Item = &Series> {
         let (from, to) = self.window_bounds();
         let is_visible = move |line: &&Series| {
@@ -275,7 +274,7 @@ impl Recorder {
         self.groups.values().all(|group| group.history.indices().is_empty())
     }
 
-    /// Returns the sample of a line that is nearest to a point in time.
+    /// Returns the sample of a line nearest to a point in time.
     pub fn nearest_sample(&self, line: &Series, time: SampleTime) -> Option<Sample> {
         let history = self.history(line)?;
         history.sample(line.column, history.nearest_index(time)?)
@@ -295,7 +294,7 @@ impl Recorder {
         ends.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
     }
 
-    /// Discards the samples and the lines that have ended. Active lines, units and the duration of the view are kept.
+    /// Discards all samples and the ended lines. Active lines, units and the duration of the view are kept.
     pub(crate) fn clear(&mut self) {
         let ended: Vec<SeriesId> = self.lines.iter().filter(|line| line.ended).map(|line| line.id).collect();
         ended.into_iter().for_each(|id| self.remove_line(id));

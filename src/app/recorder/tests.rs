@@ -86,7 +86,8 @@ fn zooming_keeps_the_point_under_the_pointer_and_is_limited() {
     assert!(recorder.window_length() > 0);
 }
 
-/// Statistics of 100…200 in steps of 1, calculated in Python: mean 150, stdev 29.300170647967224, times 360/4096.
+/// Statistics of 100…200 in steps of 1 match those calculated in Python: mean 150, stdev 29.300170647967224, times
+/// 360/4096.
 #[test]
 fn cursors_measure_on_the_raw_samples() {
     let (mut recorder, group, [counts, volts]) = recorder(1_000 * MILLISECOND);
@@ -365,7 +366,7 @@ fn a_long_export_is_complete_and_can_be_cancelled() {
     assert!(recorder.export().is_some());
 }
 
-/// A cancelled export creates no file, and an existing file stays unchanged.
+/// A cancelled export creates no file and leaves an existing file unchanged.
 #[test]
 fn an_export_is_cancelled_when_its_samples_are_evicted() {
     for clear in [true, false] {

@@ -1,4 +1,4 @@
-//! The trigger, which waits for an event in a line and then displays it with the samples before it.
+//! The trigger, which waits for an event in a line and then displays the samples around it.
 
 use super::line::within_range;
 use super::{GroupId, Recorder, SeriesId, TimeWindow};
@@ -11,7 +11,7 @@ pub enum TriggerCondition {
     Below,
     Rising,
     Falling,
-    /// The device marks a sample as bad or with a warning.
+    /// The device marks a sample as invalid or with a warning.
     Error,
 }
 
@@ -37,7 +37,7 @@ pub struct Trigger {
     pub level: f64,
     /// Fraction of the view that lies before the event, from 0 to 1.
     pub before: f64,
-    /// Whether the trigger waits for the next event after each view. Otherwise the view is held.
+    /// Whether the trigger waits for another event after each view. Otherwise the view is held.
     pub repeat: bool,
 }
 
@@ -100,9 +100,9 @@ impl TriggerDetector {
         }
     }
 
-    /// Returns whether the value rises to or through the level between `last` and `value`. For a falling edge, the
-    /// caller inverts both signs. Values with a range pass the level once per range. The step from the end of the range
-    /// to 0 is not an edge.
+    /// Returns whether the value reaches or crosses the level between `last` and `value` while rising. For a falling
+    /// edge, the caller inverts both signs. Values with a range cross the level once per range. The step from the end
+    /// of the range to 0 is not an edge.
     fn passes(&self, last: f64, value: f64) -> bool {
         let level = if self.when == TriggerCondition::Falling { -self.level } else { self.level };
         match self.range {
@@ -164,7 +164,7 @@ impl Recorder {
         }
     }
 
-    /// Returns whether new samples of a group would displace samples of a held view.
+    /// Returns whether new samples in a group would displace samples of a held view.
     pub(super) fn would_evict_held_view(&self, group: GroupId, more: usize) -> bool {
         let Some(watch) = self.watch else { return false };
         let (TriggerState::Held(at), Some(group)) = (watch.state, self.groups.get(&group)) else { return false };

@@ -1,4 +1,4 @@
-//! The displayed time range.
+//! The visible time range.
 
 use super::Recorder;
 use crate::analysis::SampleTime;
@@ -10,7 +10,7 @@ const MAX_LENGTH_NS: i64 = 100 * 86_400 * 1_000_000_000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeWindow {
-    /// Displays the newest samples for a fixed duration.
+    /// Displays the newest samples over a fixed duration.
     Follow {
         /// Duration of the view in nanoseconds, at least 1.
         span: i64,
@@ -85,9 +85,9 @@ impl Recorder {
         };
     }
 
-    /// Returns the maximum length of the view. For a complete recording, it is slightly longer than the recording.
+    /// Returns the maximum length of the view. It is limited further if the recording is complete.
     fn longest(&self) -> i64 {
-        /// Ratio of the longest view to the length of the recording.
+        /// Maximum length of the view relative to a complete recording.
         const TIMES: i64 = 4;
         let recorded_span = self.recorded_span().filter(|_| self.finished);
         recorded_span.map_or(MAX_LENGTH_NS, |(first, last)| {
@@ -95,7 +95,7 @@ impl Recorder {
         })
     }
 
-    /// Zooms around a time. If the view follows the samples, the newest one stays in place.
+    /// Zooms around a time. A view that follows the samples keeps the newest sample in place.
     pub(super) fn zoom_around(&mut self, about: SampleTime, factor: f64) {
         if !factor.is_finite() || factor <= 0.0 {
             return;

@@ -1,11 +1,10 @@
-//! Tests of positions that are displayed within a range: readings, statistics and triggers.
+//! Tests of the readings, statistics and triggers of positions displayed within a range.
 
 use super::*;
 
 const RANGE: i64 = 1000;
 
-/// Returns a recorder of positions at intervals of one microsecond. They are displayed in turns of 100 steps within a
-/// range of 1000 steps.
+/// Returns a recorder with one position per microsecond, displayed in turns of 100 steps within a range of 1000 steps.
 fn recorder(steps: &[i64]) -> (Recorder, SeriesId) {
     let mut recorder = Recorder::new(1_000_000);
     let group = recorder.add_group(&[Kind::Whole], 10_000, None);

@@ -9,8 +9,8 @@ use crate::report::{CellStyle, Table};
 
 const ROW: usize = 16;
 
-/// Formats bytes in rows of 16 with their text. `address` formats the address of a row, and `meaning` returns the
-/// meaning of a range of bytes. Consecutive rows of the same byte are summarised.
+/// Formats bytes in rows of 16, with their ASCII text. `address` formats the address of a row, and `meaning` describes
+/// a range of bytes. Consecutive rows of a repeated byte are combined.
 pub fn byte_table(
     context: &ReportContext<'_>,
     bytes: &[u8],
@@ -42,7 +42,7 @@ pub fn byte_table(
     table
 }
 
-/// Returns the first byte and how many times it is repeated at the start.
+/// Returns the first byte and how often it is repeated from there.
 fn leading_repetition(bytes: &[u8]) -> (u8, usize) {
     let first = bytes.first().copied().unwrap_or_default();
     (first, bytes.iter().take_while(|byte| **byte == first).count())

@@ -19,7 +19,8 @@ pub fn company(settings: &Settings) -> Result<Option<Company>, Text> {
     Ok(is_known.then(|| Company { name: name.unwrap_or_default(), logo }))
 }
 
-/// Checks that the company in the settings can be used in reports. This function reads files, so it runs in a task.
+/// Checks that the company name and logo from the settings can be used in reports. This function reads files, so it
+/// runs in a task.
 ///
 /// # Errors
 /// Returns a message if the logo cannot be read or is not a PNG file.

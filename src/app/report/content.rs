@@ -1,4 +1,4 @@
-//! The content of a report that a kind of device provides.
+//! The content of a report, as provided by a kind of device.
 
 use crate::app::{Language, Text, format_decimal, plain_decimals};
 use crate::report::{CellStyle, Fact, Section, Table};
@@ -9,13 +9,13 @@ use crate::store::{DeviceKey, Store};
 pub struct ReportContent {
     /// Name and serial number of the device.
     pub title: String,
-    /// Key of the device in the logbook, or `None` if the profile does not belong to a particular device. A profile
-    /// does not show whether the device is virtual.
+    /// Key of the device in the logbook, or `None` if the profile belongs to no particular device. A profile does not
+    /// state whether the device is virtual.
     pub key: Option<DeviceKey>,
     pub sections: Vec<Section>,
 }
 
-/// The language of a report, and the user's tables.
+/// The language of a report, and the store with the user's tables.
 #[derive(Clone, Copy, Debug)]
 pub struct ReportContext<'a> {
     pub store: &'a Store,
@@ -27,7 +27,7 @@ impl<'a> ReportContext<'a> {
         ReportContext { store, language }
     }
 
-    /// Returns a text in the language of the report.
+    /// Returns a text in the report's language.
     pub fn say(&self, text: impl Into<Text>) -> String {
         text.into().to_string_in(self.language)
     }
@@ -44,7 +44,7 @@ impl<'a> ReportContext<'a> {
         Fact::code(self.say(label), shown)
     }
 
-    /// Formats a number with the decimal separator of the language.
+    /// Formats a number with the decimal separator of the report's language.
     pub fn number(&self, value: f64, decimals: usize) -> String {
         format_decimal(value, decimals, self.language)
     }

@@ -29,9 +29,10 @@ impl ReportFormat {
         }
     }
 
-    /// Renders a report as file content. `printed` is the time of printing.
+    /// Renders a report as file content. `printed` is the time stated in the report.
     ///
-    /// # Errors Returns a message if the PDF document cannot be created.
+    /// # Errors
+    /// Returns a message if the PDF document cannot be created.
     pub fn render(self, report: &Report, printed: &str) -> Result<Vec<u8>, Text> {
         match self {
             ReportFormat::Html => Ok(html::render(report, printed).into_bytes()),
@@ -40,7 +41,7 @@ impl ReportFormat {
     }
 }
 
-/// Formats the time of printing, in the time zone of this computer.
+/// Formats the current time for a report, in the time zone of this computer.
 pub fn current_time_text(now: &Zoned, language: Language) -> String {
     let form = match language {
         Language::English => "%Y-%m-%d %H:%M:%S %Z",

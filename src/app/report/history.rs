@@ -1,4 +1,4 @@
-//! The history of a device in the logbook: what was written to it, what it reported, and the backups taken before.
+//! The history of a device according to the logbook: writes, reported status codes, and the backups made before writes.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use crate::worker::commit::known_cycles;
 /// Maximum number of entries in a report.
 const LIMIT: u32 = 500;
 
-/// Entries of the logbook about one device, newest first.
+/// Logbook entries about one device, newest first.
 #[derive(Debug, Default)]
 pub(super) struct History {
     entries: Vec<Entry>,
@@ -23,7 +23,7 @@ pub(super) struct History {
     has_more: bool,
     /// Write cycles of the device, or `None` if they are unknown.
     write_cycles: Option<CycleCount>,
-    /// Whether virtual devices are named, because the entries may belong to real ones too.
+    /// Whether virtual devices are marked as such, because the entries may belong to real devices too.
     names_virtual: bool,
     backups: Vec<BackupFile>,
 }
@@ -33,12 +33,11 @@ pub(super) struct History {
 struct BackupFile {
     entry: String,
     name: String,
-    /// SHA-256 of the file, or the reason why it is not known.
+    /// SHA-256 of the file, or the reason why it cannot be determined.
     checksum: Result<String, Text>,
 }
 
-/// Reads the history of a device. The history of a profile includes the entries of real and virtual devices with its
-/// serial number.
+/// Reads the history of a device. For a profile, it includes both real and virtual devices with its serial number.
 pub(super) fn read(content: &ReportContent, source: &ReportSource, store: &Store) -> Result<History, Text> {
     let path = store.logbook_path();
     let Some(key) = content.key.as_ref().filter(|key| !key.serial_number.is_empty()) else {
@@ -85,7 +84,7 @@ impl History {
         self.entries.first()?.asset.as_deref()
     }
 
-    /// Returns the sections of the history. There are none without entries.
+    /// Returns the sections of the history, or none if there are no entries.
     pub(super) fn sections(&self, context: &ReportContext<'_>, kinds: KindRegistry) -> Vec<Section> {
         if self.entries.is_empty() {
             return Vec::new();
@@ -160,7 +159,7 @@ impl BackupFile {
     }
 }
 
-/// Returns the description of an entry without items. A profile is named without its folder.
+/// Returns the description of an entry without items. Profiles are named without their folder.
 fn description(entry: &Entry) -> String {
     match &entry.backup {
         Some(path) if entry.kind == EntryKind::Backup => file_name(path),
@@ -168,7 +167,7 @@ fn description(entry: &Entry) -> String {
     }
 }
 
-/// Returns the kind of an entry and the user, and the result of a write unless everything was written.
+/// Describes an entry by its kind, its user and, for an incomplete write, the result.
 fn what(context: &ReportContext<'_>, entry: &Entry, names_virtual: bool) -> String {
     let kind = context.say(entry_kind_text(entry.kind));
     let kind = if names_virtual && entry.device.is_virtual {

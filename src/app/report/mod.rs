@@ -1,5 +1,6 @@
-//! Reports: the values of a profile with their meaning, their history and the differences to another profile. A report
-//! is created in the same way for the window and the command line, from a profile and the logbook. Runs in a task.
+//! Reports on a profile: its values and what they mean, the history of the device, and the differences from another
+//! profile. The window and the command line create reports in the same way, from a profile and the logbook. Runs in a
+//! task.
 
 mod bytes;
 mod company;
@@ -34,19 +35,19 @@ use crate::store::{AssetName, Store};
 /// Function that creates a report in a task.
 pub type CreateReport = Box<dyn FnOnce(&ReportContext<'_>) -> Result<Report, Text> + Send>;
 
-/// The subject of a report and what it contains in addition to the values.
+/// The subject of a report, and what the report contains besides the values.
 #[derive(Clone, Debug)]
 pub struct ReportRequest {
-    /// Values of the report.
+    /// Values to report.
     pub document: ProfileDocument,
     /// Name of the profile without its folder, or the link to the device without secrets.
     pub source: ReportSource,
-    /// Profile to compare with, and its name.
+    /// Name and content of the profile to compare with.
     pub compared: Option<(String, Body)>,
     pub asset: Option<AssetName>,
-    /// What the device reported when it was read, or `None` if it is not known.
+    /// Status that the device reported when it was read, if known.
     pub status: Option<Vec<StatusLine>>,
-    /// Results of the present session, for a device that is open in the window.
+    /// Results of the current session, for a device that is open in the window.
     pub results: Vec<SessionResult>,
     pub language: Language,
 }
@@ -67,7 +68,7 @@ impl ReportRequest {
         ReportRequest { document, source, compared: None, asset: None, status: None, results: Vec::new(), language }
     }
 
-    /// Creates a request for a device that was read just now.
+    /// Creates a request for a device that has just been read.
     pub fn for_device(url: &LinkUrl, kinds: KindRegistry, reading: DeviceReading, language: Language) -> Self {
         let source = ReportSource::Device { link: kinds.display_link(url), is_virtual: url.scheme == LinkScheme::Sim };
         let (document, status) = (new_document(reading.body), reading.status);
@@ -104,7 +105,7 @@ impl ReportRequest {
     }
 }
 
-/// Creates the report of data that are not a profile, such as a capture. `source` is the label of their name.
+/// Creates a report on data other than a profile, such as a capture. `source` is the label for the name.
 pub fn data_report(
     context: &ReportContext<'_>,
     (subject, source): (Text, Text),

@@ -1,5 +1,4 @@
-//! Results of the current session for a report, which come from device checks and procedures. Profiles do not contain
-//! these results.
+//! Results of the current session for a report: device checks and procedures. Profiles do not contain these results.
 
 use super::ReportContext;
 use crate::analysis::check::Verdict;
@@ -12,7 +11,7 @@ use crate::report::{Block, CellStyle, Mark, Section};
 pub enum SessionResult {
     /// Results of a device check.
     Check(Vec<CheckLine>),
-    /// Title of a procedure and its results in order.
+    /// Title of a procedure, and its results in order.
     Procedure { title: Text, lines: Vec<Text> },
 }
 

@@ -1,4 +1,4 @@
-//! Sections that the reports of all devices have.
+//! Sections common to the reports of all devices.
 
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
@@ -8,12 +8,12 @@ use crate::app::{ComparedRows, ItemValue, Text};
 use crate::bits::hex;
 use crate::report::{Block, CellStyle, Fact, Section};
 
-/// Formats a time. Reports give UTC, so that a report of the same content is the same everywhere.
+/// Formats a time in UTC, so that reports with the same content are identical everywhere.
 pub(super) fn time(at: Timestamp) -> String {
     at.to_zoned(TimeZone::UTC).strftime("%Y-%m-%d %H:%M:%S UTC").to_string()
 }
 
-/// Lists the differences to another profile.
+/// Lists the differences from another profile.
 pub(super) fn comparison_section(context: &ReportContext<'_>, name: &str, compared: &ComparedRows) -> Section {
     let section = Section::new(context.say(Text::new("report.compared").with("name", name)));
     let summary = match compared.different {

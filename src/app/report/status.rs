@@ -5,19 +5,19 @@ use crate::app::Text;
 use crate::profile::Body;
 use crate::report::{Block, CellStyle, Mark, Section};
 
-/// A current error or warning that a device reports, or an earlier one from the memory of the device.
+/// An error or warning, either current or from the memory of the device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StatusLine {
     pub mark: Mark,
     /// Code in the notation of the manual.
     pub code: String,
     pub text: Text,
-    /// Causes and remedies, if the manual names them.
+    /// Causes and remedies given in the manual, if any.
     pub advice: Vec<Text>,
 }
 
-/// Values that were read from a device for a report, and its reported status. The status is `None` for a kind of device
-/// that does not report one.
+/// Values read from a device for a report, with the status it reported. The status is `None` for a kind of device
+/// without one.
 #[derive(Clone, Debug)]
 pub struct DeviceReading {
     pub body: Body,

@@ -1,11 +1,11 @@
-//! Texts of a review that explain which values a write leaves unchanged, which values must be set up again, and how the
-//! write can be undone.
+//! Texts of a review that explain which values a write skips, which values must be set up again, and how the write can
+//! be undone.
 
 use crate::app::Text;
 use crate::app::explain::{literal_text, redo_text, truncated_list};
 use crate::worker::commit::Undo;
 
-/// Describes how a write can be undone later. Only operations that cannot be undone exactly are named.
+/// Describes how a write can be undone later. Operations are named only if they cannot be undone exactly.
 pub(crate) fn undo_texts(operations: impl IntoIterator<Item = (Text, Option<Undo>)>) -> Vec<Text> {
     let mut has_exact = false;
     let mut groups: Vec<(Undo, Vec<Text>)> = Vec::new();
@@ -47,8 +47,8 @@ fn undo_text(undo: &Undo) -> Text {
     }
 }
 
-/// Describes the values that a restore does not change: values that the profile or the device does not have, and values
-/// that depend on a different mounting.
+/// Describes the values that a restore does not change: those missing from the profile or the device, and those that
+/// depend on how the device is mounted.
 pub(crate) fn skipped_texts(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
     let mut texts = Vec::new();
     if !missing.is_empty() {

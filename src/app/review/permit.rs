@@ -7,9 +7,9 @@ pub enum Permit {
     OtherDevice,
     TypeMismatch,
     Mounting,
-    /// Allows deleting and re-creating data fields.
+    /// Permission to delete and re-create data fields.
     Recreate,
-    /// Allows copying the bytes of this data field to another device although their meaning is unknown.
+    /// Permission to copy the bytes of this data field to another device, although their meaning is unknown.
     Copy(u8),
 }
 
@@ -21,7 +21,7 @@ pub struct PermitToggle {
 }
 
 impl Permit {
-    /// All permissions in display order, except those for individual fields.
+    /// All permissions in display order, except those for single data fields.
     pub(super) const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::TypeMismatch, Permit::Mounting, Permit::Recreate];
 
     pub const fn keyword(self) -> &'static str {
@@ -43,8 +43,7 @@ impl Permit {
         }
     }
 
-    /// Returns the restore option that grants this permission, or `None` if not all kinds of devices have such an
-    /// option.
+    /// Returns the restore option that grants this permission, if there is one for all kinds of devices.
     pub fn restore_option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
         match self {
             Permit::OtherDevice => Some(&mut options.allow_other_device),

@@ -1,5 +1,5 @@
-//! Undo of a write recorded in the logbook. This module checks whether values have changed since the write, and
-//! describes the items that are not undone.
+//! Undo of a write recorded in the logbook: checks whether values have changed since the write, and describes the items
+//! that are not undone.
 
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
@@ -10,7 +10,7 @@ use crate::profile::{Body, ChangedSince, KeptItem, UndoneWrite};
 use crate::store::{Entry, EntryUid};
 use crate::worker::commit::PlannedWrite;
 
-/// A logbook entry that is undone by restoring its backup.
+/// A logbook entry that is being undone by restoring its backup.
 #[derive(Clone, Debug)]
 pub struct UndoneEntry {
     uid: EntryUid,
@@ -24,7 +24,8 @@ pub struct UndoneEntry {
 impl UndoneEntry {
     /// Removes from the backup the values that the write did not change.
     ///
-    /// # Errors Returns one text per item if no item can be undone.
+    /// # Errors
+    /// Returns one message per item if no item can be undone.
     pub(in crate::app) fn new(entry: &Entry, backup: &mut Body) -> Result<Self, Vec<Text>> {
         let write = UndoneWrite::new(&entry.items, backup);
         let undone_at = entry.undone_by.map(|own| minutes(own.at));
@@ -44,7 +45,7 @@ impl UndoneEntry {
         &self.uid
     }
 
-    /// Returns a warning if the entry was undone before, followed by descriptions of the items that are not undone.
+    /// Returns a warning if the entry has been undone before, and a description of each item that is not undone.
     pub(super) fn warnings(&self) -> impl Iterator<Item = Text> {
         self.already_undone().into_iter().chain(self.kept_texts())
     }
@@ -53,15 +54,15 @@ impl UndoneEntry {
         self.undone_at.as_ref().map(|at| Text::new("undo.already").with("time", at))
     }
 
-    /// Describes each item that is not undone, and what the user must do instead.
+    /// Describes each item that is not undone, and what to do instead.
     fn kept_texts(&self) -> Vec<Text> {
         let kept =
             |own: &KeptItem| Text::new("undo.kept").with("item", &own.item).with_text("instead", redo_text(&own.redo));
         truncated_list(self.write.kept(), kept)
     }
 
-    /// Returns the reason why a plan is rejected, which lists the values that have changed since the write, or `None`
-    /// if no value has changed.
+    /// Returns the reason for rejecting a plan, with the values that have changed since the write. Returns `None` if
+    /// none have changed.
     pub(super) fn rejection<P: PlannedWrite>(&self, prepared: &P) -> Option<Vec<Text>> {
         let planned = prepared.plan().ops.iter().flat_map(|op| prepared.changed_items(op));
         let changed = self.write.changed_since(planned);

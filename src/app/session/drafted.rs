@@ -1,5 +1,5 @@
-//! A device or profile whose edits survive a crash. Each kind of device defines its edits and their key. Loading,
-//! storing and discarding drafts works the same for all kinds.
+//! Sessions whose edits survive a crash. Each kind of device defines its edits and their key. Loading, storing and
+//! discarding drafts is the same for all kinds.
 
 #![warn(missing_docs)]
 
@@ -16,11 +16,11 @@ type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 
 /// A session whose edits are stored as a draft.
 pub trait HasDraft: HasSession {
-    /// Returns the key of the device in the logbook. Returns `None` before the device has been read, and for a device
-    /// that has no identity.
+    /// Returns the key of the device in the logbook. Returns `None` until the device has been read, and for a device
+    /// without an identity.
     fn device_key(&self) -> Option<DeviceKey>;
 
-    /// Returns the type and serial number used as the name of the device's draft, or `None` if no data has been read.
+    /// Returns the type and serial number that name the device's draft, or `None` if no data has been read.
     ///
     /// The type is included because devices of different types may have the same serial number. The serial number is
     /// empty for a device that has no identity.
@@ -31,16 +31,16 @@ pub trait HasDraft: HasSession {
     /// Returns the current edits.
     fn current_edits(&self) -> Edits<Self>;
 
-    /// Restores earlier edits. Edits that are no longer valid are omitted.
+    /// Restores the edits of a draft, omitting those that are no longer valid.
     fn take_edits(&mut self, edits: Edits<Self>);
 
-    /// Adopts a profile that was read again from its file. Edits are kept.
+    /// Adopts a profile that was read from its file again. Edits are kept.
     fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument);
 
-    /// Returns the edits, to count them.
+    /// Returns the edits for counting.
     fn pending_edits(&self) -> &dyn PendingEdits;
 
-    /// Returns the edits, to undo and redo them.
+    /// Returns the edits for undo and redo.
     fn pending_mut(&mut self) -> &mut dyn PendingEdits;
 
     /// Discards all edits as one undo step.
@@ -48,10 +48,10 @@ pub trait HasDraft: HasSession {
         self.pending_mut().discard_all();
     }
 
-    /// Handles the successful saving of a connected device's profile to a file.
+    /// Handles a successful save of a connected device's profile.
     fn handle_profile_saved(&mut self, _document: ProfileDocument) {}
 
-    /// Returns the key of the draft, or `None` for a device that has no identity.
+    /// Returns the key of the draft, or `None` for a device without an identity.
     fn draft_key(&self) -> Option<DraftKey> {
         match &self.session().source {
             Source::File { key, .. } => Some(DraftKey::for_file(Self::Device::KIND, key)),
@@ -66,14 +66,14 @@ pub trait HasDraft: HasSession {
         }
     }
 
-    /// Starts a task that loads a draft with earlier edits.
+    /// Starts a task that loads the draft of an earlier session.
     fn load_draft(&mut self, services: &Services) {
         if let Some(key) = self.draft_key() {
             self.session_mut().drafting.load(key, services);
         }
     }
 
-    /// Handles the result of a draft task.
+    /// Handles the result of a task that reads or writes the draft.
     fn take_draft(&mut self, done: DraftOutcome, services: &mut Services) {
         let (key, name, dirty) = (self.draft_key(), self.session().name(), !self.current_edits().has_no_edits());
         if let Some(edits) = self.session_mut().drafting.handle_outcome(done, key.as_ref(), dirty, &name, services) {
@@ -83,7 +83,7 @@ pub trait HasDraft: HasSession {
         }
     }
 
-    /// Stores the edits if they have changed. This must be called once per frame.
+    /// Stores the edits if they have changed. Must be called once per frame.
     fn write_draft(&mut self, services: &mut Services) {
         if !self.session().drafting.is_due() {
             return;
@@ -105,14 +105,14 @@ pub trait HasDraft: HasSession {
         self.session().drafting.is_loaded() && self.draft_key().is_some()
     }
 
-    /// Keeps the edits of the previous device on disk, because that device is no longer open.
+    /// Leaves the edits of the previous device on disk, because that device is no longer open.
     fn release_draft(&mut self, services: &mut Services) {
         let (key, edits) = (self.draft_key(), self.current_edits());
         self.session_mut().drafting.leave_on_disk(key, edits, services);
     }
 
-    /// Handles the result of writing a profile. If the profile is saved to a new file, its draft and any earlier draft
-    /// of that file are removed.
+    /// Handles the result of writing a profile. If the profile now has another file, its old draft and any draft of
+    /// that file are removed.
     fn handle_profile_written(
         &mut self,
         saving: SaveRequest,

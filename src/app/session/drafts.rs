@@ -1,4 +1,4 @@
-//! Drafts, which preserve edits across a crash. Each edit is stored immediately in the program's data folder, in one
+//! Drafts, which preserve edits across a crash. Each edit is stored immediately in the program's data folder, with one
 //! file per device or profile.
 //!
 //! A draft has a single owner. A second session with the same device, in this or another window, neither adopts nor
@@ -19,7 +19,7 @@ use crate::store::{Claim, Drafts, FileError};
 
 pub(super) const DRAFT_RESTORED_ID: &str = "session.draft_back";
 
-/// Maximum waiting time for another session to release its claim. A closed session may still be writing.
+/// Maximum time to wait for another session to release its claim on a draft. A closed session may still be writing.
 const CLAIM_TIMEOUT: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_millis(20);
 
@@ -44,7 +44,7 @@ impl DraftKey {
 pub enum DraftOutcome {
     Looked {
         key: DraftKey,
-        /// The right to store the draft, or `None` if another window or session holds it.
+        /// Exclusive right to store the draft, or `None` if another window or session holds it.
         claim: Result<Option<Claim>, FileError>,
         result: Result<Option<String>, FileError>,
     },
@@ -67,20 +67,20 @@ impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> Draft
 #[derive(Debug)]
 pub(crate) struct ActiveDraft<E> {
     session: SessionId,
-    /// Edits most recently passed on for storage.
+    /// Edits passed on for storage most recently.
     kept: E,
     busy: bool,
     /// Whether the edits may have changed since they were last passed on for storage.
     due: bool,
-    /// Whether the search for an earlier draft has been completed. Until then, the draft is not overwritten.
+    /// Whether the search for an earlier draft has ended. Until then, the draft is not overwritten.
     is_loaded: bool,
-    /// The right to store the draft, or `None` if another window or session holds it.
+    /// Exclusive right to store the draft, or `None` if another window or session holds it.
     claim: Option<Arc<Claim>>,
     is_failure_reported: bool,
 }
 
-/// Returns the name of the draft for a file, which is the same for every path to the file. This function accesses the
-/// disk, so it must run in a task.
+/// Returns the draft name for a file, which is the same for every path to that file. This function accesses the disk,
+/// so it must run in a task.
 pub(in crate::app) fn file_key(path: &Path) -> String {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     // The hash is FNV-1a in every version of the program.
@@ -92,7 +92,7 @@ pub(in crate::app) fn file_key(path: &Path) -> String {
 }
 
 impl<E: DraftEdits> ActiveDraft<E> {
-    /// Creates the state of a draft for which no earlier draft has been searched yet.
+    /// Creates the state of a draft before the search for an earlier one.
     pub(in crate::app) fn new(session: SessionId) -> Self {
         ActiveDraft {
             session,
@@ -109,8 +109,8 @@ impl<E: DraftEdits> ActiveDraft<E> {
         self.claim_draft(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
     }
 
-    /// Claims the draft of a newly saved profile without edits. An earlier draft belongs to the replaced file and is
-    /// removed.
+    /// Claims the draft of a newly saved profile without edits. An earlier draft belongs to the file that was replaced,
+    /// and is removed.
     pub(in crate::app) fn begin_for_profile(&mut self, key: DraftKey, services: &Services) {
         self.claim_draft(key, services, |drafts, key| drafts.remove(&key.kind, &key.name).map(|()| None));
     }
@@ -140,7 +140,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         });
     }
 
-    /// Handles the result of a task. Returns the edits of an earlier session, if any.
+    /// Handles the result of a draft task. Returns the edits of an earlier session, if any.
     ///
     /// A result for a draft other than `own` is outdated. If `dirty` is set, new edits take precedence over earlier
     /// ones.
@@ -193,7 +193,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         }
     }
 
-    /// Handles the restoration of earlier edits. `edits` contains those that are still valid.
+    /// Handles the edits restored from a draft. `edits` contains those that are still valid.
     pub(in crate::app) fn restore_edits(&mut self, edits: E, name: &str, services: &mut Services) {
         if !edits.has_no_edits() {
             services.notify(Severity::Warning, vec![Text::new(DRAFT_RESTORED_ID)], Some(name));
@@ -223,13 +223,12 @@ impl<E: DraftEdits> ActiveDraft<E> {
         self.due = true;
     }
 
-    /// Returns whether the edits must be compared again, because events have arrived since the last check.
+    /// Returns whether events have arrived since the last check, so that the edits must be compared again.
     pub(in crate::app) fn is_due(&self) -> bool {
         self.due && !self.busy
     }
 
-    /// Stores the edits if they have changed. Only one task runs at a time, so later changes are stored by the next
-    /// one.
+    /// Stores the edits if they have changed. Only one task runs at a time; later changes are stored by the next one.
     pub(in crate::app) fn save(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         if self.busy {
             return;
@@ -244,16 +243,15 @@ impl<E: DraftEdits> ActiveDraft<E> {
         store_edits(key, edits, self.claim.clone(), self.session, services);
     }
 
-    /// Reports that edits of a device without a serial number are not stored as a draft. The report is made once, at
-    /// the first edit.
+    /// Reports, once at the first edit, that edits of a device without a serial number are not stored as a draft.
     pub(in crate::app) fn report_missing_draft(&mut self, name: &str, services: &mut Services) {
         if !std::mem::replace(&mut self.is_failure_reported, true) {
             services.notify(Severity::Warning, vec![Text::new("session.draft_none")], Some(name));
         }
     }
 
-    /// Returns whether the search for an earlier draft has been completed. If so, edits are restored when the device is
-    /// opened again.
+    /// Returns whether the search for an earlier draft has ended. Edits are then restored when the device is opened
+    /// again.
     pub(crate) fn is_loaded(&self) -> bool {
         self.is_loaded
     }
@@ -262,7 +260,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         !self.busy
     }
 
-    /// Keeps the edits of the previous device on disk, because that device is no longer open.
+    /// Leaves the edits of the previous device on disk, because that device is no longer open.
     pub(in crate::app) fn leave_on_disk(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         let before = std::mem::replace(self, ActiveDraft::new(self.session));
         if let Some(key) = key
@@ -273,7 +271,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         }
     }
 
-    /// Removes the draft, because the edits are now stored in another file.
+    /// Removes the draft because the edits are now stored in another file.
     pub(in crate::app) fn remove_draft(&mut self, key: Option<DraftKey>, services: &mut Services) {
         let before = std::mem::replace(self, ActiveDraft::new(self.session));
         if let Some(key) = key
@@ -284,7 +282,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
     }
 }
 
-/// Stores edits in a task. The claim is held until they are stored.
+/// Starts a task that stores edits. The claim is held until they are stored.
 fn store_edits<E: DraftEdits>(
     key: DraftKey,
     edits: E,

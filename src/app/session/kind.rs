@@ -1,5 +1,5 @@
-//! The types and functions that define a kind of device. They allow sessions of all kinds to be opened, run and
-//! released in the same way.
+//! The types and functions that define a kind of device, so that sessions of all kinds can be opened, run and released
+//! in the same way.
 
 #![warn(missing_docs)]
 
@@ -11,7 +11,7 @@ use crate::link::LinkUrl;
 use crate::store::Store;
 use crate::worker::{Device, Event, JobId, OpenError, Session};
 
-/// A kind of device, with everything that its sessions need.
+/// A kind of device, as needed by its sessions.
 pub trait Kind: Device + Sized {
     /// Name of the kind of device in profiles.
     const KIND: &'static str;
@@ -19,16 +19,16 @@ pub trait Kind: Device + Sized {
     /// Edits that survive a crash.
     type Edits: DraftEdits;
 
-    /// Handle of a session that stays outside the session's thread.
+    /// Handle that stays with the window while the session runs on its thread.
     type SessionHandle: Send;
 
     /// Review of a write: [`Review`](crate::app::review::Review) for a kind of device with a memory.
     type Review;
 
-    /// Whether reading live values may start automatically on a line without another master.
+    /// Whether live values may start automatically on a line without another master.
     const STARTS_LIVE: bool = true;
 
-    /// Returns the handle that the window keeps when the session moves to its thread.
+    /// Returns the handle that stays with the window when the session moves to its thread.
     fn session_handle(session: &Session<Self>) -> Self::SessionHandle;
 
     /// Opens a link to a device of this kind.
@@ -50,7 +50,7 @@ pub trait Kind: Device + Sized {
     /// Returns the name of a job.
     fn job_text(job: &Self::Job) -> Text;
 
-    /// Returns whether a job changes the memory of the device.
+    /// Returns whether a job writes to the memory of the device.
     fn writes_memory(_job: &Self::Job) -> bool {
         false
     }
@@ -61,7 +61,7 @@ pub trait Kind: Device + Sized {
     /// Returns the description of a step of a job.
     fn step_text(what: &Self::JobStep) -> Text;
 
-    /// Returns the texts about the result of a job that writes, or `None` for any other job.
+    /// Returns the message about the result of a writing job, or `None` for any other job.
     fn result_texts(_output: &Self::Output) -> Option<(Severity, Vec<Text>)> {
         None
     }
@@ -72,7 +72,7 @@ pub trait Kind: Device + Sized {
     /// Returns the reason why the connection was lost, or `None` if the error does not end the connection.
     fn connection_error(error: &Self::Error) -> Option<Text>;
 
-    /// Returns the message about the end of a job in a released session, or `None` if the event does not end a job.
+    /// Returns the message about the last job of a released session, or `None` if the event does not end a job.
     fn job_completions(event: &Event<Self>) -> Option<JobCompletion> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {
@@ -91,7 +91,7 @@ pub trait Kind: Device + Sized {
     }
 }
 
-/// The end of the last job of a released session.
+/// How the last job of a released session has ended.
 pub struct JobCompletion {
     pub(in crate::app) job: JobId,
     pub(in crate::app) end: JobState,

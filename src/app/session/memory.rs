@@ -1,4 +1,4 @@
-//! Writes to device memory after a review by the user. A plan is made for a change, and a job executes the approved
+//! Writes to device memory, which the user reviews first. A change leads to a plan, and a job executes the approved
 //! plan. Each kind of device defines its own changes, plans and jobs, and the further effects of a write.
 
 #![warn(missing_docs)]
@@ -40,29 +40,29 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         Self::Device::operation_texts(prepared, op)
     }
 
-    /// Returns the review as it is displayed, after `done` operations have been executed.
+    /// Returns the review in displayable form, after `done` completed operations.
     fn review_sheet(&self, done: usize) -> Option<ReviewSheet> {
         self.open_review().map(|review| review.review_sheet(done, |prepared, op| self.operation_texts(prepared, op)))
     }
 
-    /// Returns the change that writes the edits, or `None` if there are no edits.
+    /// Returns the change that writes the edits, if any.
     fn edited_change(&self) -> Option<Change<Self>>;
 
     /// Returns whether a change was made for a device other than the connected one.
     fn is_for_other_device(&self, change: &Change<Self>) -> bool;
 
-    /// Returns whether a change was made for another type of device. The default is for kinds of devices that require
-    /// no separate permission for this case.
+    /// Returns whether a change was made for another type of device. The default is for kinds of devices that need no
+    /// separate permission in this case.
     fn is_for_other_type(&self, _change: &Change<Self>) -> bool {
         false
     }
 
-    /// Returns whether a plan was made for a device other than the one read before.
+    /// Returns whether a plan was made for a device other than the one last read.
     fn targets_other_device(&self, prepared: &Prepared<Self>) -> bool {
         self.device_key().is_some_and(|own| own != prepared.device(own.is_virtual))
     }
 
-    /// Creates the job that prepares the plan of a change.
+    /// Creates the job that makes the plan for a change.
     fn prepare_job(change: Change<Self>) -> Job<Self>;
 
     /// Creates the job that executes an approved plan.
@@ -71,10 +71,10 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Discards all data about the previous device after a different device has replied.
     fn discard_device_data(&mut self);
 
-    /// Prepares the display of a review.
+    /// Prepares data that are needed to display a review.
     fn prepare_review(&mut self) {}
 
-    /// Returns the reason why a change is impossible, if this is known without a request to the device.
+    /// Returns the reason why a change is impossible, if this is known without asking the device.
     fn change_rejection(&self, _change: &Change<Self>) -> Option<Text> {
         None
     }
@@ -84,14 +84,13 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         None
     }
 
-    /// Marks the values that the plan changes as unread, so that they are read again. This method is called regardless
-    /// of how the plan ends.
+    /// Marks the values changed by the plan as unread, so that they are read again. Called however the plan ends.
     fn schedule_rereads(&mut self) {}
 
-    /// Handles the end of a plan that has been executed.
+    /// Handles the result of an executed plan.
     fn handle_executed_plan(&mut self, _committed: &Committed<Self>, _services: &mut Services) {}
 
-    /// Logs the start of a write and its changes.
+    /// Logs the start of a write and the items to be written.
     fn log_write_start(&self, what: &Text, prepared: &Prepared<Self>, services: &mut Services) {
         let ops = &prepared.plan().ops;
         let operations = ops.iter().map(|op| Self::Device::operation_texts(prepared, op).item);
@@ -99,7 +98,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         services.log_only(Severity::Note, vec![text], Some(&self.session().name()));
     }
 
-    /// Requests a plan for writing the edits, to be reviewed by the user.
+    /// Opens the review of writing the edits, and requests its plan.
     fn review_edits(&mut self, services: &mut Services) {
         match self.edited_change() {
             Some(change) => self.plan(change, services),
@@ -110,13 +109,13 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Requests a plan for a change, to be reviewed by the user.
+    /// Opens the review of a change, and requests its plan.
     fn plan(&mut self, change: Change<Self>, services: &mut Services) {
         let review = Review::new(change.clone(), self.is_for_other_device(&change), self.is_for_other_type(&change));
         self.request_plan(change, review, services);
     }
 
-    /// Requests a plan for the change that undoes an entry of the logbook, to be reviewed by the user.
+    /// Opens the review of undoing a logbook entry, and requests its plan.
     fn plan_undo(&mut self, change: Change<Self>, undone: UndoneEntry, services: &mut Services) {
         let review = Review::new(change.clone(), self.is_for_other_device(&change), self.is_for_other_type(&change));
         self.request_plan(change, review.undoing(undone), services);
@@ -155,8 +154,8 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Adopts a plan for review. If another device has replied, the plan is discarded, because the change was meant for
-    /// the previous device.
+    /// Adds a plan to its review. If another device has replied, the plan is discarded, because the change was meant
+    /// for the previous device.
     fn adopt_plan(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
         if self.targets_other_device(&prepared) {
             *self.review_mut() = None;
@@ -176,8 +175,8 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Handles the replacement of the device by another one. The edits for the previous device stay on disk if that
-    /// device has a serial number.
+    /// Handles the replacement of the device by another one. Edits stay on disk if the previous device has a serial
+    /// number.
     fn handle_device_replacement(&mut self, serial: &str, services: &mut Services) {
         if self.pending_edits().is_dirty() {
             let is_kept = self.type_and_serial().is_some_and(|(_, serial)| !serial.is_empty());
@@ -199,7 +198,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Approves the displayed plan, if it is the plan under review.
+    /// Approves the plan shown to the user, if it is still the plan under review.
     fn approve_plan(&self, shown: PlanId) -> Option<ApprovedPlanOf<Self::Device>> {
         let review = self.open_review().filter(|_| self.session().is_ready())?;
         let ReviewState::Ready(prepared) = &review.state else { return None };
@@ -258,8 +257,8 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         self.submit(Self::Device::survey_job(), services);
     }
 
-    /// Handles an interruption while a plan is prepared or executed. Returns whether the review reports it. If the user
-    /// cancels during preparation, the review is closed.
+    /// Handles the interruption of a plan, and returns whether the review reports it. If the user cancels while the
+    /// plan is being made, the review closes.
     fn handle_interrupted_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
         let Some(review) = self.open_review() else { return false };
         let (begun, done) = match (how, review.is_planning(), review.is_writing()) {
@@ -284,7 +283,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         true
     }
 
-    /// Discards a plan that has not been started.
+    /// Discards a plan that has not been started, with its review.
     fn discard_plan(&mut self) {
         if self.open_review().is_some_and(Review::is_pending_plan) {
             *self.review_mut() = None;

@@ -1,5 +1,5 @@
 //! The parts common to all sessions: source, connection, line, trace, backups and writes. Each kind of device adds
-//! further parts in its own folder.
+//! further parts.
 
 mod drafted;
 mod drafts;
@@ -50,10 +50,10 @@ pub enum Source {
         key: String,
         /// The document without the user's edits.
         document: Box<ProfileDocument>,
-        /// Text of the file. Its comments, order and line endings are those of the user and are preserved.
+        /// Text of the file. The user's comments, order and line endings are preserved.
         text: String,
     },
-    /// A new profile that has not been saved yet.
+    /// A new profile that has never been saved.
     New {
         suggested: PathBuf,
     },
@@ -95,7 +95,7 @@ pub struct Session<D: Kind> {
     pub review: Option<D::Review>,
 }
 
-/// Gives direct access to the state of the session.
+/// Gives direct access to the session's common state.
 impl<D: Kind> Deref for Session<D> {
     type Target = SessionState;
 
@@ -111,7 +111,7 @@ impl<D: Kind> DerefMut for Session<D> {
 }
 
 impl<D: Kind> Session<D> {
-    /// Creates a session for a link that is being opened. `kinds` determines which parameters are secret.
+    /// Creates a session for a link that is being opened. `kinds` determine which link parameters are secret.
     pub fn for_link(id: SessionId, url: LinkUrl, kinds: KindRegistry) -> Self {
         let mut own = Session::new(id, Source::Link(url), Phase::Opening);
         own.kinds = kinds;
@@ -122,7 +122,7 @@ impl<D: Kind> Session<D> {
         Session::new(id, file.source(document), Phase::Offline)
     }
 
-    /// Creates a session for a profile that has no tab, such as one shown in a report.
+    /// Creates a session for a profile without a tab, such as one shown in a report.
     pub(crate) fn without_tab(document: &ProfileDocument) -> Self {
         let file = ProfileFile { path: PathBuf::new(), key: String::new(), text: String::new() };
         Session::from_file(SessionId::default(), file, document.clone())
@@ -192,8 +192,8 @@ impl<D: Kind> Session<D> {
         self.just_connected = true;
     }
 
-    /// Sets the polling interval, or stops polling. Returns whether polling starts with this call, or `None` if the
-    /// session has no line.
+    /// Sets the polling interval, or stops polling. Returns whether polling starts with this call, or `None` without a
+    /// connection.
     pub(crate) fn poll(&mut self, interval: Option<Duration>) -> Option<bool> {
         let line = self.line.as_mut()?;
         let begins = line.polling_interval().is_none();
@@ -201,8 +201,8 @@ impl<D: Kind> Session<D> {
         Some(begins)
     }
 
-    /// Handles the end of polling and its reason. `is_silent` is set if the device does not reply at all. Polling that
-    /// has been requested again in the meantime continues.
+    /// Handles the end of polling and its reason. `is_silent` is set if the device does not reply at all. Has no effect
+    /// if polling has been requested again in the meantime.
     pub(in crate::app) fn handle_polling_failure(&mut self, why: Vec<Text>, is_silent: bool, services: &mut Services) {
         if self.is_polling() {
             return;
@@ -216,7 +216,7 @@ impl<D: Kind> Session<D> {
         self.report_message(Severity::Error, texts, stands_there, services);
     }
 
-    /// Starts a job. If this is not possible, reports the reason and returns `false`.
+    /// Starts a job. If this is impossible, reports the reason and returns `false`.
     pub(crate) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
         let (name, what, writes) = (self.name(), D::job_text(&job), D::writes_memory(&job));
         let Some(line) = &mut self.line else {
@@ -237,7 +237,7 @@ impl<D: Kind> Session<D> {
         false
     }
 
-    /// Returns the reason why no plan can be made now, if any.
+    /// Returns the reason why no plan can currently be made, if any.
     pub(crate) fn plan_obstacle(&self) -> Option<Text> {
         match &self.phase {
             _ if self.is_ready() => None,
@@ -264,8 +264,8 @@ impl<D: Kind> Session<D> {
         }
     }
 
-    /// Releases the thread and ends the running job with `end`. A cancelled write ends later and reports its own
-    /// result.
+    /// Releases the session's thread and ends the running job with `end`. A cancelled write ends later and reports its
+    /// own result.
     pub(crate) fn release_thread(&mut self, end: JobState, services: &mut Services) {
         self.save_to = None;
         let Source::Link(url) = &self.source else { return };

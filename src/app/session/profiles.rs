@@ -1,4 +1,4 @@
-//! Profiles and backups of an open device as files. Each one is read or written in a task.
+//! Profiles and backups of an open device as files. Every file is read or written in a task.
 
 use std::path::PathBuf;
 
@@ -30,8 +30,8 @@ impl SessionState {
         services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
     }
 
-    /// Handles values that were read from a device for saving to a file. `edits` is the number of edits that are not
-    /// included, and `remarks` name other missing values.
+    /// Saves values that were just read from a device. `edits` is the number of edits not included, and `remarks` name
+    /// other missing values.
     pub fn save_read_values(
         &mut self,
         device: Option<DeviceKey>,
@@ -46,12 +46,12 @@ impl SessionState {
         self.write_document(path, device, new_document(body), remarks, services);
     }
 
-    /// Adopts a profile that was read again from its file, or was saved to another file.
+    /// Adopts a profile that was read from its file again, or saved to another file.
     pub fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         self.source = file.source(document);
     }
 
-    /// Starts a task that reads the profile again. Returns `false` if the session is not a profile.
+    /// Starts a task that reads the profile's file again. Returns `false` if the session is not a profile.
     pub(crate) fn reload_file(&self, services: &mut Services) -> bool {
         let Source::File { path, .. } = &self.source else { return false };
         services.opening_files.push(path.clone());
@@ -60,8 +60,8 @@ impl SessionState {
         true
     }
 
-    /// Saves a profile in a task. `device` is the device from which it was read, if any. `remarks` name the values that
-    /// are missing from the profile.
+    /// Starts a task that saves a profile. `device` is the device from which it was read, if any, and `remarks` name
+    /// the missing values.
     pub(crate) fn write_document(
         &mut self,
         path: PathBuf,
@@ -93,7 +93,7 @@ impl SessionState {
         });
     }
 
-    /// Starts a task that assigns a device to an asset and then lists its backups and writes again.
+    /// Starts a task that assigns a device to an asset, and lists its backups and writes again.
     pub(in crate::app) fn assign_asset(&self, of: DeviceKey, asset: AssetName, services: &Services) {
         let (store, id) = (services.world.store.clone(), self.id);
         services.tasks.run("asset", move || {
@@ -132,13 +132,13 @@ impl SessionState {
 
 pub struct DeviceHistory {
     pub backups: Result<Vec<Backup>, FileError>,
-    /// Writes recorded in the logbook, newest first, or the reason why they are not available.
+    /// Writes recorded in the logbook, newest first, or the reason why they cannot be listed.
     pub writes: Result<Vec<Entry>, LogbookError>,
-    /// Total number of write cycles, or `None` if it is not in the logbook.
+    /// Total number of write cycles, or `None` if the logbook does not contain it.
     pub cycles: Option<CycleCount>,
     /// Asset to which the device is assigned.
     pub asset: Option<String>,
-    /// Status codes that were read, newest first. An error of the logbook is reported in `writes`.
+    /// Status codes that were read, newest first. A logbook error is reported in `writes`.
     pub statuses: Vec<Entry>,
 }
 

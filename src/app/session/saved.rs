@@ -1,4 +1,4 @@
-//! The content of a memory as a profile: saving, restoring and backing up.
+//! Device memory as a profile: saving, restoring and backing up.
 
 use std::path::{Path, PathBuf};
 
@@ -15,31 +15,31 @@ use crate::worker::Device;
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
 type Change<T> = <<T as HasSession>::Device as Reviewable>::Change;
 
-/// A profile of earlier readings with remarks, or a message for each missing part.
+/// A profile made from earlier readings, with remarks, or a message for each missing part.
 pub type KnownProfile = Result<(Body, Vec<Text>), Vec<Text>>;
 
-/// Returns the remark that some edits are not saved, or `None` if there are none.
+/// Returns the remark that some edits are not saved, if there are any.
 pub fn unsaved_edits_remark(count: usize) -> Option<Text> {
     (count > 0).then(|| Text::new("session.saved_without").with("count", count))
 }
 
 pub trait HasProfile: HasMemory {
-    /// Creates the job that reads everything that a profile can restore.
+    /// Creates the job that reads everything a profile can restore.
     fn read_all() -> Job<Self>;
 
     /// Returns the edited profile, or `None` if the session is a device.
     fn edited_body(&self) -> Option<Body>;
 
-    /// Returns a profile of earlier readings with remarks, or `None` if no data was read.
+    /// Returns a profile made from earlier readings, with remarks, or `None` if no data has been read.
     ///
     /// # Errors
     /// Returns a message for each part of a profile that was not read.
     fn last_read_profile(&self) -> Option<KnownProfile>;
 
-    /// Replaces the values of a profile of earlier readings by the edited ones.
+    /// Replaces values in a profile of earlier readings with the edited ones.
     fn add_edits(&self, _profile: &mut Body) {}
 
-    /// Returns whether earlier readings are saved as the profile. This is done if the device no longer replies.
+    /// Returns whether a save uses earlier readings, because the device no longer replies.
     fn saves_last_reading(&self) -> bool {
         matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.last_read_profile().is_some()
     }
@@ -50,7 +50,7 @@ pub trait HasProfile: HasMemory {
     /// Returns an error if the profile belongs to another kind of device.
     fn restore_change(body: Body) -> Result<Change<Self>, ProfileError>;
 
-    /// Requests a plan for restoring a profile, to be reviewed by the user.
+    /// Opens the review of restoring a profile, and requests its plan.
     ///
     /// # Errors
     /// Returns an error if the profile belongs to another kind of device.
@@ -59,7 +59,7 @@ pub trait HasProfile: HasMemory {
         Ok(())
     }
 
-    /// Requests a plan for undoing an entry of the logbook, to be reviewed by the user. `backup` is that of the entry.
+    /// Opens the review of undoing a logbook entry, and requests its plan. `backup` is the entry's backup.
     ///
     /// # Errors
     /// Returns an error if the backup belongs to another kind of device.
@@ -71,13 +71,13 @@ pub trait HasProfile: HasMemory {
         Ok(())
     }
 
-    /// Returns the remarks to show when the edited profile is saved.
+    /// Returns the remarks shown when the edited profile is saved.
     fn save_remarks(&self) -> Vec<Text> {
         Vec::new()
     }
 
-    /// Saves a profile. An open profile is saved as edited. A connected device is read again first; if it no longer
-    /// replies, earlier readings are saved.
+    /// Saves a profile. An open profile is saved with its edits. A connected device is read again first; if it no
+    /// longer replies, earlier readings are saved.
     fn save(&mut self, path: PathBuf, services: &mut Services) {
         if let Some(refusal) = read_only_reason(&self.session().source) {
             self.session().report_rejection(refusal, services);
@@ -106,7 +106,7 @@ pub trait HasProfile: HasMemory {
         }
     }
 
-    /// Reads a backup that is to be restored, or from which an entry of the logbook is to be undone.
+    /// Reads a backup, either to restore it or to undo a logbook entry.
     fn read_backup(&mut self, path: PathBuf, undone: Option<Box<Entry>>, services: &mut Services) {
         let refusal = undone.as_ref().and_then(|entry| other_bench_text(entry, &path));
         match (refusal, self.device_key()) {
@@ -140,8 +140,8 @@ pub trait HasProfile: HasMemory {
     }
 }
 
-/// Returns the message that the backup of an entry is on another computer. A file with the same path on this computer is
-/// not the backup.
+/// Returns the message that an entry's backup is on another computer. A file with the same path on this computer is not
+/// that backup.
 fn other_bench_text(entry: &Entry, path: &Path) -> Option<Text> {
     let bench = entry.origin.other_bench()?;
     Some(Text::new("undo.other_bench").with("bench", bench).with("path", path.display()))

@@ -1,4 +1,4 @@
-//! Saving of profiles to files. The user is asked before changes made by other programs are overwritten, and comments
+//! Saving of profiles to files. The user is asked before changes made by other programs are overwritten. Comments
 //! between entries are preserved.
 
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use crate::profile::{ProfileDocument, ProfileFormats};
 use crate::store::{DeviceKey, Event, FileError, FileErrorKind, Store, overwrite_text, read_file};
 use crate::worker::record_event;
 
-/// A profile file as last read or written.
+/// A profile file as it was last read or written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileFile {
     pub path: PathBuf,
@@ -27,7 +27,7 @@ impl ProfileFile {
     }
 }
 
-/// The expected state of a file, which is checked before the file is overwritten.
+/// The expected content of a file, checked before the file is overwritten.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileSnapshot {
     /// Key of the file, which is the same for every path to it.
@@ -42,19 +42,19 @@ pub struct SaveRequest {
     pub path: PathBuf,
     pub document: Box<ProfileDocument>,
     pub remarks: Vec<Text>,
-    /// Expected state of the open file. Any other file is replaced without a check.
+    /// Expected content of the open file. Any other file is replaced without this check.
     pub opened: Option<FileSnapshot>,
-    /// The device from which the values were read. The logbook records that the values were saved.
+    /// Device from which the values were read. The logbook records the save.
     pub device: Option<DeviceKey>,
     /// Whether the user has agreed to the loss of comments.
     pub may_lose: bool,
-    /// Whether the edits were merged with changes made by another program. If so, they are no longer edits of this
+    /// Whether the edits have been merged with changes made by another program. They are then no longer edits of this
     /// session.
     pub is_merged: bool,
 }
 
 impl SaveRequest {
-    /// Writes the file, or returns the reason why it was not written. This function runs in a task.
+    /// Writes the file, or returns the reason why it was not written. Runs in a task.
     pub(in crate::app) fn run(mut self, kinds: KindRegistry, store: &Store) -> Action {
         let formats = kinds.formats;
         let key = file_key(&self.path);
@@ -92,11 +92,11 @@ impl SaveRequest {
 pub(in crate::app) struct DivergedFile {
     /// Text of the file, or an empty string if the file cannot be read.
     pub(in crate::app) text: String,
-    /// Text of the file parsed as a profile.
+    /// The text parsed as a profile.
     pub(in crate::app) document: Result<Box<ProfileDocument>, ReadError>,
 }
 
-/// Returns the text to replace, or the content of the file if another program has changed it. A missing file does not
+/// Returns the text to replace, or the changed content if another program has written the file. A missing file does not
 /// count as changed.
 fn text_to_replace(
     path: &Path,

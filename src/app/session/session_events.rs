@@ -1,5 +1,5 @@
 //! Events of a session: samples, job results, interruptions, and loss of the connection. Each kind of device handles
-//! its own results. The end of a job is reported in the same way for all kinds.
+//! its own results. Otherwise, the end of a job is handled in the same way for all kinds.
 
 #![warn(missing_docs)]
 
@@ -33,8 +33,7 @@ pub trait SessionEvents: HasSession {
     /// Records samples. `dropped` is the number of samples lost before them.
     fn handle_samples(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
-    /// Returns the explanation of a frame for the trace. It is empty if the bytes need no explanation. This method is
-    /// called once per frame, in order.
+    /// Returns the explanation of a trace frame, empty if the bytes need none. Called once per frame, in order.
     fn explain_frame(&mut self, _frame: &TraceEntry) -> FrameExplanation {
         FrameExplanation::default()
     }
@@ -57,25 +56,25 @@ pub trait SessionEvents: HasSession {
     /// Handles progress of the running job.
     fn handle_progress(&mut self, _what: JobStep<Self>) {}
 
-    /// Returns whether the result of a job is a reply from the device.
+    /// Returns whether the result of a job proves that the device has replied.
     fn is_device_reply(_output: &Output<Self>) -> bool {
         true
     }
 
-    /// Handles an interruption of a request. Returns whether the review reports the interruption.
+    /// Handles the interruption of a job. Returns whether the review reports it.
     fn handle_early_end(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
         false
     }
 
-    /// Handles the end of polling if no request was involved.
+    /// Handles the end of polling after a failed sample, whatever the cause.
     fn on_polling_end(&mut self) {}
 
-    /// Starts a job. If this is not possible, reports the reason and returns `false`.
+    /// Starts a job. If this is impossible, reports the reason and returns `false`.
     fn try_submit(&mut self, job: Job<Self>, services: &mut Services) -> bool {
         self.session_mut().submit(job, services)
     }
 
-    /// Starts a job. If this is not possible, reports the reason.
+    /// Starts a job. If this is impossible, reports the reason.
     fn submit(&mut self, job: Job<Self>, services: &mut Services) {
         self.try_submit(job, services);
     }
@@ -85,7 +84,7 @@ pub trait SessionEvents: HasSession {
         self.poll_line(services);
     }
 
-    /// Processes the session's pending events. Kinds of devices that have additional work override this method.
+    /// Processes the session's pending events. Kinds of devices with additional work override this method.
     fn poll_line(&mut self, services: &mut Services) {
         // Samples that precede a job are handled before its result. Later ones are handled in the next call.
         self.fetch_samples_and_frames();
@@ -133,7 +132,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().drafting.mark_draft_due();
     }
 
-    /// Handles the failure of a sample that has ended polling.
+    /// Handles the end of polling after a failed sample.
     fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
         self.on_polling_end();
         match Self::Device::connection_error(error) {
@@ -189,7 +188,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().connection_lost(why, services);
     }
 
-    /// Releases the thread, ends the running job with `end`, and discards any plan.
+    /// Releases the session's thread, ends the running job with `end`, and discards a pending plan.
     fn release_thread(&mut self, end: JobState, services: &mut Services) {
         self.prepare_release();
         self.discard_requests();
@@ -197,7 +196,7 @@ pub trait SessionEvents: HasSession {
     }
 }
 
-/// Returns the first text, for places that have room for only one.
+/// Returns the first text, for places with room for only one.
 pub(crate) fn first(texts: &[Text]) -> Text {
     texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"))
 }

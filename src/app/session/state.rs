@@ -13,35 +13,35 @@ use crate::app::trace::TraceLog;
 use crate::app::{Severity, Text};
 use crate::store::{Backup, Entry};
 
-/// The part of a session that is the same for all kinds of devices: identity, source of the data, and connection.
+/// The part of a session that is common to all kinds of devices: identity, data source, and connection.
 pub struct SessionState {
     pub id: SessionId,
     pub source: Source,
     pub phase: Phase,
-    /// Kinds of devices, which define the secret parameters of links.
+    /// Kinds of devices, which define the secret link parameters.
     pub(super) kinds: KindRegistry,
     pub(crate) opening: Option<PendingOpen>,
     pub title: Option<String>,
     pub trace: TraceLog,
-    /// Backups, or the reason why there are none. `None` before they have been requested.
+    /// Backups, or the reason why they cannot be listed. `None` until they have been requested.
     pub backups: Option<Result<Vec<Backup>, Text>>,
-    /// Writes in the logbook, or the reason why there are none.
+    /// Writes recorded in the logbook, or the reason why they cannot be listed.
     pub writes: Option<Result<Vec<Entry>, Text>>,
-    /// Number of write cycles in the logbook, or `None` if it is unknown.
+    /// Number of write cycles in the logbook, if known.
     pub cycles: Option<CycleCount>,
     /// Asset to which the device is assigned in the logbook.
     pub asset: Option<String>,
     /// Status codes in the logbook, newest first.
     pub statuses: Vec<Entry>,
-    /// Time at which the displayed values were read, or `None` if they were not read.
+    /// Time at which the displayed values were read, if they were.
     pub(crate) values_read_at: Option<Timestamp>,
-    /// Whether nothing has been read since the link was opened.
+    /// Whether the device has not been read since the link was opened.
     pub just_connected: bool,
     /// Whether live values start automatically once the device has been read and its line is idle.
     pub(in crate::app) live_due: bool,
-    /// File for the profile that is being read.
+    /// File to which the profile being read will be saved.
     pub(crate) save_to: Option<PathBuf>,
-    /// Whether a profile is being written to a file. The content of the file is unknown until the write ends.
+    /// Whether a profile is being written to a file. Until this ends, the content of the file is unknown.
     pub(crate) is_saving: bool,
 }
 
@@ -68,12 +68,12 @@ impl SessionState {
         }
     }
 
-    /// Returns whether this is the latest attempt to open the link of the session.
+    /// Returns whether this attempt to open the session's link is the latest one.
     pub(in crate::app) fn is_current_attempt(&self, attempt: u32) -> bool {
         self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
     }
 
-    /// Returns the source of the data without secrets.
+    /// Returns where the data come from, without secrets.
     pub fn data_source(&self) -> String {
         match &self.source {
             Source::Link(url) => self.kinds.display_link(url),
@@ -94,7 +94,7 @@ impl SessionState {
         }
     }
 
-    /// Logs the first reply since the link was opened, with facts about the device.
+    /// Logs the first reply since the link was opened, with details of the device.
     pub fn log_first_reply(&self, facts: Vec<Text>, services: &mut Services) {
         let Source::Link(url) = &self.source else { return };
         let link = Text::new("log.answers").with("link", self.kinds.display_link(url));
@@ -109,8 +109,7 @@ impl SessionState {
         }
     }
 
-    /// Marks the device as silent: the link is open, but the device does not reply. `why` contains the reason and what
-    /// to do.
+    /// Marks the device as silent: the link is open, but there is no reply. `why` states the reason and what to do.
     pub(crate) fn mark_unresponsive(&mut self, why: Vec<Text>, services: &mut Services) {
         self.phase = Phase::Silent(first(&why));
         services.log.remove_minor(&self.name());
@@ -119,7 +118,7 @@ impl SessionState {
     }
 
     /// Reports a message about this device. If `stands_there` is set, the message is only logged, because it is already
-    /// displayed where it was requested.
+    /// displayed where the request was made.
     pub(crate) fn report_message(
         &self,
         severity: Severity,

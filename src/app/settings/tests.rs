@@ -1,4 +1,4 @@
-//! Settings are saved and read back, with invalid and unknown entries.
+//! Tests that settings are saved and read back, including invalid and unknown entries.
 
 use super::*;
 
@@ -36,7 +36,7 @@ fn an_unknown_name_is_found() {
     assert_eq!(Settings::unknown_name("(theme: "), None);
 }
 
-/// A name must not get into the logbook because the rule about names cannot be read.
+/// If the setting for the user name cannot be read, no name may get into the logbook.
 #[test]
 fn without_a_readable_rule_the_user_is_not_named() {
     for (text, expected) in [
@@ -50,7 +50,7 @@ fn without_a_readable_rule_the_user_is_not_named() {
     }
 }
 
-/// A tab that belongs to a different version of the program is unknown here, but its entries are kept.
+/// Links are kept even if their tab belongs to another version of the program.
 #[test]
 fn links_of_an_unknown_tab_are_kept() {
     let text = "(tab: Gearbox, links: {Hiperface: [\"sim:\"], Gearbox: [\"tcp:host:1\"]})";
@@ -81,7 +81,7 @@ fn with_drives(drives: &str) -> Settings {
     Settings::parse(&format!("(drives: {{\"HUB-4 7\": ({drives})}})")).unwrap()
 }
 
-/// The content written by another window is merged with the changes from the known content that were made here.
+/// Changes made here are merged into the content written by another window.
 #[test]
 fn changes_are_merged_and_marks_only_tighten() {
     let cases = [
@@ -136,7 +136,7 @@ fn changes_are_merged_and_marks_only_tighten() {
     }
 }
 
-/// Unconfirmed limits stay locked even if other parts of the entry cannot be read.
+/// Unconfirmed limits stay locked even if the rest of the entry cannot be read.
 #[test]
 fn marks_are_read_from_a_broken_entry() {
     let broken = "(drives: {\"HUB-4 7\": (measure: Cubits, unconfirmed: [1], marks: {1: 2})})";
@@ -144,7 +144,7 @@ fn marks_are_read_from_a_broken_entry() {
     assert_eq!(Settings::parse_partial(broken), with_drives("unconfirmed: [1], marks: {1: 2}"));
 }
 
-/// Links used by other windows in the meantime are kept, after those that were used here.
+/// Links used by other windows in the meantime are kept, after those used here.
 #[test]
 fn links_of_two_windows_are_merged() {
     let of = |links: &[&str]| {
@@ -166,7 +166,7 @@ fn links_of_two_windows_are_merged() {
     }
 }
 
-/// A settings file from an older version is read although it has no marks.
+/// A settings file from an older version can be read although it contains no marks.
 #[test]
 fn settings_without_marks_are_read() {
     let before = "(drives: {\"HUB-4 7\": (pitches: {1: 4000000}, measure: Millimetres, unconfirmed: [1])})";

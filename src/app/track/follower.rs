@@ -1,5 +1,5 @@
-//! Tracking of positions across wrap-arounds, with speed and acceleration. Damaged positions are bridged if the shaft
-//! cannot have made an unnoticed turn.
+//! Tracking of positions across wrap-arounds, with speed and acceleration. Missing positions are bridged if the shaft
+//! is too slow to have made an unnoticed turn.
 
 use super::PositionScales;
 use crate::analysis::{Motion, MotionRates, PositionUnwrapper, SampleTime, UnwrappedPosition};
@@ -12,7 +12,7 @@ pub(super) struct PositionTracker {
     pub(super) meaning: PositionScales,
     unwrap: PositionUnwrapper,
     motion: Motion,
-    /// Last position without wrap-around, with its time.
+    /// Last unwrapped position, with its time.
     last: Option<(SampleTime, i64)>,
     /// Absolute speed between the last two positions, in steps per second.
     pace: Option<f64>,
@@ -50,8 +50,7 @@ impl PositionTracker {
         self.has_missed = true;
     }
 
-    /// Returns the next position without wrap-around, with its speed and acceleration. Returns `None` if `word` is
-    /// outside the range.
+    /// Returns the next unwrapped position, with its speed and acceleration. Returns `None` if `word` is out of range.
     pub(super) fn next(&mut self, time: SampleTime, word: i64) -> Option<(UnwrappedPosition, MotionRates)> {
         let next = self.unwrap.next(word)?;
         if next.broken {

@@ -5,7 +5,7 @@ use crate::app::recorder::{GroupId, Scale, Series};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionScales {
-    /// Number of positions after which the position wraps, or `None` for a linear encoder.
+    /// Number of positions before they wrap, or `None` for a linear encoder.
     pub(in crate::app) range: Option<i64>,
     /// Units of position, speed and acceleration. Samples are in steps.
     pub scales: [Vec<Scale>; 3],
@@ -51,7 +51,7 @@ impl PositionScales {
         PositionScales { range, scales, is_linear: false, step: Some(turns) }
     }
 
-    /// Displays positions within the range by default, as the device sends them, instead of unwrapped positions.
+    /// Displays positions wrapped to their range by default, as sent by the device.
     #[must_use]
     pub fn within_range(mut self) -> Self {
         let [positions, ..] = &mut self.scales;
@@ -76,7 +76,7 @@ impl PositionScales {
         PositionScales { range: None, scales, is_linear: true, step: Some(millimetres) }
     }
 
-    /// Returns whether both scales apply to the same positions. The units may differ.
+    /// Returns whether both scales apply to the same positions, possibly in different units.
     pub(super) fn is_same_location(&self, other: &PositionScales) -> bool {
         let own = |meaning: &PositionScales| (meaning.range, meaning.is_linear, meaning.step);
         own(self) == own(other)

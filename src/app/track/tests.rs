@@ -16,7 +16,7 @@ impl Watchable for Nothing {
     }
 }
 
-/// Returns samples of a shaft with 1000 steps per revolution, which turns by 50 steps per sample, at 20 000 samples per
+/// Returns samples of a shaft with 1000 steps per revolution that turns by 50 steps per sample, at 20 000 samples per
 /// second. The shaft makes 1000 revolutions per second.
 fn stream(from: u64, count: u64) -> Vec<PositionSample> {
     (from..from + count)
@@ -86,8 +86,7 @@ fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
     assert_eq!((track.position_count(), track.dropped_count()), (9, 3));
 }
 
-/// One frame in ten is damaged. The speed is available after one averaging window and stays at 50 steps in 50 µs (issue
-/// 22.21).
+/// Damaged frames leave gaps in the speed, but do not change its value of 50 steps in 50 µs (issue 22.21).
 #[test]
 fn damaged_frames_do_not_interrupt_the_speed() {
     let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
@@ -110,8 +109,8 @@ fn damaged_frames_do_not_interrupt_the_speed() {
     }
 }
 
-/// At 50 steps in 50 µs, a shaft with 1000 steps completes a turn after 20 samples. A gap of this many damaged samples
-/// is not bridged, but a gap of a few is (issue 22.21).
+/// A shaft with 1000 steps that moves 50 steps per sample completes a turn in 20 samples. A gap of a few damaged
+/// samples is bridged, but a gap this long is not (issue 22.21).
 #[test]
 fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
     let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
@@ -125,7 +124,7 @@ fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
     }
 }
 
-/// Returns `count` positions at intervals of one second, beginning at a start time.
+/// Returns `count` positions at intervals of one second, the first one at second `from`.
 fn seconds(from: u64, count: u64) -> Vec<PositionSample> {
     (from..from + count)
         .map(|second| PositionSample {
@@ -147,7 +146,7 @@ fn steps(track: &DeviceRecorder<Nothing>, heading: &str) -> Vec<f64> {
     samples(track, at).into_iter().map(|(_, steps, _)| steps).collect()
 }
 
-/// After a change of the scale, earlier recordings keep the old scale and the selected unit, and can be exported (issue
+/// After a change of scale, earlier recordings keep the old scale and the selected unit, and can be exported (issue
 /// 21.12).
 #[test]
 fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
@@ -183,7 +182,7 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     assert_eq!(names(&track).len(), 3, "whoever clears it wants them gone");
 }
 
-/// An entered pitch adds another unit for the same steps (issue 21.12).
+/// Entering a spindle pitch adds another unit for the same steps (issue 21.12).
 #[test]
 fn another_unit_of_the_same_steps_uses_the_same_lines() {
     let on_spindle = |millimetres: f64| {
@@ -233,8 +232,8 @@ fn a_value_no_longer_watched_keeps_its_samples() {
     assert_eq!(steps(&track, "nothing"), [4.0]);
 }
 
-/// More than two minutes of data are kept when another device is connected. In other cases, the user is asked before
-/// such data are lost (issue 21.12).
+/// More than two minutes of data are kept when another device is connected. Otherwise the user is asked before they are
+/// lost (issue 21.12).
 #[test]
 fn minutes_of_another_device_are_kept() {
     let meaning = PositionScales::for_steps_per_turn(None, 1000.0);
@@ -250,7 +249,7 @@ fn minutes_of_another_device_are_kept() {
     }
 }
 
-/// If only the newest words are stored, these are decoded again, and the others are not lost (issue 21.12).
+/// If only the newest words are stored, only these are decoded again, and older samples are kept (issue 21.12).
 #[test]
 fn samples_that_cannot_be_decoded_again_are_kept() {
     let (before, after) =

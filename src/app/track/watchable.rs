@@ -1,4 +1,4 @@
-//! Values that are recorded in addition to the position, each in a separate line.
+//! Values that are recorded in addition to the position, each as a separate line.
 
 use std::convert::Infallible;
 
@@ -12,7 +12,7 @@ pub trait Watchable: Clone + PartialEq {
 
     fn create_series(&self, group: GroupId) -> Series;
 
-    /// Returns whether samples of `other` can continue the samples of this value. The units may differ.
+    /// Returns whether samples of `other` can continue this value's line. The units may differ.
     fn can_continue_as(&self, other: &Self) -> bool {
         self == other
     }
@@ -35,6 +35,6 @@ pub struct WatchedValue {
     pub at: Moment,
     pub value: Option<Value>,
     pub is_warned: bool,
-    /// The reason why the value will never be available, if any.
+    /// Reason why the value will never be available, if any.
     pub never: Option<Text>,
 }

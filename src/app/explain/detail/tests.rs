@@ -1,10 +1,11 @@
-//! Tests of messages from lower layers, in both languages. Messages from a device's layers are tested with that device.
+//! Tests of error messages from lower layers, in both languages. Messages specific to a device are tested with that
+//! device.
 
 use super::*;
 use crate::app::Language::{English, German};
 use crate::link::{LinkUrl, read_trace};
 
-/// Checks that the English text equals the message of the lower layer, and that the German text differs from it.
+/// Checks that the English text equals the lower layer's message and the German text differs from it.
 #[track_caller]
 pub(crate) fn check(text: &Text, error: &dyn std::fmt::Display) {
     assert_eq!(text.to_string_in(English), error.to_string());
