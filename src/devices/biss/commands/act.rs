@@ -1,5 +1,6 @@
-//! The `do` command: filter, preset, and the guided procedures at the motor. Without a terminal, the program cannot ask
-//! which drive turns the motor. In this case, `--yes` states that the motor does not depend on this encoder.
+//! The `do` command, which runs the check, the filter selection, the preset and the guided procedures at the motor.
+//! Without a terminal, the program cannot ask which drive turns the motor, so `--yes` confirms that the motor does not
+//! depend on this encoder.
 
 use std::path::Path;
 use std::time::Duration;
@@ -26,7 +27,7 @@ use crate::devices::biss::protocol::{KIND, PositionFilter, PresetValue};
 use crate::devices::biss::state::explain as words;
 use crate::result_of;
 
-/// Time for the user to turn the motor as required.
+/// How long to wait for the user to turn the motor as required.
 const OPERATOR_TIMEOUT: Duration = Duration::from_secs(300);
 
 const ACTIONS: &str = "check, calibrate, wiegand-test, filter, preset, lead-back and mounting";
@@ -137,7 +138,7 @@ fn run_change(
     }
 }
 
-/// Returns whether an operation was completed successfully.
+/// Returns whether an operation succeeded.
 fn is_passed(outcome: &Outcome) -> bool {
     match outcome {
         Outcome::Tested(report) => report.result.is_passed(),
@@ -151,7 +152,7 @@ fn is_passed(outcome: &Outcome) -> bool {
 }
 
 /// Parses the arguments of the `mounting` action, such as `calibrate wiegand-test save preset=ST,MT data=FILE`. If
-/// neither the calibration nor the test is specified, both are run.
+/// neither `calibrate` nor `wiegand-test` is given, both are run.
 fn parse_mounting_steps(output: &Output, words: &[&str]) -> Result<MountingSteps> {
     let mut run = MountingSteps::default();
     let (mut tests, mut saves) = (false, false);
@@ -228,8 +229,8 @@ impl<'a> PresetArguments<'a> {
         Ok(PresetArguments { singleturn, multiturn, parts })
     }
 
-    /// Returns the change that the arguments specify. A missing multiturn value is 0, unless only the singleturn is
-    /// preset. In that case, the stored multiturn value is kept.
+    /// Returns the change that the arguments request. A missing multiturn value is 0. If only the singleturn part is
+    /// preset, the stored multiturn value is kept.
     fn to_change(&self, runner: &mut Runner) -> Result<Change> {
         let stored = |runner: &mut Runner| -> Result<String> {
             let Ok(range) = BissProfile::PRESET.parse::<RegisterRange>() else { return Ok("0".to_owned()) };

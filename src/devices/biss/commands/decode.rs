@@ -1,5 +1,5 @@
 //! The `decode` command, which explains captured UBICOM frames, bridge packets, position frames and position words
-//! offline. The format is detected by its checksum. A position word has no checksum, so it must be written as the
+//! offline. The format is recognised by its checksum. A position word has no checksum, so it must be written as the
 //! `position` command prints it, such as `0x024698000` (nine digits) or `raw=610893824`.
 
 mod bridge;
@@ -16,9 +16,9 @@ use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
 
 enum CapturedData {
-    /// Bits of a position frame, with their original notation.
+    /// Original input and bits of a position frame.
     Bits(String, u64),
-    /// Position word, with its original notation.
+    /// Original input and value of a position word.
     Word(String, u64),
     Bytes(Vec<u8>),
 }
@@ -36,9 +36,9 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     show(output, &explained)
 }
 
-/// Parses the arguments. Nine hexadecimal digits after 0x, digits followed by h, and numbers after `raw=` are position
-/// words. Eleven digits, or any other number of digits after 0x, are the bits of a frame. Everything else is parsed as
-/// bytes.
+/// Parses the arguments. Nine hexadecimal digits after `0x`, digits followed by `h`, and numbers after `raw=` are
+/// position words. Eleven digits, and any other number of digits after `0x`, are the bits of a frame. Everything else
+/// is parsed as bytes.
 fn parse_captured(words: &[String]) -> Result<Vec<CapturedData>> {
     let is_bits = |word: &String| match strip_hex_prefix(word) {
         (true, digits) => (3..=2 * position::BYTES).contains(&digits.len()),
@@ -73,8 +73,8 @@ fn position_word(word: &str) -> Result<u64> {
         .ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, such as 0x024698000 or raw=610893824")))
 }
 
-/// Returns an error if an argument has an odd number of digits and therefore cannot be bytes. It may be a position word
-/// without its prefix.
+/// Rejects an argument with an odd number of digits, which cannot be bytes. It may be a position word without its
+/// prefix.
 fn require_even_digit_count(word: &str) -> Result<()> {
     let is_number = word.len() % 2 == 1 && word.len() > 1 && word.chars().all(|c| c.is_ascii_hexdigit());
     if !is_number {
@@ -85,7 +85,7 @@ fn require_even_digit_count(word: &str) -> Result<()> {
     Err(Failure::Usage(format!("{word:?} {why}")))
 }
 
-/// Removes a leading 0x. Returns whether it was present, and the remaining digits.
+/// Strips a leading `0x`. Returns whether it was present, and the remaining digits.
 fn strip_hex_prefix(word: &str) -> (bool, &str) {
     match word.strip_prefix("0x").or_else(|| word.strip_prefix("0X")) {
         Some(digits) => (true, digits),
@@ -93,8 +93,8 @@ fn strip_hex_prefix(word: &str) -> (bool, &str) {
     }
 }
 
-/// Explains bytes according to the protocol whose checksum matches. If no checksum matches, the protocol is guessed
-/// from the form of the bytes.
+/// Explains bytes according to the protocol whose checksum matches. If none matches, the protocol is guessed from the
+/// framing.
 fn explain_bytes(bytes: &[u8], requested: &mut Option<Request>) -> Vec<FrameExplanation> {
     let ubicom = ubicom::explain_frames(bytes, requested);
     let bridge = bridge::explain_packet(bytes);

@@ -21,7 +21,7 @@ use crate::devices::biss::protocol::{KIND, Name, Role};
 use crate::devices::biss::state::explain as explained;
 use crate::result_of;
 
-/// Time without a valid frame after which the line is assumed to carry only noise.
+/// How long valid frames may be missing before the line is considered to carry only noise.
 const NOISE: Duration = Duration::from_secs(5);
 
 pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
@@ -95,7 +95,7 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
     lines.text()
 }
 
-/// Returns the serial number together with its bytes, because the manual does not define the byte order.
+/// Formats the serial number with its raw bytes, because the manual does not define the byte order.
 fn format_serial_number(identity: &Identity) -> String {
     format!("{} ({})", identity.serial_number, hex(&identity.serial_bytes))
 }

@@ -21,7 +21,7 @@ use crate::devices::biss::state::explain as explained;
 use crate::profile::Operation as _;
 use crate::result_of;
 
-/// Description of the calibration (manual 6.4).
+/// What the user must know before a calibration (manual 6.4).
 pub(super) const CALIBRATION: &str =
     "counterclockwise, then clockwise; if the clockwise run fails, the calibration table is lost";
 
@@ -29,8 +29,8 @@ pub(super) fn prepare_plan(runner: &mut Runner, change: Change) -> Result<Prepar
     Ok(result_of!(runner.run(BissJob::Prepare(change))?, BissOutput::Prepared(prepared) => *prepared))
 }
 
-/// Asks for consent if required, and executes the plan. An empty plan sends nothing. A motor run starts as soon as the
-/// motor meets the conditions, for which it has the time `patience`.
+/// Asks for consent if required, and executes the plan. An empty plan sends nothing. If the motor is needed, the run
+/// starts as soon as it meets the conditions, within at most `patience`.
 pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,
@@ -66,7 +66,7 @@ pub(super) fn plan_report(prepared: &Prepared) -> PlanReport {
     )
 }
 
-/// Returns the operations as JSON. Registers that are saved together have no separate cost.
+/// Returns the operations as JSON. Registers that are saved together share one cost.
 pub(super) fn operations_json(plan: &BissPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(operation_steps).map(|step| step.json()).collect()
 }

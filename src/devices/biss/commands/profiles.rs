@@ -1,4 +1,4 @@
-//! The `save` and `restore` commands for BiSS encoders. Other commands read the encoder here to compare it.
+//! The `save` and `restore` commands for BiSS encoders, and the reading of an encoder for comparisons and reports.
 
 use serde_json::json;
 
@@ -56,7 +56,7 @@ impl ProfileCommands for BissCommands {
         })
     }
 
-    /// Reads the encoder for comparison. Returns an error if its registers may show values that were never saved.
+    /// Reads the encoder for comparison. Fails if its registers may show values that were never saved.
     fn read_for_comparison(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(read_saved_profile(common, BissJob::SaveToCompare)?))
     }
@@ -77,7 +77,7 @@ impl ProfileCommands for BissCommands {
         }
     }
 
-    /// Returns a message if the profile was read in a device mode.
+    /// Returns a message if the profile was read outside operation mode, so that it may contain unsaved values.
     fn profile_note(&self, profile: &Body) -> Option<Text> {
         explain::profile_unsaved(profile.get()?)
     }

@@ -19,13 +19,13 @@ pub(super) fn name(address: RegisterAddress) -> Option<&'static str> {
     register(address).map(|register| register.name.english()).or_else(area)
 }
 
-/// Describes the bytes at an address if they form a complete register whose number needs an explanation.
+/// Describes the bytes read from `address`, if they are exactly one register with a decodable value.
 pub(super) fn register_meaning(address: RegisterAddress, bytes: &[u8]) -> Option<String> {
     let register = register(address).filter(|register| register.address == address)?;
     describe_value(register, bytes)
 }
 
-/// Describes a register if the range covers exactly that register.
+/// Describes the value of a register if `range` covers exactly this register.
 pub(super) fn describe_register(register: &Register, range: RegisterRange, bytes: &[u8]) -> Option<String> {
     let own = register.address == range.start() && register.width == range.count();
     own.then(|| describe_value(register, bytes)).flatten()

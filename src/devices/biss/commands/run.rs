@@ -51,7 +51,7 @@ impl CliDevice for Biss {
     }
 }
 
-/// Describes the progress of a step, such as its duration or the reasons why it cannot start.
+/// Describes the progress of a step: a count, the elapsed time, or what prevents the start.
 fn describe_detail(news: &ProcedureProgress) -> String {
     match &news.detail {
         StepDetail::Begins => String::new(),
@@ -72,8 +72,8 @@ pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     Ok(result_of!(runner.run(BissJob::Identify)?, BissOutput::Identity(identity) => identity))
 }
 
-/// Returns the number of frames with a wrong checksum in the last job, excluding those that are already counted in its
-/// position reading.
+/// Returns the number of frames with a wrong checksum in the last job. Those before a position reading are counted in
+/// the reading instead.
 pub(super) fn crc_errors(runner: &Runner) -> u64 {
     let count = |remark: &DeviceMessage| match remark {
         DeviceMessage::CrcErrors(count) => u64::from(*count),
@@ -86,7 +86,7 @@ pub(super) fn registers(runner: &mut Runner, range: RegisterRange) -> Result<Vec
     read_registers(runner, range).map(|read| read.bytes)
 }
 
-/// Reads consecutive registers. The result also states whether their values may never have been saved.
+/// Reads consecutive registers, and reports whether they may show values that were never saved.
 pub(super) fn read_registers(runner: &mut Runner, range: RegisterRange) -> Result<RegisterValues> {
     match runner.run(BissJob::Read(range))? {
         BissOutput::Registers(read) if read.bytes.len() == usize::from(range.count()) => Ok(read),

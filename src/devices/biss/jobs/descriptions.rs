@@ -1,11 +1,11 @@
-//! Loading of encoder descriptions, in which user-defined descriptions precede built-in ones.
+//! Loading of encoder descriptions. User-defined descriptions take precedence over built-in ones.
 
 use crate::devices::biss::protocol::{Descriptions, KIND};
 use crate::profile::Cause;
 use crate::store::{Store, StoreError, read_folder};
 
-/// Returns the encoder descriptions, with user-defined descriptions first, and a `DescriptionError` for each unusable
-/// file.
+/// Returns the encoder descriptions, user-defined ones first, and a `DescriptionError` for each file that cannot be
+/// used.
 pub fn load_descriptions(store: &Store) -> (Descriptions, Vec<StoreError>) {
     let (files, unread) = read_folder(&store.device_folder(KIND), "ron");
     let (own, broken) = Descriptions::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));

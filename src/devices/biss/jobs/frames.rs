@@ -6,7 +6,7 @@ use crate::buses::bridge::protocol::StreamData;
 use crate::devices::biss::procedures::{Frame, parse_frames};
 use crate::devices::biss::protocol::Layout;
 
-/// A stream of BiSS position frames with verified checksums.
+/// A stream of BiSS position frames whose checksums are verified.
 #[derive(Clone, Debug)]
 pub struct BissFrames {
     pub layout: Layout,
@@ -44,8 +44,8 @@ mod tests {
     use crate::devices::biss::protocol::PositionData;
     use crate::worker::stream::Producer;
 
-    /// Returns a stream of 20,000 frames per second. A frame of 43 clocks takes 21.5 µs at 2 MHz and is followed by a
-    /// pause of 27 µs.
+    /// A stream of 20,000 frames per second. A frame of 43 clocks takes 21.5 µs at 2 MHz and is followed by a pause of
+    /// 27 µs.
     fn biss() -> BissFrames {
         BissFrames { layout: Layout::default(), clock_hz: 2_000_000, period_us: 50 }
     }

@@ -23,7 +23,7 @@ use crate::worker::commit::{ApprovedPlan, CycleCount, total_cycles_to_report};
 /// Limit for the number of persistent writes to an encoder (manual 6.1: "1000 write cycles should not be
 /// exceeded").
 pub const WEAR_LIMIT: u64 = 1000;
-/// Number of persistent writes at which the user is first warned.
+/// Number of persistent writes from which the user is warned.
 pub const WEAR_WARNING: u64 = 800;
 
 #[derive(Debug)]
@@ -31,9 +31,9 @@ pub enum BissJob {
     /// Reads all values that are displayed after connecting.
     Survey,
     Identify,
-    /// Reads mode, errors, warnings, temperature and filter.
+    /// Reads the device mode, errors, warnings, temperature and filter.
     Status,
-    /// Checks the encoder against its description, its data sheet and the line. Each item receives a verdict.
+    /// Checks the encoder against its description and its data sheet, checks the line, and rates each item.
     Check,
     Position,
     /// Reads consecutive registers. Registers of a data area are read only at standstill.
@@ -43,15 +43,15 @@ pub enum BissJob {
     ReadBank(u8),
     /// Reads all registers of a data area, at standstill.
     ReadArea(Area),
-    /// Reads all restorable values at standstill. The profile is marked if some values may never have been saved in the
-    /// encoder.
+    /// Reads all values that a profile can restore, at standstill. The profile is marked if some of them may never have
+    /// been saved in the encoder.
     Save,
     /// Reads the encoder for comparison. The job fails if some values may never have been saved.
     SaveToCompare,
     /// Prepares a plan without writing.
     Prepare(Change),
     Commit(Box<Commit>),
-    /// Returns the encoder to operation and clears the password, even if another program changed the mode.
+    /// Returns the encoder to operation mode and clears the password, even if another program changed the mode.
     ReturnToOperation,
 }
 
@@ -64,8 +64,7 @@ pub enum Change {
     /// Writes registers, given as addresses and bytes. Registers of a data area are saved together.
     Write(Vec<(RegisterRange, Vec<u8>)>),
     SelectFilter(PositionFilter),
-    /// Stores the preset value, if specified, and then sets the given parts of the current shaft position to the stored
-    /// value.
+    /// Stores the preset value, if given, and then sets the given parts of the shaft position to the stored value.
     Preset {
         value: Option<PresetValue>,
         parts: Option<PresetParts>,
@@ -79,21 +78,21 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Writes edited bytes. Bytes that were not written remain as edits.
+    /// Edited bytes. Bytes that could not be written remain marked as edited.
     Bytes,
-    /// Guided procedures. An incomplete procedure must be started again.
+    /// Guided procedures. An interrupted procedure must be started from the beginning.
     Guided,
-    /// Guided procedures that include a calibration. The calibration table is not part of any backup.
+    /// Guided procedures with a calibration. No backup contains the calibration table.
     Calibration,
-    /// Only the Wiegand test, which stores its result.
+    /// Only the Wiegand test, with its result saved.
     WiegandTest,
     Filter,
-    /// Storing a preset value, setting the position to it, or both.
+    /// A preset value to store, a position to set to it, or both.
     Preset,
 }
 
 impl ChangeKind {
-    /// Returns the kind of the logbook entry.
+    /// Returns the kind of logbook entry for this change.
     pub const fn entry_kind(self) -> EntryKind {
         match self {
             ChangeKind::Restore => EntryKind::Restore,
@@ -129,18 +128,20 @@ pub struct Prepared {
     pub unchanged: u64,
     /// Settings of a profile that the encoder does not have.
     pub missing: Vec<String>,
-    /// Values that differ but are not written, because they are only valid for another encoder on its motor.
+    /// Registers that differ but are skipped, because their values are only valid for another encoder on its motor.
     pub mounting_left: Vec<RegisterRange>,
     /// Device mode in which the profile was read, if the profile may contain values that were never saved in the
     /// encoder.
     pub unsaved: Option<DeviceMode>,
     pub other_type: Option<TypeMismatch>,
-    /// Written values that are only valid for another encoder on its motor. They must be adjusted for this encoder.
+    /// Registers to write whose values were adjusted for another encoder on its motor. They must be adjusted again for
+    /// this encoder.
     pub mounting_written: Vec<RegisterRange>,
 }
 
 impl Prepared {
-    /// Returns the minimum number of flash write cycles used so far, or `None` if no warning is necessary.
+    /// Returns the number of flash write cycles used after this write, as far as known, or `None` if no warning is
+    /// needed.
     pub fn wear_to_report(&self) -> Option<u64> {
         total_cycles_to_report(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
@@ -152,7 +153,7 @@ pub struct Commit {
     pub attendance: OperatorPresence,
 }
 
-/// Whether an operator is present at the motor while a plan is executed.
+/// The operator at the motor while a plan is executed, or the substitute if no operator is present.
 #[derive(Clone, Debug)]
 pub enum OperatorPresence {
     Attended(OperatorChannel),
@@ -188,7 +189,7 @@ pub struct RegisterValues {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
-    /// Number of frames with a wrong checksum that are not part of a reading.
+    /// Number of frames with a wrong checksum that no position reading includes.
     CrcErrors(u32),
     /// User-defined descriptions that cannot be used.
     Descriptions(Vec<StoreError>),
@@ -227,7 +228,7 @@ pub enum BissOutput {
     Saved(Box<BissProfile>),
     Prepared(Box<Prepared>),
     Committed(Box<Committed>),
-    /// The encoder was returned to operation from the given device mode.
+    /// The encoder was returned to operation mode from the given device mode.
     ReturnedToOperation(DeviceMode),
 }
 
@@ -239,8 +240,8 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// Returns the key of an encoder for backups and the logbook. It contains the manufacturer and the device ID, because a
-/// serial number is unique only in combination with them.
+/// Returns the key that identifies an encoder in backups and the logbook. It includes the manufacturer and the device
+/// ID, because a serial number is unique only together with them.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     logbook_key(&identity.kind, &identity.serial_number, is_virtual)
 }

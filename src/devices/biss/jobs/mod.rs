@@ -38,7 +38,7 @@ pub struct Biss {
     wire: Box<dyn ByteLink>,
     station: Station,
     types: Arc<Descriptions>,
-    /// Errors in user-defined descriptions that cannot be used. They are reported once.
+    /// Errors in user-defined descriptions. They are reported once.
     broken: Vec<StoreError>,
     motor: Option<Motor>,
     /// Interval between streamed frames in microseconds. `None` if single requests are fast enough.
@@ -59,8 +59,8 @@ impl Biss {
         Master::new(context.procedure_context(&mut *self.wire), &mut self.station)
     }
 
-    /// Identifies the encoder unless this session has already done so, since frame and registers depend on its
-    /// identity.
+    /// Identifies the encoder, unless this session has already done so. The frame layout and the registers depend on
+    /// its type.
     fn ensure_identified(&mut self, context: &mut SessionContext) -> Result<(), Error> {
         if self.station.description.is_none() {
             let types = self.types.clone();
@@ -71,7 +71,7 @@ impl Biss {
 }
 
 impl Session<Biss> {
-    /// Creates a session on an open connection, with the descriptions of `store`. If `motor` is `Some`, the encoder is
+    /// Creates a session on an open connection, with the descriptions in `store`. If `motor` is `Some`, the encoder is
     /// simulated in this process and its writes are counted separately.
     pub fn from_connection(
         wire: Box<dyn ByteLink>,
@@ -94,7 +94,7 @@ impl Session<Biss> {
         &self.device.station
     }
 
-    /// Returns the motor of the shaft, if the encoder is simulated in this process.
+    /// Returns the motor on the encoder's shaft if the encoder is simulated in this process.
     pub fn motor(&self) -> Option<Motor> {
         self.device.motor.clone()
     }
@@ -289,7 +289,7 @@ fn read_step(place: ReadStep) -> JobStep {
     }
 }
 
-/// Returns the errors and warnings that an encoder reports, or `None` if there are none.
+/// Returns the errors and warnings that the encoder reports, or `None` if there are none.
 fn flags_for_logbook(status: &EncoderStatus) -> Option<String> {
     let list = |weight: &'static str, flags: &Option<FlagRegister>| {
         let bits = flags.as_ref().map(|flags| flags.set.clone()).unwrap_or_default().into_iter();

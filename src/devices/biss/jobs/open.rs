@@ -18,11 +18,11 @@ use crate::store::Store;
 use crate::worker::open::{check_parameters, connect_simulated, open_byte_stream, reply_margin, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
-/// Link parameter that selects an adapter, for link schemes that do not imply an adapter.
+/// Link parameter that selects an adapter if the link scheme does not imply one.
 const BRIDGE: &str = "bridge";
 
 parameters! {
-    /// Link parameters for a configuration pin that is connected to the serial line of an adapter.
+    /// Link parameters for a configuration pin that is wired to the serial line of an adapter.
     struct PinAtAdapter: UrlError {
         is_pin: bool = false, "pin" => SWITCH;
         /// Supply voltage that the adapter provides to the encoder, in millivolts, or `None` for no supply.
@@ -39,9 +39,9 @@ pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to a BiSS encoder. `serial:` and `tcp:` lead to its configuration pin, and `bridge:` to an adapter on
-/// its bus or, with `pin=on`, to the configuration pin at the adapter's serial line. `sim:` and `replay:` lead to the
-/// pin or, with `bridge=on`, to the adapter.
+/// Opens a link to a BiSS encoder. `serial:` and `tcp:` links connect to its configuration pin. `bridge:` links connect
+/// to an adapter on its bus or, with `pin=on`, to the configuration pin through the adapter's serial line. `sim:` and
+/// `replay:` links use the pin or, with `bridge=on`, an adapter.
 ///
 /// # Errors
 /// Returns an [`OpenError`] if the link cannot be opened. In this case, nothing has been sent.
@@ -66,7 +66,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
     Ok(Session::from_connection(wire, clock, station, store, motor))
 }
 
-/// Parses the line settings and, for a link to a virtual encoder, its settings.
+/// Parses the line settings from a link, and the device settings if the link is to a virtual encoder.
 fn read(url: &LinkUrl) -> Result<(Station, VirtualEncoder), OpenError> {
     let way = parse_transport(url)?;
     let is_virtual = url.scheme == LinkScheme::Sim;
@@ -113,8 +113,8 @@ fn parse_transport(url: &LinkUrl) -> Result<Transport, OpenError> {
     }
 }
 
-/// Rejects parameters that neither the line nor the virtual device has. The error lists the valid parameters, including
-/// those that require the other transport.
+/// Rejects parameters that neither the line nor the virtual device accepts. The error lists the valid ones, including
+/// those of the other transport.
 fn check_virtual_parameters(query: &UrlQuery, way: Transport) -> Result<(), UrlError> {
     let own = |way: Transport| {
         let line = way.parameters().into_iter().filter(|name| !Config::KEYS.contains(name));
@@ -135,7 +135,7 @@ fn check_virtual_parameters(query: &UrlQuery, way: Transport) -> Result<(), UrlE
     Err(UrlError::Unknown { name, scheme: LinkScheme::Sim.keyword(), known: known.join(", ") })
 }
 
-/// A virtual encoder created from its parameters, connected to the configuration pin or an adapter.
+/// A virtual encoder with the settings from its link, connected to the configuration pin or to an adapter.
 enum VirtualEncoder {
     Pin(Box<Config>),
     Bus(Box<Adapter>),

@@ -1,4 +1,4 @@
-//! Preparation of a plan for a change. The encoder is only read, and its device mode is left unchanged.
+//! Planning a change. The encoder is only read, and its device mode does not change.
 
 use std::collections::BTreeSet;
 

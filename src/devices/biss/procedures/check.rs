@@ -1,5 +1,5 @@
-//! Device check, which examines an encoder against its description and its data sheet, examines the line, and gives a
-//! verdict for each item. No data is written except the bank selection.
+//! The device check, which compares an encoder with its description and its data sheet, tests the line, and gives a
+//! verdict for each item. It writes nothing except the bank selection.
 
 use super::survey::{EncoderStatus, FlagRegister, read_all_registers};
 use super::{Error, Identity, Master, PositionReading, Survey, Transport};
@@ -19,12 +19,12 @@ pub enum CheckStep {
     Status,
     /// Checks the position with its error and warning bits.
     Position,
-    /// Checks the checksums and the frame layout of the data sheet.
+    /// Checks the data sheet's checksums and frame layout.
     DataSheet,
     /// Compares temperature and supply with the limits in the data sheet.
     Limits,
     Wiegand,
-    /// Counts position readings, and damaged frames or replies.
+    /// Counts position readings and damaged frames or replies.
     Readings,
     Wear,
 }
@@ -38,7 +38,7 @@ pub enum CheckFinding {
     Mismatch(IdentityMismatch),
     Error(u8, Option<Name>),
     Warning(u8, Option<Name>),
-    /// The encoder or its firmware does not report errors and warnings.
+    /// The encoder or its firmware has no registers for errors and warnings.
     NotTold,
     Mode(DeviceMode),
     Open,
@@ -92,7 +92,7 @@ pub enum CheckFinding {
 /// Number of position readings used to assess the line.
 const READINGS: u32 = 50;
 
-/// Runs the check, which ends early only if the line fails. `wear` is called as soon as the encoder has been
+/// Runs the check, which stops early only if the line fails. `wear` is called as soon as the encoder has been
 /// identified.
 ///
 /// # Errors
@@ -236,7 +236,7 @@ fn check_wiegand_result(survey: &Survey) -> Option<BissStepResult> {
     Some(BissStepResult::new(CheckStep::Wiegand, vec![finding]))
 }
 
-/// Reads the position repeatedly. Missing readings are counted as damaged.
+/// Reads the position repeatedly. A failed reading counts as damaged.
 fn check_readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     let before = master.station().line.damaged;
     let told_by_line = master.station().transport == Transport::ConfigPin;

@@ -1,4 +1,4 @@
-//! Errors of jobs with an encoder, including the details for the error messages.
+//! Errors of procedures with an encoder, with the details for their messages.
 
 use std::fmt;
 
@@ -34,12 +34,12 @@ pub enum Error {
     NoReply {
         requested: RequestedItem,
         tries: u32,
-        /// Whether the sent bytes were echoed by the adapter, which shows that the line itself works.
+        /// Whether the echo of the sent bytes was received, which shows that the line itself works.
         echo_heard: bool,
     },
     #[error("damaged reply while {requested} (attempts: {tries}): {cause}")]
     Damaged { requested: RequestedItem, tries: u32, cause: ReplyDamage },
-    /// Bytes keep arriving during the required silence.
+    /// Bytes keep arriving while the line should be silent.
     #[error("the line is never idle")]
     NeverSilent,
     #[error(transparent)]
@@ -47,14 +47,14 @@ pub enum Error {
     #[error("no encoder acknowledges on the bus (attempts: {tries})")]
     NoAcknowledge {
         tries: u32,
-        /// Whether the adapter can supply the encoder but was not requested to do so.
+        /// Whether the adapter could supply the encoder but was not asked to.
         supply_off: bool,
     },
     #[error("the data line stays low (attempts: {tries})")]
     StuckLow { tries: u32 },
     #[error("the data line stays high (attempts: {tries})")]
     StuckHigh { tries: u32 },
-    /// No frame has ever had a correct checksum, so the assumed widths do not match the encoder.
+    /// No frame has ever had a correct checksum, so the encoder's frame must have other widths.
     #[error("{frames} frames in a row have a wrong CRC: frames of the encoder do not have {data_bits}+{crc_bits} bits")]
     WrongWidths {
         frames: u32,
@@ -63,23 +63,22 @@ pub enum Error {
         /// Assumed width of the checksum in bits.
         crc_bits: u8,
     },
-    /// The frame widths are unknown, and the checksums do not match for any frame length.
+    /// The frame widths are unknown, and the checksum does not match for any frame length.
     #[error("no frame length matches the CRC of the frames")]
     WidthsUnknown { moving: bool },
     #[error("the encoder has no register {address}")]
     NoSuchRegister { address: RegisterAddress },
-    /// Registers of a data area cannot be watched, because they are only read at standstill.
+    /// Registers of a data area cannot be watched, because they can only be read at standstill.
     #[error("register {address} contains data, which cannot be read while the shaft may turn")]
     NotWatched { address: RegisterAddress },
     #[error("the encoder refuses 0x{value:02X} for register {address}")]
     Refused {
         address: RegisterAddress,
         value: u8,
-        /// Value read back from the register, or `None` if the connection cannot provide it.
+        /// Value that the register still holds, or `None` if the connection cannot read it back.
         reads: Option<u8>,
     },
-    /// It is unknown whether the value was accepted, because the register cannot be read back or the value read back is
-    /// not conclusive.
+    /// The value may or may not have been accepted, because reading the register back is impossible or proves nothing.
     #[error("it is not known whether 0x{value:02X} was written to register {address}: {cause}")]
     Unclear {
         address: RegisterAddress,
@@ -89,10 +88,10 @@ pub enum Error {
     },
     #[error("cancelled")]
     Cancelled,
-    /// The byte order of register numbers is unknown, because the reply of the encoder is not defined for either order.
+    /// The byte order of register numbers is unknown, because the encoder's reply matches neither order.
     #[error("the byte order of register numbers cannot be derived from the encoder's reply 0x{answer:02X}")]
     OrderUnknown { answer: u8 },
-    /// The position has more bits than the encoder's known frame.
+    /// The position has more bits than the known frame layout.
     #[error("the position 0x{word:X} has more than {multiturn}+{singleturn} bits")]
     TooWide {
         /// Position word as received.
@@ -100,17 +99,18 @@ pub enum Error {
         multiturn: u8,
         singleturn: u8,
     },
-    /// The registers extend beyond the last address.
+    /// The registers extend past the last address.
     #[error("{count} registers from {start} extend past the last register")]
     OutOfRange { start: RegisterAddress, count: usize },
-    /// No description applies to this encoder, and there is no general description.
+    /// No description matches this encoder, and there is no generic one.
     #[error("no description matches the encoder, which reports {0}")]
     NoDescription(Identity),
     #[error("the encoder was not identified")]
     NotIdentified,
     #[error("the shaft is moving")]
     Moving {
-        /// Speed in revolutions per minute, positive clockwise, or `None` if the encoder counts too few turns.
+        /// Speed in revolutions per minute, positive clockwise, or `None` if the multiturn counter is too narrow to
+        /// measure it.
         rpm: Option<f64>,
     },
     /// The encoder is in a device mode in which its registers may show values that were never saved.
@@ -131,13 +131,13 @@ pub enum Error {
     /// Fewer registers were read than requested.
     #[error("{got} registers were read from {start} instead of {expected}")]
     TooFew { start: RegisterAddress, expected: usize, got: usize },
-    /// The encoder does not return to operation, or its password remains set.
+    /// The encoder does not return to operation mode, or its password remains set.
     #[error("the encoder stays in device mode {mode}, or its password stays set")]
     StaysUnlocked { mode: DeviceMode },
 }
 
 impl Error {
-    /// Returns the error for a reply that belongs to another kind of request.
+    /// Returns the error for a reply to a different kind of request.
     pub(super) fn unexpected_reply(requested: RequestedItem, reply: &Reply) -> Self {
         Error::OtherReply { requested, reply: format!("{reply:?}") }
     }

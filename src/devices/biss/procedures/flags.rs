@@ -1,5 +1,5 @@
-//! Errors and warnings for transports whose positions do not include them. Over the configuration pin, they are read
-//! from separate registers. See section 4 of the UBICOM reference.
+//! Errors and warnings for transports that do not send them with the position. Over the configuration pin, they are
+//! read from separate registers. See section 4 of the UBICOM reference.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use super::{Error, Master, PositionReading};
 use crate::devices::biss::protocol::Role;
 use crate::units::Moment;
 
-/// Last known values of the error and warning registers.
+/// The last values read from the error and warning registers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flags {
     error: Option<bool>,
@@ -17,8 +17,8 @@ pub(super) struct Flags {
     errors_last: bool,
 }
 
-/// Interval at which one of the two registers is read while the position is polled. It is long enough to have little
-/// effect on the polling rate.
+/// Interval at which one of the two registers is read while the position is polled. It is long enough not to slow the
+/// polling noticeably.
 const READ_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Reads the position once, together with the encoder's current errors and warnings.
@@ -34,7 +34,7 @@ pub fn read_position(master: &mut Master<'_>) -> Result<PositionReading, Error> 
     add_error_flags(master, reading)
 }
 
-/// Adds the last known flags to the position. If one of the flag registers is due, it is read first.
+/// Adds the last known error and warning to the position. A register that is due is read first.
 pub(super) fn add_error_flags(master: &mut Master<'_>, reading: PositionReading) -> Result<PositionReading, Error> {
     let now = master.now();
     let flags = match master.station().flags {

@@ -1,4 +1,4 @@
-//! Frames of a stream. A frame yields a position with a verified checksum, or the reason why there is no position.
+//! Frames of a stream. Each frame yields a position with a verified checksum or an error.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use crate::buses::bridge::protocol::{BissData, BissStatus};
 use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 use crate::units::Moment;
 
-/// The reason why a streamed frame contains no position.
+/// The reason why a streamed frame yields no position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameReadError {
     #[error("no encoder acknowledges on the bus")]
@@ -22,14 +22,14 @@ pub enum FrameReadError {
 
 pub type Frame = Result<PositionData, FrameReadError>;
 
-/// A run of consecutive stream frames at equal intervals.
+/// Consecutive frames of a stream, at equal intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConsecutiveFrames {
-    /// Number of the first frame, counted from the start of the stream. Missing frames are counted as well.
+    /// Number of the first frame, counted from the start of the stream including missing frames.
     pub first: u64,
     pub at: Moment,
     pub period_ns: i64,
-    /// Number of frames lost before the first frame in the list.
+    /// Number of frames lost before the first of these frames.
     pub lost: u64,
     /// The frames, at least one.
     pub frames: Vec<Frame>,

@@ -1,5 +1,5 @@
-//! Identification of an encoder, based on the direct registers that all BiSS C encoders have, the matching description,
-//! and the data sheet, which defines the frame.
+//! Identification of an encoder by the direct registers that all BiSS C encoders have, its description, and its data
+//! sheet, which defines the frame.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use crate::profile::UnknownValues;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
     pub kind: Kind,
-    /// Serial number in decimal, with the bytes taken as big-endian (`U`: not documented). The string is empty if the
+    /// Serial number in decimal. The bytes are assumed to be big-endian, which is not documented (`U`). Empty if the
     /// encoder has no register for the serial number.
     pub serial_number: String,
     /// Bytes of the serial number as received.
@@ -27,8 +27,8 @@ pub struct Identity {
     /// Firmware version, or `None` if the encoder has no registers for the version.
     pub firmware: Option<Firmware>,
     pub description: Arc<Description>,
-    /// Difference from the closest description, which is for another device of the same manufacturer, or `None` if
-    /// there is no such description.
+    /// Difference from the closest description, which is of another device from the same manufacturer. `None` if there
+    /// is no such description.
     pub mismatch: Option<IdentityMismatch>,
     /// Data sheet, or `None` if the encoder has none or its profile is not supported.
     pub data_sheet: Option<DataSheet>,
@@ -45,13 +45,13 @@ pub enum FrameSource {
     DataSheet,
     Description,
     Given,
-    /// The checksums of frames received while the shaft turned. They do not reveal the multiturn width.
+    /// The checksums of frames received while the shaft turned. The multiturn width remains unknown.
     Checksum,
     Assumed,
 }
 
 impl FrameSource {
-    /// Returns whether the multiturn width is known from this source.
+    /// Returns whether this source provides the multiturn width.
     pub const fn is_known(self) -> bool {
         match self {
             FrameSource::DataSheet | FrameSource::Description | FrameSource::Given => true,
@@ -108,7 +108,7 @@ impl Identity {
     }
 }
 
-/// Offset of the register in the common bank that contains the number of the encoder bank.
+/// Offset in the common bank of the register that holds the number of the encoder bank.
 const ENCODER_BANK: usize = 0x14;
 
 /// Identifies the encoder and its frame layout, and stores the result in the session's [`Station`].
@@ -119,7 +119,7 @@ pub fn identify(master: &mut Master<'_>, types: &Descriptions) -> Result<Identit
     identify_and_record(master, types, &mut Registers::default())
 }
 
-/// Identifies the encoder like [`identify`], and stores all values that were read in `registers`.
+/// Identifies the encoder like [`identify`], and stores all values read in `registers`.
 pub(super) fn identify_and_record(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -169,8 +169,9 @@ pub(super) fn identify_and_record(
     })
 }
 
-/// Determines an unknown frame layout. The layout of the kit encoder is used if its checksum matches. Otherwise, the
-/// layout is searched for. This is not possible over the configuration pin, which does not transmit frames.
+/// Determines an unknown frame layout. The layout of the kit encoder is used if its checksum matches. Otherwise, a
+/// matching layout is searched for. Over the configuration pin, which transmits no frames, this layout is assumed
+/// without a check.
 fn detect_frame_source(master: &mut Master<'_>) -> Result<FrameSource, Error> {
     if master.station().transport == Transport::ConfigPin {
         return Ok(FrameSource::Assumed);
@@ -203,7 +204,7 @@ fn read_type_identity(master: &mut Master<'_>, registers: &mut Registers) -> Res
     })
 }
 
-/// Returns a description of another device with the same manufacturer and profile.
+/// Returns how the identity differs from the first description for the same manufacturer and profile.
 fn closest_mismatch(types: &Descriptions, kind: &Kind) -> Option<IdentityMismatch> {
     let is_near = |own: &Kind| own.manufacturer == kind.manufacturer && own.profile == kind.profile;
     types
@@ -220,7 +221,7 @@ fn firmware_from_registers(description: &Description, registers: &Registers) -> 
     }
 }
 
-/// Reads both banks of the data sheet. Returns `None` if the encoder's profile defines no supported data sheet.
+/// Reads both banks of the data sheet. Returns `None` if the encoder's profile is not supported.
 fn read_data_sheet(
     master: &mut Master<'_>,
     profile: ProfileId,
@@ -240,7 +241,7 @@ fn read_data_sheet(
     Ok(Some(DataSheet { common, encoder, layout }))
 }
 
-/// Reads a data sheet bank, or returns `None` if the bank does not exist.
+/// Reads a bank of the data sheet, or returns `None` if the encoder does not have the bank.
 fn read_data_sheet_bank(
     master: &mut Master<'_>,
     which: EdsBank,

@@ -1,7 +1,7 @@
-//! The host side of the line, which repeats requests, reads back written values, and reads values twice if necessary.
+//! The host side of the line, which retries requests, reads back written values, and reads values twice if necessary.
 //! Single exchanges are implemented in [`ubicom`] and [`bus`].
 //!
-//! A read is repeated at most five times within at most eight seconds. A write is never repeated without checking its
+//! A read is attempted at most five times within at most eight seconds. A write is never repeated without checking its
 //! effect.
 
 mod bus;
@@ -24,7 +24,7 @@ use crate::link::line::{MAX_ATTEMPTS, SerialLine};
 use crate::units::Moment;
 
 /// Number of missing replies after which a register is considered nonexistent, provided that another register replies.
-/// Interference on the line may cause the loss of a single reply.
+/// A single reply may be lost to interference.
 const MAX_MISSING_REPLIES: u32 = 3;
 
 /// The host side of the line to a BiSS encoder, for either transport.
@@ -43,18 +43,18 @@ enum ExchangeError {
     NoFrame(NoFrame),
 }
 
-/// Result of an exchange. The outer error is final. After an inner error, the exchange may be retried.
+/// Result of an attempt. The outer error is final. After the inner error, the exchange may be retried.
 type AttemptResult<T> = Result<Result<T, ExchangeError>, Error>;
 
 enum WriteReaction {
     Yes,
-    /// The encoder rejected the value. The register then contains the given value, or `None` if it cannot be read back
-    /// over this connection.
+    /// The encoder rejected the value. The register still holds the given value, or an unknown one (`None`) if this
+    /// connection cannot read it back.
     No(Option<u8>),
 }
 
 impl<'a> Master<'a> {
-    /// Creates the host side of the line for one job, with the full time limit.
+    /// Creates the host side of the line for one job, whose time limit starts now.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         // The encoder may have restarted since the last job.
@@ -86,7 +86,7 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(duration)?)
     }
 
-    /// Runs `work` without reacting to cancellation, so that the device can be returned to a safe state.
+    /// Runs `work` without reacting to cancellation, for steps that return the device to a safe state.
     pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.ignore_cancellation(true);
         let result = work(self);
@@ -99,7 +99,7 @@ impl<'a> Master<'a> {
         self.line.ignore_cancellation(shielded)
     }
 
-    /// Runs `work`, in which reads are repeated for up to `patience`, because the encoder may be silent for some time.
+    /// Runs `work`, which may retry reads for up to `patience` while the encoder is silent.
     pub fn with_reply_timeout<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.patience.replace(patience);
         let result = work(self);
@@ -107,7 +107,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Runs `work`, in which every register must yield the same value twice, for values that will be stored.
+    /// Runs `work`, in which every register must yield the same value twice. Used for values that will be stored.
     pub fn run_double_checked<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -115,7 +115,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Reads a register. If the line has damaged any data in this session, the register must yield the same value
+    /// Reads a register. If any data was damaged on the line in this session, the register must yield the same value
     /// twice.
     ///
     /// # Errors
@@ -209,8 +209,8 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Reads a frame with the given widths over an adapter. The frame is right-justified, and its checksum is not
-    /// verified.
+    /// Reads a frame with the given widths through an adapter. The frame is right-justified, and its checksum has not
+    /// been verified.
     pub(super) fn read_frame(&mut self, data_bits: u8, crc_bits: u8) -> Result<u64, Error> {
         self.ensure_bus_ready_for(data_bits, crc_bits)?;
         self.request_with_retries(RequestedItem::Position, |master| master.read_frame_once()).map(|(raw, _)| raw)
@@ -230,7 +230,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Prepares the first access by determining the byte order of register numbers or by configuring the bus.
+    /// Prepares the first access: determines the byte order of register numbers, or configures the bus.
     fn ensure_ready(&mut self) -> Result<(), Error> {
         match self.station.transport {
             Transport::Adapter => self.ensure_bus_ready(),
@@ -247,7 +247,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Sends a request that does not change anything in the encoder, with retries if the line fails.
+    /// Sends a request that changes nothing in the encoder, and retries it if the line fails.
     fn request_with_retries<T>(
         &mut self,
         requested: RequestedItem,
@@ -269,7 +269,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sends a request like [`request_with_retries`](Self::request_with_retries). If the line has damaged any data
+    /// Sends a request like [`request_with_retries`](Self::request_with_retries). If any data was damaged on the line
     /// before, the same reply must arrive twice.
     fn read_confirmed(
         &mut self,
@@ -326,8 +326,8 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Returns whether this register does not reply although another one does. For this purpose, both are read
-    /// repeatedly. The check is skipped if the encoder may be silent for a long time.
+    /// Returns whether this register stays silent although the bank selection register replies. Both are read
+    /// repeatedly. The test is skipped while the encoder may be silent for a long time.
     fn is_only_this_register_silent(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
             return Ok(false);

@@ -16,18 +16,17 @@ use crate::profile::UnknownValues;
 /// Number of position readings for detecting standstill.
 const READINGS: usize = 3;
 const READING_INTERVAL: Duration = Duration::from_millis(100);
-/// Minimum multiturn width in bits required for measuring a speed. During the readings, a motor at 12,000 rpm makes
-/// forty revolutions, which this width can count.
+/// Minimum multiturn width in bits for measuring a speed. During the readings, a motor at 12,000 rpm turns forty times,
+/// which this width can count.
 const MIN_MULTITURN_BITS: u8 = 7;
-/// Reciprocal of the maximum jitter of a shaft at rest, in revolutions (`U`: not documented).
+/// Reciprocal of the maximum jitter of a shaft at rest, in revolutions. The jitter is not documented (`U`).
 const REST_JITTER_DIVISOR: u64 = 8192;
 
-/// The handling of values that were entered in a device mode but never saved. The encoder reports them as if they were
-/// stored.
+/// How to treat values that were entered in a device mode but never saved. The encoder reports them like stored values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnsavedValues {
     Marked,
-    /// Causes an error, because a comparison would treat the values as stored.
+    /// Unsaved values are an error, because a comparison would take them for stored values.
     Refused,
 }
 
@@ -75,7 +74,8 @@ fn speed(readings: &[PositionReading]) -> Option<f64> {
     (minutes > 0.0).then(|| turns / minutes)
 }
 
-/// Returns the number of steps between two positions in the shorter direction. A shaft at rest may jitter across zero.
+/// Returns the number of steps between two positions in the shorter direction, because a shaft at rest may jitter
+/// across zero.
 fn shortest_distance(a: u64, b: u64, range: Option<u64>) -> u64 {
     let straight = a.abs_diff(b);
     range.map_or(straight, |range| straight.min(range.saturating_sub(straight)))
@@ -120,8 +120,8 @@ pub fn read_area_at_standstill(
     read_reliably(master, |master| read_area(master, area, progress))
 }
 
-/// Reads the identity and all restorable values. The device mode is left unchanged, because returning to operation
-/// would discard entered values.
+/// Reads the identity and all values that a profile can restore. The device mode is left unchanged, because a return to
+/// operation mode would discard entered values.
 ///
 /// # Errors
 /// Returns [`Error::NotInOperation`] if unsaved values are not allowed, [`Error::Moving`] if the shaft moves, or
@@ -166,8 +166,8 @@ pub fn save(
     })
 }
 
-/// Runs `read`. If the line damages any data during this time, other damage may go unnoticed. In this case, `read` is
-/// run again until two results agree.
+/// Runs `read`. If any data is damaged on the line meanwhile, other damage may have gone unnoticed. Then `read` is run
+/// again, and every value must arrive twice.
 fn read_reliably<T>(
     master: &mut Master<'_>,
     mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,
@@ -178,7 +178,7 @@ fn read_reliably<T>(
 }
 
 /// Creates the profile of an encoder. `unsaved` is the device mode in which the encoder was read, or `None` for
-/// operation.
+/// operation mode.
 pub fn create_profile(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceMode>) -> BissProfile {
     let identity = &survey.identity;
     let sheets = identity.data_sheet.iter().flat_map(|sheet| [&sheet.common, &sheet.encoder]);

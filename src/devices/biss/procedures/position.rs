@@ -16,8 +16,8 @@ pub struct PositionReading {
     /// Position within the revolution in steps. The number of steps per revolution is 2 to the power of
     /// [`singleturn_bits`](Self::singleturn_bits).
     pub steps: u32,
-    /// Whether the error bit marks the position as invalid, or `None` if unknown. Over the configuration pin, this is
-    /// read from a separate register.
+    /// Whether the error bit marks the position as invalid, or `None` if unknown. Over the configuration pin, the error
+    /// is read from a separate register.
     pub error: Option<bool>,
     /// Whether the warning bit is set, or `None` if unknown.
     pub warning: Option<bool>,
@@ -27,7 +27,7 @@ pub struct PositionReading {
     pub multiturn_bits: u8,
     /// Width of the position within a revolution in bits, 0 to 32.
     pub singleturn_bits: u8,
-    /// Whether the multiturn width is known. If not, the turns and steps are only the upper and lower parts of the
+    /// Whether the multiturn width is known. If not, `turns` and `steps` are merely the upper and lower bits of the
     /// position.
     pub is_split_known: bool,
     /// Complete frame with flags and CRC, or `None` over the configuration pin.
@@ -35,7 +35,7 @@ pub struct PositionReading {
 }
 
 impl PositionReading {
-    /// Creates a reading without the error and warning bits, CRC errors and frame, which not every transport provides.
+    /// Creates a reading without error and warning bits, CRC errors and a frame, which some transports do not provide.
     pub(super) fn new(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             at,
@@ -83,7 +83,7 @@ impl PositionReading {
         f64::from(self.steps) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
-    /// Returns whether the position is valid, that is, whether the encoder does not report an error.
+    /// Returns whether the position is valid, which is assumed unless the encoder reports an error.
     pub fn is_valid(&self) -> bool {
         self.error != Some(true)
     }
@@ -96,7 +96,7 @@ pub enum PolledSample {
     Missed {
         /// Time of the last frame.
         at: Moment,
-        /// Number of CRC errors, including frames that were requested again.
+        /// Number of CRC errors, including frames that were read again.
         crc_errors: u32,
     },
     Frames(ConsecutiveFrames),
@@ -107,12 +107,12 @@ pub enum PolledSample {
 pub struct WatchedReading {
     pub at: Moment,
     pub range: RegisterRange,
-    /// Values in ascending order of address, or the reason why they were not read, for example because the register
-    /// does not exist or belongs to a data area.
+    /// Values in ascending order of address, or the reason why they could not be read. For example, the register does
+    /// not exist or belongs to a data area.
     pub value: Result<Vec<u8>, Error>,
 }
 
-/// Reads the position once. Damaged frames do not cause an error if valid frames have been received before.
+/// Reads the position once. Damaged frames are not an error once a valid frame has been received.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
@@ -127,7 +127,7 @@ pub fn read_sample(master: &mut Master<'_>) -> Result<PolledSample, Error> {
     }
 }
 
-/// Reads watched registers once. Registers that are missing or belong to a data area do not cause an error.
+/// Reads watched registers once. Missing registers and those in a data area are reported in the value, not as an error.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.

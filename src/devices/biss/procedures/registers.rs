@@ -1,4 +1,4 @@
-//! Register values that were read from an encoder, byte by byte, and functions that read described registers.
+//! Register values read from an encoder, byte by byte, and the functions that read them as described.
 
 use std::collections::BTreeMap;
 
@@ -68,8 +68,8 @@ impl Registers {
         self.read(master, register.address, register.width)
     }
 
-    /// Reads all described registers that exist in this firmware and have not been read yet. Returns the addresses of
-    /// registers that the encoder does not have.
+    /// Reads all described registers that this firmware has and that have not been read yet. Returns the addresses that
+    /// turn out to be missing in the encoder.
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
@@ -97,7 +97,7 @@ impl Registers {
         Ok(missing)
     }
 
-    /// Reads the registers with the given roles. Registers that the encoder does not have are skipped.
+    /// Reads the registers with the given roles, and skips those that the encoder does not have.
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
@@ -121,8 +121,8 @@ impl Registers {
     }
 }
 
-/// Returns whether a register can be read with the given firmware. If the firmware is unknown, the register must exist
-/// in every version.
+/// Returns whether a register can be read with the given firmware. If the firmware is unknown, only registers that
+/// every version has can be read.
 fn is_readable(register: &Register, firmware: Option<Firmware>) -> bool {
     register.access.is_readable() && firmware.unwrap_or_default() >= register.since
 }

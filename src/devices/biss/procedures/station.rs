@@ -1,4 +1,4 @@
-//! The state of a line and its encoder, kept between jobs.
+//! The state of a line and its encoder, kept from one job to the next.
 
 use std::fmt;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use crate::parameter::{
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
-/// Keywords for the byte order of register numbers. `None` means that the order is detected.
+/// Keywords for the byte order of register numbers. `None` stands for automatic detection.
 pub const ORDERS: Keywords<Option<ByteOrder>> =
     Keywords(&[("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst))]);
 
@@ -41,7 +41,7 @@ parameters! {
 }
 
 parameters! {
-    /// Link parameters that determine how late a reply may be.
+    /// Link parameters for the time limit of replies.
     pub struct LineParameters: UrlError {
         /// Additional delay allowed for a reply, or `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
@@ -91,8 +91,8 @@ impl Transport {
 #[derive(Clone, Debug)]
 pub struct Station {
     pub transport: Transport,
-    /// Baud rate and parity on the configuration pin. The encoder uses 115200 8N1 only. A converter or a radio link in
-    /// between may use another format.
+    /// Baud rate and parity on the configuration pin. The encoder itself only uses 115200 8N1, but a converter or radio
+    /// link in between may differ.
     pub format: CharacterFormat,
     pub line: LineState,
     /// Byte order of register numbers over the configuration pin, or `None` until it is detected.
@@ -103,7 +103,7 @@ pub struct Station {
     pub clock_hz: u32,
     /// BiSS clock frequency set by the adapter in hertz, or `None` until it has been set.
     pub actual_clock_hz: Option<u32>,
-    /// Supply of the encoder, if the adapter is to switch it.
+    /// Supply for the encoder, if the adapter is to switch it.
     pub supply: Option<Supply>,
     pub adapter: AdapterState,
     /// Register description of the encoder, or `None` before identification.
@@ -114,29 +114,28 @@ pub struct Station {
     pub firmware: Option<Firmware>,
     /// Frame layout from the encoder's data sheet or from the link, if either provides one.
     pub layout: Option<Layout>,
-    /// Frame layout that the user has specified for an encoder that does not report its layout.
+    /// Frame layout that the user specified for an encoder that does not report one.
     pub given: Option<Layout>,
     /// Source of the frame layout, or `None` before identification.
     pub(super) source: Option<FrameSource>,
-    /// Whether every value must be read twice, even on a line without errors. This is required for values that will be
-    /// stored.
+    /// Whether every value must be read twice, even on a line without errors, because the values will be stored.
     pub(super) thorough: bool,
     pub(super) noisy: bool,
     pub(super) bus: Option<Bus>,
-    /// The bank selected over BiSS, and the time at which the selection was last certain.
+    /// The bank selected over BiSS, and the last time at which the selection was certain.
     pub(super) bank: Option<(u8, Moment)>,
     /// Number of frames with a wrong checksum since the last position reading.
     pub(super) crc_errors: u32,
     /// Whether a frame with the current widths has had a correct checksum.
     pub(super) good_frames: bool,
-    /// Last values of the error and warning registers, read over the configuration pin.
+    /// Last values of the error and warning registers, if they are read over the configuration pin.
     pub(super) flags: Option<Flags>,
     pub(super) flow: Option<SampleStream>,
-    /// Time of the last frame in any earlier stream.
+    /// Time of the last frame in earlier streams.
     pub(super) streamed_until: Option<SampleTime>,
     pub(super) written_at: Option<Moment>,
-    /// Whether a store, a calibration or a restart may still be in progress, because a write ended early and the
-    /// encoder was not returned to operation.
+    /// Whether the encoder may still be storing data, calibrating or restarting, because a write ended early and the
+    /// encoder was not returned to operation mode.
     pub unfinished: bool,
 }
 
@@ -149,13 +148,12 @@ pub struct Supply {
 }
 
 impl Supply {
-    /// Time from power-up until registers can be read (data sheet, 02:0Eh).
+    /// Time from power-up until registers can be accessed (data sheet, 02:0Eh).
     pub(crate) const POWER_UP: Duration = Duration::from_millis(500);
-    /// Range of supply voltages, in millivolts, that is suitable for all versions of the kit encoder (manual, chapter
-    /// 2: 4.75 to 12.5 V).
+    /// Supply voltages in millivolts that suit all versions of the kit encoder (manual, chapter 2: 4.75 to 12.5 V).
     pub(crate) const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
 
-    /// Returns the requested supply voltage together with the range of the kit encoder.
+    /// Returns the requested supply voltage with the allowed range of the kit encoder.
     pub(crate) const fn with_voltage(millivolt: u16) -> SupplyVoltage {
         SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: *Self::RANGE.end() }
     }
@@ -200,7 +198,7 @@ impl Station {
         }
     }
 
-    /// Creates the station from link parameters. Parameters that do not concern the line are ignored.
+    /// Creates the station from link parameters. Parameters that are not for the line are ignored.
     ///
     /// # Errors
     /// Returns an error with the allowed values if a value is invalid.
@@ -217,21 +215,21 @@ impl Station {
         Ok(station)
     }
 
-    /// Returns the position frame layout. A layout from the data sheet or the link takes precedence over the layout in
-    /// the description. The default is the layout of the kit encoder.
+    /// Returns the layout of position frames. A layout from the data sheet or the link takes precedence over the
+    /// description. If none is known, the layout of the kit encoder is used.
     pub fn frame_layout(&self) -> Layout {
         let described = || self.description.as_ref().and_then(|description| description.layout().cloned());
         self.layout.clone().or_else(described).unwrap_or_default()
     }
 
-    /// Discards the identity of the adapter, so that it is identified and configured again.
+    /// Discards everything known about the adapter, so that it is identified and configured again.
     pub(super) fn forget_adapter(&mut self) {
         self.adapter.forget_identity();
         self.flow = None;
         self.forget_settings();
     }
 
-    /// Discards the bus settings and the state of the supply, which an adapter loses when it is reset.
+    /// Discards the bus settings and the supply measurement, which no longer hold after a reset of the adapter.
     pub(super) fn forget_settings(&mut self) {
         (self.bank, self.bus) = (None, None);
         if let Some(supply) = &mut self.supply {
@@ -248,13 +246,13 @@ impl Station {
         self.source.is_none_or(FrameSource::is_known)
     }
 
-    /// Returns whether values must be read twice. A checksum misses some pairs of flipped bits.
+    /// Returns whether values must be read twice, because a checksum misses some pairs of flipped bits.
     pub(super) fn requires_double_read(&self) -> bool {
         self.thorough || self.noisy
     }
 
-    /// Returns whether a write can be verified by reading the register back. For a command register, reading back
-    /// proves nothing, because the register may still hold the same value from an earlier command.
+    /// Returns whether reading back a register proves that a write succeeded. It proves nothing for a command register,
+    /// which may still hold the same value from an earlier command.
     pub(super) fn is_readback_conclusive(&self, address: RegisterAddress) -> bool {
         if address == RegisterAddress::BANK_SELECT {
             return true;
@@ -263,7 +261,7 @@ impl Station {
         description.access_at(address) == Some(Access::Rw) && !self.is_command_register(address)
     }
 
-    /// Returns whether a write to the given register is a command that runs a procedure or saves values.
+    /// Returns whether the register takes commands that run a procedure or save values.
     pub(super) fn is_command_register(&self, address: RegisterAddress) -> bool {
         self.description.as_ref().is_some_and(|description| {
             let saves = description.register_at(address).is_some_and(|register| !register.saves.is_empty());
@@ -282,7 +280,7 @@ impl fmt::Display for Station {
 }
 
 impl FrameParameters {
-    /// Returns the frame layout specified in the link. If the link specifies no checksum, the usual checksum is used.
+    /// Returns the frame layout specified in the link. Without a checksum in the link, the usual one is used.
     fn layout(self, query: &UrlQuery) -> Result<Option<Layout>, RejectedParameter> {
         let alone = |name: &str, allowed| RejectedParameter::new(name, query.get(name).unwrap_or_default(), allowed);
         let Some(singleturn) = self.singleturn else {
@@ -339,7 +337,8 @@ mod tests {
         assert_eq!(station.supply, Some(Supply { millivolt: 4_750, measured: None }));
     }
 
-    /// 12 multiturn bits, 19 singleturn bits, two flags, and CRC6 43h unless specified otherwise (issue 22.20).
+    /// The frame consists of 12 multiturn bits, 19 singleturn bits, two flags, and CRC6 43h unless specified otherwise
+    /// (issue 22.20).
     #[test]
     fn a_frame_format_can_be_given_in_the_link() {
         let given = |query: &str| station(query).unwrap().given.map(|own| (own.data_bits(), own.crc_bits()));
@@ -381,8 +380,8 @@ mod tests {
         }
     }
 
-    /// According to appendix 9.1 of the manual, written values can be read back from the bank selection, mode, password
-    /// and data area registers. All other registers are commands, are read-only, or are not described.
+    /// Only the bank selection, mode, password and data area registers can be read back after a write, according to
+    /// appendix 9.1 of the manual. All other registers are commands, are read-only, or are not described.
     #[test]
     fn readback_applies_to_registers_that_keep_their_value() {
         let mut station = Station::new(Transport::ConfigPin, Duration::ZERO);

@@ -1,4 +1,4 @@
-//! Reading the status of an encoder and all other values that can be displayed.
+//! Reading the status of an encoder, or all values that can be displayed.
 
 use super::identify::identify_and_record;
 use super::registers::Registers;
@@ -22,14 +22,14 @@ pub struct EncoderStatus {
 }
 
 impl EncoderStatus {
-    /// Returns the device mode, or `None` in operation. In other modes, registers may show values that were never
+    /// Returns the device mode, or `None` in operation mode. In other modes, registers may show values that were never
     /// saved.
     pub fn non_operational_mode(&self) -> Option<DeviceMode> {
         self.mode.filter(|mode| *mode != DeviceMode::OPERATION)
     }
 }
 
-/// A register whose bits have individual meanings.
+/// A register in which each bit is a flag.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FlagRegister {
     pub raw: u64,
@@ -54,8 +54,8 @@ pub struct Survey {
 }
 
 const STATUS: [Role; 6] = [Role::Mode, Role::Password, Role::Errors, Role::Warnings, Role::Temperature, Role::Filter];
-/// Offset of the Wiegand test results from the error code. The last result is followed by the factory result and the
-/// saved one.
+/// Offset of the Wiegand test results from the error code register: first the last result, then the factory result and
+/// the saved one.
 const WIEGAND_RESULTS: u8 = 1;
 
 /// Reads the status of an identified encoder.
@@ -85,8 +85,7 @@ pub fn read_all_registers(
     read_survey(master, identity, registers, progress)
 }
 
-/// Reads all values of the survey except the identity. `registers` contains the values that were already read for the
-/// identity.
+/// Reads everything in the survey except the identity. `registers` holds what was read to determine the identity.
 pub(super) fn read_survey(
     master: &mut Master<'_>,
     identity: Identity,
@@ -110,7 +109,7 @@ pub(super) fn read_survey(
     })
 }
 
-/// Reads the position. Returns `None` if the encoder has no readable frame, so that the survey can continue.
+/// Reads the position. Returns `None` if the frame cannot be decoded, so that the survey can continue.
 fn read_position_if_available(master: &mut Master<'_>) -> Result<Option<PositionReading>, Error> {
     match master.position() {
         Ok(reading) => Ok(Some(reading)),

@@ -1,11 +1,11 @@
-//! Detection of the frame layout of an encoder with unknown widths while its shaft turns.
+//! Detection of an unknown frame layout while the shaft turns.
 
 use std::time::Duration;
 
 use super::{Error, Master};
 use crate::devices::biss::protocol::{Crc, Layout, LayoutError, detect_data_bits};
 
-/// Maximum length of a frame in bits, including the checksum.
+/// Number of bits read per frame, which is the maximum frame length including the checksum.
 const CLOCKED: u8 = 64;
 /// Maximum number of frames to examine.
 const FRAMES: usize = 200;
@@ -13,9 +13,9 @@ const READING_INTERVAL: Duration = Duration::from_millis(2);
 /// Maximum width of the singleturn position in bits.
 const MAX_SINGLETURN_BITS: u8 = 32;
 
-/// Finds the frame layout by means of the checksum while the shaft turns. The position is assumed to be followed by an
-/// error bit, a warning bit and an inverted CRC6 43h, as usual for BiSS encoders (`U`). The multiturn width cannot be
-/// determined. Therefore, up to 32 bits of the position are interpreted as the singleturn position.
+/// Finds the frame layout at which the checksum matches while the shaft turns. The position is assumed to be followed
+/// by an error bit, a warning bit and an inverted CRC6 43h, as usual for BiSS encoders (`U`). The multiturn width
+/// cannot be determined, so the lowest bits of the position, up to 32, are taken as the singleturn position.
 ///
 /// # Errors
 /// Returns [`Error::WidthsUnknown`] if no length fits or the shaft is at standstill, or another error if the exchange

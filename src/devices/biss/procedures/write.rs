@@ -1,6 +1,6 @@
-//! Execution of a plan. First, the values on which the plan is based are read again. Each operation is then performed,
-//! with an operator at the motor if required, and its result is read back. After each operation, the encoder is
-//! returned to operation.
+//! Execution of a plan. First, the values on which the plan is based are read again. Then each operation is performed,
+//! with an operator at the motor if required, and its result is read back. After each operation, the encoder returns to
+//! operation mode.
 
 use super::error::to_register_array;
 use super::procedure::{Failure, LeftState, Operator, Outcome, ProcedureContext, ProcedureProgress, ProcedureStep};
@@ -15,9 +15,9 @@ use crate::profile::{ConfirmedPlan, Write, WriteRecord};
 pub struct WrittenValues {
     pub ops: usize,
     pub written: u64,
-    /// Number of registers read back with the correct value.
+    /// Number of registers whose new value was read back and is correct.
     pub verified: u64,
-    /// Number of persistent writes that were or may have been performed.
+    /// Number of persistent writes that were made or may have been made.
     pub write_cycles: u64,
     pub outcomes: Vec<Outcome>,
 }
@@ -36,16 +36,16 @@ pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Failure, Writte
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EndState {
-    /// The current step of the running operation.
+    /// The step at which the write was interrupted.
     pub at: ProcedureStep,
-    /// Known state of an encoder that could not be returned to operation. `None` means that the encoder is in operation
-    /// with the password cleared, which is also its state after a loss of power.
+    /// What is known about an encoder that could not be returned to operation mode. `None` means that the encoder is in
+    /// operation mode with the password cleared, as after a loss of power.
     pub standing: Option<LeftState>,
 }
 
 impl InterruptedWrite {
-    /// Returns the register for which the result of an individual write is unknown, if any. If the value was rejected
-    /// or not sent, the result is known.
+    /// Returns the register whose individual write has an unknown result, if any. A rejected or unsent write has a
+    /// known result.
     pub fn uncertain_write(&self) -> Option<RegisterAddress> {
         match (&self.unfinished, &self.cause) {
             (Some(Op::WriteRegister { .. }), Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
@@ -58,12 +58,12 @@ impl InterruptedWrite {
 pub struct EncoderWriter<'w, 'm> {
     guide: ProcedureContext<'w, 'm>,
     identity: &'w Identity,
-    /// Step at which an operation ended early.
+    /// The step at which the last operation ended.
     at: ProcedureStep,
 }
 
 impl<'w, 'm> EncoderWriter<'w, 'm> {
-    /// Creates a writer for the encoder with the given identity. Every step is reported through `tell`.
+    /// Creates a writer for the encoder with the given identity. `tell` is called at every step.
     ///
     /// # Errors
     /// Returns an error if the encoder has not been identified.
@@ -89,8 +89,8 @@ impl Write for EncoderWriter<'_, '_> {
     type Written = WrittenValues;
     type EndState = EndState;
 
-    /// Checks that the plan was made for this encoder. The memory is compared as well, because two new encoders can
-    /// have the same identity.
+    /// Checks that this encoder is the one for which the plan was made. The memory is compared as well, because two new
+    /// encoders can have the same identity.
     fn confirm_base(&mut self, plan: &BissPlan) -> Result<(), Error> {
         let master = self.guide.master_mut();
         let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });
@@ -127,8 +127,8 @@ impl Write for EncoderWriter<'_, '_> {
         Ok(())
     }
 
-    /// Performs an operation and then returns the encoder to operation, even after a failure. Cancellation is checked
-    /// between exchanges, unless an abort would leave something incomplete.
+    /// Performs an operation and then returns the encoder to operation mode, even after a failure. Cancelling takes
+    /// effect between exchanges, unless it would leave something incomplete.
     fn apply(&mut self, op: &Op, _: &ConfirmedPlan<'_, Base, Op>, done: &mut WrittenValues) -> Result<(), Failure> {
         let guide = &mut self.guide;
         guide.begin_operation(done.outcomes.len());
@@ -151,7 +151,7 @@ impl Write for EncoderWriter<'_, '_> {
     }
 }
 
-/// Returns the encoder to operation if the line still works.
+/// Returns the encoder to operation mode if the line still works.
 fn return_to_operation(guide: &mut ProcedureContext<'_, '_>, cause: Option<&Failure>) -> Result<(), Error> {
     match cause {
         Some(Failure::Device(error)) if is_gone(error) => Err(error.clone()),
@@ -199,8 +199,8 @@ fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> 
     Ok(true)
 }
 
-/// Checks that the encoder is in operation. In a device mode, its registers could contain values that were entered but
-/// not saved.
+/// Checks that the encoder is in operation mode. In any other mode, its registers may contain values that were entered
+/// but not saved.
 ///
 /// # Errors
 /// Returns [`Error::NotInOperation`] in a device mode, or another error if the exchange fails.
@@ -211,8 +211,8 @@ pub fn ensure_operation_mode(master: &mut Master<'_>, description: &Description)
     }
 }
 
-/// Returns the device mode, or `None` in operation and for an encoder without device modes. In a device mode, registers
-/// may contain values that were never saved.
+/// Returns the device mode, or `None` in operation mode and for an encoder without device modes. In a device mode,
+/// registers may contain values that were never saved.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
@@ -222,8 +222,7 @@ pub fn non_operational_mode(master: &mut Master<'_>, description: &Description) 
     Ok((mode != DeviceMode::OPERATION).then_some(mode))
 }
 
-/// Reads the state of an encoder on which a plan is based, which consists of the identity, the settings and the given
-/// banks.
+/// Reads the state on which a plan is based: the identity, the settings and the given banks.
 ///
 /// # Errors
 /// Returns [`Error::Moving`] if banks are read while the shaft turns, [`Error::NotInOperation`] in a device mode, or
@@ -260,7 +259,7 @@ pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
     Ok(Bank { number, bytes: to_register_array(start, bytes)? })
 }
 
-/// Reads the active filter, or returns `None` if the firmware offers no choice.
+/// Reads the active filter, or returns `None` if the firmware has only one.
 fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Option<PositionFilter>, Error> {
     let firmware = master.station().firmware;
     let Some(register) = description.register_with_role(Role::Filter) else { return Ok(None) };

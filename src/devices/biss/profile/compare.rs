@@ -1,4 +1,4 @@
-//! Comparison of two encoders, or of an encoder with a profile. Consecutive registers that differ are one item.
+//! Comparison of two encoders, or of an encoder with a profile. Consecutive registers that differ form one item.
 
 use super::{Bank, BissProfile, RegisterRange};
 use crate::bits::hex_compact;
@@ -25,8 +25,8 @@ pub(super) fn compare(left: &BissProfile, right: &BissProfile) -> Comparison {
     comparison
 }
 
-/// Compares the bytes of the registers `item`. The bytes are `None` for a side that does not have the registers. `name`
-/// is the name of the data area.
+/// Compares the bytes of the registers `item`, which are `None` on a side without these registers. `name` is the name
+/// of the data area.
 fn compare_bytes(
     (item, name): (&str, Option<&str>),
     left: Option<Vec<u8>>,

@@ -1,5 +1,4 @@
-//! Planning single changes and guided procedures. They are checked against the rules of the encoder before anything is
-//! sent.
+//! Planning single changes and guided procedures. The rules of the encoder are checked before anything is sent.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,24 +14,24 @@ use crate::devices::biss::protocol::{
 /// Oldest firmware that can preset singleturn and multiturn separately (manual 6.7).
 const PRESET_PARTS_SINCE: Firmware = Firmware::new(1, 6, 0);
 
-/// The motor that turns the shaft during a procedure.
+/// The motor that turns the shaft in a procedure, by its dependence on the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotorSource {
-    /// A motor that does not depend on this encoder, such as a separate motor, open-loop control, or another feedback
-    /// device.
+    /// A motor that does not depend on this encoder: a separate motor, a drive in open-loop control, or one with
+    /// another feedback device.
     Other,
     /// A drive that closes its loop on this encoder. The encoder provides no position during the procedure.
     ThisEncoder,
 }
 
-/// The steps for an encoder that has been mounted on a motor. They are performed in the order of the fields.
+/// The steps after an encoder has been mounted on a motor, in the order in which they are performed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MountingSteps {
     /// Whether to calibrate the singleturn position.
     pub calibrate: bool,
     /// Whether to save the result of the Wiegand test. `None` skips the test.
     pub wiegand: Option<bool>,
-    /// Value to which the current shaft position is set, and the parts of the position that are set.
+    /// Preset value for the current shaft position, and the parts of the position to set.
     pub preset: Option<(PresetValue, PresetParts)>,
     /// Profile from which the data areas are written, if any.
     pub data: Option<Box<BissProfile>>,
@@ -56,7 +55,7 @@ impl MountingSteps {
     }
 }
 
-/// The way in which a register must be written.
+/// How a register has to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind<'d> {
     /// The register is part of a data area, which is opened and saved as a whole.
@@ -65,7 +64,7 @@ pub enum RegisterKind<'d> {
     Register,
 }
 
-/// Returns the way in which a register must be written.
+/// Returns how a register has to be written.
 ///
 /// # Errors
 /// Returns [`PlanError::ReadOnly`], or [`PlanError::Guarded`] for a register that only procedures may write.
@@ -80,8 +79,8 @@ pub fn register_kind(description: &Description, address: RegisterAddress) -> Res
     Ok(area.map_or(RegisterKind::Register, RegisterKind::Data))
 }
 
-/// Returns whether a register holds the device mode or the password, or belongs to a procedure. Registers of a data
-/// area are never protected.
+/// Returns whether a register may only be written by a procedure, or holds the device mode or the password. Registers
+/// of a data area are never protected.
 fn is_protected_register(description: &Description, address: RegisterAddress) -> bool {
     let locks = description.lock().is_some_and(|lock| [lock.password_at, lock.mode_at].contains(&address));
     let leads = |procedure: &Procedure| {
@@ -111,9 +110,9 @@ pub fn find_procedure(
     }
 }
 
-/// Plans to write the given bytes. A later edit of a register replaces an earlier edit, and edits that change nothing
-/// are omitted. `banks` and `registers` contain the current values of all edited registers, or `None` if a register
-/// cannot be read.
+/// Plans to write the given bytes. If a register occurs more than once, its last value applies. Edits that change
+/// nothing are omitted. `banks` and `registers` contain the current values of all edited registers, or `None` if a
+/// register cannot be read.
 ///
 /// # Errors
 /// Returns a [`PlanError`] if an edit is not allowed.
@@ -170,13 +169,13 @@ pub fn plan_edits(
     Ok(BissPlan { base, ops })
 }
 
-/// Returns the number of persistent writes that writing a value costs. For a register without a description, this is
-/// assumed to be one.
+/// Returns the number of persistent writes caused by writing a value. A register without a description is assumed to
+/// cause one.
 fn write_cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 {
     description.register_at(address).map_or(1, |register| u8::from(register.costs_write_cycle(value)))
 }
 
-/// Plans to select a filter. The plan is empty if the filter is already active.
+/// Plans to select a filter. The plan is empty if this filter is already active.
 ///
 /// # Errors
 /// Returns an error if the filter does not exist or the encoder offers no choice.
@@ -189,8 +188,8 @@ pub fn plan_filter(description: &Description, device: &DeviceState, to: Position
     Ok(BissPlan { base, ops: if from == to { vec![] } else { vec![Op::SelectFilter { from, to }] } })
 }
 
-/// Plans to store a preset value, unless it is already stored. If `parts` is specified, the plan also sets these parts
-/// of the current shaft position to the stored value.
+/// Plans to store a preset value, unless it is already stored. With `parts`, these parts of the shaft position are then
+/// set to the stored value.
 ///
 /// # Errors
 /// Returns an error if the value is too wide, the encoder has no preset, or the given parts cannot be preset
@@ -218,7 +217,7 @@ pub fn plan_preset(
     Ok(BissPlan { base: Base { preset: Some(from), ..Base::default() }, ops })
 }
 
-/// Plans the guided procedures for an encoder that has been mounted on a motor.
+/// Plans the guided procedures after an encoder has been mounted on a motor.
 ///
 /// # Errors
 /// Returns a [`PlanError`] if a step is not possible, for example because it needs a motor and the motor depends on
@@ -257,7 +256,7 @@ pub fn plan_mounting(
     Ok(plan)
 }
 
-/// Returns a setting of the encoder, or the reason why it is not available.
+/// Returns a setting of the encoder, or an error if the encoder does not have it.
 fn require_setting<T: Copy>(
     description: &Description,
     device: &DeviceState,

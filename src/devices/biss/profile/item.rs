@@ -1,12 +1,12 @@
-//! Names of the items in an encoder, such as `0x66` for a direct register, `0x24:0x10` for a register in a bank, and
-//! `0x24:0x10+3` for consecutive registers.
+//! Notation for the registers of an encoder, such as `0x66` for a direct register, `0x24:0x10` for a register in a
+//! bank, and `0x24:0x10+3` for consecutive registers.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::devices::biss::protocol::RegisterAddress;
 
-/// A range of consecutive registers, either direct registers or registers of one bank.
+/// A range of consecutive registers, either direct or in one bank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterRange {
     start: RegisterAddress,

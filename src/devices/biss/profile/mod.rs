@@ -1,5 +1,5 @@
-//! BiSS profiles, which contain the saved content of an encoder, comparison of two encoders, and planning of restores
-//! and guided procedures.
+//! BiSS profiles, which contain the saved content of an encoder. This includes comparing two encoders, and planning
+//! restores and guided procedures.
 
 #![warn(missing_docs)]
 

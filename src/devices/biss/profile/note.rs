@@ -1,4 +1,4 @@
-//! Changes made by an operation, for the logbook. Registers are listed with their address and with their name from the
+//! The changes made by an operation, as listed in the logbook. Registers have their address and their name in the
 //! manual, regardless of the language of the window.
 
 use super::{Op, PresetParts, RegisterChange, RegisterRange};

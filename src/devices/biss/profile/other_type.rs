@@ -1,13 +1,13 @@
-//! Comparison of the type of an encoder with the type in a profile. The type consists of the profile ID, the
-//! manufacturer, the device ID and the position widths. The widths matter because a preset value is a number of steps,
-//! and the same number is a different angle if the widths differ.
+//! Comparison of an encoder's type with the type in a profile. The type consists of the profile ID, the manufacturer,
+//! the device ID and the position widths. The widths matter because a preset value is a number of steps, which is a
+//! different angle at another width.
 
 use std::fmt;
 
 use super::ProfileIdentity;
 use crate::devices::biss::protocol::Identity;
 
-/// The difference in type between a profile and an encoder.
+/// The reason why a profile is for another type of encoder.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TypeMismatch {
     /// The reported identities differ.
@@ -42,7 +42,7 @@ impl Width {
         Width { multiturn: identity.multiturn_bits, singleturn: identity.singleturn_bits }
     }
 
-    /// Returns whether the two widths are known to be different.
+    /// Returns whether both widths are known and differ.
     fn differs_from(self, other: Self) -> bool {
         let parts = [(self.multiturn, other.multiturn), (self.singleturn, other.singleturn)];
         parts.into_iter().any(|(one, other)| one.zip(other).is_some_and(|(one, other)| one != other))
@@ -57,8 +57,8 @@ impl fmt::Display for Width {
     }
 }
 
-/// Returns the difference between the types of a profile and an encoder, or `None` if they match. An unknown width
-/// matches any width.
+/// Returns how the types of a profile and an encoder differ, or `None` if they match. An unknown width matches any
+/// width.
 pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<TypeMismatch> {
     let (of_profile, of_device) = (profile.kind(), device.kind());
     if of_profile != of_device {

@@ -1,4 +1,4 @@
-//! The operations that change an encoder, their cost, and the values on which a plan is based.
+//! The operations that change an encoder, their cost in write cycles, and the values on which a plan is based.
 
 use super::{Bank, BissProfile, RegisterRange};
 use crate::devices::biss::protocol::{Area, PositionFilter, PresetCommand, PresetValue, RegisterAddress};
@@ -7,7 +7,7 @@ use crate::profile::{Operation, Plan};
 /// A plan of writes to a BiSS encoder.
 pub type BissPlan = Plan<Base, Op>;
 
-/// The current values on which a plan is based. They include all readable values that the operations change.
+/// The current values on which a plan is based, which include all readable values that it changes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Data banks that the plan changes.
@@ -20,12 +20,12 @@ pub struct Base {
     pub registers: Vec<(RegisterAddress, u8)>,
 }
 
-/// An operation of a plan, which enters the required device mode and leaves it again.
+/// An operation in a plan. It enters the device mode that it needs, and leaves it at the end.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// Writes registers of one area and saves them together (manual 6.5).
     StoreData {
-        /// Area that contains the registers. It is opened with the command in its `open` field.
+        /// Area to which the registers belong. Its `open` command gives write access.
         area: Area,
         /// Register changes in ascending order of address.
         registers: Vec<RegisterChange>,
@@ -134,8 +134,8 @@ impl Op {
         matches!(self, Op::Calibrate | Op::WiegandTest { .. })
     }
 
-    /// Returns the register ranges that the operation changes, as accepted by the `read` command. The list is empty if
-    /// no readable register changes.
+    /// Returns the register ranges that the operation changes, in the notation of the `read` command. Empty if no
+    /// readable register changes.
     pub fn register_ranges(&self) -> Vec<RegisterRange> {
         let known = |text: &str| text.parse().into_iter().collect();
         match self {
@@ -149,8 +149,7 @@ impl Op {
         }
     }
 
-    /// Returns the name of the item that the operation changes. If the item can be read, the `read` command accepts
-    /// this name.
+    /// Returns the name of what the operation changes. For readable registers, the `read` command accepts this name.
     pub fn item_name(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
@@ -160,8 +159,8 @@ impl Op {
         }
     }
 
-    /// Returns the number of items that the operation changes, counted as in a comparison. This is the number of
-    /// changed registers for a data area, and one for any other operation.
+    /// Returns how many items of a comparison the operation changes: each changed register of a data area, and one item
+    /// for any other operation.
     pub fn compared_items(&self) -> u64 {
         match self {
             Op::StoreData { registers, .. } => registers.len() as u64,

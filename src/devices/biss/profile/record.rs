@@ -12,13 +12,13 @@ use crate::profile::ron_text::UnknownValues;
 /// The profile of a BiSS encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BissProfile {
-    /// Identity of the encoder that the profile was read from.
+    /// Identity of the encoder from which the profile was read.
     pub identity: ProfileIdentity,
     /// Position filter, or `None` if the encoder offers no choice.
     pub filter: Option<PositionFilter>,
-    /// Preset value, or `None` if the encoder has none. It is only valid for the encoder on its motor.
+    /// Preset value, or `None` if the encoder has none. It is only valid while the encoder stays on its motor.
     pub preset: Option<PresetSetting>,
-    /// Values that the encoder changes by itself, or that cannot be written. They are neither compared nor restored.
+    /// Values that the encoder changes by itself or that are read-only. They are neither compared nor restored.
     pub recorded: RecordedValues,
     /// Values that are only valid for this encoder on its motor. They are written to another encoder only on request.
     pub mounting: Vec<MountingMark>,
@@ -39,7 +39,7 @@ pub struct ProfileIdentity {
     pub manufacturer: [u8; 2],
     /// Firmware version (registers 74h to 76h), or `None` if the encoder has no such registers.
     pub firmware: Option<Firmware>,
-    /// Name of the encoder description used for reading.
+    /// Name of the description with which the encoder was read.
     pub description: String,
     /// Multiturn width in bits, if known.
     pub multiturn_bits: Option<u8>,
@@ -58,7 +58,7 @@ pub struct PresetSetting {
     pub unknown: UnknownValues,
 }
 
-/// The values in a profile that the encoder changes by itself, or that cannot be written.
+/// The values in a profile that the encoder changes by itself or that are read-only.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedValues {
     /// Banks of the electronic data sheet.
@@ -71,14 +71,14 @@ pub struct RecordedValues {
     pub wiegand_saved: Option<WiegandResult>,
     /// Value of the calibration status register (bank 0, 01h).
     pub calibration_status: Option<u8>,
-    /// Device mode during the reading, or `None` if the encoder was in operation. In a device mode, the profile may
+    /// Device mode in which the profile was read, or `None` for operation mode. In a device mode, the profile may
     /// contain values that were never saved in the encoder.
     pub device_mode: Option<DeviceMode>,
     /// Profile entries unknown to this program.
     pub unknown: UnknownValues,
 }
 
-/// Marks an item as a mounting value, which is valid only for one encoder as mounted on one motor.
+/// A mark on an item that is only valid for one encoder on one motor.
 pub type MountingMark = crate::profile::MountingMark<MountingItem>;
 
 /// An item that is only valid for one encoder on one motor.
@@ -91,7 +91,7 @@ pub enum MountingItem {
 }
 
 impl MountingItem {
-    /// Name of the calibration table, which has no registers that could be read.
+    /// Name of the calibration table, which cannot be read from registers.
     pub(super) const CALIBRATION: &str = "calibration";
 }
 
@@ -122,7 +122,7 @@ pub struct ListedBank {
     pub unknown: UnknownValues,
 }
 
-/// The contents of a data area. Banks with the same byte in every register need not be listed.
+/// The contents of a data area. Banks in which all bytes are equal may be left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataImage {
     /// Name of the area in the encoder's description.
@@ -131,7 +131,7 @@ pub struct DataImage {
     pub first: u8,
     /// Last bank of the area.
     pub last: u8,
-    /// Byte in every register of an unlisted bank. If this is `None`, unlisted banks are not part of the profile.
+    /// The byte in every register of the banks that are not listed. If `None`, these banks are not part of the profile.
     pub empty: Option<u8>,
     /// Listed banks in ascending order.
     pub listed: Vec<ListedBank>,
@@ -145,7 +145,8 @@ impl BissProfile {
     /// Filter register of a kit encoder.
     pub const FILTER: &'static str = "0x6E";
 
-    /// Marks the preset value and the calibration as valid only on this motor, unless they are already marked.
+    /// Marks the preset value and the calibration as valid only for this encoder on its motor, unless they are already
+    /// marked.
     pub fn mark_mounting_dependent_values(&mut self) {
         let preset = Self::PRESET.parse().ok().filter(|_| self.preset.is_some()).map(MountingItem::Registers);
         // An encoder with a preset value is a kit encoder, which also has a calibration.
@@ -206,7 +207,7 @@ impl BissProfile {
 }
 
 impl ProfileIdentity {
-    /// Returns the identity that determines the encoder type.
+    /// Returns the part of the identity that all encoders of this type share.
     pub fn kind(&self) -> Identity {
         Identity { profile: self.profile_id, manufacturer: self.manufacturer, device_id: self.device_id }
     }
@@ -241,8 +242,8 @@ impl From<Bank> for ListedBank {
 }
 
 impl DataImage {
-    /// Creates the image of an area from the given banks, which must be in ascending order. If the image covers the
-    /// whole area, empty banks are omitted.
+    /// Creates the contents of an area from the given banks, which must be in ascending order. If they cover the whole
+    /// area, empty banks are left out.
     pub fn new(area: &Area, banks: Vec<Bank>) -> Self {
         let is_whole = area.banks().eq(banks.iter().map(|bank| bank.number));
         let count = |byte| banks.iter().filter(|bank| bank.uniform_byte() == Some(byte)).count();

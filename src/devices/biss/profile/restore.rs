@@ -7,7 +7,7 @@ use super::other_type::{TypeMismatch, other_type};
 use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{Area, Firmware, PositionFilter, PresetValue, ProcedureKind, RegisterAddress};
 
-/// The current state of an encoder, to the extent that a plan requires it.
+/// What a plan requires to know about the current state of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the encoder.
@@ -22,7 +22,7 @@ pub struct DeviceState {
     pub banks: Vec<Bank>,
 }
 
-/// The outcome of planning a restore.
+/// The result of planning a restore.
 pub type Restore = crate::profile::Restore<BissPlan, RegisterRange>;
 
 /// Reason why a change cannot be planned.
@@ -136,7 +136,7 @@ pub fn plan_restore(
     Ok(planner.finish())
 }
 
-/// Plans to write only the data areas of a profile to an encoder that is being mounted. The plan includes values that
+/// Plans to write only the data areas of a profile, to an encoder that is being mounted. The plan includes values that
 /// are only valid on this motor.
 ///
 /// # Errors
@@ -155,9 +155,8 @@ pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Checks that a profile was read from this encoder, unless the options allow a profile of another encoder. Another
-/// encoder type must be allowed separately from another serial number, because its registers may have different
-/// meanings.
+/// Checks that a profile was read from this encoder, unless the options allow another encoder. A different type must be
+/// allowed separately from a different serial number, because its registers may have different meanings.
 ///
 /// # Errors
 /// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`] if the encoder is not allowed.
@@ -203,14 +202,14 @@ pub(super) fn check_preset_width(value: PresetValue, identity: &ProfileIdentity)
     Ok(())
 }
 
-/// The treatment of mounting values, which are valid only for one encoder as mounted on its motor.
+/// How to treat values that are only valid for one encoder on its motor.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum MountingPolicy {
     /// The values belong to this encoder.
     Own,
-    /// The values belong to another encoder and are not written.
+    /// The values belong to another encoder and are skipped.
     Leave,
-    /// The values belong to another encoder, but the user has allowed them to be written.
+    /// The values belong to another encoder, but the user has asked to write them.
     Write,
 }
 
@@ -340,8 +339,8 @@ fn preset_addresses() -> impl Iterator<Item = RegisterAddress> {
     BissProfile::PRESET.parse::<RegisterRange>().into_iter().flat_map(RegisterRange::addresses)
 }
 
-/// Returns the operations that store changes in an area. This is a single operation if the area is opened and saved as
-/// a whole, and otherwise one operation per register.
+/// Returns the operations that store changes in an area. An area that is opened and saved as a whole needs only one.
+/// Otherwise, each register needs its own.
 pub(super) fn store_operations(area: &Area, registers: Vec<RegisterChange>) -> Vec<Op> {
     if area.open.is_some() {
         return vec![Op::StoreData { area: area.clone(), registers }];

@@ -13,7 +13,7 @@ use crate::profile::mounting::MOUNTING_COMMENT;
 use crate::profile::ron_text::{Entries, Writer, quote};
 use crate::profile::{ChangedItem, Comparison, Profile, ProfileError, Redo};
 
-/// Range of the singleturn and multiturn parts of a preset value, which occupy three registers each.
+/// Range of each part of a preset value, which occupies three registers.
 const PRESET_NUMBER: AllowedValues = AllowedValues::whole_range(0, 16_777_215);
 
 impl Profile for BissProfile {

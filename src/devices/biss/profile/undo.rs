@@ -1,4 +1,4 @@
-//! Undoing a write to an encoder: splitting it into registers, and instructions for items that the backup cannot
+//! Undoing a write to an encoder: separating its registers, and giving instructions for items that the backup cannot
 //! restore.
 
 use super::{BissProfile, RegisterRange};
@@ -7,7 +7,7 @@ use crate::profile::{ChangedItem, Redo, single_bytes};
 /// An item of the logbook.
 enum LoggedItem {
     Registers(RegisterRange),
-    /// The position filter or the preset value, whose old and new values are texts.
+    /// The position filter or the preset value, with its old and new values as strings.
     Setting,
     Procedure,
 }
@@ -20,7 +20,7 @@ fn logged_item(item: &ChangedItem) -> LoggedItem {
     }
 }
 
-/// Splits registers.
+/// Splits the change of several registers into one change per register.
 pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
     match logged_item(item) {
         LoggedItem::Setting | LoggedItem::Procedure => vec![item.clone()],
@@ -32,7 +32,7 @@ pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
 }
 
 impl BissProfile {
-    /// Returns the instruction for an item that this backup does not contain.
+    /// Returns how to undo a change to an item that this backup does not contain, or `None` if the backup can.
     pub(super) fn redo_item(&self, item: &ChangedItem) -> Option<Redo> {
         let range = match logged_item(item) {
             LoggedItem::Setting => return None,

@@ -1,4 +1,4 @@
-//! Decoding of bridge protocol packets, which are terminated by a byte 00.
+//! Decoding of bridge packets, each of which ends with a 00 byte.
 
 use serde_json::Map;
 
@@ -59,7 +59,7 @@ fn explain_message(packet: &Packet) -> Result<Vec<String>, String> {
     }
 }
 
-/// Returns the name of an operation as used in the reference.
+/// Returns the name of an operation as in the bridge reference.
 fn name(operation: Operation) -> &'static str {
     match operation {
         Operation::Hello => "HELLO",
@@ -168,7 +168,7 @@ fn hello_reply_lines(hello: &Hello) -> Vec<String> {
     ]
 }
 
-/// Describes a frame that an adapter has read. The host checks the CRC.
+/// Describes a frame that the adapter has read and whose CRC it has not checked.
 fn explain_frame(t_s: f64, status: BissStatus, raw: u64) -> Result<Vec<String>, String> {
     let bad = match status {
         BissStatus::OK => {

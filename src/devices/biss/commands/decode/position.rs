@@ -9,7 +9,7 @@ use crate::buses::ubicom::protocol::PositionWord;
 use crate::cli::decode::FrameExplanation;
 use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 
-/// Number of bytes that hold a right-justified frame.
+/// Number of bytes in a right-justified frame.
 pub(super) const BYTES: usize = 6;
 
 /// Number of hexadecimal digits in a 33-bit position word, as shown by the `position` command and in the window.
@@ -22,7 +22,7 @@ pub(super) fn decode_bytes(bytes: &[u8]) -> Option<FrameExplanation> {
     fits.then(|| FrameExplanation { compact: hex_compact(bytes), ..explain_frame(raw, hex(bytes)) })
 }
 
-/// Decodes a frame. `shown` is its original notation.
+/// Decodes a frame. `shown` is the frame as the user typed it.
 pub(super) fn explain_frame(raw: u64, shown: String) -> FrameExplanation {
     let mut more = form_map("position frame");
     let meaning = explain_fields(raw, &mut more);
@@ -40,7 +40,7 @@ pub(super) fn explain_position_word(raw: u64, shown: String) -> FrameExplanation
     FrameExplanation { compact: shown.clone(), shown, meaning, more }
 }
 
-/// Describes the turns, steps and angle of a position, and adds them to the JSON output.
+/// Describes a position in turns, steps and degrees, and adds these values to the JSON output.
 fn describe_position(layout: &Layout, reading: &PositionData, raw: u64, more: &mut Map<String, Json>) -> String {
     let (turns, steps, degrees) = (reading.multiturn, reading.singleturn, layout.degrees_of(reading));
     let pairs = [("raw", json!(raw)), ("turns", json!(turns)), ("steps", json!(steps)), ("degrees", json!(degrees))];
@@ -48,7 +48,7 @@ fn describe_position(layout: &Layout, reading: &PositionData, raw: u64, more: &m
     format!("turn {turns}, step {steps} of {}, {degrees:.6}°", 1u64 << layout.singleturn_bits())
 }
 
-/// Returns one line per field, or the reason why the bits are not a valid frame.
+/// Returns one line per field, or an error if the bits are not a valid frame.
 pub(super) fn explain_fields(raw: u64, more: &mut Map<String, Json>) -> Result<Vec<String>, String> {
     let layout = Layout::default();
     match layout.parse(raw) {

@@ -1,6 +1,5 @@
-//! Single exchanges over an adapter on the bus. An exchange reads a frame, or accesses a register by bank and address.
-//! The selected bank is cached as long as the encoder cannot have restarted unnoticed. The cache is cleared after every
-//! failure.
+//! Single exchanges through an adapter on the bus. An exchange reads a frame, or accesses a register by bank and
+//! address. The selected bank is remembered until an exchange fails or the encoder may have restarted unnoticed.
 
 use std::time::Duration;
 
@@ -14,14 +13,15 @@ use crate::devices::biss::protocol::{FrameError, RegisterAddress};
 use crate::link::line::LineError;
 use crate::units::Moment;
 
-/// Slave number of a single encoder on the line.
+/// Slave number of the only encoder on the line.
 const SLAVE: u8 = 0;
-/// Maximum time since the last reply within which the encoder cannot have restarted unnoticed. A restart takes 500 ms
-/// (data sheet, 02:0Eh).
+/// Time since the last reply in which the encoder cannot have restarted unnoticed. A restart takes 500 ms (data sheet,
+/// 02:0Eh).
 const BANK_TRUST: Duration = Duration::from_millis(200);
-/// Pause between two attempts, required because the adapter reports a missing encoder immediately.
+/// Pause between two attempts, because the adapter reports a missing encoder immediately.
 const PAUSE: Duration = Duration::from_millis(20);
-/// Number of consecutive frames with wrong checksums after which noise is ruled out as the cause (`U`: not documented).
+/// Number of consecutive frames with a wrong checksum after which noise is ruled out as the cause. The number is not
+/// documented (`U`).
 const WRONG_FRAMES: u32 = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +73,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Selects the bank of a register, unless it is known to be selected.
+    /// Selects the bank of a register, unless it is already selected.
     pub(super) fn select_bank(&mut self, address: RegisterAddress) -> Result<(), Error> {
         let Some(bank) = address.bank() else { return Ok(()) };
         self.request_with_retries(RequestedItem::Write(RegisterAddress::BANK_SELECT, bank), |master| {
@@ -123,7 +123,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Writes a register without retries and returns the value that it reads back.
+    /// Writes a register without retries, and returns the value read back.
     fn write_register_once(&mut self, address: RegisterAddress, value: u8) -> AttemptResult<u8> {
         let request = Request::BissRegisterWrite { slave: SLAVE, address: address.address(), value };
         let answered = self.adapter_host().request_once(&request);
@@ -162,8 +162,8 @@ impl<'a> Master<'a> {
         Ok(Err(trouble))
     }
 
-    /// Discards cached settings that the adapter may have lost in a reset. After a cancellation, only the bank and the
-    /// bus settings are discarded.
+    /// Discards the settings that the adapter may have lost in a reset. After a cancellation, only the bank and the bus
+    /// settings are discarded.
     fn handle_possible_reset(&mut self, failure: &Failure) {
         if matches!(failure, Failure::Line(LineError::Cancelled)) {
             (self.station.bank, self.station.bus) = (None, None);
@@ -214,8 +214,8 @@ impl<'a> Master<'a> {
         Ok(Err(ExchangeError::NoFrame(no_frame)))
     }
 
-    /// Reads more frames if five frames had wrong checksums and none has ever been correct. If the cause is noise, some
-    /// of these frames are correct. If the widths are wrong, none of them are.
+    /// Reads more frames if five frames had wrong checksums and no frame has ever been correct. If noise is the cause,
+    /// some of the new frames are correct. If the widths are wrong, none of them are.
     pub(super) fn recheck_frame_widths(&mut self, failed: Error) -> Result<PositionReading, Error> {
         if self.station.good_frames {
             return Err(failed);
@@ -235,8 +235,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads a frame after a register access to which no reply was received. The result shows whether the line itself
-    /// is at fault.
+    /// Reads a frame after a register access without a reply. Without a frame, the line itself is at fault.
     pub(super) fn diagnose_line(&mut self, failed: Error) -> Error {
         let Error::NoReply { tries, .. } = failed else { return failed };
         match self.read_frame_once() {
@@ -261,7 +260,7 @@ impl<'a> Master<'a> {
         self.wait(PAUSE)
     }
 
-    /// Returns the maximum duration of an exchange with up to two attempts.
+    /// Returns the maximum duration of an exchange with two attempts.
     pub(super) fn max_bus_exchange_duration(&self) -> Duration {
         2 * (REPEAT_AFTER + self.station.line.margin)
     }

@@ -1,4 +1,4 @@
-//! The supply of the encoder by an adapter, which is switched on if requested and restored at the end of the session.
+//! The encoder's supply from an adapter. It is switched on if requested, and restored at the end of the session.
 
 use std::time::Duration;
 
@@ -7,8 +7,8 @@ use crate::devices::biss::procedures::Error;
 use crate::devices::biss::procedures::station::{Supply, Transport};
 use crate::devices::biss::protocol::DeviceMode;
 
-/// Time allowed for a store that a register write may have started. No status register indicates when the store is
-/// complete, and its duration is not published (`U`).
+/// Time allowed for the encoder to store data after a register write. No status register shows when it has finished,
+/// and the duration is not published (`U`).
 const STORE_TIME: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
@@ -24,16 +24,15 @@ impl Master<'_> {
         self.wait(Supply::POWER_UP)
     }
 
-    /// Returns whether the encoder has power from any supply. This is the case if it sends a frame.
+    /// Returns whether the encoder has power, from any source. Only a powered encoder sends a frame.
     fn has_power(&mut self) -> bool {
         let bits = self.station.frame_layout().bits();
         let ones = u64::MAX >> (64 - u32::from(bits.clamp(1, 64)));
         matches!(self.read_frame_once(), Ok(Ok((raw, _))) if raw != 0 && raw != ones)
     }
 
-    /// Switches off the supply at the end of a session, unless it was on before or should remain on. The supply also
-    /// remains on while a store, a calibration or a restart may be in progress, because data in the encoder could be
-    /// lost.
+    /// Switches off the supply at the end of a session, unless it was already on before or is to remain on. It also
+    /// remains on while the encoder may be storing data, calibrating or restarting, because data could be lost.
     ///
     /// # Errors
     /// Returns an error if the adapter fails.
@@ -51,7 +50,7 @@ impl Master<'_> {
         })
     }
 
-    /// Returns whether a loss of power could interrupt an operation of the encoder.
+    /// Returns whether a loss of power could interrupt the encoder while it stores data, calibrates or restarts.
     fn is_power_still_needed(&mut self) -> Result<bool, Error> {
         if self.station.unfinished {
             return Ok(true);

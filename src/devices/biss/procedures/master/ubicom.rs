@@ -1,7 +1,7 @@
 //! Single exchanges over the configuration pin. An exchange sends a request and receives bytes until the reply is
-//! complete or has timed out. Bytes that are not part of a frame are skipped, and a frame that pauses for 20 ms is
-//! abandoned. The echo is recognised by its length, because no reply has this length. See sections 1 and 2 of the
-//! UBICOM reference.
+//! complete or the time limit expires. Bytes outside a frame are skipped, and a frame with a gap of 20 ms is abandoned.
+//! The echo is recognised by its length, because no reply has this length. See sections 1 and 2 of the UBICOM
+//! reference.
 
 use std::time::Duration;
 
@@ -17,10 +17,9 @@ use crate::devices::biss::protocol::RegisterAddress;
 use crate::link::line::MAX_KEPT_BYTES;
 use crate::units::Moment;
 
-/// Length in bytes of the longest frame, which is the reply to 03h.
+/// Length in bytes of the longest frame, the reply to 03h.
 const LONGEST_FRAME: usize = PositionWord::BYTES + Frame::OVERHEAD;
-/// Time after the reply time-out during which bytes may still arrive. Bytes that keep arriving after this time are
-/// noise.
+/// Time after the reply time-out in which late bytes may arrive. Bytes that still arrive later are noise.
 const NOISE: Duration = Duration::from_secs(1);
 
 struct TimedReply {
@@ -31,7 +30,7 @@ struct TimedReply {
 struct ReceivedBytes {
     receiver: Receiver,
     sent: Vec<u8>,
-    /// First bytes that were received, for the trace.
+    /// The first bytes received, for the trace.
     raw: Vec<u8>,
     bytes: usize,
     echo_heard: bool,

@@ -1,5 +1,5 @@
-//! Singleturn calibration, which consists of a counterclockwise and a clockwise run of about five seconds each. The
-//! encoder may not reply during a run. See manual 6.4.
+//! The singleturn calibration, which consists of a counterclockwise and a clockwise run of about five seconds each.
+//! During a run, the encoder may not reply. See manual 6.4.
 
 use std::time::Duration;
 
@@ -55,8 +55,7 @@ impl ProcedureContext<'_, '_> {
         Ok(Outcome::Calibrated(CalibrationReport { celsius, counterclockwise, clockwise }))
     }
 
-    /// Performs one calibration run. Cancellation does not interrupt the second run, because the calibration table
-    /// would be lost.
+    /// Performs one calibration run. The second run cannot be cancelled, because the calibration table would be lost.
     fn run_calibration(&mut self, run: MotorRun, procedure: &Procedure) -> Result<(), Failure> {
         self.begin_step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;

@@ -1,6 +1,6 @@
-//! Writing motor and OEM data (manual 6.5). The manual does not mention that the bank to write must be selected. This
-//! implementation selects the target bank after opening the area, and bank 0 before reading the status, as [`Master`]
-//! always does.
+//! Writing motor and OEM data (manual 6.5). The bank to write must be selected, which the manual does not mention.
+//! Here, the target bank is selected after the area has been opened, and bank 0 before the status is read, as
+//! [`Master`] always does.
 //!
 //! [`Master`]: crate::devices::biss::procedures::Master
 

@@ -16,28 +16,28 @@ pub enum Failure {
     Wiegand {
         run: MotorRun,
         status: WiegandStatus,
-        /// Error code of unpublished meaning.
+        /// Error code from the encoder. Its meaning is not published.
         code: u8,
     },
-    /// The active filter is not the balanced one.
+    /// The active filter is not the balanced filter, which the calibration requires.
     #[error("the calibration requires the balanced filter, but the filter is 0x{code:02X}")]
     NotBalanced { code: u8 },
-    /// The device mode that was read back differs from the mode that was written.
+    /// The device mode read back differs from the one written.
     #[error("device mode {wanted} was written, but {found} was read back")]
     Mode { wanted: DeviceMode, found: DeviceMode },
-    /// A status register never reached the required value.
+    /// The procedure's status register did not reach the required value in time.
     #[error("the status of the procedure is 0x{found:02X} instead of 0x{expected:02X}")]
     Status { kind: ProcedureKind, expected: u8, found: u8 },
     #[error("the run has not ended after {seconds} s")]
     TooLong {
         run: MotorRun,
-        /// Time waited, in seconds.
+        /// How long the program waited, in seconds.
         seconds: u64,
     },
     /// The operator did not complete the task in time.
     #[error("the conditions are not met: {blockers:?}")]
     NotReady { task: OperatorTask, blockers: Vec<StartBlocker> },
-    /// A value that was read back differs from the value that was written.
+    /// A value read back differs from the one written.
     #[error("{item}: {expected} was written, but {got} was read back")]
     NotVerified { item: String, expected: String, got: String },
     /// The description of the encoder does not contain the procedure.

@@ -1,4 +1,4 @@
-//! Selection of the position filter, after which the encoder restarts. See manual 6.6.
+//! Selecting the position filter, after which the encoder restarts. See manual 6.6.
 
 use super::guide::ProcedureContext;
 use super::{Activity, Failure, Outcome, ProcedureStep};

@@ -1,6 +1,5 @@
-//! Functions shared by all procedures: device modes, commands, statuses, the operator at the motor, restarts, and the
-//! return to operation. The possible states of the encoder are tracked, so that they can be reported if the link is
-//! lost.
+//! What all procedures share: device modes, commands, statuses, the operator at the motor, restarts, and the return to
+//! operation mode. The state that the encoder may be in is tracked, so that it can be reported if the link is lost.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -16,18 +15,18 @@ use crate::devices::biss::protocol::{
     Description, DeviceMode, Lock, Procedure, ProcedureKind, RegisterAddress, Role, Temperature,
 };
 
-/// Time that the encoder needs for a restart (data sheet, 02:0Eh). Nothing is sent during this time.
+/// How long the encoder takes to restart (data sheet, 02:0Eh). Nothing is sent during this time.
 const RESTART: Duration = Duration::from_millis(500);
 /// Time limit for a restart.
 const RESTART_TIMEOUT: Duration = Duration::from_secs(5);
-/// Time limit for the silence of an encoder during a calibration run, which takes about five seconds (manual 6.4).
+/// How long an encoder may be silent during a calibration run, which takes about five seconds (manual 6.4).
 pub(super) const SILENCE_LIMIT: Duration = Duration::from_secs(10);
 /// Interval at which a status register is polled.
 const STATUS_POLL_INTERVAL: Duration = Duration::from_millis(100);
-/// Interval between position readings. At 2000 rpm, half a turn takes 15 ms. At longer intervals, the turns of an
-/// encoder without multiturn would be missed.
+/// Interval between position readings. At 2000 rpm, half a turn takes 15 ms. With longer intervals, the turns of a
+/// singleturn encoder could not be counted.
 const SAMPLING: Duration = Duration::from_millis(10);
-/// Interval at which the operator is prompted for an answer.
+/// Interval at which the operator is asked for an answer.
 const QUESTION_INTERVAL: Duration = Duration::from_millis(200);
 /// Duration of a motor speed measurement.
 const SPEED_MEASUREMENT_TIME: Duration = Duration::from_secs(1);
@@ -36,7 +35,7 @@ const STANDSTILL_MEASUREMENT_TIME: Duration = Duration::from_millis(250);
 const MODE: Duration = Duration::from_millis(500);
 /// Time limit for an expected status.
 const STATUS: Duration = Duration::from_secs(5);
-/// Duration of silence after which the encoder is assumed to have started the calibration (`U`: not documented). The
+/// Silence after which the encoder is assumed to have started the calibration. The time is not documented (`U`). The
 /// silence after a damaged reply is shorter.
 const START_SILENCE: Duration = Duration::from_secs(1);
 
@@ -63,7 +62,7 @@ pub(super) struct RunProgress {
     pub(super) limit: Duration,
 }
 
-/// The operator's decision about a task, with the measurement at that time.
+/// The operator's decision about a task, with the motion of the shaft measured at that time.
 pub(super) enum OperatorDecision {
     Go(Option<ShaftMotion>),
     Skip,
@@ -93,7 +92,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         self.master
     }
 
-    /// Records that the encoder was in operation at the start. `password` specifies whether the password is set.
+    /// Records that the encoder starts in operation mode. `password` is whether the password is set.
     pub(in crate::devices::biss::procedures) fn set_initial_state(&mut self, password: bool) {
         self.standing = LeftState::in_operation(password);
     }
@@ -102,7 +101,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         &self.standing
     }
 
-    /// Returns the number of persistent writes that were or may have been performed.
+    /// Returns the number of persistent writes that were made or may have been made.
     pub(in crate::devices::biss::procedures) fn write_cycles(&self) -> u64 {
         self.cycles
     }
@@ -140,8 +139,8 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         self.standing.activity = activity;
     }
 
-    /// Returns the encoder to operation and clears the password. Nothing is sent if the encoder is already in
-    /// operation.
+    /// Returns the encoder to operation mode and clears the password. Sends nothing if the encoder is already in this
+    /// state.
     pub(in crate::devices::biss::procedures) fn return_to_operation(&mut self) -> Result<(), Error> {
         let Some(lock) = self.description.lock().filter(|_| !self.standing.is_in_operation()) else { return Ok(()) };
         self.begin_step(ProcedureStep::ReturnToOperation);
@@ -177,8 +176,8 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         }
     }
 
-    /// Sends a command. If it is uncertain whether the encoder received the command, no error is returned, and the next
-    /// exchange must check the status or the written values.
+    /// Sends a command. An unconfirmed command is not an error, so the next exchange must check the status or the
+    /// written values.
     pub(super) fn command(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         match self.master.write(procedure.command, command) {
             Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),
@@ -186,7 +185,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         }
     }
 
-    /// Sends the command that writes the flash. After that, the flash is considered written unless a reply proves
+    /// Sends the command that writes the flash. From then on, the flash counts as written, unless a reply proves
     /// otherwise.
     pub(super) fn save(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         let before = self.standing.activity;
@@ -231,8 +230,8 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         result
     }
 
-    /// Starts a run, polls the status until the run is complete, and reports the progress. `explain` converts an
-    /// unexpected status to a failure. The status from before the command is ignored until it changes.
+    /// Starts a run, reports its progress, and polls the status until the run is complete. A status left over from
+    /// before the command is ignored until it changes. `explain` converts an unexpected status to a failure.
     pub(super) fn run(
         &mut self,
         course: &RunProgress,
@@ -275,7 +274,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         Ok(())
     }
 
-    /// Waits until an encoder that may be restarting replies again, and reads its state.
+    /// Waits until an encoder that may be restarting replies, and reads its state.
     pub(super) fn wait_for_restart(&mut self) -> Result<(), Error> {
         self.begin_step(ProcedureStep::Restart);
         self.standing.record_possible_restart();
@@ -291,8 +290,8 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         Ok(())
     }
 
-    /// Gives the operator a task at the motor. The shaft is measured repeatedly until the conditions are met and the
-    /// operator confirms.
+    /// Gives the operator a task at the motor, and measures the shaft until the conditions are met and the operator
+    /// confirms.
     pub(super) fn run_operator_task(&mut self, task: OperatorTask) -> Result<OperatorDecision, Failure> {
         self.begin_step(ProcedureStep::Await(task));
         let begun = self.master.now();
@@ -382,8 +381,8 @@ fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mu
     ended
 }
 
-/// Returns the encoder from any mode to operation, clears the password, and returns the previous mode. A running
-/// calibration is allowed to finish, because the table would be lost if it were aborted.
+/// Returns the encoder from any mode to operation mode, clears the password, and returns the previous mode. A running
+/// calibration is allowed to finish, because aborting it would lose the table.
 pub(super) fn return_to_operation(
     master: &mut Master<'_>,
     description: &Description,
@@ -415,7 +414,7 @@ pub(super) fn return_to_operation(
     Err(Error::StaysUnlocked { mode: stays })
 }
 
-/// Sends the command that ends a procedure before its mode is left. A rejection is ignored.
+/// Sends the command that ends a procedure before its mode is left. The encoder may reject it.
 fn end_procedure(master: &mut Master<'_>, description: &Description, mode: DeviceMode) -> Result<(), Error> {
     use crate::devices::biss::protocol::{CalibrationStatus, DataCommand, DataStatus, WiegandCommand};
     let Some(procedure) = description.procedures().iter().find(|own| own.mode == mode.byte()) else { return Ok(()) };

@@ -4,7 +4,7 @@ use super::MotorRun;
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::DeviceMode;
 
-/// The possible values of a quantity. If a reply is missing, there is more than one.
+/// The possible values of one part of the encoder's state. After a missing reply, there is more than one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PossibleValues<T>(Vec<T>);
 
@@ -18,12 +18,12 @@ pub struct LeftState {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
-    /// The encoder performs no operation that a loss of the link would interrupt.
+    /// Nothing that a loss of the link could interrupt.
     Nothing,
     Running(MotorRun),
-    /// Values have been entered but not saved. They are discarded when the mode is left or power is lost.
+    /// Values have been entered but not saved. They are lost when the mode is left or the power fails.
     Entered,
-    /// The flash has been or may have been written. Either the old or the new values are stored.
+    /// The flash has been written, or may have been. It holds either the old or the new values.
     Saving,
     Restarting,
 }
@@ -33,7 +33,7 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
         PossibleValues(vec![value])
     }
 
-    /// Returns all possible values, in the order in which the encoder would have reached them.
+    /// Returns all possible values, in the order in which the encoder would reach them.
     pub fn as_slice(&self) -> &[T] {
         &self.0
     }
@@ -52,7 +52,7 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
         }
     }
 
-    /// Updates the possible values according to the result of writing `after`.
+    /// Updates the possible values after an attempt to write `after`.
     pub(super) fn update_after_write(&mut self, after: T, ended: &Result<(), Error>) {
         match ended {
             Ok(()) => *self = PossibleValues::new(after),
@@ -72,7 +72,7 @@ impl LeftState {
         }
     }
 
-    /// Returns whether the encoder is certainly in operation with the password cleared.
+    /// Returns whether the encoder is certainly in operation mode with the password cleared.
     pub fn is_in_operation(&self) -> bool {
         self.mode.is_certainly(DeviceMode::OPERATION) && self.password.is_certainly(false)
     }
@@ -83,7 +83,7 @@ impl LeftState {
         self.activity = Activity::Restarting;
     }
 
-    /// Records that the encoder can no longer be reached. If it loses power, it starts again in operation with the
+    /// Records that the encoder can no longer be reached. If it loses power, it restarts in operation mode with the
     /// password cleared.
     pub(in crate::devices::biss::procedures) fn record_possible_power_loss(&mut self) {
         self.mode.add_possible(DeviceMode::OPERATION);

@@ -1,5 +1,5 @@
-//! The guided procedures (manual 6.3 to 6.7). A procedure is straight-line code from entering its device mode to
-//! returning to operation. It instructs the operator at the motor through an [`Operator`], reports every
+//! The guided procedures (manual 6.3 to 6.7). The code of a procedure runs straight through, from entering its device
+//! mode to the return to operation mode. It instructs the operator at the motor through an [`Operator`], reports every
 //! [`ProcedureStep`], and always ends in operation mode with the password cleared. If the encoder cannot be reached,
 //! the known [`LeftState`] is reported instead, and [`return_to_operation`] completes the return later.
 //!
@@ -42,7 +42,7 @@ use crate::devices::biss::protocol::{Descriptions, DeviceMode, PositionFilter, P
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The operator skipped the whole procedure, or everything after its first run.
+    /// The operator skipped the whole procedure, or the rest of it after the first run.
     Skipped {
         after: Option<MotorRun>,
     },
@@ -91,8 +91,9 @@ impl ProcedureContext<'_, '_> {
     }
 }
 
-/// Returns an encoder to operation, clears the password, and returns the previous mode. This also works after the link
-/// was lost or another host changed the mode. If the encoder is silent during a calibration, the function waits for it.
+/// Returns an encoder to operation mode, clears the password, and returns the previous mode. This also works after the
+/// link was lost or another host changed the mode. If the encoder is silent during a calibration, the function waits
+/// for it.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the encoder does not return to operation.

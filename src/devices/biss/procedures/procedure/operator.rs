@@ -1,5 +1,5 @@
 //! The operator at the motor during a procedure: tasks, measurements and confirmations. In the window, the operator is
-//! a user. In a test, the operator is a script. On a production line, there may be no operator.
+//! the user. In a test, it is a script. On a production line, there may be no operator.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -23,14 +23,14 @@ pub struct SpeedRange {
 }
 
 impl SpeedRange {
-    /// Relative accuracy of a speed measurement.
+    /// Allowed error of a speed measurement, as a fraction of the speed.
     const MEASURING_TOLERANCE: f64 = 0.01;
 
     const fn new(least: f64, greatest: f64) -> Self {
         SpeedRange { least, greatest }
     }
 
-    /// Returns the range of accepted speeds, which includes the measuring tolerance.
+    /// Returns the range widened by the measuring tolerance.
     pub fn with_tolerance(self) -> Self {
         SpeedRange::new(
             self.least / (1.0 + Self::MEASURING_TOLERANCE),
@@ -61,19 +61,19 @@ impl MotorRun {
         if self.is_calibration() { SpeedRange::new(300.0, 700.0) } else { SpeedRange::new(500.0, 2000.0) }
     }
 
-    /// Returns the speeds that give the best result (manual 6.4). For the Wiegand test, these are all allowed speeds.
+    /// Returns the speeds that give the best result (manual 6.4). For the Wiegand test, any allowed speed is good.
     pub const fn recommended_range(self) -> SpeedRange {
         if self.is_calibration() { SpeedRange::new(498.0, 502.0) } else { self.allowed_speeds() }
     }
 
-    /// Returns the allowed speed variation of a calibration in revolutions per minute (manual 6.4). Returns `None` for
-    /// the Wiegand test, for which the manual only requires a constant speed.
+    /// Returns how much the speed may vary during a calibration, in revolutions per minute (manual 6.4). Returns `None`
+    /// for the Wiegand test, for which the manual only requires a constant speed.
     pub const fn max_fluctuation(self) -> Option<f64> {
         if self.is_calibration() { Some(2.0) } else { None }
     }
 
-    /// Returns the maximum speed variation, in revolutions per minute, at which the motor is considered steady. The
-    /// limit depends on the speed, because the accuracy of the measurement depends on it.
+    /// Returns the speed variation in revolutions per minute up to which the motor is considered steady. The limit
+    /// grows with the speed, like the measuring error.
     pub fn accepted_fluctuation(self, rpm: f64) -> f64 {
         match self.max_fluctuation() {
             Some(fluctuation) => fluctuation + rpm.abs() * SpeedRange::MEASURING_TOLERANCE,
@@ -81,16 +81,16 @@ impl MotorRun {
         }
     }
 
-    /// Relative speed variation above which a motor is not considered steady (`U`: not documented).
+    /// Largest speed variation of a steady motor, as a fraction of the speed. The limit is not documented (`U`).
     const MAX_FLUCTUATION: f64 = 0.05;
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum OperatorTask {
     Turn(MotorRun),
-    /// Keep the shaft at rest, because the data area is not accessed while the shaft turns.
+    /// Keep the shaft at rest, because the data area cannot be accessed while it turns.
     HoldStill,
-    /// Keep the shaft at rest at the angle to which the preset value will be assigned.
+    /// Keep the shaft at rest at the angle that will get the preset value.
     HoldAtPresetAngle,
 }
 
@@ -125,11 +125,11 @@ pub enum StartBlocker {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OperatorAdvice {
-    /// A different or steadier speed would yield a better result.
+    /// Another speed, or a steadier one, would give a better result.
     Speed { recommended: SpeedRange },
     /// If this run fails, the calibration table is lost (manual 6.4).
     TableAtRisk,
-    /// The encoder marks its positions as invalid, but the speed is still calculated from them.
+    /// The encoder marks its positions as invalid. The speed is calculated from them nevertheless.
     Marked,
 }
 
@@ -140,7 +140,7 @@ pub struct OperatorPrompt {
     pub motion: Option<ShaftMotion>,
     /// Temperature of the encoder, if the procedure depends on it.
     pub celsius: Option<i16>,
-    /// Conditions that must be met before the run can start.
+    /// Conditions that are not met yet and prevent the start of the run.
     pub blockers: Vec<StartBlocker>,
     pub advice: Vec<OperatorAdvice>,
     pub waited: Duration,
@@ -213,31 +213,31 @@ pub(super) struct ShaftReading {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OperatorAnswer {
     Wait,
-    /// Start the run. This answer is valid only if all conditions are met.
+    /// Start the run. Valid only if all conditions are met.
     Go,
     /// Skip this part and continue with the next.
     Skip,
     Cancel,
-    /// Give up because no operator is present. The unmet conditions are reported.
+    /// Give up because no operator is present. The conditions that are not met are reported.
     GiveUp,
 }
 
 pub trait Operator {
-    /// Prepares for a new task by discarding confirmations of earlier ones.
+    /// Prepares for a new task by discarding earlier confirmations.
     fn on_task_start(&mut self) {}
 
-    /// Asks the operator for an answer. This function is called several times per second with new measurements.
+    /// Asks the operator to answer a task. Called several times per second with new measurements.
     fn ask(&mut self, demand: &OperatorPrompt) -> OperatorAnswer;
 }
 
-/// A substitute for an operator, which starts as soon as all conditions are met and gives up after a time limit.
+/// A substitute for an absent operator. It starts as soon as all conditions are met, and gives up after a time limit.
 #[derive(Clone, Copy, Debug)]
 pub struct UnattendedOperator {
     pub patience: Duration,
 }
 
 impl UnattendedOperator {
-    /// Additional time for the first measurement.
+    /// Extra time until the first measurement is available, before giving up.
     const FIRST_MEASUREMENT_TIME: Duration = Duration::from_secs(5);
 }
 
@@ -257,12 +257,12 @@ impl Operator for UnattendedOperator {
     }
 }
 
-/// A channel for answers of an operator in another thread. Clones share the channel.
+/// A channel for the answers of an operator in another thread. Clones share it.
 #[derive(Clone, Debug, Default)]
 pub struct OperatorChannel(Arc<Mutex<Option<(OperatorTask, OperatorAnswer)>>>);
 
 impl OperatorChannel {
-    /// Answers a task. The answer is ignored if another task is current or the task has not been given yet.
+    /// Answers a task. The answer is ignored unless this is the current task.
     pub fn answer_task(&self, to: OperatorTask, answer: OperatorAnswer) {
         *self.lock_slot() = Some((to, answer));
     }
@@ -298,7 +298,7 @@ mod tests {
         OperatorPrompt::new(task, measured, Duration::ZERO)
     }
 
-    /// The limits are taken from manual 6.3 and 6.4.
+    /// Checks the limits in manual 6.3 and 6.4.
     #[test]
     fn a_start_requires_direction_speed_and_stability() {
         let (first, second) = (MotorRun::CalibrationCounterclockwise, MotorRun::CalibrationClockwise);

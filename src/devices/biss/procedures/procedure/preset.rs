@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::{
     PresetCommand, PresetStatus, PresetValue, Procedure, ProcedureKind, RegisterAddress,
 };
 
-/// Reciprocal of the allowed jitter around the new value, in revolutions. The allowed jitter is 0.35°.
+/// Reciprocal of the allowed jitter around the new position, in revolutions. The jitter may be 0.35°.
 const PRESET_JITTER_DIVISOR: u64 = 1024;
 
 impl ProcedureContext<'_, '_> {
@@ -69,14 +69,14 @@ fn value_range(procedure: &Procedure) -> Result<RegisterRange, Failure> {
     range.ok_or(Failure::NotDescribed { kind: procedure.kind })
 }
 
-/// Returns the shaft position after the preset, as a single number of steps.
+/// Returns the position expected after the preset, as a single number of steps.
 fn preset(from: &PositionReading, parts: PresetParts, value: PresetValue) -> u64 {
     let steps = if parts.includes_singleturn() { value.singleturn() } else { from.steps };
     let turns = if parts.includes_multiturn() { value.multiturn() } else { from.turns };
     u64::from(turns) << from.singleturn_bits | u64::from(steps)
 }
 
-/// Returns the number of steps from `place` to the position of the reading, measured in the shorter direction.
+/// Returns the number of steps between `place` and the reading in the shorter direction.
 fn shortest_distance(place: u64, reading: &PositionReading) -> u64 {
     let bits = u32::from(reading.position_word().bits);
     let mask = 1_u64.checked_shl(bits).map_or(u64::MAX, |range| range - 1);

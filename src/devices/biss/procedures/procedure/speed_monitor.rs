@@ -1,5 +1,5 @@
-//! The motion of the shaft, calculated from its positions: direction, speed, speed variation and standstill. The
-//! monitor sends no requests.
+//! The motion of the shaft, derived from position readings: direction, speed, speed variation and standstill. The
+//! monitor itself sends no requests.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -13,15 +13,15 @@ pub(super) struct SpeedMonitor {
     window: i64,
     unwrap: Option<PositionUnwrapper>,
     steps_per_turn: f64,
-    /// Positions in the window, oldest first. The first position is at or before the start of the window.
+    /// Positions in the window, oldest first. The oldest was sampled at or before the start of the window.
     places: VecDeque<(SampleTime, i64)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShaftMotion {
-    /// Mean speed in revolutions per minute, positive for clockwise rotation, in which positions increase.
+    /// Mean speed in revolutions per minute, positive clockwise. Positions increase during clockwise rotation.
     pub rpm: f64,
-    /// Maximum deviation from the mean speed in any quarter of the measurement, in revolutions per minute.
+    /// Largest deviation of a quarter's speed from the mean speed, in revolutions per minute.
     pub spread: f64,
     pub travel: f64,
 }
@@ -36,7 +36,7 @@ impl ShaftMotion {
 }
 
 impl SpeedMonitor {
-    /// Number of parts into which the window is divided. The speed of each part is evaluated separately.
+    /// Number of parts of the window whose speeds are compared.
     const PARTS: i32 = 4;
 
     pub(super) fn with_window(window: Duration) -> Self {
@@ -64,7 +64,7 @@ impl SpeedMonitor {
         }
     }
 
-    /// Returns the measured motion, or `None` until positions for the whole window have arrived.
+    /// Returns the measured motion, or `None` until positions cover the whole window.
     pub(super) fn motion(&self) -> Option<ShaftMotion> {
         let ((first, _), (last, _)) = (self.places.front()?, self.places.back()?);
         if last.nanoseconds_since(*first) < self.window {
@@ -129,8 +129,7 @@ mod tests {
         }
     }
 
-    /// Returns the motion measured from positions every 20 ms for 1.2 s. `turns` returns the position at a time in
-    /// seconds.
+    /// Measures positions sampled every 20 ms for 1.2 s. `turns` returns the position at a time in seconds.
     fn measured(multiturn_bits: u8, turns: impl Fn(f64) -> f64) -> ShaftMotion {
         let mut gauge = SpeedMonitor::with_window(Duration::from_secs(1));
         for at in (0..=1200).step_by(20) {
@@ -152,7 +151,7 @@ mod tests {
         }
     }
 
-    /// The speed rises from 490 to 510 rpm within one second, so that the mean speeds of the quarters are 492.5, 497.5,
+    /// The speed rises from 490 to 510 rpm within one second, so that the mean speeds in the quarters are 492.5, 497.5,
     /// 502.5 and 507.5 rpm.
     #[test]
     fn an_accelerating_shaft_is_unsteady() {

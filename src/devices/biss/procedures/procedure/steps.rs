@@ -1,4 +1,4 @@
-//! The steps of each operation, in order. A view lists them in advance and marks each step when it is reported.
+//! The steps of each operation, in order. They are listed in advance, and each step is marked when it is reported.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use crate::devices::biss::protocol::DeviceMode;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ProcedureStep {
-    /// Check of the active filter, for which the motor need not turn.
+    /// Checks the active filter. The motor need not turn.
     Conditions,
     Await(OperatorTask),
     Enter(DeviceMode),
@@ -46,8 +46,8 @@ pub enum StepDetail {
     Demand(OperatorPrompt),
 }
 
-/// Returns the steps of an operation. A restart also returns the encoder to operation, so that no separate step is
-/// required after a restart.
+/// Returns the steps of an operation. After a restart, the encoder is in operation mode, so no separate step returns
+/// it.
 pub fn operation_steps(op: &Op) -> Vec<ProcedureStep> {
     let entered = |mode, steps: &[ProcedureStep]| {
         let mut all = vec![ProcedureStep::Enter(mode)];

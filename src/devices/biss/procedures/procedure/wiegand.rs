@@ -11,7 +11,7 @@ use crate::devices::biss::protocol::{Procedure, ProcedureKind, WiegandCommand, W
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiegandReport {
     pub result: WiegandResult,
-    /// Whether the result is saved in the encoder. The saved result can be read after a restart.
+    /// Whether the result was saved in the encoder. The saved result becomes readable after a restart.
     pub saved: bool,
     pub clockwise: Option<ShaftMotion>,
     pub counterclockwise: Option<ShaftMotion>,
@@ -84,8 +84,8 @@ impl ProcedureContext<'_, '_> {
         })
     }
 
-    /// Saves the result. Only the status of the encoder confirms the save, because the result cannot be read back
-    /// before a restart.
+    /// Saves the result. Until the encoder restarts, the result cannot be read back, so only the status confirms the
+    /// save.
     fn save_result(&mut self, procedure: &Procedure) -> Result<(), Failure> {
         self.begin_step(ProcedureStep::Save);
         self.set_activity(Activity::Saving);

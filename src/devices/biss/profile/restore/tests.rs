@@ -40,7 +40,7 @@ fn planned(profile: &BissProfile, device: &DeviceState) -> Restore {
     plan_restore(profile, device, RestoreOptions::default()).unwrap()
 }
 
-/// Changing three bytes in one bank changes three registers but requires only one save.
+/// Three changed bytes in one bank need only one save.
 #[test]
 fn differences_in_an_area_need_one_save() {
     let now = profile("1");
@@ -125,8 +125,7 @@ fn a_bank_marked_empty_in_the_profile_is_cleared() {
     assert_eq!(required_banks(&partial, &data_areas()), [0x25]);
 }
 
-/// Another kind of encoder requires a separate permission. The permission for another serial number is not sufficient
-/// (issue 22.9).
+/// Another kind of encoder must be allowed separately. Allowing another serial number is not sufficient (issue 22.9).
 #[test]
 fn another_kind_needs_a_separate_permission() {
     let mut wanted = profile("1");
@@ -186,8 +185,8 @@ fn another_encoder_keeps_its_mounting() {
     assert_eq!(ops(&plan_data_areas(&wanted, &now).unwrap()), all[..1]);
 }
 
-/// An encoder with another device ID or position width is of another type, which requires a separate permission. If the
-/// serial number differs as well, both permissions are required (issue 22.9).
+/// An encoder with another device ID or position width is of another type, which must be allowed separately. If the
+/// serial number differs as well, both must be allowed (issue 22.9).
 #[test]
 fn another_type_needs_a_separate_permission() {
     let mut wanted = profile("1");
@@ -272,7 +271,7 @@ fn values_the_encoder_cannot_have_are_reported_or_refused() {
     assert_eq!(error, PlanError::NoBank { bank: 0x24 });
 }
 
-/// An area without an opening command is written register by register, at an assumed cost of one write cycle each.
+/// Each register written without an opening command is assumed to cost one write cycle.
 #[test]
 fn an_area_without_a_procedure_is_written_directly() {
     let mut now = device(&profile("1"));
@@ -284,7 +283,7 @@ fn an_area_without_a_procedure_is_written_directly() {
     assert_eq!(restore.plan.write_cycles(), 2);
 }
 
-/// Restores the ready-made profiles to an encoder with factory settings and another serial number.
+/// Restores the profiles supplied with the program to a new encoder with another serial number.
 #[test]
 fn ready_made_profiles_plan_the_expected_writes() {
     let read = |name: &str| {
