@@ -1,5 +1,5 @@
-//! Injected faults: noise on the line, slow and silent devices, and a power cut during a store. They are set by
-//! `--fault` and `sim:?fault=`. Each device defines the effects of a fault.
+//! Simulated faults: noise on the line, slow and silent devices, and a power loss during a save. They are set with
+//! `--fault` and `sim:?fault=`. Each device defines their effects.
 
 use std::str::FromStr;
 use std::time::Duration;
@@ -17,7 +17,7 @@ pub struct SimulatedFaults {
     die_in_store: Option<u32>,
 }
 
-/// The parser for the value of a `fault` setting.
+/// The parser for the value of the `fault` setting.
 pub const FAULTS: FaultParser = FaultParser;
 
 /// The type of [`FAULTS`].
@@ -25,7 +25,7 @@ pub const FAULTS: FaultParser = FaultParser;
 pub struct FaultParser;
 
 impl FaultParser {
-    /// Parses the faults in a setting.
+    /// Parses a list of faults.
     ///
     /// # Errors
     /// Returns an error about the first invalid fault.
@@ -33,12 +33,12 @@ impl FaultParser {
         value.parse()
     }
 
-    /// Returns an empty string, because faults have no unit.
+    /// Returns an empty string, because a list of faults has no unit.
     pub fn unit(&self) -> &'static str {
         ""
     }
 
-    /// Returns `false`, because faults are not numbers.
+    /// Returns `false`, because a list of faults is not a number.
     pub fn is_decimal(&self) -> bool {
         false
     }
@@ -56,13 +56,13 @@ pub enum FaultError {
         /// Fault as entered.
         item: String,
     },
-    /// The value of drop, flip or garbage is not a probability.
+    /// The value of `drop`, `flip` or `garbage` is not a probability.
     #[error("fault `{item}`: the probability must be a number from 0 to 1")]
     Probability {
         /// Fault as entered.
         item: String,
     },
-    /// The value of delay, silent-after or die-in-store is out of range.
+    /// The value of `delay`, `silent-after` or `die-in-store` is out of range.
     #[error("fault `{item}`: the value must be a whole number from {min} to {max}")]
     Number {
         /// Fault as entered.
@@ -74,10 +74,10 @@ pub enum FaultError {
     },
 }
 
-/// The result of sending a byte over a noisy line.
+/// What arrives when a byte is sent over a noisy line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ByteTransfer {
-    /// Noise byte inserted before the byte, if any.
+    /// Noise byte that arrives before the byte, if any.
     pub inserted: Option<u8>,
     /// Byte that arrived, or `None` if the byte was lost.
     pub carried: Option<ReceivedByte>,
@@ -100,13 +100,13 @@ impl SimulatedFaults {
         self.delay
     }
 
-    /// Returns the number of frames after which the device fails. A failed device neither replies nor executes
+    /// Returns the number of frames after which the device fails. From then on, it neither replies nor executes
     /// anything.
     pub fn silent_after(&self) -> Option<u32> {
         self.silent_after
     }
 
-    /// Returns the number of the store operation during which the power fails, counted from 1.
+    /// Returns the number of the save during which the power fails, counted from 1.
     pub fn failing_store(&self) -> Option<u32> {
         self.die_in_store
     }
@@ -130,8 +130,8 @@ fn is_hit(probability: f64, rng: &mut Rng) -> bool {
 impl FromStr for SimulatedFaults {
     type Err = FaultError;
 
-    /// Parses a list such as `drop:0.01,delay:5`. If an item is repeated, the last one is used. An empty string means
-    /// no faults.
+    /// Parses a list such as `drop:0.01,delay:5`. Of repeated items, the last one applies. An empty string means no
+    /// faults.
     fn from_str(text: &str) -> Result<Self, FaultError> {
         let mut faults = SimulatedFaults::default();
         for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {

@@ -1,6 +1,5 @@
-//! A half-duplex line between the UART of the host and virtual devices. Characters are transmitted one after another
-//! and received in chronological order, and some of them are damaged. Each device defines which characters it receives
-//! and what they mean.
+//! A half-duplex line between the UART of the host and virtual devices. Characters are sent one after another, arrive
+//! in order, and may be damaged. Each device defines which of them it receives and what they mean.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -10,7 +9,7 @@ use fastrand::Rng;
 use super::{ByteDevice, SimulatedFaults};
 use crate::units::{CharacterFormat, Moment};
 
-/// Items in transit, ordered by time. Items with equal times keep the order of insertion.
+/// Items in transit, sorted by time. Items with equal times stay in the order of insertion.
 #[derive(Clone, Debug)]
 pub(crate) struct TransitQueue<T>(VecDeque<(Moment, T)>);
 
@@ -48,24 +47,24 @@ impl<T> TransitQueue<T> {
     }
 }
 
-/// A character on the line, which lasts from the start bit to the end of the stop bit.
+/// A character on the line, from the start bit to the end of the stop bit.
 #[derive(Clone, Copy)]
 pub(crate) struct SerialCharacter {
     pub(crate) start: Moment,
     pub(crate) end: Moment,
     pub(crate) byte: u8,
-    /// Whether one bit was inverted in transit, which makes a parity bit wrong.
+    /// Whether one bit was inverted in transit, which makes the parity wrong.
     pub(crate) flipped: bool,
 }
 
 pub(crate) struct SentCharacters {
     pub(crate) heard: Vec<SerialCharacter>,
-    /// Characters as sent, without line noise. A converter with an echo returns them.
+    /// Characters before line noise was added. A converter with an echo returns them.
     pub(crate) own: Vec<SerialCharacter>,
     pub(crate) end: Moment,
 }
 
-/// The state common to all virtual lines, created from the settings of a device.
+/// The state that all virtual lines have, created from the settings of a device.
 #[derive(Clone)]
 pub(crate) struct LineConditions {
     pub(crate) faults: SimulatedFaults,
@@ -73,8 +72,7 @@ pub(crate) struct LineConditions {
     pub(crate) host: CharacterFormat,
     pub(crate) now: Moment,
     host_done: Moment,
-    /// Numbers of bytes that the host's UART has not sent yet, each with the time at which its last byte will have been
-    /// sent.
+    /// Number of bytes in each pending transmission of the host's UART, with the time at which it will be complete.
     sending: VecDeque<(Moment, usize)>,
     pub(crate) inbox: Vec<u8>,
 }
@@ -92,11 +90,11 @@ impl LineConditions {
         }
     }
 
-    /// Buffer size of a UART in bytes, as in a device server. Further bytes are lost. No request of the simulated
-    /// protocols is longer. Sending 512 bytes takes half a second at 9600 bit/s.
+    /// Buffer size of a UART in bytes, as in a device server. Further bytes are lost. The buffer holds any request of
+    /// the simulated protocols. At 9600 bit/s, 512 bytes take half a second.
     const BUFFER: usize = 512;
 
-    /// Returns the number of further bytes that the host's UART can accept.
+    /// Returns how many more bytes the host's UART can accept.
     fn free_capacity(&mut self) -> usize {
         let now = self.now;
         while self.sending.pop_front_if(|(end, _)| *end <= now).is_some() {}
@@ -123,9 +121,9 @@ impl LineConditions {
     }
 }
 
-/// A line with its devices. Every type that implements this trait is also a [`ByteDevice`].
+/// A line with its devices. Every implementation is also a [`ByteDevice`].
 pub(crate) trait VirtualLine: Send {
-    /// An event on the line. Simultaneous events are processed in ascending order.
+    /// An event on the line. Simultaneous events are processed in sort order.
     type Event;
 
     fn line_conditions(&self) -> &LineConditions;
@@ -136,7 +134,7 @@ pub(crate) trait VirtualLine: Send {
 
     fn schedule_event(&mut self, at: Moment, event: Self::Event);
 
-    /// Transmits bytes from the host, starting at `start`. Returns the time at which the last byte has been sent.
+    /// Sends bytes from the host, starting at `start`. Returns the time at which the last byte is complete.
     fn transmit_from_host(&mut self, start: Moment, bytes: &[u8]) -> Moment;
 
     /// Restores the power of every device that has lost it.

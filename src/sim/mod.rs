@@ -1,4 +1,4 @@
-//! Virtual devices, which are the simulated side of a connection, at the level of bytes or voltages and with injected
+//! Virtual devices, which simulate the device end of a connection at the level of bytes or voltages, with simulated
 //! faults. They are deterministic: the same seed and the same calls at the same times yield the same bytes.
 //!
 //! This module does not use clocks, threads, sockets or ports. Time is passed as an argument. The module uses neither
@@ -20,29 +20,29 @@ use std::net::SocketAddrV4;
 
 use crate::units::{CharacterFormat, Moment};
 
-/// A virtual device on a serial line. Its owner drives it, for example a link in this process, a pseudo-terminal or a
-/// TCP server. Time never runs backwards: a moment before the latest known one is replaced with the latest one.
+/// A virtual device on a serial line. It is driven by its owner, such as a link in this process, a pseudo-terminal or a
+/// TCP server. Time never runs backwards: if an earlier time is passed, the latest one is used instead.
 pub trait ByteDevice: Send {
-    /// Receives bytes that the host passed to its UART at `now`. They follow any bytes that are still being transmitted
-    /// and take one character time each.
+    /// Takes bytes that the host passed to its UART at `now`. They are transmitted after any earlier bytes, and take
+    /// one character time each.
     fn on_bytes(&mut self, now: Moment, bytes: &[u8]);
 
     /// Returns the bytes that have completely arrived at the host by `now`. Each byte is returned once.
     fn poll(&mut self, now: Moment) -> Vec<u8>;
 
-    /// Returns the time at which to call [`poll`](Self::poll) next, or `None` if nothing is scheduled.
+    /// Returns when to call [`poll`](Self::poll) next, or `None` if nothing is pending.
     fn poll_at(&self) -> Option<Moment>;
 
-    /// Sets the character format of the host's UART. If it differs from that of the device, bytes are garbled in both
+    /// Sets the character format of the host's UART. If the device has another format, bytes are garbled in both
     /// directions, and no frame is valid. A device without a serial line ignores the format.
     fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
 
-    /// Opens or reopens the connection of the host. Earlier bytes are discarded, and a device without power is powered
-    /// on again.
+    /// Opens or reopens the connection of the host. Earlier bytes are discarded, and a device that lost power is
+    /// powered on again.
     fn connect(&mut self, now: Moment);
 }
 
-/// A virtual device that also receives datagrams. Moments have the same meaning as for a [`ByteDevice`].
+/// A virtual device that also receives datagrams. Times are handled as by a [`ByteDevice`].
 pub trait DatagramDevice: Send {
     /// Handles a packet received at `now`.
     fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]);
@@ -50,7 +50,6 @@ pub trait DatagramDevice: Send {
     /// Returns the packets sent by `now`, with their destinations. Each packet is returned once.
     fn poll_datagrams(&mut self, now: Moment) -> Vec<(SocketAddrV4, Vec<u8>)>;
 
-    /// Returns the time at which to call [`poll_datagrams`](Self::poll_datagrams) next, or `None` if nothing is
-    /// scheduled.
+    /// Returns when to call [`poll_datagrams`](Self::poll_datagrams) next, or `None` if nothing is pending.
     fn poll_datagrams_at(&self) -> Option<Moment>;
 }

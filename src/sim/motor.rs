@@ -1,4 +1,4 @@
-//! The motor of a virtual shaft, as a shared handle. The motor has no clock, so a change takes effect with the next
+//! The motor of a virtual shaft, as a shared handle. The motor has no clock, so a change takes effect at the next
 //! request to the encoder.
 
 use std::sync::Arc;
@@ -16,8 +16,7 @@ impl Motor {
         Motor(Arc::new(AtomicU64::new(rpm.to_bits())))
     }
 
-    /// Returns the speed in revolutions per minute. If the speed is positive, the motor turns clockwise and the
-    /// position increases.
+    /// Returns the speed in revolutions per minute, positive clockwise. Positions increase during clockwise rotation.
     pub fn rpm(&self) -> f64 {
         f64::from_bits(self.0.load(Ordering::SeqCst))
     }

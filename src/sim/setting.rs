@@ -1,5 +1,5 @@
-//! Settings of a virtual device in the query of a `sim:` link: keys, values, allowed values and errors. Each device
-//! defines its own keys.
+//! Settings of a virtual device in the query of a `sim:` link: keys, values, allowed values and errors. Each device has
+//! its own keys.
 
 use super::FaultError;
 use crate::expected::AllowedValues;
@@ -33,7 +33,7 @@ pub enum ConfigError {
     Fault(#[from] FaultError),
 }
 
-/// Name of the setting.
+/// The virtual device to which a setting belongs, as named in error messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum VirtualDevice {
     /// An encoder.
@@ -63,7 +63,7 @@ impl From<RejectedParameter> for ConfigError {
     }
 }
 
-/// Parses the percent-decoded settings of `device`. If a key is repeated, the last value is used.
+/// Parses the percent-decoded settings of `device`. Of repeated keys, the last one applies.
 ///
 /// # Errors
 /// Returns an error that names the key and the allowed values.
@@ -80,10 +80,10 @@ pub fn read<P: ParameterGroup<Error = ConfigError>>(
     Ok(own)
 }
 
-/// The notation of the noise seed. Any number is valid.
+/// Parser for the seed of the noise, which can be any whole number.
 pub const SEED: CustomNotation<u64> = CustomNotation(AllowedValues::Whole, parse_whole);
 
-/// The notation of a speed in revolutions per minute, in either direction.
+/// Parser for a speed in revolutions per minute, in either direction.
 pub const RPM: Rpm = Rpm;
 
 /// The type of [`RPM`].

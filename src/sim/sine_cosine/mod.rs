@@ -1,6 +1,6 @@
-//! A virtual analogue source: the four wires of a sine/cosine encoder that turns at a given speed, with adjustable
-//! errors. It is deterministic: the same settings, changes and sample numbers yield the same voltages, regardless of
-//! the requested block sizes. This module does not use clocks, threads or devices.
+//! A virtual analogue source with the four wires of a sine/cosine encoder, which turns at a given speed and has
+//! adjustable errors. It is deterministic: the same settings, changes and sample numbers yield the same voltages,
+//! whatever the block sizes. This module does not use clocks, threads or devices.
 //!
 //! The model is from Heydemann (Applied Optics 20, 3382). See section 7 of the project's sine/cosine reference. With θ
 //! as the true angle, the cosine channel is R·cos θ + p, and the sine channel is R·sin(θ − α)/r + q. Both tracks have
@@ -24,14 +24,14 @@ pub use settings::{CheckedSettings, Quantity, ReferenceLevel, SettingError, Sett
 use crate::analysis::SampleTime;
 use crate::analysis::wiring::{Wire, Wires};
 
-/// Parts per turn. At 0.001 rev/min, the shaft turns by one part per nanosecond.
+/// Number of angle units per turn. At 0.001 rev/min, the shaft turns by one unit per nanosecond.
 const TURN: u64 = 60_000 * 1_000_000_000;
-/// Parts per interference period. At 0.001 Hz, the phase advances by one part per nanosecond.
+/// Number of phase units per interference period. At 0.001 Hz, the phase advances by one unit per nanosecond.
 const CYCLE: u64 = 1_000 * 1_000_000_000;
-/// Maximum number of stored changes of the settings.
+/// Maximum number of stored changes to the settings.
 const MAX_CHANGES: usize = 64;
 
-/// An analogue source whose samples are numbered from 0.
+/// A virtual analogue source, whose samples are numbered from 0.
 #[derive(Clone, Debug)]
 pub struct Source {
     start: SampleTime,
@@ -44,7 +44,7 @@ struct Segment {
     from: u64,
     /// Time in nanoseconds from the start to the first sample of the segment.
     elapsed: u64,
-    /// Shaft position at the first sample of the segment, in parts of a turn.
+    /// Shaft position at the first sample of the segment, in units of 1/`TURN` turn.
     turn: u64,
     checked: CheckedSettings,
 }
@@ -55,7 +55,7 @@ impl Source {
         Source { start, segments: VecDeque::from([Segment { from: 0, elapsed: 0, turn: 0, checked }]) }
     }
 
-    /// Changes the settings, starting with sample `at`. The shaft continues from its position. A change at or before
+    /// Changes the settings from sample `at` on. The shaft continues from its position. A change that is not later than
     /// the latest one replaces it.
     pub fn change_settings(&mut self, at: u64, checked: CheckedSettings) {
         let at = self.segments.back().map_or(at, |last| at.max(last.from));
@@ -74,14 +74,14 @@ impl Source {
         self.segments.back().map(|segment| segment.checked.settings())
     }
 
-    /// Returns the time of a sample, or `None` if the settings that applied to it are no longer stored.
+    /// Returns the time of a sample, or `None` if its settings are no longer stored.
     pub fn time(&self, index: u64) -> Option<SampleTime> {
         let segment = self.segment_at(index)?;
         Some(self.start.saturating_add_ns(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))
     }
 
-    /// Returns `count` samples starting at `first`, or `None` if the settings that applied to them are no longer
-    /// stored. The latest 64 changes are stored.
+    /// Returns `count` samples starting at `first`, or `None` if their settings are no longer stored. The latest 64
+    /// changes are stored.
     pub fn samples_from(&self, first: u64, count: usize) -> Option<Wires> {
         let column = || Vec::with_capacity(count.min(1 << 20));
         let mut wires =
@@ -112,7 +112,7 @@ impl Segment {
         self.elapsed.saturating_add(index.saturating_sub(self.from).saturating_mul(self.period()))
     }
 
-    /// Returns the rotation between consecutive samples in parts of a turn, modulo a turn.
+    /// Returns the rotation between consecutive samples modulo one turn, in units of 1/`TURN` turn.
     fn phase_step(&self) -> u64 {
         let speed = (self.checked.settings().speed_rpm * 1_000.0).round() as i128;
         modulo(speed * i128::from(self.period()), TURN)
@@ -151,7 +151,7 @@ impl Segment {
     }
 }
 
-/// A rotation in equal steps of whole parts.
+/// A phase that advances in equal integer steps.
 #[derive(Clone, Copy)]
 struct PhaseAccumulator {
     at: u64,
@@ -175,15 +175,15 @@ impl PhaseAccumulator {
     }
 }
 
-/// Settings that have been preprocessed for fast calculation.
+/// Settings in a form that is fast to calculate with.
 struct Model<'a> {
     settings: &'a Settings,
     periods: u64,
-    /// Amplitude in radians of the phase shift that the eccentricity causes in the signal.
+    /// Amplitude in radians of the signal's phase shift due to the eccentricity.
     eccentricity: f64,
     phase_error: f64,
     third: f64,
-    /// Noise of each wire. The difference between two wires has the noise given in the settings.
+    /// Noise of each wire, chosen so that the difference between two wires has the noise in the settings.
     noise: f64,
 }
 
@@ -199,7 +199,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Returns the sine and cosine channels in volts, without disturbances.
+    /// Returns the sine and cosine channels in volts, without noise, interference and hum.
     fn channel_voltages(&self, shaft: PhaseAccumulator) -> (f64, f64) {
         let settings = self.settings;
         let (once_sine, once_cosine) = shaft.angle_radians().sin_cos();

@@ -5,9 +5,9 @@ use crate::analysis::wiring::Wire;
 /// The settings of the analogue source. Voltages are peak values unless stated as rms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Number of signal periods per revolution, a whole number.
+    /// Number of signal periods per revolution, which must be whole.
     pub periods: f64,
-    /// Speed in revolutions per minute, in steps of 0.001. If the speed is negative, the angle decreases.
+    /// Speed in revolutions per minute, in steps of 0.001. At negative speeds, the angle decreases.
     pub speed_rpm: f64,
     /// Sample rate in hertz. The sample period is rounded to whole nanoseconds. See [`Settings::period_ns`].
     pub rate_hz: f64,
@@ -21,24 +21,25 @@ pub struct Settings {
     pub gain_ratio: f64,
     /// Phase error α in degrees. The sine follows the cosine by a quarter of a period plus α.
     pub phase_error_deg: f64,
-    /// Mean level of the references in volts.
+    /// Mean level of the reference wires in volts.
     pub level_v: f64,
-    /// Third harmonic in percent of the amplitude.
+    /// Third harmonic, in percent of the amplitude.
     pub third_harmonic_percent: f64,
-    /// Once-per-revolution amplitude modulation in percent.
+    /// Amplitude modulation once per revolution, in percent.
     pub modulation_percent: f64,
-    /// White noise of each differential channel in volts rms.
+    /// White noise of each differential channel, in volts rms.
     pub noise_v: f64,
     /// Frequency of the interference in hertz, in steps of 0.001.
     pub interference_hz: f64,
-    /// Amplitude of the interference on the sine channel in volts. On the cosine channel, the amplitude is half as
-    /// large and has the opposite sign.
+    /// Amplitude of the interference on the sine channel, in volts. On the cosine channel, it is half as large with
+    /// opposite sign.
     pub interference_v: f64,
     /// Mains frequency in hertz, in steps of 0.001.
     pub hum_hz: f64,
-    /// Hum amplitude in volts, equal and in phase in both channels.
+    /// Amplitude of the mains hum in volts, in phase on both channels.
     pub hum_v: f64,
-    /// Eccentricity of the scale, as the amplitude of the once-per-revolution angle error in mechanical seconds of arc.
+    /// Eccentricity of the encoder's scale, given as the amplitude of the resulting angle error in mechanical seconds
+    /// of arc. The error repeats once per revolution.
     pub eccentricity_arcsec: f64,
     /// Broken wire, if any.
     pub open_wire: Option<Wire>,
@@ -118,7 +119,7 @@ pub struct SettingError {
 pub struct CheckedSettings(Settings);
 
 impl Quantity {
-    /// All quantities, in the order of the settings.
+    /// All quantities, in the order of [`Settings`].
     pub const ALL: [Quantity; 17] = [
         Quantity::Periods,
         Quantity::Speed,
@@ -197,7 +198,7 @@ impl Settings {
         (1e9 / self.rate_hz).round() as i64
     }
 
-    /// Validates the settings.
+    /// Checks that all settings are within their ranges.
     ///
     /// # Errors
     /// Returns a [`SettingError`] with the first setting that is outside its range, and the range. A fractional number
@@ -237,7 +238,7 @@ impl Settings {
 }
 
 impl CheckedSettings {
-    /// Returns the validated settings.
+    /// Returns the checked settings.
     pub fn settings(&self) -> &Settings {
         &self.0
     }
@@ -245,7 +246,7 @@ impl CheckedSettings {
 
 impl Default for Settings {
     /// Returns the settings of a good HIPERFACE encoder: 1024 periods at 60 rev/min, sampled at 100 kHz, with an
-    /// amplitude of 0.5 V and 0.5 mV of noise. The interference frequency is 8 kHz, which is usual for a drive, and the
+    /// amplitude of 0.5 V and 0.5 mV of noise. The interference frequency is 8 kHz, as is common in drives, and the
     /// mains frequency is 50 Hz.
     fn default() -> Self {
         Settings {

@@ -1,8 +1,8 @@
-//! Tests that compare the voltages with the tables of the reference and with calculations in Python.
+//! Tests that compare the voltages with the tables in the reference and with results from Python.
 
 use super::*;
 
-/// Returns settings without noise.
+/// Settings without noise.
 fn silence_duration() -> Settings {
     Settings { noise_v: 0.0, ..Settings::default() }
 }
@@ -16,8 +16,8 @@ fn near(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
 }
 
-/// The signal follows section 7 of the reference with R = 0.5, p = 0.02, q = −0.03, r = 1.05 and α = 3°. One period has
-/// 360 samples, because 1 rev/min with one period per revolution is 6°/s.
+/// Voltages from section 7 of the reference for R = 0.5, p = 0.02, q = −0.03, r = 1.05 and α = 3°. At 10 rev/min and 60
+/// Hz, the shaft turns by 1° per sample.
 #[test]
 fn samples_match_section_7() {
     let source = source(Settings {
@@ -160,8 +160,8 @@ fn an_open_wire_reads_as_the_receiver_terminates_it() {
     }
 }
 
-/// The expected values come from Python: 0.5·(cos θ − 0.04·cos 3θ) and so on, at θ = 2π·(16·0.3 +
-/// 16·100/1296000·sin(2π·0.3)) and 0.3 turns, with the amplitude 1 + 0.1·cos(2π·0.3).
+/// Expected values from Python: 0.5·(cos θ − 0.04·cos 3θ) and so on, at θ = 2π·(16·0.3 + 16·100/1296000·sin(2π·0.3))
+/// and 0.3 turns, with the amplitude 1 + 0.1·cos(2π·0.3).
 #[test]
 fn harmonic_modulation_and_eccentricity_are_simulated() {
     let settings = Settings {

@@ -1,10 +1,10 @@
-//! Register addresses. Addresses 00h to 3Fh lie within the selected bank, and 40h to 7Fh are direct registers. UBICOM
-//! uses global numbers for all registers. See chapter 4 of the manual, and "Address global" in its appendix.
+//! Register addresses. 00h to 3Fh are in the selected bank, and 40h to 7Fh are direct registers. UBICOM numbers all
+//! registers globally. See chapter 4 of the manual, and "Address global" in its appendix.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// The address of a register. Direct registers are ordered before registers in banks.
+/// The address of a register. Direct registers are sorted before those in banks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterAddress(u16);
 
@@ -35,12 +35,12 @@ impl RegisterAddress {
         if offset < Self::BANK_SIZE { Some(RegisterAddress(0x40 + 0x40 * bank as u16 + offset as u16)) } else { None }
     }
 
-    /// Creates the address of the first register in a bank.
+    /// Returns the address of the first register in a bank.
     pub const fn bank_start(bank: u8) -> Self {
         RegisterAddress(0x40 + 0x40 * bank as u16)
     }
 
-    /// Creates an address from its global number, or returns `None` beyond bank FFh.
+    /// Converts a global number to an address. Returns `None` for numbers beyond bank FFh.
     pub const fn from_global(global: u16) -> Option<Self> {
         if global < 0x40 + 0x4000 { Some(RegisterAddress(global)) } else { None }
     }
@@ -55,8 +55,8 @@ impl RegisterAddress {
         if self.0 < 0x40 { None } else { Some(((self.0 - 0x40) / 0x40) as u8) }
     }
 
-    /// Returns the seven-bit address for the control frame, which is 40h to 7Fh for a direct register and 00h to 3Fh
-    /// for a register in a bank.
+    /// Returns the seven-bit address in the control frame: 40h to 7Fh for a direct register, 00h to 3Fh for a register
+    /// in a bank.
     pub const fn address(self) -> u8 {
         // The value is always below 40h.
         let offset = (self.0 % 0x40) as u8;

@@ -1,5 +1,5 @@
-//! The control frame, which accesses registers with one bit per cycle in each direction. See manual 3.1.2, figures 3
-//! and 4. Details that are missing in the manual are taken from iC-Haus, *BiSS protocol description (C-mode)*.
+//! The control frame, which accesses registers by sending one bit per cycle in each direction. See manual 3.1.2,
+//! figures 3 and 4. Details missing in the manual are from iC-Haus, *BiSS protocol description (C-mode)*.
 //!
 //! ```text
 //! cycle  0  1    2..4  5..11  12..15  16  17  18  19..26  27..30  31
@@ -20,9 +20,9 @@ mod tests;
 pub use encoder::{Encoder, Event};
 pub use host::{Host, Step};
 
-/// Number of consecutive cycles with CDM = 0 that return host and encoder to the idle state.
+/// Number of consecutive cycles with CDM = 0 after which host and encoder are idle again.
 pub const REST_CYCLES: u8 = 14;
-/// Maximum number of cycles by which an encoder may delay its start bit S (`U`: not documented).
+/// Maximum number of cycles by which an encoder may delay its start bit S. The limit is not documented (`U`).
 pub const MAX_WAIT_CYCLES: u8 = 50;
 /// Number of registers that a control frame can address.
 const REGISTERS: u8 = 0x80;
@@ -63,10 +63,10 @@ pub enum ControlError {
     /// No encoder with the given number is on the line.
     #[error("no slave {0} answers")]
     NoSlave(u8),
-    /// The encoder did not echo the access type, because the request was unintelligible or was rejected.
+    /// The encoder did not echo the access type, because it did not understand the request or rejected it.
     #[error("the encoder refuses register 0x{0:02X}")]
     Rejected(u8),
-    /// The encoder delayed its reply for too many cycles.
+    /// The encoder did not start its reply in time.
     #[error("the encoder did not return register 0x{0:02X} within {MAX_WAIT_CYCLES} cycles")]
     TimeOut(u8),
     /// The encoder's reply is damaged. A write may or may not have taken effect.
@@ -121,7 +121,7 @@ impl Request {
         matches!(self.kind, RequestKind::Read { .. })
     }
 
-    /// Returns the DATA and CRC4 bits that the host sends for the register at `index`. In a read, they are all 0.
+    /// Returns the DATA and CRC4 bits that the host sends for the register at `index`. For a read, all bits are 0.
     fn data(&self, index: usize) -> u16 {
         match &self.kind {
             RequestKind::Read { .. } => 0,
@@ -130,7 +130,7 @@ impl Request {
     }
 }
 
-/// Appends the CRC4 to a value and returns the resulting twelve bits.
+/// Appends the CRC4 to a value, which gives twelve bits.
 fn append_crc4(value: u8) -> u16 {
     let value = u16::from(value);
     value << 4 | u16::from(super::crc::crc4(value, 8))

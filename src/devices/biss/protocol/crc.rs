@@ -1,6 +1,6 @@
-//! BiSS checksums, which have a width of up to 32 bits, process bits in the order of transmission, and use no
-//! reflection. The polynomial for position data depends on the encoder. The control frame always uses the same 4-bit
-//! polynomial. See manual 3.1.1 and iC-Haus AN3.
+//! BiSS checksums of up to 32 bits, computed in the order of transmission without reflection. The polynomial for
+//! position data depends on the encoder. The control frame always uses the same 4-bit polynomial. See manual 3.1.1 and
+//! iC-Haus AN3.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ pub struct Crc {
     polynomial: u64,
     start: u32,
     inverted: bool,
-    /// Remainders for all byte values, left-aligned in a 32-bit register.
+    /// Remainder for each byte value, left-aligned in a 32-bit register.
     table: [u32; 256],
 }
 
@@ -34,8 +34,7 @@ pub enum CrcError {
 }
 
 impl Crc {
-    /// Polynomial x⁶ + x + 1 for position data, used unless an encoder specifies another. The checksum is sent
-    /// inverted.
+    /// Polynomial x⁶ + x + 1 for position data, unless an encoder specifies another. The checksum is sent inverted.
     pub const POSITION: u64 = 0x43;
     /// Polynomial x⁴ + x + 1 for the control frame. The checksum is sent inverted.
     pub const CONTROL: u64 = 0x13;
@@ -60,8 +59,8 @@ impl Crc {
         Ok(crc)
     }
 
-    /// Creates a checksum algorithm from the notation of the electronic data sheet, which omits the lowest term. For
-    /// example, 21h means 43h. Returns `None` for 0, which means no checksum.
+    /// Creates a checksum algorithm from the polynomial in an electronic data sheet, which omits the lowest term. For
+    /// example, 21h stands for 43h. Returns `None` for 0, which stands for no checksum.
     ///
     /// # Errors
     /// Returns an error from [`new`](Self::new) if the parameters are invalid.
@@ -92,8 +91,8 @@ impl Crc {
         self.polynomial.ilog2() as u8 // at most 32
     }
 
-    /// Returns the checksum of the lowest `bits` bits of `data`, which are processed highest bit first. If the checksum
-    /// is sent inverted, the result is inverted. Values of `bits` above 64 are treated as 64.
+    /// Returns the checksum of the lowest `bits` bits of `data`, starting with the highest of them. The result is
+    /// inverted if the checksum is sent inverted. At most 64 bits are used.
     pub fn compute(&self, data: u64, bits: u8) -> u32 {
         let unused = 32 - u32::from(self.width());
         let mut register = self.start << unused;
@@ -156,7 +155,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Computes the remainder by long division, independently of the code under test.
+    /// Calculates the remainder by long division, independently of the tested code.
     fn remainder_by_division(polynomial: u64, start: u32, data: u64, bits: u8) -> u32 {
         let degree = 63 - polynomial.leading_zeros();
         let mut rest = u128::from(data) & ((1u128 << bits) - 1);
@@ -171,8 +170,7 @@ mod tests {
         rest as u32
     }
 
-    /// Expected CRC4 values of the header from section 3 of the reference, calculated over CTS = 1, ID = 0 and the
-    /// address.
+    /// CRC4 values of request headers from section 3 of the reference, calculated over CTS = 1, ID = 0 and the address.
     #[test]
     fn published_headers_match() {
         let table = [
@@ -207,7 +205,7 @@ mod tests {
         }
     }
 
-    /// Expected CRC4 values of data bytes from section 3 of the reference.
+    /// CRC4 values of data bytes from section 3 of the reference.
     #[test]
     fn published_data_bytes_match() {
         let table = "00→F 01→C 02→9 03→A 04→3 05→0 07→6 10→A 1C→D 21→6 29→D 2A→8 30→0 46→2 4B→6 61→1 72→1 80→1 FF→B";
@@ -218,8 +216,8 @@ mod tests {
         }
     }
 
-    /// Check values for the string 123456789 from the catalogue of parametrised CRC algorithms (reveng), for algorithms
-    /// of different widths without reflection.
+    /// Check values for the string 123456789 from the catalogue of parametrised CRC algorithms (reveng), for several
+    /// widths without reflection.
     #[test]
     fn other_polynomials_match_published_check_values() {
         let cases = [

@@ -1,6 +1,6 @@
-//! Encoder descriptions, which define the frame, registers, data areas and procedures of one type of encoder. The
-//! built-in descriptions are RON files in `assets/devices/biss/`, and users can add their own files. This module does
-//! not open any files.
+//! Encoder descriptions, which define the frame, registers, data areas and procedures of a type of encoder. The
+//! built-in descriptions are RON files in `assets/devices/biss/`, and users can add files. This module does not open
+//! any files.
 
 mod codes;
 mod description_error;
@@ -46,7 +46,7 @@ pub struct Identity {
     pub device_id: [u8; 6],
 }
 
-/// A mismatch between an encoder and a description.
+/// An encoder's identity that does not match a description.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the encoder reports {found}, but the description \"{name}\" is for {expected}")]
 pub struct IdentityMismatch {
@@ -130,7 +130,7 @@ impl Description {
         self.identity.as_ref()
     }
 
-    /// Returns the position frame layout, or `None` if it must come from the encoder's data sheet or the user.
+    /// Returns the layout of position frames, or `None` if the encoder's data sheet or the user must provide it.
     pub const fn layout(&self) -> Option<&Layout> {
         self.layout.as_ref()
     }
@@ -150,7 +150,7 @@ impl Description {
         &self.areas
     }
 
-    /// Returns the name of a bank, taken from its area or from the list of banks.
+    /// Returns the name of a bank from the area to which it belongs, or from the list of banks.
     pub fn bank_name(&self, bank: u8) -> Option<&Name> {
         let area = self.areas.iter().find(|area| area.contains(bank)).map(|area| &area.name);
         area.or_else(|| self.banks.iter().find(|(own, _)| *own == bank).map(|(_, name)| name))
@@ -222,7 +222,7 @@ impl Descriptions {
         ("unknown.ron", include_str!("../../../../assets/devices/biss/unknown.ron")),
     ];
 
-    /// Parses description files. An unusable file yields an error but does not affect the other files.
+    /// Parses description files. A file with an error does not affect the others.
     pub fn read<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> (Self, Vec<DescriptionError>) {
         let mut errors = Vec::new();
         let mut read = Vec::new();
@@ -243,7 +243,7 @@ impl Descriptions {
         Self::read(Self::BUILT_IN).0
     }
 
-    /// Returns the descriptions merged with `others`, which take precedence for the same encoder.
+    /// Adds `others` to the descriptions. They take precedence for the same encoder.
     #[must_use]
     pub fn merged_with(self, others: Descriptions) -> Self {
         let mut all = others.0;
@@ -252,8 +252,7 @@ impl Descriptions {
         Descriptions(all)
     }
 
-    /// Returns the description for the given identity. A specific description takes precedence over one that applies to
-    /// any encoder.
+    /// Returns the description for the given identity. A description of this type takes precedence over a generic one.
     pub fn find(&self, identity: &Identity) -> Option<&Description> {
         self.0.iter().find(|description| description.check_identity(identity).is_ok())
     }

@@ -15,7 +15,7 @@ pub enum EdsBank {
     Encoder,
 }
 
-/// A field of the electronic data sheet, corresponding to a row of the manual's table.
+/// A field of the electronic data sheet, which is a row of the manual's table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdsField {
     /// Offset of the first register, 00h to 3Eh.
@@ -50,10 +50,9 @@ pub enum EdsValue {
     Number(u32, &'static str),
     /// Bank number.
     Bank(u8),
-    /// A bank that is not available, encoded as FFh.
+    /// A bank that is not available, which is encoded as FFh.
     NotAvailable,
-    /// Time in an unknown unit. The manual does not define the unit, and no unit matches all values in the manual's
-    /// tables.
+    /// Time in an unknown unit. The manual does not define it, and no unit fits all values in its tables.
     Ticks(u8),
     /// Adaptive time-out, which is encoded as 0.
     Adaptive,
@@ -67,7 +66,7 @@ pub enum EdsValue {
     Profile(ProfileId),
     /// Meaning of a status bit in the position frame.
     Feedback(StatusBitMeaning),
-    /// Encoder type. Type 0 is rotary, and the other types are unknown (`U`).
+    /// Encoder type. Type 0 is a rotary encoder. The other types are not documented (`U`).
     EncoderType(u8),
     /// Code without numerical meaning.
     Code(u32),
@@ -178,7 +177,7 @@ pub enum EdsError {
 }
 
 impl EdsBank {
-    /// Returns the bank number in a kit encoder.
+    /// Returns the number of this bank in a kit encoder.
     pub const fn kit_number(self) -> u8 {
         match self {
             EdsBank::Common => 0x02,
@@ -240,7 +239,8 @@ impl Eds {
         self.bank.fields().iter().map(|field| (field, field.value(&self.bytes)))
     }
 
-    /// Returns the last bank available to users, or `None` if there is none. Only bank 2 contains this field.
+    /// Returns the number of the last bank available to users, or `None` if there is none. Only bank 2 contains this
+    /// field.
     pub fn last_user_bank(&self) -> Option<u8> {
         match (self.bank, self.byte(0x03)) {
             (EdsBank::Encoder, _) | (EdsBank::Common, 0xFF) => None,
@@ -290,7 +290,7 @@ impl EdsField {
         bytes.iter().fold(0, |number, byte| number << 8 | u32::from(*byte))
     }
 
-    /// Returns the decoded value of the field. The checksum of the bank is not verified. See [`Eds::parse`].
+    /// Returns the decoded value of the field. The checksum of the bank is not checked here, but by [`Eds::parse`].
     pub fn value(&self, bank: &[u8; 64]) -> EdsValue {
         let raw = self.raw_value(bank);
         // The conversion is lossless, because fields with these meanings have only one byte.

@@ -1,13 +1,13 @@
-//! One cycle of the data line SLO, with one sample per clock after the latch. A cycle consists of acknowledge, start
-//! bit, control bit, frame and time-out. This module does not depend on the clock period or the duration of the
-//! time-out. See manual, figure 2.
+//! One cycle on the data line SLO, sampled once per clock after the latch. A cycle consists of acknowledge, start bit,
+//! control bit, frame and time-out. The clock period and the duration of the time-out do not matter here. See manual,
+//! figure 2.
 
 use super::single_cycle::Layout;
 
 /// One cycle of the data line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BissCycle {
-    /// Number of clocks, at least 1, during which SLO was 0 because the encoder was busy.
+    /// Number of clocks, at least 1, for which SLO was low while the encoder was busy.
     pub acknowledge: usize,
     /// CDS, the control frame bit that the encoder sends in this cycle.
     pub control: bool,
@@ -15,7 +15,7 @@ pub struct BissCycle {
     pub raw: u64,
 }
 
-/// Reason why samples do not form a cycle.
+/// Reason why the samples are not a valid cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CycleError {
     /// The line never went low, because no encoder is connected or a wire is broken.
@@ -32,7 +32,7 @@ pub enum CycleError {
         /// Number of samples received after the start bit.
         got: usize,
     },
-    /// The line is high immediately after the frame, although the time-out cannot have elapsed yet.
+    /// The line is high immediately after the frame, when the time-out cannot have elapsed yet.
     #[error("the line is high after the last bit: the frame is longer than {bits} bits")]
     TimeOut {
         /// Frame length in the layout, in bits.

@@ -1,18 +1,18 @@
-//! The UBICOM position word, which has the singleturn position in the lower bits and the multiturn position above them
-//! (manual 5.2). The word has no error or warning bit.
+//! The UBICOM position word, which holds the singleturn position in the lower bits and the multiturn position above it
+//! (manual 5.2). It has no error and warning bits.
 
 use super::single_cycle::{Layout, PositionData};
 use crate::buses::ubicom::protocol::PositionWord;
 
 impl Layout {
-    /// Returns the position word for a reading. Multiturn bits beyond the width in the frame are dropped.
+    /// Returns the position word for a reading. Multiturn bits that exceed the width in the frame are dropped.
     pub fn position_word(&self, reading: &PositionData) -> PositionWord {
         let [b0, b1, b2, b3, b4, ..] = self.steps_of(reading).to_le_bytes();
         PositionWord::parse([b0, b1, b2, b3, b4])
     }
 
-    /// Splits a position word into multiturn and singleturn. Returns `None` if higher bits are set. In the result, the
-    /// error and warning flags are cleared.
+    /// Splits a position word into multiturn and singleturn, without error and warning. Returns `None` if a bit above
+    /// them is set.
     pub fn decode_position(&self, word: PositionWord) -> Option<PositionData> {
         let split = |value: u64, bits: u8| (value & ((1 << bits) - 1), value >> bits);
         let (singleturn, above) = split(word.to_u64(), self.singleturn_bits());

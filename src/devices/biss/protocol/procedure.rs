@@ -136,7 +136,7 @@ codes! {
         Temperature = 0x31 "temperature out of range",
         /// The motor speed is outside the range from 300 to 700 rpm.
         Speed = 0x32 "motor speed out of range",
-        /// The calibration failed without a stated reason.
+        /// The calibration failed for an unknown reason.
         Failed = 0x33 "calibration failure",
     }
 }
@@ -146,7 +146,7 @@ codes! {
     DataCommand {
         /// Opens banks 04h to 23h for writing.
         OpenMotorData = 0x01 "get write access to EDS motor data",
-        /// Opens banks 24h to 43h for writing.
+        /// Saves the entered values in the flash.
         OpenOemData = 0x02 "get write access to OEM data",
         /// Writes the entered values to flash.
         Save = 0x03 "save data",

@@ -1,6 +1,6 @@
-//! Single-cycle data, which an encoder sends in every cycle. A frame contains the multiturn, the singleturn, an error
-//! bit, a warning bit and a checksum, most significant bit first. The error and warning bits are active low. The field
-//! widths depend on the encoder. See manual 3.1.1, figure 2.
+//! Single-cycle data, which an encoder sends in every cycle. A frame contains the multiturn and singleturn position, an
+//! error bit, a warning bit and a checksum, most significant bit first. The error and warning bits are active low. The
+//! field widths depend on the encoder. See manual 3.1.1, figure 2.
 
 use super::crc::{Crc, CrcError};
 
@@ -143,7 +143,7 @@ impl Layout {
         self.data_bits() + self.crc_bits()
     }
 
-    /// Parses a right-justified frame, with the last received bit in bit 0.
+    /// Parses a right-justified frame, whose last received bit is bit 0.
     ///
     /// # Errors
     /// Returns a [`FrameError`] if the bits are not a valid frame. It distinguishes a stuck line from a wrong checksum.
@@ -218,7 +218,7 @@ impl Default for Layout {
     }
 }
 
-/// Returns a mask of the lowest bits. `bits` is their number, 0 to 64.
+/// Returns a mask of the lowest `bits` bits, 0 to 64.
 const fn low_bits_mask(bits: u8) -> u64 {
     match bits {
         0 => 0,
@@ -236,7 +236,7 @@ mod tests {
         PositionData { multiturn, singleturn, error, warning }
     }
 
-    /// Expected values from the table of 41-bit frames in section 2 of the reference.
+    /// Frames of 41 bits from the table in section 2 of the reference.
     #[test]
     fn published_frames_match() {
         let cases = [

@@ -1,15 +1,14 @@
-//! Detection of the frame length of an unknown encoder. At the correct length, the checksum matches repeatedly while
-//! the shaft turns. See section 2 of the reference.
+//! Detection of an unknown frame length. Only at the correct length does the checksum keep matching while the shaft
+//! turns. See section 2 of the reference.
 
 use super::crc::Crc;
 
-/// Range of data widths to be tried, in bits (`U`: not documented).
+/// Data widths to be tried, in bits. The range is not documented (`U`).
 const DATA_BITS: std::ops::RangeInclusive<u8> = 10..=48;
-/// Required number of consecutive frames with a matching checksum. Frames that repeat the previous data are not counted
-/// (`U`: not documented).
+/// Number of different frames in a row whose checksum must match. The number is not documented (`U`).
 const REQUIRED_FRAMES: usize = 8;
 
-/// Returns the data width without the checksum, or `None` if no length fits or too few frames differ.
+/// Returns the data width without the checksum, or `None` if no width fits or too few frames differ.
 ///
 /// Each frame contains the first `clocked` bits after the control bit. Bit 0 is the last bit received.
 ///
@@ -49,12 +48,12 @@ mod tests {
         Crc::new(Crc::POSITION, 0, true).unwrap()
     }
 
-    /// Returns the first 64 bits on the line, consisting of a `frame` of `bits` bits followed by zeros.
+    /// Returns the first 64 bits on the line: a `frame` of `bits` bits, followed by zeros.
     fn first_bits_on_line(frame: u64, bits: u8) -> u64 {
         frame << (64 - bits)
     }
 
-    /// Returns the frames of a shaft that moves by `step` from frame to frame.
+    /// Returns frames from a shaft that moves by `step` between frames.
     fn turning(layout: &Layout, step: u32, count: u32) -> Vec<u64> {
         let place = |at: u32| 0x155 + at * step;
         let reading = |at| PositionData { multiturn: 3, singleturn: place(at), ..PositionData::default() };

@@ -1,4 +1,4 @@
-//! Singleturn calibration, which consists of a counterclockwise and a clockwise run of about five seconds each. See
+//! The singleturn calibration, which consists of a counterclockwise and a clockwise run of about five seconds each. See
 //! manual 6.4.
 //!
 //! The manual leaves some rules open (`U`). In this model, a run ends after one second if a condition is not met, and
@@ -14,7 +14,7 @@ use crate::units::Moment;
 pub(super) struct CalibrationConditions {
     /// Shaft speed in revolutions per minute, positive for clockwise rotation.
     pub(super) rpm: f64,
-    /// Speed variation in revolutions per minute.
+    /// Variation of the speed in revolutions per minute.
     pub(super) waver: f64,
     pub(super) celsius: i16,
     pub(super) filter: PositionFilter,
@@ -37,7 +37,7 @@ struct CalibrationRun {
     outcome: CalibrationStatus,
 }
 
-/// The effect of a calibration run on the calibration table.
+/// What a calibration run did to the calibration table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RunOutcome {
     No,
@@ -92,7 +92,7 @@ impl Calibration {
         }
     }
 
-    /// Starts a run when it is due, and ends it when its time has elapsed.
+    /// Starts a run that is due, and ends a run whose time has elapsed.
     pub(super) fn update(&mut self, now: Moment) -> RunOutcome {
         if self.run.is_some_and(|run| run.begins <= now) {
             self.status = CalibrationStatus::Running;
@@ -108,7 +108,7 @@ impl Calibration {
         }
     }
 
-    /// Aborts the calibration because the device mode was left or power was lost.
+    /// Aborts the calibration when the device mode is left or power is lost.
     pub(super) fn abort(&mut self) -> RunOutcome {
         let lost = self.run.take().is_some_and(|run| run.clockwise);
         self.command = 0;

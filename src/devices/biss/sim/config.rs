@@ -13,8 +13,8 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults, VirtualDevice, setting};
 
 parameters! {
-    /// Settings of a virtual encoder. By default, the encoder has factory settings, the latest known firmware, a shaft
-    /// at standstill and no faults.
+    /// Settings of a virtual encoder. By default, it has factory settings, the latest known firmware, no faults, and a
+    /// shaft at rest.
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";

@@ -1,4 +1,4 @@
-//! The encoder without its line: the effects of reads and writes (manual 4, 6 and appendix).
+//! The virtual encoder without its line: the effects of reads and writes (manual 4, 6 and appendix).
 //!
 //! ```text
 //! operation ── password, mode ──▶ mode m ── mode 00 ──▶ operation
@@ -75,7 +75,7 @@ impl Encoder {
     const PRESET_SINCE: Firmware = Firmware::new(1, 2, 0);
     const FILTER_SINCE: Firmware = Firmware::new(1, 1, 0);
 
-    /// Creates an encoder that has been powered on for a long time.
+    /// Creates an encoder that was powered on long ago.
     pub fn new(config: &Config) -> Self {
         let flash = Flash { filter: config.filter, ..Flash::factory_default(config.cycles) };
         let mut encoder = Encoder {
@@ -134,12 +134,12 @@ impl Encoder {
         self.watch_temperature();
     }
 
-    /// Replaces the simulated faults of the flash without resetting the count of stores.
+    /// Replaces the simulated faults of the flash. The number of stores so far is kept.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.die_in_store = faults.failing_store();
     }
 
-    /// Sets the errors reported by the encoder's self-monitoring.
+    /// Sets the errors that the encoder reports from its self-monitoring.
     pub fn set_errors(&mut self, errors: ErrorRegister) {
         self.errors = errors;
     }
@@ -161,7 +161,7 @@ impl Encoder {
         }
     }
 
-    /// Returns whether the encoder has power, which is also the case while it is starting.
+    /// Returns whether the encoder has power, even if it is still starting.
     pub fn has_power(&self) -> bool {
         self.power != Power::Off
     }
@@ -182,8 +182,8 @@ impl Encoder {
         (self.power == Power::On).then_some(PositionData { error, warning: self.hot, ..reading })
     }
 
-    /// Returns the shaft position at `now` and the number of steps per revolution. The shaft has a position even if the
-    /// encoder does not report one.
+    /// Returns the shaft position at `now` and the number of steps per revolution, even if the encoder does not report
+    /// a position.
     pub fn shaft_position(&mut self, now: Moment) -> (u64, u64) {
         self.update(now);
         (self.shaft.fractional_position_at(now), 1 << (self.shaft.layout().singleturn_bits() + FRACTIONAL_BITS))
@@ -351,7 +351,7 @@ impl Encoder {
         true
     }
 
-    /// Writes the flash once. The second argument of `change` is `false` if power is lost during the write.
+    /// Writes the flash once. The second argument of `change` is `false` if power fails during the write.
     fn write_flash(&mut self, change: impl FnOnce(&mut Flash, bool)) {
         self.stores_begun = self.stores_begun.saturating_add(1);
         self.flash.cycles = self.flash.cycles.saturating_add(1);

@@ -1,6 +1,6 @@
-//! Procedures in which values are entered and then saved: data, filter and preset. This module holds the entered
-//! values, and the [`Encoder`](super::Encoder) saves them. A command out of sequence is rejected (`U`: not documented).
-//! See manual 6.5 to 6.7.
+//! Procedures in which values are first entered and then saved: data, filter and preset. This module holds the entered
+//! values, and the [`Encoder`](super::Encoder) saves them. A command out of sequence is rejected, which is not
+//! documented (`U`). See manual 6.5 to 6.7.
 
 use crate::devices::biss::protocol::{
     DataCommand, DataStatus, FilterCommand, FilterStatus, Layout, PositionFilter, PresetCommand, PresetStatus,
@@ -30,7 +30,7 @@ impl Area {
 pub(super) enum EntryEffect {
     Refused,
     Nothing,
-    /// A data area is opened, so its content must be passed to [`DataEntry::open`].
+    /// A data area is being opened. Its content must be passed to [`DataEntry::open`].
     Open(Area),
     SaveData(Area, Vec<u8>),
     /// The filter is written to the flash, and the encoder restarts.
@@ -135,7 +135,7 @@ impl PresetEntry {
         PresetEntry { command: 0, status: PresetStatus::Idle, bytes: stored.emit() }
     }
 
-    /// Handles a command. `parts` specifies whether the encoder can preset singleturn and multiturn separately.
+    /// Handles a command. `parts` is whether the encoder can preset singleturn and multiturn separately.
     pub(super) fn command(&mut self, value: u8, parts: bool, layout: &Layout) -> EntryEffect {
         let then = match (PresetCommand::from_byte(value), self.status) {
             (PresetCommand::Edit, _) => {

@@ -1,4 +1,4 @@
-//! The non-volatile memory and its write count. The manual allows 1000 writes over the lifetime of the encoder (manual
+//! The non-volatile memory and its write count. The manual limits the encoder to 1000 writes in its lifetime (manual
 //! 6.1).
 
 use crate::devices::biss::protocol::{PositionFilter, PresetValue};
@@ -9,15 +9,15 @@ pub struct Flash {
     pub(super) oem_data: Vec<u8>,
     pub(super) preset: PresetValue,
     pub(super) filter: PositionFilter,
-    /// Result of the Wiegand test in tenths of a volt. For each direction, clockwise first, it consists of the average,
-    /// and the average minus four standard deviations.
+    /// Result of the Wiegand test in tenths of a volt: the average, and the average minus four standard deviations,
+    /// first clockwise and then counterclockwise.
     pub(super) wiegand: [u8; 4],
     pub(super) calibrated: bool,
     pub(super) cycles: u32,
 }
 
 impl Flash {
-    /// Size of a data area of 32 banks in bytes.
+    /// Size in bytes of a data area, which has 32 banks.
     pub(super) const AREA: usize = 32 * 64;
 
     /// Creates a flash with factory content and the given number of write cycles.

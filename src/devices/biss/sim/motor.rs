@@ -1,9 +1,9 @@
-//! The motor that turns the shaft, from the perspective of the encoder.
+//! The motor that turns the shaft of a virtual encoder.
 
 use crate::sim::Motor;
 
-/// A motor from the perspective of its encoder. Cloning creates an independent motor, because a copied encoder must not
-/// share the motor of the original.
+/// The motor of a virtual encoder. A clone has an independent motor, because a copied encoder must not share the
+/// original's motor.
 #[derive(Debug)]
 pub(super) struct Drive {
     motor: Motor,
@@ -17,8 +17,7 @@ impl Clone for Drive {
 }
 
 impl Drive {
-    /// Creates the motor. If `reverses` is set, the motor changes its direction when a procedure waits for the opposite
-    /// direction.
+    /// Creates the motor. If `reverses` is set, the motor reverses when a procedure waits for the opposite direction.
     pub(super) fn new(rpm: f64, reverses: bool) -> Self {
         Drive { motor: Motor::with_speed(rpm), reverses }
     }
@@ -27,7 +26,7 @@ impl Drive {
         &self.motor
     }
 
-    /// Reverses the motor, if configured. This function is called when a procedure waits for the opposite direction.
+    /// Reverses the motor, if configured. Called when a procedure waits for the opposite direction.
     pub(super) fn reverse_if_configured(&self) {
         if self.reverses {
             self.motor.set_rpm(-self.motor.rpm());

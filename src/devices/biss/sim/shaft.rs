@@ -1,5 +1,5 @@
-//! Model of the shaft, whose position is an exact function of time. A preset changes the reported position but does not
-//! move the shaft.
+//! A model of the shaft, whose position is calculated exactly from the time. A preset changes the reported position,
+//! but does not move the shaft.
 
 use crate::devices::biss::protocol::{Layout, PositionData};
 use crate::units::Moment;
@@ -48,8 +48,8 @@ impl Shaft {
         PositionData { multiturn, singleturn, error: false, warning: false }
     }
 
-    /// Returns the position at time `at` as a fixed-point number with [`FRACTIONAL_BITS`] fractional bits. A second
-    /// encoder on the same shaft needs this resolution.
+    /// Returns the position at time `at` as a fixed-point number with [`FRACTIONAL_BITS`] fractional bits, which
+    /// another encoder on the same shaft may need.
     pub(super) fn fractional_position_at(&self, at: Moment) -> u64 {
         let whole = (self.integer_steps(at) + self.offset) % self.position_count();
         // The product is at least 0 and below 1 << FRACTIONAL_BITS.
@@ -57,8 +57,8 @@ impl Shaft {
         whole << FRACTIONAL_BITS | parts
     }
 
-    /// Presets the singleturn, the multiturn or both to the given values at time `at`. A part that is `None` remains
-    /// unchanged.
+    /// Presets the singleturn position, the multiturn position or both at time `at`. A part that is `None` does not
+    /// change.
     pub(super) fn preset(&mut self, at: Moment, singleturn: Option<u32>, multiturn: Option<u32>) {
         let now = self.position_at(at);
         let wanted = PositionData {

@@ -1,4 +1,4 @@
-//! UBICOM on the configuration pin, a half-duplex line that is simulated byte by byte, including faults.
+//! UBICOM on the configuration pin, a half-duplex line simulated byte by byte, with faults.
 //!
 //! The manual leaves some details open (`U`). In this model, the encoder replies one millisecond after the last byte
 //! and does not reply to invalid requests. Bytes that arrive while it is busy or sending are lost.
@@ -16,7 +16,7 @@ use crate::sim::SimulatedFaults;
 use crate::sim::line::{LineConditions, TransitQueue, VirtualLine};
 use crate::units::Moment;
 
-/// A line with a virtual encoder, as seen by the host. The line is created from a [`Config`].
+/// The line of a virtual encoder as seen by the host, created from a [`Config`].
 #[derive(Clone)]
 pub struct UbicomPort {
     encoder: Encoder,
@@ -24,7 +24,7 @@ pub struct UbicomPort {
     order: ByteOrder,
     echo: bool,
     wires: LineConditions,
-    /// Bytes on their way to the encoder, with their arrival times.
+    /// Bytes that have not reached the encoder yet, with their arrival times.
     to_encoder: TransitQueue<u8>,
     to_host: TransitQueue<u8>,
     /// Time at which the last byte of an incomplete frame arrived at the encoder.
@@ -41,7 +41,7 @@ struct PendingRequest {
     request: Request,
 }
 
-/// An event on the line. Simultaneous events are handled in the order of the variants.
+/// An event on the line. Simultaneous events are handled in the order of these variants.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderAnswers,
@@ -77,7 +77,7 @@ impl UbicomPort {
         &mut self.encoder
     }
 
-    /// Replaces the simulated faults of the line and the encoder without resetting the counts of frames and stores.
+    /// Replaces the simulated faults of the line and the encoder. The numbers of frames and stores so far are kept.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.wires.faults = faults.clone();
         self.encoder.set_faults(faults);
@@ -103,7 +103,7 @@ impl UbicomPort {
         }
     }
 
-    /// Accepts a complete frame. Only one request is processed at a time.
+    /// Handles a complete frame. It is ignored while another request is being processed.
     fn handle_frame(&mut self, at: Moment, frame: &[u8]) {
         let silent = self.wires.faults.silent_after().is_some_and(|frames| frames <= self.frames);
         self.frames = self.frames.saturating_add(1);
@@ -136,7 +136,7 @@ impl UbicomPort {
         }
     }
 
-    /// Sends bytes on the line, and returns the time at which the last byte is complete.
+    /// Puts bytes on the line, and returns the time at which the last one is complete.
     fn drive(&mut self, start: Moment, bytes: &[u8], from_encoder: bool) -> Moment {
         let format = if from_encoder { FORMAT } else { self.wires.host };
         let sent = self.wires.send(start, format.baud.duration_of_bits(character_bits(format)), bytes);

@@ -1,5 +1,5 @@
 //! The Wiegand sensor test (manual 6.3), which collects pulses during 515 revolutions in each direction. The encoder
-//! cannot distinguish clockwise from counterclockwise rotation.
+//! cannot tell clockwise from counterclockwise rotation.
 //!
 //! The manual leaves two details open (`U`). In this model, the encoder detects if the shaft turns in the same
 //! direction in both runs. A sensor without pulses fails with code 01h.
@@ -10,7 +10,7 @@ use crate::units::Moment;
 /// Pulse voltages of the sensor, in tenths of a volt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WiegandPulses {
-    /// Average voltage, or 0 for no pulses.
+    /// Average voltage, or 0 if there are no pulses.
     pub(super) average: u8,
     pub(super) lowest: u8,
 }
@@ -20,7 +20,7 @@ pub(super) struct WiegandState {
     pub(super) command: u8,
     pub(super) status: WiegandStatus,
     pub(super) error: u8,
-    /// Results in ascending order of their registers.
+    /// Test results in ascending order of register address.
     pub(super) result: [u8; 4],
     /// Number of revolutions between the start of the run and `since`.
     collected: f64,
@@ -45,7 +45,7 @@ impl WiegandState {
         }
     }
 
-    /// Handles a command. Returns `false` if the command is rejected. The [`Encoder`](super::Encoder) saves the result.
+    /// Handles a command. Returns `false` if it is rejected. The [`Encoder`](super::Encoder) saves the result.
     pub(super) fn write(&mut self, now: Moment, value: u8) -> bool {
         let status = match (WiegandCommand::from_byte(value), self.status) {
             (WiegandCommand::Stop, _) => WiegandStatus::Stopped,
@@ -69,7 +69,7 @@ impl WiegandState {
         matches!(self.status, WiegandStatus::Clockwise | WiegandStatus::Counterclockwise)
     }
 
-    /// Adds the revolutions since the previous call, based on a constant speed. A run ends after the required number of
+    /// Adds the revolutions since the previous call at constant speed. A run ends when it has the required number of
     /// revolutions.
     pub(super) fn update(&mut self, now: Moment, rpm: f64, pulses: WiegandPulses) {
         if !self.is_running() {
@@ -96,7 +96,7 @@ impl WiegandState {
         }
     }
 
-    /// Ends the run because the device mode was left or power was lost. The result is kept until power is lost.
+    /// Ends the run when the device mode is left or power is lost. The result remains until power is lost.
     pub(super) fn abort(&mut self) {
         (self.command, self.status) = (0, WiegandStatus::Stopped);
     }

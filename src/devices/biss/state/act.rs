@@ -1,5 +1,4 @@
-//! Handling the user's actions on an encoder. Edits take effect immediately. Everything else becomes a session job or a
-//! task.
+//! Handling the user's actions on an encoder. Edits take effect immediately. All other actions start a job or a task.
 
 use std::time::Duration;
 
@@ -18,7 +17,7 @@ use crate::profile::Body;
 use super::table::Group;
 use crate::devices::biss::state::explain as explained;
 
-/// Interval at which watched registers are read. They change slowly, and reading them delays the position.
+/// Interval at which watched registers are read. They change slowly, and reading them delays the positions.
 const WATCH_INTERVAL: Duration = Duration::from_millis(500);
 
 impl Encoder {
@@ -95,15 +94,15 @@ impl Encoder {
         }
     }
 
-    /// Returns whether a newly visible bank should be read. This requires that it has not been read, that nothing is
-    /// running, that no stream would be interrupted, and that no earlier attempt has failed.
+    /// Returns whether a bank that has become visible should be read. It must be unread, with no failed attempt, no
+    /// running job and no stream that a read would interrupt.
     pub fn should_read_bank(&self, group: &Group) -> bool {
         let free = self.session.is_ready() && self.active_stream().is_none();
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }
 
-    /// Returns the part of an area that can be shown. For an encoder, this is the whole area. For a profile, it is the
-    /// part that the file contains.
+    /// Returns the part of an area that can be shown. Of an encoder, this is the whole area. Of a profile, it is what
+    /// the file contains.
     pub fn visible_area_part(&self, area: &Area) -> Option<Area> {
         if self.profile().is_some() { self.memory.readable_part(area) } else { Some(area.clone()) }
     }
@@ -127,7 +126,7 @@ impl Encoder {
         }
     }
 
-    /// Saves a newly read profile to the file for which it was requested.
+    /// Saves a profile that was just read to the requested file.
     pub(super) fn save_profile(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.memory.count());
         let remarks = explained::unsaved_profile_warning(&profile).into_iter().collect();

@@ -17,8 +17,7 @@ pub enum BissAction {
     Watch(Box<Register>, bool),
     /// Reads a bank, or the direct registers for `None`.
     ReadBank(Option<u8>),
-    /// Reads a bank that has become visible and has never been read. This action has no effect while another job is
-    /// running.
+    /// Reads a bank that has become visible for the first time. Ignored while a job is running.
     SeeBank(Option<u8>),
     /// Reads the data area that starts at the given bank.
     ReadArea(u8),
@@ -32,8 +31,8 @@ pub enum BissAction {
         count: usize,
     },
     Plan(Box<Change>),
-    /// Plans the procedures that follow mounting, and shows what they would change. A profile that is open in another
-    /// session provides the values for the data areas.
+    /// Plans the procedures that follow mounting, for review. The data areas are filled from a profile that is open in
+    /// another session.
     PlanMounting {
         /// Steps to perform, without the values for the data areas.
         run: Box<MountingSteps>,

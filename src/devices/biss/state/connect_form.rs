@@ -1,4 +1,4 @@
-//! The connection form for BiSS C encoders, which creates a link but does not open it.
+//! The connection form for BiSS C encoders. It creates a link, but does not open it.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -29,8 +29,8 @@ pub enum BissLinkKind {
     Replay,
 }
 
-/// Entries of the connection form. An empty entry selects the default. Entries for other kinds of connection are kept,
-/// but are not part of the link.
+/// Values entered in the connection form. An empty entry stands for the default. Entries for other kinds of connection
+/// are kept, but do not appear in the link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BissForm {
     pub kind: BissLinkKind,
@@ -48,13 +48,13 @@ pub struct BissForm {
     pub echo: Echo,
     /// Whether the adapter leaves the encoder's supply on after disconnecting.
     pub leave_supply: bool,
-    /// Values of the remaining parameters, as entered.
+    /// Values of all other parameters, as entered.
     pub typed: EnteredValues,
-    /// Names and values of link parameters that the form cannot show.
+    /// Link parameters that the form cannot show, with their values.
     pub rest: Vec<(String, String)>,
 }
 
-/// Link parameter that connects the virtual encoder to a virtual adapter.
+/// Link parameter that connects the virtual encoder through a virtual adapter.
 const BRIDGE: (&str, &str) = ("bridge", "on");
 
 impl Default for BissForm {
@@ -159,12 +159,12 @@ impl BissForm {
         BusParameters::entries()
     }
 
-    /// Returns the baud rate entry and the other entries for the configuration pin.
+    /// Returns the form entries for the configuration pin, with the baud rate separate from the others.
     pub fn pin_entries() -> (Vec<Entry>, Vec<Entry>) {
         PinParameters::entries().into_iter().partition(|own| own.key == "baud")
     }
 
-    /// Returns the entries for the frame and the entries for the line, which apply to every kind of connection.
+    /// Returns the entries for the frame and those for the line. Both apply to every kind of connection.
     pub fn common_entries() -> (Vec<Entry>, Vec<Entry>) {
         (FrameParameters::entries(), LineParameters::entries())
     }
@@ -180,7 +180,7 @@ impl BissForm {
         self.kind == BissLinkKind::Bus || (self.supports_pin_and_bus() && self.behind_adapter)
     }
 
-    /// Returns whether the link can connect to either the configuration pin or the bus.
+    /// Returns whether links of this kind can lead to the configuration pin or to the bus.
     pub fn supports_pin_and_bus(&self) -> bool {
         matches!(self.kind, BissLinkKind::Virtual | BissLinkKind::Replay)
     }
@@ -228,8 +228,8 @@ impl BissForm {
         parameters
     }
 
-    /// Returns whether a parameter belongs to this kind of connection. Parameters of other kinds are dropped. Unknown
-    /// parameters are kept, because they are rejected later with an error that names them.
+    /// Returns whether a parameter belongs in a link of this kind. Parameters of other kinds are dropped. Unknown ones
+    /// are kept, so that opening the link reports them.
     fn has_parameter(&self, name: &str) -> bool {
         let kind = if self.uses_bus() { Transport::Adapter } else { Transport::ConfigPin };
         let own = |kind: Transport| kind.parameters().contains(&name);

@@ -1,5 +1,5 @@
-//! Texts for decoded register values. They are based on the description of the register, except for the data sheet and
-//! for registers with a role.
+//! Decoded register values as text. They follow the register's description, except in the data sheet and for registers
+//! with a special role.
 
 use super::encoder::Encoder;
 use super::format;
@@ -12,8 +12,8 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as explained;
 
 impl Encoder {
-    /// Returns the meaning of a register value, or `None` if the register was not read or its number needs no
-    /// explanation.
+    /// Returns the meaning of a register value, or `None` if the register has not been read or its number is
+    /// self-explanatory.
     pub fn describe_register(&self, shown: &RegisterEntry<'_>) -> Option<Text> {
         let register = &shown.row.register;
         let bytes = shown.bytes.as_deref()?;
@@ -60,8 +60,8 @@ impl Encoder {
         }
     }
 
-    /// Returns the meaning of data sheet fields that a description cannot express, such as times, banks, polynomials
-    /// and the checksum.
+    /// Returns the meaning of data sheet fields that a description cannot define, such as times, banks, polynomials and
+    /// the checksum.
     fn data_sheet_meaning(&self, register: &Register, bytes: &[u8]) -> Option<Text> {
         let offset = register.address.address();
         let bank = [EdsBank::Common, EdsBank::Encoder]

@@ -1,4 +1,4 @@
-//! Drafts of the edits in an encoder's data areas, which survive a crash. An edit is stored as a global address and a
+//! Drafts of edits in an encoder's data areas, which survive a crash. Each edit is stored as a global address and a
 //! byte.
 
 use super::encoder::Encoder;

@@ -28,16 +28,16 @@ pub struct Encoder {
     pub memory: Memory,
     pub table: Table,
     pub record: Record,
-    /// The running procedure, or the last one with its result.
+    /// The running guided procedure, or the last one with its result.
     pub guide: Option<ProcedureRun>,
-    /// Reason why the last data request was rejected, if any.
+    /// Why the last request for data was rejected, if it was.
     pub refusal: Option<Text>,
     pub motor: Option<Motor>,
     pub(super) meaning: FrameDecoder,
-    /// Banks that were read when they became visible, or that could not be read. They are not requested again
-    /// automatically.
+    /// Banks that have already been read when they became visible, or could not be read. They are not read
+    /// automatically again.
     pub(super) seen: BTreeSet<Option<u8>>,
-    /// Banks that have been written and must be read back.
+    /// Banks that were written and must be read back.
     pub(super) read_after: BTreeSet<u8>,
 }
 
@@ -87,7 +87,7 @@ impl Encoder {
         Some(profile)
     }
 
-    /// Replaces the registers of a profile that are edited.
+    /// Applies the edits to a profile.
     pub(super) fn add_edits_to(&self, profile: &mut BissProfile) {
         for (at, byte) in self.memory.iter() {
             profile.set_register(at, byte);
@@ -98,7 +98,7 @@ impl Encoder {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
 
-    /// Returns the data sheet as read from the encoder or stored in the profile, common part first.
+    /// Returns the data sheet from the encoder or the profile, with the common bank first.
     pub fn data_sheet(&self) -> Option<[Result<Eds, EdsError>; 2]> {
         if let Some(identity) = self.identity() {
             return identity.data_sheet.as_ref().map(|sheet| [sheet.common.eds, sheet.encoder.eds]);
@@ -120,7 +120,7 @@ impl Encoder {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Returns the serial number, or `None` if no data was read. The string is empty if the encoder has none.
+    /// Returns the serial number, which is empty if the encoder has none, or `None` if the encoder has not been read.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
@@ -130,7 +130,7 @@ impl Encoder {
         self.memory.is_dirty()
     }
 
-    /// Accepts a survey of the encoder. Edits are kept unless the survey belongs to another encoder.
+    /// Applies a survey of the encoder. Edits are kept unless it is a different encoder.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         self.session.values_read_at = Some(services.current_time().timestamp());
         let fresh = std::mem::take(&mut self.session.just_connected);
@@ -161,15 +161,15 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    /// Stores the device mode in which registers have just been read. `None` stands for operation.
+    /// Stores the device mode in which registers were just read, or `None` for operation mode.
     pub(super) fn set_device_mode(&mut self, unsaved: Option<DeviceMode>) {
         if let Some(mode) = self.status.as_mut().and_then(|status| status.mode.as_mut()) {
             *mode = unsaved.unwrap_or(DeviceMode::OPERATION);
         }
     }
 
-    /// Returns a message if registers may show values that were never saved, because the encoder is in a device mode or
-    /// was in one when the profile was read.
+    /// Returns a message if registers may show values that were never saved. This is the case if the encoder is in a
+    /// device mode, or was when the profile was read.
     pub fn unsaved_warning(&self) -> Option<Text> {
         if let Some(profile) = self.profile() {
             return explain::profile_unsaved(profile);
@@ -178,7 +178,7 @@ impl Encoder {
         Some(explain::unsaved_warning(mode))
     }
 
-    /// Returns whether the identity differs from that of the previously read encoder.
+    /// Returns whether this identity is not the one that was read before.
     pub(super) fn is_different_device(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.kind.clone(), identity.serial_number.clone());
         self.identity().is_some_and(|known| who(known) != who(identity))

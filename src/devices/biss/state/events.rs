@@ -63,7 +63,7 @@ impl Kind for Biss {
 }
 
 impl Encoder {
-    /// Reads back the next bank that was written.
+    /// Reads back the next of the banks that were written.
     fn read_back_changes(&mut self, services: &mut Services) {
         if let Some(bank) = self.read_after.pop_first() {
             self.submit(BissJob::ReadBank(bank), services);

@@ -37,7 +37,7 @@ pub fn name_text(name: &Name) -> Text {
     Text::new("plain.words").with_name("words", name.english(), name.german())
 }
 
-/// Returns the messages for a job that ended early. They can be shown on separate lines.
+/// Returns messages about a failed or interrupted job. They can be shown on separate lines.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder_error_text(error)],
@@ -146,13 +146,13 @@ pub fn unsaved_warning(mode: DeviceMode) -> Text {
     in_mode("biss.unsaved", mode)
 }
 
-/// Returns a warning if a profile that was just saved may contain values that were never saved in the encoder. Returns
-/// `None` if the encoder was in operation.
+/// Returns a warning if a profile that was just saved may contain values that the encoder never saved. Returns `None`
+/// if it was read in operation mode.
 pub fn unsaved_profile_warning(profile: &BissProfile) -> Option<Text> {
     profile.recorded.device_mode.map(unsaved_warning)
 }
 
-/// Returns the message for a profile that was read in a device mode, or `None` if the encoder was in operation.
+/// Returns a message if a profile was read in a device mode, or `None` if it was read in operation mode.
 pub fn profile_unsaved(profile: &BissProfile) -> Option<Text> {
     profile.recorded.device_mode.map(unsaved_profile_text_for_mode)
 }
@@ -182,7 +182,7 @@ pub fn item_text(requested: RequestedItem) -> Text {
     }
 }
 
-/// Returns the message for an encoder that does not match the closest description.
+/// Returns the message for an encoder that differs from the closest description.
 pub fn mismatch_text(mismatch: &IdentityMismatch) -> Text {
     TEXTS
         .text("biss.mismatch")
@@ -191,7 +191,7 @@ pub fn mismatch_text(mismatch: &IdentityMismatch) -> Text {
         .with("expected", &mismatch.expected)
 }
 
-/// Returns the texts for a message that a job has sent.
+/// Returns the lines to display for a message from a job.
 pub fn message_texts(remark: &DeviceMessage) -> Vec<Text> {
     match remark {
         DeviceMessage::CrcErrors(1) => vec![TEXTS.text("biss.crc_error")],
@@ -200,7 +200,7 @@ pub fn message_texts(remark: &DeviceMessage) -> Vec<Text> {
     }
 }
 
-/// Returns the message for a user-supplied description that cannot be read or used.
+/// Returns the message for a user-defined description that cannot be read or used.
 fn description_error_text(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store_error_text(error) };
     match cause.get::<DescriptionError>() {

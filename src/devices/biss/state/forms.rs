@@ -1,4 +1,4 @@
-//! Entries for the procedures and the conversion of their values.
+//! The values entered for procedures, and their conversion.
 
 use crate::app::Text;
 use crate::app::number::{parse_in_range, parse_integer};
@@ -25,7 +25,7 @@ impl PresetForm {
         PresetForm { degrees: format!("{}", (degrees * 1e6).round() / 1e6), turns: value.multiturn().to_string() }
     }
 
-    /// Returns the step that is nearest to the entered angle.
+    /// Returns the step nearest to the entered angle.
     ///
     /// # Errors
     /// Returns an error with the valid range if the entry is invalid.

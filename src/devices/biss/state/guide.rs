@@ -1,5 +1,5 @@
-//! The displayed state of a guided procedure: steps, progress, current task and results. The procedure itself runs in a
-//! job, which also receives the operator's answers.
+//! What is displayed about a guided procedure: steps, progress, current task and results. The procedure runs in a job,
+//! to which the operator's answers are sent.
 
 use crate::app::Text;
 use crate::devices::biss::procedures::procedure::{
@@ -11,8 +11,7 @@ use crate::devices::biss::profile::Op;
 pub struct ProcedureRun {
     ops: Vec<Op>,
     progress: Option<ProcedureProgress>,
-    /// Step that was interrupted. The last reported step may be a different one that belongs to the return to
-    /// operation.
+    /// The interrupted step. The last reported step may be a later one, during the return to operation mode.
     pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
     skips: Vec<(usize, OperatorTask)>,
@@ -24,13 +23,13 @@ pub struct ProcedureRun {
 pub enum ProcedureEnd {
     /// The procedure ran to completion, with the result of each operation.
     Done(Vec<Outcome>),
-    /// The procedure ended early.
+    /// The procedure failed or was cancelled.
     Failed {
         /// Messages about the cause, the state in which the encoder was left, and what to do next.
         texts: Vec<Text>,
         /// Results of the operations that were completed before the interruption.
         before: Vec<Outcome>,
-        /// Whether the encoder may have been left in a mode other than operation.
+        /// Whether the encoder may be in a mode other than operation mode, and can be returned from it.
         may_return_to_operation: bool,
         cancelled: bool,
     },
@@ -43,9 +42,9 @@ pub enum StepStatus {
     Runs,
     Skipped,
     Failed,
-    /// The user cancelled the procedure during the step.
+    /// The user cancelled the procedure in this step.
     Cancelled,
-    /// The step has not been reached, and may never be reached.
+    /// The step has not been reached, and possibly never will be.
     Ahead,
 }
 
@@ -126,8 +125,8 @@ impl ProcedureRun {
         steps
     }
 
-    /// Returns the range of skipped steps in an operation, based on its result if available, and otherwise on the
-    /// operator's answers.
+    /// Returns the range of skipped steps in an operation. It is based on the result if there is one, and on the
+    /// operator's answers otherwise.
     fn skipped_steps(&self, number: usize, steps: &[ProcedureStep]) -> Option<std::ops::Range<usize>> {
         let outcomes = match &self.end {
             Some(ProcedureEnd::Done(outcomes) | ProcedureEnd::Failed { before: outcomes, .. }) => outcomes.as_slice(),
@@ -152,7 +151,7 @@ impl ProcedureRun {
         Some(from..led_back.unwrap_or(steps.len()))
     }
 
-    /// Returns whether the given step belongs to a return to operation that was completed after an interruption.
+    /// Returns whether the given step is a return to operation mode that was completed after an interruption.
     fn was_returned_to_operation(&self, op: usize, step: ProcedureStep) -> bool {
         let was_reported = self.progress.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
         let in_operation = matches!(self.end, Some(ProcedureEnd::Failed { may_return_to_operation: false, .. }));

@@ -1,4 +1,4 @@
-//! Names and values of the registers and actions of an encoder for lists: comparisons, the logbook and reports.
+//! Names and values of an encoder's registers and operations, as listed in comparisons, the logbook and reports.
 
 use std::sync::LazyLock;
 
@@ -9,7 +9,7 @@ use crate::bits::parse_hex;
 use crate::devices::biss::profile::{BissProfile, RegisterRange};
 use crate::devices::biss::protocol::{Descriptions, Name};
 
-/// Descriptions that contain the German names.
+/// The built-in descriptions, which contain the German names.
 static BUILT_IN: LazyLock<Descriptions> = LazyLock::new(Descriptions::built_in);
 
 /// Returns the name of an item, or `None` if an encoder has no such item. `manual_name` is the name of the register or
@@ -38,7 +38,7 @@ pub(super) fn item_name(item: &str, manual_name: Option<&str>) -> Option<Text> {
     })
 }
 
-/// Returns the bank to which an item belongs, or the settings, as the heading of a group.
+/// Returns the heading under which an item is grouped: its bank, or the settings.
 pub(super) fn item_group(item: &str) -> Option<Text> {
     match item {
         BissProfile::FILTER | BissProfile::PRESET => Some(Text::new("report.settings")),
@@ -49,7 +49,7 @@ pub(super) fn item_group(item: &str) -> Option<Text> {
     }
 }
 
-/// Returns the value of an item of a profile: the meaning of a setting, or bytes.
+/// Returns the value of a profile item: the meaning of a setting, or bytes.
 pub(super) fn item_value(profile: &BissProfile, item: &str, value: &str) -> Option<ItemValue> {
     Some(match (item, profile.filter, &profile.preset) {
         (BissProfile::FILTER, Some(filter), _) => ItemValue::Text(format::filter(filter)),
@@ -61,7 +61,7 @@ pub(super) fn item_value(profile: &BissProfile, item: &str, value: &str) -> Opti
     })
 }
 
-/// Returns a name of the manual, which has a German form if a built-in description contains it.
+/// Returns a name from the manual, with its German translation if a built-in description has one.
 fn translated(manual_name: &str) -> Text {
     let names = BUILT_IN.iter().flat_map(|own| {
         let registers = own.registers().iter().map(|register| &register.name);

@@ -1,4 +1,4 @@
-//! The BiSS device type as registered with the studio, for use before a device is open.
+//! The BiSS device type as the studio knows it before a device is open.
 
 use std::sync::Arc;
 

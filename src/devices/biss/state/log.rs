@@ -43,7 +43,7 @@ impl Encoder {
     }
 }
 
-/// Returns the log text for a changed value, with the old and the new value.
+/// Returns the log line for a changed value, with the old and the new value.
 fn operation_text(item: &Text, ChangeTexts { part, old, new }: ChangeTexts) -> Text {
     let text = match part {
         None => TEXTS.text("log.operation"),
@@ -52,7 +52,7 @@ fn operation_text(item: &Text, ChangeTexts { part, old, new }: ChangeTexts) -> T
     text.with_text("item", item.clone()).with_text("old", old).with_text("new", new)
 }
 
-/// Returns the log text that describes the transport to the encoder.
+/// Returns the log line that states how the encoder is connected.
 fn transport_text(identity: &Identity) -> Text {
     match (&identity.adapter, identity.order) {
         (Some(hello), _) => Text::new("log.adapter")

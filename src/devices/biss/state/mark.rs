@@ -1,5 +1,5 @@
-//! Validity of the last position, which is either part of the position or known from the error and warning registers
-//! that were read with the last status.
+//! Validity of the last position. It is either part of the position, or taken from the error and warning registers that
+//! were read with the last status.
 
 use super::encoder::Encoder;
 use crate::devices::biss::procedures::FlagRegister;
@@ -12,7 +12,7 @@ pub enum ValidityMark {
 }
 
 impl Encoder {
-    /// Returns the mark for the last position, or `None` if there is no position or the position is valid and has no
+    /// Returns the mark for the last position. Returns `None` without a position, and for a valid position without a
     /// warning.
     pub fn position_mark(&self) -> Option<ValidityMark> {
         let reading = self.record.last()?;

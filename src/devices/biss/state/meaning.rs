@@ -1,5 +1,5 @@
-//! Explanations of frames in the trace. To decode a reply, the preceding request must be known. To decode a register
-//! access over the bus, the selected bank must be known.
+//! Explanations of frames in the trace. A reply can only be decoded if the preceding request is known, and a register
+//! access over the bus only if the selected bank is known.
 
 use crate::app::explain::literal_text;
 use crate::app::{FrameExplanation, Text, TraceFault};
@@ -13,7 +13,7 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
-/// A stateful decoder that explains frames in the order of transmission.
+/// A decoder that explains frames in the order of transmission, because their meaning depends on earlier ones.
 #[derive(Debug, Default)]
 pub(super) struct FrameDecoder {
     /// Byte order of register numbers, once known.
@@ -56,7 +56,7 @@ impl FrameDecoder {
         })
     }
 
-    /// Decodes bytes received over the configuration pin after a request. Damaged bytes may precede the reply.
+    /// Decodes what was received over the configuration pin after a request. The reply may follow damaged bytes.
     fn reply(&mut self, bytes: &[u8]) -> FrameExplanation {
         let broken = |damage| FrameExplanation::from_error(words::damage_text(&damage));
         let Ok(frame) = Frame::parse(bytes) else { return broken(ReplyDamage::NoFrame { bytes: bytes.len() }) };
@@ -132,8 +132,8 @@ mod tests {
         (said.fault, words.join(" "))
     }
 
-    /// Damaged frames on the configuration pin (section 6 of the UBICOM reference) are explained and marked, even if
-    /// the reply follows them (issue 22.11).
+    /// Damaged frames on the configuration pin (section 6 of the UBICOM reference) are explained and marked even if the
+    /// reply follows (issue 22.11).
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let request = "80 01 01 02 00 26 00 55";

@@ -1,5 +1,5 @@
-//! The registers read from an encoder, and their edited values. A write is planned from the differences. This module
-//! does not write anything to the encoder.
+//! The registers read from an encoder, and the user's edits. A write is planned from the differences, but nothing is
+//! written here.
 //!
 //! Only bytes of a data area that the description marks as writable can be edited. Other writes, such as a filter, a
 //! preset or a command, are reviewed separately and are not treated as edits.
@@ -12,7 +12,7 @@ use crate::devices::biss::protocol::{Area, Description, Register, RegisterAddres
 #[derive(Clone, Debug, Default)]
 pub struct Registers {
     read: BTreeMap<RegisterAddress, u8>,
-    /// Registers whose values have changed since the previous reading.
+    /// Registers whose values differ from the previous reading.
     changed: BTreeSet<RegisterAddress>,
 }
 
@@ -41,8 +41,7 @@ pub enum MemoryError {
 pub type EditedRuns = Vec<(RegisterAddress, Vec<u8>, Vec<u8>)>;
 
 impl Memory {
-    /// Stores bytes that were read, starting at `start`. Edits are kept unless they equal the current values in the
-    /// encoder.
+    /// Stores bytes that were read, starting at `start`. An edit is dropped if the encoder already has its value.
     pub fn store_bytes(&mut self, start: RegisterAddress, bytes: &[u8]) {
         self.update_base(|own| {
             for (at, byte) in (start.global_number()..).zip(bytes) {
@@ -84,8 +83,8 @@ impl Memory {
         Some((read, wanted))
     }
 
-    /// Returns the longest run of banks of an area that were read completely, or `None` if there is none. A profile may
-    /// contain only some banks of an area.
+    /// Returns the longest run of banks in an area that were read completely, or `None` if there is none. A profile may
+    /// contain only some of them.
     pub fn readable_part(&self, area: &Area) -> Option<Area> {
         let is_read = |bank: u8| {
             let mut places = (0..RegisterAddress::BANK_SIZE).map(|offset| RegisterAddress::in_bank(bank, offset));
@@ -165,8 +164,7 @@ impl Memory {
         self.iter().map(|(at, byte)| (at.global_number(), byte)).collect()
     }
 
-    /// Adopts the edits of a draft. Edits that equal the values in the encoder are dropped as soon as these values have
-    /// been read.
+    /// Adopts the edits in a draft. An edit is dropped when its register has been read and already has the value.
     pub fn take_draft(&mut self, draft: Vec<(u16, u8)>) {
         let places = draft.into_iter().filter_map(|(at, byte)| Some((RegisterAddress::from_global(at)?, byte)));
         self.edit_values(places);

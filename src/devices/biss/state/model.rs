@@ -1,4 +1,4 @@
-//! Integration of a BiSS encoder with the studio's device interface.
+//! The BiSS encoder as a device of the studio.
 
 use std::convert::Infallible;
 

@@ -15,7 +15,7 @@ use crate::devices::biss::procedures::{ConsecutiveFrames, Error, PolledSample, P
 use crate::devices::biss::protocol::{DecodedValue, Register, ValueDecoding};
 use crate::devices::biss::state::explain as words;
 
-/// A batch of consecutive positions with equal field widths.
+/// A batch of consecutive positions with the same field widths.
 #[derive(Default)]
 struct Batch {
     widths: Option<Widths>,
@@ -37,7 +37,7 @@ impl From<&PositionReading> for Widths {
     }
 }
 
-/// The recorder of an encoder's positions, which also keeps the latest values.
+/// The recorder of an encoder's positions. It also provides the latest values.
 #[derive(Debug, Default)]
 pub struct Record {
     track: DeviceRecorder<Register>,
@@ -52,7 +52,7 @@ pub struct FrameStream {
     next: u64,
     period_ns: i64,
     pub clock_hz: u32,
-    /// Whether the requested frame rate is too high for the clock.
+    /// Whether the clock is too slow for the requested frame rate.
     pub is_limited: bool,
 }
 
@@ -169,7 +169,7 @@ impl Record {
         self.track.add_watched(&register, &watching);
     }
 
-    /// Sets the registers to record along with the position. This replaces the previous selection.
+    /// Sets the registers to record along with the position, in place of the previous ones.
     pub(super) fn set_watched(&mut self, watched: &[Register]) {
         self.track.set_watched(watched);
     }
@@ -187,7 +187,7 @@ impl Record {
         self.crc_errors
     }
 
-    /// Returns the latest stream, or `None` if polling has stopped or positions arrive one by one.
+    /// Returns the current stream, or `None` if polling has stopped or positions are read one by one.
     pub(super) fn current_stream(&self) -> Option<&FrameStream> {
         self.stream.as_ref()
     }
@@ -233,7 +233,7 @@ fn position_sample(reading: &PositionReading) -> PositionSample {
     }
 }
 
-/// Returns the scales of positions with the given multiturn and singleturn widths.
+/// Returns how positions with the given multiturn and singleturn widths are scaled.
 fn position_scales(Widths { multiturn, singleturn, is_split_known }: Widths) -> PositionScales {
     let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
     if !is_split_known {
@@ -287,7 +287,7 @@ mod tests {
         }
     }
 
-    /// Expected values for turn 1234h at 270° from section 2 of the reference.
+    /// Turn 1234h at 270° is the position word 024698000, according to section 2 of the reference.
     #[test]
     fn raw_values_are_position_words_also_in_a_stream() {
         let mut record = Record::default();
@@ -313,7 +313,7 @@ mod tests {
         assert_eq!((last.position_word().to_string(), last.error, last.warning), ("00A".to_owned(), None, None));
     }
 
-    /// A position is not split into turns and degrees if the number of steps per turn is unknown (issue 22.20).
+    /// A position cannot be split into turns and degrees if the number of steps per turn is unknown (issue 22.20).
     #[test]
     fn positions_with_unknown_split_are_recorded_in_steps() {
         let mut record = Record::default();

@@ -1,4 +1,4 @@
-//! Tests of the draft format in users' files. A draft must be readable, and must be unchanged when it is written back.
+//! Tests of the draft format in users' files. Drafts must remain readable, and writing them back must not change them.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::biss::jobs::Biss;

@@ -1,4 +1,4 @@
-//! The values of an encoder in a report: identity, settings, data sheet, results of the procedures, and data areas.
+//! The values of an encoder in a report: identity, settings, data sheet, procedure results and data areas.
 
 use std::sync::Arc;
 
@@ -94,7 +94,7 @@ fn settings_section(context: &ReportContext<'_>, profile: &BissProfile) -> Secti
     Section::new(context.say("report.settings")).with(Block::Facts(facts))
 }
 
-/// Returns the results of the calibration and the Wiegand tests, or `None` if the profile has none.
+/// Returns the results of the calibration and of the Wiegand tests, or `None` if the profile contains none.
 fn procedures_section(context: &ReportContext<'_>, profile: &BissProfile) -> Option<Section> {
     let recorded = &profile.recorded;
     let tests: Vec<(&str, WiegandResult)> = [
@@ -147,7 +147,7 @@ fn procedures_section(context: &ReportContext<'_>, profile: &BissProfile) -> Opt
     (!section.blocks.is_empty()).then_some(section)
 }
 
-/// Returns the decoded values of the named registers outside the data areas that the profile contains.
+/// Returns the named registers in the profile that are outside the data areas, with their decoded values.
 fn data_sheet_section(context: &ReportContext<'_>, encoder: &Encoder) -> Option<Section> {
     let mut section = Section::new(context.say(TEXTS.text("report.biss_registers")));
     for group in encoder.table.groups() {

@@ -1,4 +1,4 @@
-//! Review of a write to a BiSS encoder: permissions, warnings and costs of the plan.
+//! The summary of a write to a BiSS encoder before it starts: required permissions, warnings and write cycles.
 
 use crate::app::explain::{cycle_count_text, literal_text};
 use crate::app::review::{self, ExecutionMode, OperationTexts, Permit, Reviewable};
@@ -12,7 +12,7 @@ use crate::devices::biss::state::explain as words;
 pub type Review = review::Review<Biss>;
 pub type ReviewState = review::ReviewState<Biss>;
 
-/// Returns whether an operation is shown step by step, because it may require an operator at the motor.
+/// Returns whether an operation is shown step by step, because it may need an operator at the motor.
 pub(super) fn is_guided(op: &Op) -> bool {
     op.needs_motor() || matches!(op, Op::FirePreset { .. })
 }
@@ -109,7 +109,7 @@ impl Reviewable for Biss {
     }
 }
 
-/// Returns the selected steps that the plan does not contain, because they would change nothing.
+/// Returns the selected steps that are not in the plan because they would change nothing.
 fn skipped_operations(change: &Change, ops: &[Op]) -> impl Iterator<Item = Text> {
     let run = match change {
         Change::Guided { run, .. } => Some(run),

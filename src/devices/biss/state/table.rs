@@ -1,11 +1,11 @@
-//! The table of an encoder's registers, which starts with the direct registers and continues bank by bank. Every
-//! described register has a row, as does every undescribed byte.
+//! The table of an encoder's registers: first the direct registers, then the banks. Every described register has a row,
+//! and so has every byte without a description.
 
 use super::memory::Memory;
 use crate::bits::ByteOrder;
 use crate::devices::biss::protocol::{Access, Description, EdsBank, Name, Register, RegisterAddress, ValueDecoding};
 
-/// Last bank of the kit encoder, used if the description does not name any.
+/// Last bank of the kit encoder, for descriptions that do not list any banks.
 const LAST_BANK: u8 = 0x43;
 
 #[derive(Clone, Debug, Default)]
@@ -25,7 +25,7 @@ pub struct Group {
 
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// Register shown in the row. An undescribed byte is shown as an unnamed register of width 1.
+    /// Register shown in the row. A byte without a description is shown as an unnamed register of width 1.
     pub register: Register,
     pub is_data: bool,
 }
@@ -33,7 +33,7 @@ pub struct Row {
 #[derive(Clone, Debug)]
 pub struct RegisterEntry<'a> {
     pub row: &'a Row,
-    /// Bytes in ascending order of address with edits applied, or `None` if the register was not read.
+    /// Bytes in ascending order of address, with edits applied, or `None` if the register has not been read.
     pub bytes: Option<Vec<u8>>,
     /// Whether the value has changed since the previous reading.
     pub has_changed: bool,
@@ -129,7 +129,7 @@ fn bank_addresses(bank: Option<u8>) -> impl Iterator<Item = RegisterAddress> {
     })
 }
 
-/// Creates a register for an undescribed byte.
+/// Creates a register for a byte without a description.
 fn undescribed_register(address: RegisterAddress, access: Access) -> Register {
     Register {
         address,
@@ -146,7 +146,7 @@ fn undescribed_register(address: RegisterAddress, access: Access) -> Register {
     }
 }
 
-/// Returns the name of a data sheet bank, which is the same for every encoder that conforms to BP3.
+/// Returns the name of a data sheet bank, which all encoders with the BP3 profile share.
 fn standard_bank_name(bank: u8) -> Option<Name> {
     [(EdsBank::Common, "EDS"), (EdsBank::Encoder, "EDS BP3")]
         .into_iter()
@@ -164,7 +164,7 @@ mod tests {
         Table::from_description(all.find_by_name("POSITAL IXARC kit encoder").unwrap(), None)
     }
 
-    /// According to appendix 9.1 of the manual, there are 68 banks with 64 registers each, and 64 direct registers.
+    /// There are 68 banks with 64 registers each, and 64 direct registers, according to appendix 9.1 of the manual.
     #[test]
     fn every_register_is_listed_once() {
         let table = kit();

@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// The catalogue of BiSS messages and labels. The common catalogue provides all other IDs.
+/// The catalogue of BiSS messages and labels. IDs that are not listed here are in the common catalogue.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/biss.ron"));

@@ -1,5 +1,5 @@
-//! Writing of edits or a profile to an encoder. This includes the request, the jobs, an operator at the motor if
-//! required, and the registers to read again afterwards.
+//! Writing edits or a profile to an encoder: the request, the jobs, the operator at the motor if one is required, and
+//! the registers to read back.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ use crate::devices::biss::state::explain;
 use crate::profile::{Body, PlanId, ProfileError};
 use crate::worker::JobInterruption;
 
-/// A substitute for an absent operator. It waits three seconds for the shaft to stop.
+/// The substitute for an operator in writes that need none at the motor. It waits three seconds for the shaft to stop.
 const UNATTENDED: UnattendedOperator = UnattendedOperator { patience: Duration::from_secs(3) };
 
 impl Encoder {
@@ -36,7 +36,7 @@ impl Encoder {
         }
     }
 
-    /// Records that the encoder has returned to operation, so that the user is no longer asked to return it.
+    /// Records that the encoder is in operation mode again, so that the user is no longer asked to return it.
     pub(super) fn mark_returned_to_operation(&mut self) {
         if let Some(ProcedureRun { end: Some(ProcedureEnd::Failed { may_return_to_operation, .. }), .. }) =
             &mut self.guide
@@ -45,7 +45,7 @@ impl Encoder {
         }
     }
 
-    /// Ends the display of a guided procedure that was interrupted, and returns whether a procedure was running.
+    /// Ends the display of an interrupted guided procedure. Returns whether one was running.
     pub(super) fn end_interrupted_procedure(&mut self, how: &EarlyEnd<JobError>, texts: &[Text]) -> bool {
         let error = match how {
             EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error) => Some(*error),

@@ -1,5 +1,5 @@
-//! The connection form for BiSS C encoders, which are connected over the configuration pin, connected over an adapter
-//! on the bus, or virtual.
+//! The connection form for BiSS C encoders. They are connected through the configuration pin or through an adapter on
+//! the bus, or are virtual.
 
 use egui::Ui;
 

@@ -51,7 +51,7 @@ fn transmitted_data(reading: &PositionReading) -> PositionData {
     }
 }
 
-/// Returns the fields of a frame and their bits. Over the configuration pin, only the position is transmitted.
+/// Returns the fields of a frame with their bits. The configuration pin provides only the position.
 fn frame_fields(
     theme: &Theme,
     layout: &Layout,

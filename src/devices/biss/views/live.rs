@@ -1,4 +1,4 @@
-//! The large display of a BiSS position and of the registers read along with it.
+//! The large display of a BiSS position and of the registers that are read with it.
 
 use egui::{RichText, Ui};
 
@@ -56,8 +56,8 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     }
 }
 
-/// Draws the menu of values to read along with the position. It offers common registers. All other registers can be
-/// selected in the register table.
+/// Draws the menu of registers to read with the position. It offers the common ones. All others can be selected in the
+/// register table.
 pub(crate) fn watch_menu(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = theme.translate("live.watch");
     let Some(description) = &encoder.description else { return };

@@ -41,7 +41,7 @@ impl TabPage for Page {
 }
 
 impl Page {
-    /// Returns whether the page scrolls its own content, so that its buttons stay in place.
+    /// Returns whether the page scrolls its content itself, so that its buttons stay in place.
     fn handles_scrolling(self) -> bool {
         matches!(self, Page::Registers | Page::Data)
     }
@@ -54,7 +54,7 @@ pub(crate) struct BissUiState {
     procedures: procedures::ProceduresUiState,
 }
 
-/// Draws messages below the table of a page, where they do not move clickable items.
+/// Draws messages below the table of a page, so that they do not move anything clickable.
 fn messages_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let id = egui::Id::unique(encoder.session.id).with("biss_messages");
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {

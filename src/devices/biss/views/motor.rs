@@ -1,4 +1,4 @@
-//! The motor control of the virtual encoder, which is shown on every page that needs it.
+//! The motor control of the virtual encoder, which appears on every page that needs it.
 
 use egui::{RichText, Ui};
 
@@ -26,7 +26,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, motor: &Mot
     });
 }
 
-/// Draws a note that the virtual motor is still turning, with a stop button. A real motor can only be stopped by its
+/// Draws a note with a stop button while the virtual motor is turning. A real motor can only be stopped by its
 /// operator.
 pub(super) fn motor_running_note_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(motor) = &encoder.motor else { return };

@@ -1,5 +1,5 @@
-//! The page for guided procedures. It shows the selection and the motor, and then the current task, the progress and
-//! the result of each step. It also contains the filter and the preset.
+//! The page for guided procedures, the filter and the preset. It shows the selected procedures and the motor, followed
+//! by the current task, the progress and the result of each step.
 
 use egui::{RichText, Ui};
 
@@ -172,12 +172,12 @@ fn procedure_checkbox_ui(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static
     });
 }
 
-/// Adds the space that aligns the next widget of a row with the text of a checkbox above.
+/// Indents the next widget in a row to the text of the checkbox above.
 fn indent_like_checkbox(ui: &mut Ui) {
     ui.add_space(ui.spacing().icon_width + ui.spacing().icon_spacing);
 }
 
-/// Returns the selected procedures, or the reason why they cannot be reviewed yet.
+/// Returns the selected procedures, or the reason why they cannot be planned yet.
 fn requested_procedures(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingSteps, Text> {
     let turns = *own.calibrate || *own.wiegand;
     match own.motor {

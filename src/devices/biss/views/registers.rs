@@ -20,8 +20,8 @@ pub(super) struct RegistersUiState {
     folded: bool,
 }
 
-/// Width of the bank list in points. On a page that is narrower than [`MIN_TWO_COLUMN_WIDTH`], a drop-down list above
-/// the table is shown instead.
+/// Width of the bank list in points. A page narrower than [`MIN_TWO_COLUMN_WIDTH`] has a drop-down list above the table
+/// instead.
 const BANK_LIST_WIDTH: f32 = 176.0;
 const MIN_TWO_COLUMN_WIDTH: f32 = 840.0;
 
@@ -264,7 +264,7 @@ fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
     names.iter().map(bit).collect()
 }
 
-/// Parses a hexadecimal byte in the format used by the table.
+/// Parses a hexadecimal byte as shown in the table.
 fn parse(text: &str) -> Result<u8, Text> {
     let digits = text.trim().trim_start_matches("0x").trim_end_matches(['h', 'H']);
     let byte = u8::from_str_radix(digits, 16).ok().filter(|_| !digits.starts_with('+'));

@@ -1,4 +1,4 @@
-//! The display of a running guided procedure: steps, current task, measured and allowed values, and the final report.
+//! The display of a running guided procedure: steps, current task, measured and allowed values, and the result.
 
 use egui::{RichText, Ui};
 
@@ -105,7 +105,7 @@ fn step_row(
     step
 }
 
-/// Returns the gauges that are shown while the operator turns the motor. Their marks are the limits for starting the
+/// Returns the gauges shown while the operator turns the motor. They are marked with the limits for the start of the
 /// run.
 fn speed_gauges(theme: &Theme, demand: &OperatorPrompt) -> Vec<Gauge> {
     let OperatorTask::Turn(run) = demand.task else { return Vec::new() };

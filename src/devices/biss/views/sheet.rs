@@ -1,4 +1,4 @@
-//! The electronic data sheet: the fields of both banks with their units, and whether the checksums match.
+//! The electronic data sheet: the fields of both banks with their units, and the state of the checksums.
 
 use egui::{RichText, Ui};
 

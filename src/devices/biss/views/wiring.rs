@@ -1,4 +1,4 @@
-//! The wiring card: the connector pins, the supply and the clock of the kit encoder.
+//! The wiring card, which shows the connector pins, the supply and the clock of the kit encoder.
 
 use egui::Ui;
 
@@ -24,7 +24,7 @@ const PINS: [(&str, &str); 8] = [
 
 const NOTES: [&str; 3] = ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.others"];
 
-/// Minimum card width in points for showing the pins in two columns.
+/// Card width in points from which the pins are shown in two columns.
 const MIN_TWO_COLUMN_WIDTH: f32 = 640.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {
@@ -54,8 +54,8 @@ mod tests {
     use crate::devices::biss::state::TEXTS;
     use crate::ui::wiring::{assert_notes, assert_wires};
 
-    /// The expected values are from the manual of the kit encoder, tables 1 (pins), 2 (supply) and 14 (preset), and
-    /// sections 2.1 (connector) and 2.3 (point to point, RS-422). UBICOM uses 115200 baud (issue 22.23).
+    /// Tables 1 (pins), 2 (supply) and 14 (preset) and sections 2.1 (connector) and 2.3 (point to point, RS-422) of the
+    /// kit encoder's manual. UBICOM uses 115200 baud (issue 22.23).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         assert_wires(

@@ -3,8 +3,8 @@
 use super::super::crc::crc4;
 use super::{REGISTERS, REST_CYCLES, append_crc4};
 
-/// The encoder's side of the control channel, driven cycle by cycle. A cycle starts with a call to
-/// [`next_cds`](Self::next_cds) and ends with a call to [`receive_cdm`](Self::receive_cdm).
+/// The encoder's side of the control channel. For each cycle, call [`next_cds`](Self::next_cds) at its start and
+/// [`receive_cdm`](Self::receive_cdm) at its end.
 #[derive(Clone, Debug)]
 pub struct Encoder {
     slave: u8,
@@ -12,7 +12,7 @@ pub struct Encoder {
     state: State,
 }
 
-/// A register access requested by the host.
+/// A register access by the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// The host reads a register and waits until [`Encoder::provide_value`] supplies its value.
@@ -33,22 +33,22 @@ pub enum Event {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Waiting for a start bit, or for the zeros that must precede it.
+    /// Waiting for a start bit, or for the zeros that must come first.
     Rest,
-    /// Ignoring a frame that is unintelligible or addressed to another encoder.
+    /// Ignoring a frame that is damaged or addressed to another encoder.
     Ignoring,
-    /// Receiving the head of a frame. `bits` contains the `cycle` bits received so far, with the first bit at the top.
+    /// Receiving the head of a frame. `bits` holds the first `cycle` bits, with the latest bit lowest.
     Head { bits: u32, cycle: u8 },
-    /// About to send the start bit S. For a read, this requires the value.
+    /// About to send the start bit S. A read must wait until its value is known.
     Start { address: u8, access: Access },
-    /// Sending DATA and CRC4. `sent` bits of `word` have been sent after the start bit S. For a write, received bits
+    /// Sending DATA and CRC4. After the start bit S, `sent` bits of `word` have been sent. For a write, received bits
     /// are appended to `word`.
     Data { address: u8, access: Access, word: u16, sent: u8 },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Access {
-    /// Read access, with DATA and CRC4 as soon as the value is known.
+    /// Read access. The reply, DATA and CRC4, is `None` until the value is known.
     Read(Option<u16>),
     Write,
 }
@@ -56,12 +56,11 @@ enum Access {
 impl Encoder {
     /// Number of bits in the header: S, CTS, ID, ADR and CRC4.
     const HEADER_BITS: u8 = 16;
-    /// Number of bits in the head: the header, R and W.
+    /// Number of bits in the head, which is the header followed by R and W.
     const HEAD_BITS: u8 = 18;
     const WORD_BITS: u8 = 12;
 
-    /// Creates the control channel of an encoder. `slave` is its number on the line, 0 to 7. A kit encoder has number
-    /// 0.
+    /// Creates the control channel of an encoder with the given number on the line, 0 to 7. A kit encoder has number 0.
     pub fn new(slave: u8) -> Self {
         Encoder { slave: slave & 7, zeros: 0, state: State::Rest }
     }
@@ -114,7 +113,7 @@ impl Encoder {
         event
     }
 
-    /// Supplies the value of the requested register. Has no effect without a pending request.
+    /// Supplies the value of the requested register. Has no effect if no read is pending.
     pub fn provide_value(&mut self, value: u8) {
         if let State::Start { access: access @ Access::Read(None), .. } = &mut self.state {
             *access = Access::Read(Some(append_crc4(value)));
@@ -153,7 +152,7 @@ fn begin_transfer(address: u8, access: Access) -> (State, Option<Event>) {
     }
 }
 
-/// Handles one bit of DATA and CRC4. `sent` is the number of bits sent, including the current one.
+/// Handles one bit of DATA and CRC4. `sent` counts the bits sent, including this one.
 fn transfer_bit(address: u8, access: Access, word: u16, bit: bool, sent: u8) -> (State, Option<Event>) {
     if access != Access::Write {
         return (State::Data { address, access, word, sent }, None);

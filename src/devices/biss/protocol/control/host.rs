@@ -3,8 +3,8 @@
 use super::super::crc::crc4;
 use super::{ControlError, MAX_WAIT_CYCLES, REST_CYCLES, Request};
 
-/// The host's side of the control channel, driven cycle by cycle. Requests are processed one at a time, and the line is
-/// idle between them.
+/// The host's side of the control channel. Call [`run_cycle`](Self::run_cycle) once per cycle. Requests are processed
+/// one at a time, and the line is idle in between.
 #[derive(Clone, Debug)]
 pub struct Host {
     /// Number of consecutive cycles with CDM = 0. The counter saturates.
@@ -18,8 +18,8 @@ pub struct Host {
 pub struct Step {
     /// CDM bit of the cycle. During the time-out, the clock line carries the inverse of this bit.
     pub cdm: bool,
-    /// Outcome if the request ended in this cycle. It contains the values read, or the values that the encoder echoed
-    /// after a write.
+    /// Result of the request, if it ended in this cycle: the values read, or the values that the encoder echoed during
+    /// a write.
     pub outcome: Option<Result<Vec<u8>, ControlError>>,
 }
 
@@ -56,7 +56,7 @@ impl Transfer {
         self.request.address.saturating_add(u8::try_from(self.values.len()).unwrap_or(u8::MAX))
     }
 
-    /// Returns the DATA or CRC4 bit that the host sends at index `at`. The bit at index 0 is sent first.
+    /// Returns the DATA or CRC4 bit that the host sends at index `at`, counted from the first bit sent.
     fn bit(&self, at: u8) -> bool {
         self.request.data(self.values.len()) << at & 0x800 != 0
     }
@@ -69,7 +69,7 @@ impl Default for Host {
 }
 
 impl Host {
-    /// Last cycle of a request's head. In the following cycle, the encoder may send its start bit S.
+    /// Last cycle of a request's head. The encoder may send its start bit S in the next cycle.
     const LAST_HEAD_CYCLE: u8 = 18;
     const WORD_BITS: u8 = 12;
 
@@ -90,7 +90,7 @@ impl Host {
         self.waiting.is_some() || !matches!(self.state, State::Rest)
     }
 
-    /// Abandons the request, which the encoder discards during the zeros before the next request.
+    /// Abandons the request. The encoder discards it during the zeros that precede the next request.
     pub fn abandon(&mut self) {
         self.waiting = None;
         self.restart_zeros();
@@ -182,14 +182,14 @@ impl Host {
         Step { cdm: false, outcome: Some(Err(error)) }
     }
 
-    /// Restarts the count of zeros before the next request, because zeros within a frame may have been data.
+    /// Restarts the count of zeros before the next request, because earlier zeros may have been data.
     fn restart_zeros(&mut self) {
         self.state = State::Rest;
         self.zeros = 0;
     }
 }
 
-/// Returns the head of a request, which consists of S, CTS, ID, ADR, CRC4, R, W and S.
+/// Returns the head of a request: S, CTS, ID, ADR, CRC4, R, W and S.
 fn head_bits(request: &Request) -> u32 {
     let header = 1 << 10 | u16::from(request.slave) << 7 | u16::from(request.address);
     let access = if request.is_read() { 0b10 } else { 0b01 };

@@ -1,11 +1,11 @@
-//! Tests of the control frame with published bit strings in both directions, with host and encoder connected to each
-//! other, and with damaged bits.
+//! Tests of the control frame with published bit strings in both directions, with a connected host and encoder, and
+//! with damaged bits.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// CDM bits of read requests from section 3 of the reference, in the order of transmission.
+/// Read requests as CDM bits in the order of transmission, from section 3 of the reference.
 const READS: [(u8, &str); 11] = [
     (0x00, "11000000000001101010000000000000"),
     (0x05, "11000000010110011010000000000000"),
@@ -31,7 +31,7 @@ const WRITES: [(u8, u8, &str); 10] = [
     (0x03, 0x80, "11000000001100110111000000000010"),
     (0x04, 0x01, "11000000010010100110000000111000"),
 ];
-/// CDS bits from section 3 of the reference for a read that returns 4Bh. The lock bits and the echoed R and W precede
+/// CDS bits for a read that returns 4Bh, from section 3 of the reference. The lock bits and the echoed R and W precede
 /// the value, and P follows it.
 const CDS_4B: &str = "010000000000000001010100101101100";
 
@@ -48,7 +48,7 @@ struct Line {
     host: Host,
     encoder: Encoder,
     registers: [u8; 128],
-    /// Number of cycles until the encoder has a value to send.
+    /// Number of cycles that the encoder needs to provide a value.
     processing: u8,
     /// Bits on the line, starting with the first 1 that the host sends.
     cdm: Vec<bool>,
@@ -76,7 +76,7 @@ impl Line {
         }
     }
 
-    /// Replaces the encoder with one that has the given number and has been on the line for a long time.
+    /// Replaces the encoder with an idle one that has the given number.
     fn attach(&mut self, slave: u8) {
         self.encoder = Encoder::new(slave);
         (0..REST_CYCLES).for_each(|_| assert_eq!(self.encoder.receive_cdm(false), None));
@@ -137,7 +137,7 @@ fn published_writes_match() {
     }
 }
 
-/// Tests the encoder and the host separately, each with the published bits of the other side.
+/// Encoder and host are tested separately, each with the published bits of the other side.
 #[test]
 fn published_reply_matches() {
     let (_, cdm) = READS[4];
@@ -211,7 +211,7 @@ fn a_command_is_ignored() {
     }
 }
 
-/// Fourteen zeros return the line to the idle state after any traffic.
+/// After fourteen zeros, the line is idle whatever was sent before.
 #[test]
 fn fourteen_zeros_reset_every_cycle() {
     let (_, _, write) = WRITES[2];
@@ -245,8 +245,7 @@ fn an_aborted_request_leaves_the_host_ready() {
     assert!(host.run_cycle(false).cdm);
 }
 
-/// A flipped bit in the encoder's reply never yields a wrong value, and a flipped bit in a request never writes a wrong
-/// value.
+/// A flipped bit never causes a wrong value to be read or written.
 #[test]
 fn any_single_flipped_bit_is_detected() {
     let read = || Request::read(0, 0x66, 1).unwrap();

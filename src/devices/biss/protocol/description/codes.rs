@@ -6,7 +6,7 @@ use super::super::procedure::{
 };
 use super::super::status::DeviceMode;
 
-/// A built-in code table, to which a description can refer instead of listing the values.
+/// A built-in code table, which a description can name instead of listing the values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum CodeTable {

@@ -1,5 +1,5 @@
-//! Errors in a description file. The RON parser reports only the message of an error. Therefore, this module stores the
-//! error until the parser has reported its position.
+//! Errors in a description file. The RON parser passes on only the message of an error, so the error itself is stored
+//! here until the parser has reported its position.
 
 use std::cell::Cell;
 
@@ -13,7 +13,7 @@ use super::register::{Register, Role};
 /// The kind of error in a description file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DescriptionErrorKind {
-    /// The content of the file is not a description. The string is the message of the RON parser.
+    /// The file does not have the form of a description. The string is the message of the RON parser.
     #[error("{0}")]
     Form(String),
     /// The address is not valid for a direct register.
@@ -68,7 +68,7 @@ pub enum DescriptionErrorKind {
     /// The factor or offset is not a finite number.
     #[error("\"{0}\": factor and offset must be finite numbers")]
     Endless(String),
-    /// Values that trigger a save are specified for a register that cannot be written.
+    /// A register that cannot be written has `saves` values, which would trigger a save.
     #[error("\"{0}\": a read-only register cannot have \"saves\" values")]
     SavesNothing(String),
     /// The first bank of an area comes after its last bank.
@@ -90,7 +90,7 @@ pub enum DescriptionErrorKind {
     /// The German name is empty.
     #[error("\"{0}\": the German name is empty")]
     GermanEmpty(String),
-    /// A German name is specified for an English name that is not used in the description.
+    /// A German name is listed for an English name that the description does not use.
     #[error("german: the description does not contain the name \"{0}\"")]
     GermanNeedless(String),
 }
@@ -119,7 +119,7 @@ thread_local! {
     static LAST_ERROR: Cell<Option<DescriptionErrorKind>> = const { Cell::new(None) };
 }
 
-/// Stores an error and returns a copy of its message for the RON parser, which adds the position.
+/// Stores an error, and returns its message for the RON parser, which adds the position.
 pub(super) fn store_error<E: Error>(flaw: impl Into<DescriptionErrorKind>) -> E {
     let flaw = flaw.into();
     let words = E::custom(&flaw);
@@ -127,7 +127,7 @@ pub(super) fn store_error<E: Error>(flaw: impl Into<DescriptionErrorKind>) -> E 
     words
 }
 
-/// Removes and returns the last error found on the current thread.
+/// Takes the last error stored on the current thread.
 pub(super) fn take_error() -> Option<DescriptionErrorKind> {
     LAST_ERROR.take()
 }

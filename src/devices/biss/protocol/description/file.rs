@@ -1,5 +1,5 @@
-//! Deserialization of description files. Rows are checked while they are parsed, because only then are their positions
-//! known.
+//! Deserialization of description files. Each row is checked as soon as it has been parsed, because its position is
+//! lost afterwards.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -200,8 +200,8 @@ impl TryFrom<RegisterLocation> for RegisterAddress {
     }
 }
 
-/// Implements `Deserialize` for types whose rows are checked while they are parsed, so that errors have the position of
-/// the row.
+/// Implements `Deserialize` for rows that are checked while they are parsed, so that an error has the position of its
+/// row.
 macro_rules! checked {
     ($($row:ident => $own:ty,)*) => {$(
         impl<'de> Deserialize<'de> for $own {
@@ -317,7 +317,7 @@ fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
     Firmware::new(major, minor, patch)
 }
 
-/// A row of a description file. It claims items, such as registers, that no other row may claim.
+/// A row of a description file. It lists what no other row may contain, such as its register addresses.
 trait Row {
     fn unique_items(&self) -> Vec<UniqueItem>;
 }
@@ -348,7 +348,7 @@ impl Row for Procedure {
     }
 }
 
-/// A list of rows that do not claim the same items.
+/// A list of rows without duplicate items.
 struct Rows<T>(Vec<T>);
 
 impl<T> Default for Rows<T> {

@@ -1,6 +1,5 @@
-//! The German names of a description. They are listed separately from the English names, so that a name used in several
-//! rows is translated only once. An entry for a name that the description does not use is reported as an error with its
-//! position.
+//! The German names of a description. They are listed separately from the English names, so that each is translated
+//! only once. An unused entry is reported as an error with its position.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -17,8 +16,8 @@ use super::name::Name;
 pub(super) struct GermanNames(BTreeMap<String, String>);
 
 impl GermanNames {
-    /// Adds the German names to the English names. `text` is the content of the file, which is searched for the
-    /// position of an unused entry.
+    /// Adds the German names to the English names. `text` is the file content, in which the position of an unused entry
+    /// is searched.
     pub(super) fn translate<'a>(
         mut self,
         names: impl Iterator<Item = &'a mut Name>,

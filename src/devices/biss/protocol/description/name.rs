@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A name from a description, shown in English unless another language is requested.
+/// A name from a description, in English and possibly in German.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
 #[serde(from = "String")]
 pub struct Name {

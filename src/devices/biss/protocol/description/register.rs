@@ -14,7 +14,7 @@ pub struct Register {
     pub width: u8,
     /// Name in the manual.
     pub name: Name,
-    /// Purpose of the register, if the program uses it.
+    /// What the program uses the register for, if at all.
     pub role: Option<Role>,
     /// Permitted access.
     pub access: Access,
@@ -24,15 +24,15 @@ pub struct Register {
     pub default: Vec<u8>,
     /// Method by which the value is decoded.
     pub decoding: ValueDecoding,
-    /// Unit symbol, which may be empty.
+    /// How the value is decoded.
     pub unit: String,
-    /// Values that use up one flash write cycle when they are written.
+    /// Values that cost a flash write cycle when they are written.
     pub saves: Vec<u8>,
     /// Oldest firmware that has the register.
     pub since: Firmware,
 }
 
-/// The purpose of a register that the program accesses by its meaning.
+/// What the program uses a register for. The address depends on the description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -76,7 +76,7 @@ pub enum Access {
     Rw,
 }
 
-/// The method by which a register value is decoded.
+/// How a register value is decoded.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ValueDecoding {
@@ -89,7 +89,7 @@ pub enum ValueDecoding {
     Scaled {
         /// Factor by which the number is multiplied.
         factor: f64,
-        /// Value that corresponds to the number 0.
+        /// Value that the number 0 stands for.
         offset: f64,
     },
     /// Named bits, numbered from 0 for the lowest bit.
@@ -119,7 +119,7 @@ pub enum DecodedValue<'a> {
     Text(String),
 }
 
-/// A range of banks without individually defined registers. Each byte is a separate value.
+/// A range of banks whose registers are not described individually. Each byte is a separate value.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Area {
     /// Name in the manual.
@@ -130,7 +130,7 @@ pub struct Area {
     pub last: u8,
     /// Permitted access.
     pub access: Access,
-    /// Command that opens the area for writing, if it must be opened. The command belongs to the data write procedure.
+    /// Command of the data write procedure that opens the area for writing, if this is necessary.
     pub open: Option<u8>,
 }
 
@@ -201,7 +201,7 @@ impl Register {
         })
     }
 
-    /// Returns whether writing the given value uses up a flash write cycle.
+    /// Returns whether writing the given value costs a flash write cycle.
     pub fn costs_write_cycle(&self, value: u8) -> bool {
         self.saves.contains(&value)
     }

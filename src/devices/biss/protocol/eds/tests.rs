@@ -1,4 +1,4 @@
-//! Tests of each field of the data sheet in the reference, of checksums, and of data sheets without a valid frame
+//! Tests of the fields and checksums against the data sheet in the reference, and of data sheets without a valid frame
 //! layout.
 
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! Effects of elapsed time: the start-up is completed, runs of procedures end, and the shaft follows its motor.
+//! What happens as time passes: the start-up is completed, procedure runs end, and the shaft follows its motor.
 
 use super::{Encoder, Power};
 use crate::devices::biss::protocol::{CalibrationStatus, WiegandStatus};
@@ -34,7 +34,7 @@ impl Encoder {
         }
     }
 
-    /// Returns whether a procedure has completed its first run and requires the opposite direction for the second run.
+    /// Returns whether a procedure has completed its first run, so that the motor must reverse for the second run.
     fn needs_reversal(&self) -> bool {
         self.calibration.status == CalibrationStatus::CounterclockwiseDone
             || self.wiegand.status == WiegandStatus::WaitForDirection

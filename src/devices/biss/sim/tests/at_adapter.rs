@@ -12,7 +12,7 @@ fn behind_adapter(query: &str) -> Host {
     Host::to(query, &[&AttachableEncoder])
 }
 
-/// Reads the golden frame of the BiSS reference, with multiturn 1234h and singleturn 18000h.
+/// Reads the example frame of the BiSS reference, with multiturn 1234h and singleturn 18000h.
 #[test]
 fn a_frame_is_read() {
     let mut host = behind_adapter("");

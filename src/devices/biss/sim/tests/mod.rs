@@ -1,5 +1,5 @@
-//! Tests of the virtual kit encoder from the perspective of a host, in virtual time. Expected values are taken from the
-//! manual and the reference. The expected values are never calculated by the code under test.
+//! Tests of the virtual kit encoder from the perspective of a host, in virtual time. Expected values are from the
+//! manual and the reference, never from the code under test.
 
 mod at_adapter;
 mod modes;

@@ -1,10 +1,10 @@
-//! Tests of the registers in operation mode: register table in the appendix of the manual, temperature, errors and
+//! Tests of the registers in operation mode: the register table in the manual's appendix, temperature, errors and
 //! warnings.
 
 use super::*;
 use crate::devices::biss::protocol::{Descriptions, ErrorRegister};
 
-/// Every register for which the description contains a default has this value.
+/// Checks every register for which the description has a default.
 #[test]
 fn a_new_encoder_has_factory_settings() {
     let mut host = Host::with("");

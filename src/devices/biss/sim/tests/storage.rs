@@ -1,9 +1,9 @@
-//! Tests of saved values (data, filter and preset), wear of the flash, and a loss of power during a save.
+//! Tests of saving data, filter and preset, of the flash's write cycles, and of a power loss during a save.
 
 use super::*;
 use crate::devices::biss::protocol::PositionFilter;
 
-/// Follows section 5.3 of the reference: OEM data is written only after its area has been opened, and is saved once.
+/// OEM data is written only after its area has been opened, and is saved once, as in section 5.3 of the reference.
 #[test]
 fn oem_data_is_written_as_in_the_reference() {
     let mut host = Host::with("cycles=10");
@@ -62,7 +62,7 @@ fn cancelled_or_abandoned_writes_are_discarded() {
     host.expect("0x00:0x1B", 0x01);
 }
 
-/// Follows section 5.4 of the reference: a filter is selected and saved, and the encoder restarts with it.
+/// A filter is selected and saved, and takes effect after the restart, as in section 5.4 of the reference.
 #[test]
 fn the_filter_is_selected_as_in_the_reference() {
     let mut host = Host::with("cycles=0");
@@ -84,7 +84,7 @@ fn the_filter_is_selected_as_in_the_reference() {
     assert_eq!((host.encoder.flash().filter(), host.encoder.flash().write_cycles()), (PositionFilter::Dynamic, 1));
 }
 
-/// Follows section 5.5 of the reference: a preset value of 270° is stored first, and the position is then set to it.
+/// A preset value of 270° is stored first, and then the position is set to it, as in section 5.5 of the reference.
 #[test]
 fn the_position_is_preset_as_in_the_reference() {
     let mut host = Host::with("cycles=0&position=0x12345");

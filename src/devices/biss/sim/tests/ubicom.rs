@@ -15,7 +15,7 @@ impl Line {
         Line { port: UbicomPort::new(&config(query)), now: Moment::START }
     }
 
-    /// Receives until the line is idle. Returns the bytes in hexadecimal, and the time of the last byte.
+    /// Receives until the line is idle. Returns the bytes in hexadecimal and the arrival time of the last byte.
     fn receive(&mut self) -> (String, Moment) {
         let (mut bytes, mut last) = (Vec::new(), self.now);
         while let Some(at) = self.port.poll_at() {
@@ -75,7 +75,7 @@ fn the_probe_reveals_the_byte_order() {
     Line::with("order=high-first").expect("80 01 01 02 00 01 00 7A", "80 01 01 01 00 01 7B");
 }
 
-/// The expected time is eight bytes, one millisecond and seven bytes, at 86.8 µs per byte.
+/// Eight bytes, a pause of one millisecond, and seven bytes, at 86.8 µs per byte.
 #[test]
 fn an_exchange_takes_the_expected_time() {
     let mut line = Line::with("");
@@ -191,7 +191,7 @@ fn a_wrong_baud_rate_yields_no_frame() {
     line.expect(READ_TEMPERATURE, TEMPERATURE);
 }
 
-/// The encoder does not reply to a store during which it loses power. Opening the link again restores the power.
+/// The encoder loses power during a save and does not reply. Reopening the link restores its power.
 #[test]
 fn reopening_the_link_revives_a_dead_encoder() {
     let mut line = Line::with("fault=die-in-store:1");
@@ -208,7 +208,7 @@ fn reopening_the_link_revives_a_dead_encoder() {
     assert_eq!(line.port.encoder().motor().rpm(), 0.0);
 }
 
-/// Bytes that exceed the buffer of a UART are lost, so that the line becomes idle as soon as the buffer is empty (issue
+/// Bytes that do not fit into a UART's buffer are lost, so the line becomes idle as soon as the buffer is empty (issue
 /// 22.18).
 #[test]
 fn the_encoder_answers_after_a_flood_of_bytes() {

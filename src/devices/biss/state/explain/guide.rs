@@ -1,4 +1,4 @@
-//! Texts for guided procedures: steps, operator tasks, reasons why a run cannot start, and results.
+//! Messages for guided procedures: steps, operator tasks, reasons why a run cannot start, and results.
 
 use crate::app::{Severity, Text};
 use crate::devices::biss::procedures::procedure::{
@@ -107,14 +107,14 @@ pub fn advice_text(advice: OperatorAdvice) -> Text {
     }
 }
 
-/// Returns the text about the requirements that the motor and the encoder must meet for a calibration.
+/// Returns what the motor and the encoder must fulfil for a calibration.
 pub fn calibration_requirements_text() -> Text {
     let run = MotorRun::CalibrationCounterclockwise;
     let text = speed_range_text(TEXTS.text("mounting_card.calibrate_words"), run.allowed_speeds());
     temperature_range_text(text.with_number("best", run.recommended_range().midpoint(), 0))
 }
 
-/// Returns the text about the requirements that the motor must meet for a Wiegand test.
+/// Returns what the motor must fulfil for a Wiegand test.
 pub fn wiegand_requirements_text() -> Text {
     with_revolutions(speed_range_text(
         TEXTS.text("mounting_card.wiegand_words"),
@@ -134,7 +134,7 @@ pub(super) fn speed_range_text(text: Text, range: SpeedRange) -> Text {
     text.with_number("least", range.least, 0).with_number("greatest", range.greatest, 0)
 }
 
-/// Returns the result of an operation for the page and the report, one line per item.
+/// Returns the result of an operation for the page and the report, one line per fact.
 pub fn outcome_texts(outcome: &Outcome) -> Vec<Text> {
     match outcome {
         Outcome::Skipped { after } => vec![TEXTS.text(match after {
@@ -171,7 +171,7 @@ pub fn outcome_texts(outcome: &Outcome) -> Vec<Text> {
     }
 }
 
-/// Returns the result of an operation, one line per item with its severity. A skipped operation is reported by name.
+/// Returns the lines about an operation's result, each with its severity. A skipped operation is named.
 pub fn report_lines(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
     let lines = outcome_texts(own);
     if let Outcome::Skipped { .. } = own {
@@ -276,7 +276,7 @@ mod tests {
         assert!(texts[0].to_string_in(German).contains("270,000° (Schritt 98304), Umdrehung 2"), "{texts:?}");
     }
 
-    /// If the shaft is not at rest, the message does not state a speed that is rounded to zero.
+    /// The message never states a speed of zero for a shaft that is not at rest.
     #[test]
     fn a_creeping_shaft_is_not_reported_at_zero_rpm() {
         let words = |rpm| blocker_text(StartBlocker::Turning { rpm }).to_string_in(German);

@@ -1,4 +1,4 @@
-//! Tests of lower-layer messages in both languages.
+//! Tests of messages from the layers below, in both languages.
 
 use std::time::Duration;
 

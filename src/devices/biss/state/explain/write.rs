@@ -1,5 +1,5 @@
-//! Texts for writes: changes, operations of a plan, planning errors, results, causes of an interruption, and the state
-//! in which the encoder was left.
+//! Messages about writes: changes, planned operations, planning errors, results, causes of an interruption, and the
+//! resulting state of the encoder.
 
 use std::path::Path;
 
@@ -73,7 +73,7 @@ pub fn operation_texts(op: &Op, layout: &Layout) -> OperationTexts {
     }
 }
 
-/// Returns one line for each group of consecutive registers.
+/// Returns one line for each run of consecutive registers.
 fn register_run_texts(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
     let words = |range: RegisterRange| {
         let own = registers.iter().filter(|own| range.contains(own.address));
@@ -83,7 +83,7 @@ fn register_run_texts(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
     RegisterRange::from_addresses(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
 }
 
-/// Returns a preset value as angle, step and turn, for a singleturn position with the given width.
+/// Formats a preset value as angle, step and turn. The width of the singleturn position determines the angle.
 pub fn preset_value_text(value: PresetValue, singleturn_bits: u8) -> Text {
     preset_text("biss_op.preset_value", value, singleturn_bits)
 }
@@ -97,8 +97,7 @@ fn preset_text(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Tex
         .with("multiturn", value.multiturn())
 }
 
-/// Returns the warning about the limited write cycles of the flash. Returns `None` if the plan leaves enough write
-/// cycles.
+/// Returns the warning about the limited write cycles of the flash, or `None` if enough of them remain after the plan.
 pub fn wear_warning(prepared: &Prepared) -> Option<Text> {
     let cycles = prepared.wear_to_report()?;
     Some(TEXTS.text("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
@@ -110,8 +109,8 @@ pub fn written_text(written: &WrittenValues) -> Text {
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// Returns the messages for an interrupted write, with the progress, the cause, the state in which the encoder was
-/// left, and the location of the backup.
+/// Returns the messages for an interrupted write: the progress, the cause, the resulting state of the encoder, and the
+/// location of the backup.
 pub(super) fn interruption_text(
     interrupted: &InterruptedWrite,
     backup: &Path,
@@ -169,7 +168,7 @@ pub fn severity_of(text: &Text) -> Severity {
     }
 }
 
-/// Returns the messages for an encoder that could not be returned to operation.
+/// Returns the messages for an encoder that could not be returned to operation mode.
 fn left_state_texts(standing: &LeftState) -> Vec<Text> {
     let mut texts = vec![match standing.mode.as_slice() {
         [certain] => TEXTS.text("biss_left.mode").with_text("mode", mode_text(*certain)),
@@ -243,7 +242,7 @@ fn wiegand_text(status: WiegandStatus, code: u8) -> Text {
     }
 }
 
-/// Returns the message for a status code that was not expected.
+/// Returns the message for an unexpected status code.
 fn unknown_status_text(status: u8) -> Text {
     TEXTS.text("biss_failure.unknown").with("status", format!("0x{status:02X}"))
 }
@@ -269,8 +268,8 @@ mod tests {
         (words(English), words(German))
     }
 
-    /// The messages suggest a specific remedy for each kind of change, in terminal output as well. Data that may have
-    /// changed is never reported as unchanged.
+    /// The suggested remedy depends on the kind of change, also on the terminal. Data that may have changed is never
+    /// called unchanged.
     #[test]
     fn the_remedy_for_an_interrupted_write_matches_its_kind() {
         let last = |interrupted: &InterruptedWrite, kind| {
@@ -317,7 +316,7 @@ mod tests {
         Some(LeftState { mode, password: PossibleValues::new(password), activity })
     }
 
-    /// The remedy applies only after the encoder has returned to operation (issue 22.5).
+    /// The write can only be completed after the encoder has returned to operation mode (issue 22.5).
     #[test]
     fn completing_a_write_is_advised_after_the_return_to_operation() {
         for kind in [ChangeKind::Restore, ChangeKind::Bytes, ChangeKind::Guided, ChangeKind::Filter] {
@@ -386,7 +385,7 @@ mod tests {
         assert!(idle[3].contains("Return the encoder to operation"), "{idle:?}");
     }
 
-    /// Covers every failure code in manual 6.3 and 6.4. The message states its cause and its remedy.
+    /// Every failure code in manual 6.3 and 6.4 has a message with a cause and a remedy.
     #[test]
     fn failures_name_cause_and_remedy() {
         let (first, second) = (MotorRun::CalibrationCounterclockwise, MotorRun::CalibrationClockwise);
