@@ -1,4 +1,4 @@
-//! Arguments of `ssi`, and the option of shared commands that is specific to SSI encoders.
+//! Arguments of `ssi`, and the `--layout` option that shared commands accept for SSI encoders.
 
 use std::path::PathBuf;
 
@@ -108,7 +108,7 @@ pub(crate) struct SsiExportArgs {
     pub(crate) file: Option<PathBuf>,
 }
 
-/// An optional layout.
+/// The optional `--layout` argument of shared commands.
 #[derive(Args)]
 pub(super) struct LayoutOption {
     #[arg(long, value_name = "FILE|SPEC")]

@@ -13,7 +13,7 @@ use crate::devices::ssi::protocol::{self, Class, Families, Search};
 use crate::devices::ssi::state::Frames;
 use crate::devices::ssi::state::explain;
 
-/// Maximum number of bits in a frame. It is also assumed for hexadecimal frames without a given number of bits.
+/// Maximum number of bits in a frame, and the default for hexadecimal frames.
 const MAX_CLOCKS: u8 = 64;
 
 pub(super) fn find(output: &Output, SsiFindArgs { file, clocks }: &SsiFindArgs) -> Result {
@@ -85,7 +85,7 @@ fn text(search: &Search, families: &Families) -> String {
     format!("{}{verdict}\n{next}", lines.text())
 }
 
-/// Returns the most probable layout of a class as one word.
+/// Returns the most probable layout of a class as a value for `--layout`.
 fn spec_text(class: &Class, families: &Families) -> String {
     class.members.first().map_or_else(String::new, |member| member.spec_text(families))
 }

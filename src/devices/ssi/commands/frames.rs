@@ -40,7 +40,7 @@ impl<'a> DecodedFrame<'a> {
         self.layout.is_valid(self.reading)
     }
 
-    /// Returns the position and its location. Returns `None` if the bits do not represent a position.
+    /// Returns the position with its location on the shaft or scale, or `None` if the bits do not represent a position.
     pub(super) fn position_location(&self) -> Option<(u64, Location)> {
         let range = self.layout.descriptor().range;
         let is_none = self.reading.flags.contains(Flags::CODE);

@@ -1,5 +1,5 @@
-//! The layout given by `--layout`: a profile file, a family with its settings, a description of the frame in one word,
-//! or a LinuxCNC format string.
+//! The layout given by `--layout`: a profile file, a family with its settings, a frame in one-word notation, or a
+//! LinuxCNC format string.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ pub(crate) struct SelectedLayout {
     pub(crate) title: String,
 }
 
-/// Returns the layout given by `--layout`. Remarks are printed for settings that the manual does not mention.
+/// Returns the layout given by `--layout`. Prints a remark for each setting that the manual does not mention.
 pub(crate) fn select_layout(output: &Output, SsiLayoutArgs { spec }: &SsiLayoutArgs) -> Result<SelectedLayout> {
     if let Some(format) = spec.strip_prefix("linuxcnc:") {
         let layout = from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
@@ -54,9 +54,8 @@ pub(super) fn families(output: &Output) -> Result<Families> {
     Ok(families)
 }
 
-/// Returns whether the specification names a file. This is the case if it has a path or an extension, or if the file
-/// exists and no family has this name. Text after the first comma is ignored, because settings may contain `/` in
-/// fractions.
+/// Returns whether the specification names a file: it has a path or an extension, or the file exists and no family has
+/// this name. Text after the first comma is ignored, because settings may contain `/` in fractions.
 fn is_file(spec: &str, families: &Families) -> bool {
     let key = spec.split(',').next().unwrap_or(spec);
     let is_path = key.contains('/') || key.contains(std::path::MAIN_SEPARATOR);
@@ -92,7 +91,7 @@ fn from_file(output: &Output, spec: &str, families: &Families) -> Result<Selecte
     Ok(SelectedLayout { title, profile, layout, times })
 }
 
-/// Prints the differences between the frame of a profile and the frame of its family.
+/// Prints remarks on the profile's frame, or a message if no settings of its family result in this frame.
 fn show_differences_from_family(output: &Output, family: &Family, profile: &SsiProfile) {
     let settings = family.settings_for_frame(&profile.descriptor);
     match settings.and_then(|settings| settings.resolve(family).ok()) {

@@ -71,7 +71,7 @@ fn format_seconds(at: SampleTime) -> String {
     format!("{:.3} s", at.seconds_since(SampleTime::ORIGIN))
 }
 
-/// Columns of a reading: turns, steps and degrees for a shaft, steps and millimetres for a scale.
+/// Output columns for a position: turns, steps and degrees for a shaft, or steps and millimetres for a scale.
 struct Columns {
     turns: Option<u64>,
     steps: Option<u64>,

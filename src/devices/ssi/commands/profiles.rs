@@ -1,5 +1,5 @@
-//! Creation and comparison of SSI profiles. A profile is created from a layout, because the encoder does not report its
-//! own.
+//! Creation and comparison of SSI profiles. A profile is created from a layout, because an encoder cannot report its
+//! settings.
 
 use std::path::Path;
 

@@ -15,7 +15,7 @@ use crate::devices::ssi::state::explain;
 use crate::result_of;
 use crate::worker::Session;
 
-/// Runner of jobs in a session with an SSI encoder.
+/// The job runner for a session with an SSI encoder.
 pub(super) type Runner = runner::Runner<Ssi>;
 
 impl CliDevice for Ssi {
@@ -34,8 +34,8 @@ impl CliDevice for Ssi {
 
 /// Opens the link and configures it for the layout.
 ///
-/// Clock and pause are taken from the link, and otherwise from the profile. Violated timing limits of the encoder are
-/// printed as remarks.
+/// Clock and pause are taken from the link if it specifies them, and from the profile if not. A remark is printed for
+/// each timing limit of the encoder that they violate.
 pub(super) fn open_runner(common: &CommonArgs, output: &Output, chosen: &SelectedLayout) -> Result<Runner> {
     let mut runner = Runner::open(common)?;
     let names = |name: &str| common.link.as_ref().is_some_and(|url| url.query.get(name).is_some());

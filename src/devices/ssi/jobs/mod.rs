@@ -1,5 +1,5 @@
-//! The SSI encoder behind an adapter as a device of a session, with its jobs. The encoder has no memory, so nothing is
-//! written to it.
+//! Sessions with an SSI encoder behind an adapter, and their jobs. The encoder has no memory, so nothing is written to
+//! it.
 
 mod families;
 mod open;
@@ -30,12 +30,12 @@ pub struct Ssi {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum SsiJob {
-    /// Identifies the adapter, switches on the supply of the encoder if requested, and configures the reading of words.
+    /// Identifies the adapter, switches on the encoder supply if requested, and configures how words are read.
     Hello,
     /// Changes the settings for reading words. A running stream continues with the new settings.
     Set(ClockSettings),
     Read,
-    /// Runs the device check, in which the words are compared with the layout.
+    /// Runs the device check, which compares words with the layout.
     Check(Box<Layout>),
 }
 
@@ -47,7 +47,7 @@ pub enum SsiOutput {
     Check(Vec<check::SsiStepResult>),
 }
 
-/// A step of a job, which is always the reading of words.
+/// The only step of any job, which is reading words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JobStep;
 
@@ -59,7 +59,7 @@ impl JobInterruption for Error {
     }
 }
 
-/// Maximum interval at which words are streamed. At longer intervals, they are requested one by one.
+/// Maximum interval at which words are streamed. At longer intervals, each word is requested individually.
 const STREAMING_INTERVAL: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Ssi {

@@ -1,5 +1,5 @@
-//! Device check: the adapter, the encoder supply, and consecutive words compared with the layout. Each item has a
-//! verdict. No data is written, because the encoder has no memory.
+//! Device check of the adapter, the encoder supply and a series of words. The words are compared with the layout.
+//! Nothing is written, because the encoder has no memory.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! Host side of the adapter: its identity, its settings and the words. During a stream the adapter accepts no other
+//! Host side of an adapter that reads words from an SSI encoder. While words are streamed, the adapter accepts no other
 //! request, so any other request ends the stream first.
 //!
 //! Reading a word does not change anything except error bits that a transfer clears, so it can be repeated. An adapter
@@ -32,8 +32,8 @@ impl<'a> Master<'a> {
         Master { line: SerialLine::new(ctx), station }
     }
 
-    /// Identifies the adapter, switches on the supply of the encoder if requested, and configures the reading of words.
-    /// Steps that are already done are skipped.
+    /// Identifies the adapter, switches on the encoder supply if requested, and configures how words are read. Steps
+    /// that are already done are skipped.
     ///
     /// # Errors
     /// Returns [`AdapterError::Version`], [`AdapterError::NoSsi`] or [`AdapterError::NoSupply`] if the adapter is not
@@ -120,7 +120,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Ends the running stream, even after a cancellation. Single requests are counted from 0 again.
+    /// Stops the running stream, even after a cancellation. Single requests are counted from 0 again.
     ///
     /// # Errors
     /// Returns an error if the adapter fails. In this case, the stream is ended before the next request.
@@ -173,8 +173,8 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(Supply::POWER_UP)?)
     }
 
-    /// Configures the reading of words if the settings have changed. The clock is limited to `fastest`. Returns the
-    /// actual clock frequency in hertz.
+    /// Sends the settings for reading words to the adapter if they have changed. The clock is limited to `fastest`.
+    /// Returns the actual clock frequency in hertz.
     fn set_clocks(&mut self, fastest: u32) -> Result<u32, Error> {
         let asking = self.station.asking;
         if let Some((_, clock_hz)) = self.station.set.filter(|(own, _)| *own == asking) {
@@ -220,8 +220,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Calls `once` until a reply arrives or no attempt is left. The operation must have the same effect if it is
-    /// repeated.
+    /// Calls `once` until a reply arrives or no attempt is left. The operation must be idempotent.
     fn with_retries<T>(&mut self, mut once: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Error> {
         let longest = 2 * (REPEAT_AFTER + self.station.line.margin);
         let mut tries = 0;
@@ -254,7 +253,7 @@ impl<'a> Master<'a> {
         error
     }
 
-    /// Handles a failed stream, and ends it in the adapter if possible.
+    /// Handles a stream failure, and stops the stream in the adapter if possible.
     fn stream_failed(&mut self, error: Error) -> Error {
         if error != Error::Cancelled && self.stop_word_stream().is_err() {
             // Identifying the adapter again sends HELLO, which ends all streams.

@@ -1,4 +1,4 @@
-//! State of the adapter in a session, and the settings for reading words. It is kept between jobs.
+//! State of an adapter and the settings for reading words, which are kept between the jobs of a session.
 
 use std::fmt;
 use std::time::Duration;
@@ -17,7 +17,7 @@ use crate::units::SupplyVoltage;
 parameters! {
     /// Link parameters for the line and the encoder's supply.
     pub struct LinkParameters: UrlError {
-        /// Time allowed for a reply in addition to the maximum of the protocol, or `None` for the default of the link.
+        /// Extra time allowed for a reply beyond the protocol's maximum, or `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
         pub clock_hz: u32 = 400_000, "clock" => CLOCK;
         /// Minimum pause between two words in microseconds.
@@ -39,15 +39,15 @@ pub struct ClockSettings {
 }
 
 impl Default for ClockSettings {
-    /// Returns settings for words of 25 clocks. The clock is slow enough for 50 m of cable, and the pause is long
-    /// enough for every family. See SICK SSI description 2.7.
+    /// Returns settings for words of 25 bits. The clock is slow enough for 50 m of cable, and the pause is long enough
+    /// for every family. See SICK SSI description 2.7.
     fn default() -> Self {
         let LinkParameters { clock_hz, pause_us, .. } = LinkParameters::default();
         ClockSettings { clocks: 25, clock_hz, pause_us }
     }
 }
 
-/// Identity of the adapter, with the settings that are in use for reading words.
+/// Identity of the adapter, and the current settings for reading words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     pub hello: Hello,
@@ -62,7 +62,7 @@ pub struct Station {
     pub line: LineState,
     pub adapter: AdapterState,
     pub asking: ClockSettings,
-    /// Encoder supply that the adapter should switch, if any.
+    /// Encoder supply that the adapter switches on, if requested.
     pub supply: Option<Supply>,
     /// Settings sent to the adapter, and the actual clock frequency in hertz. `None` if the adapter is not configured
     /// or may have been reset.
@@ -70,7 +70,7 @@ pub struct Station {
     pub(super) flow: Option<SampleStream>,
     /// Time of the last word received in an earlier stream.
     pub(super) streamed_until: Option<SampleTime>,
-    /// Number of single requests since the settings last changed.
+    /// Number of individually requested words since the settings last changed.
     pub(super) asked: u64,
 }
 
@@ -88,15 +88,15 @@ impl Supply {
     const RANGE: std::ops::RangeInclusive<u16> = 4_500..=30_000;
 
     /// Returns the supply voltage with its limits. The encoder is unknown, so the upper limit is 10 % above the
-    /// requested voltage. AFS60 at 5 V, for example, allows 4.5 to 5.5 V.
+    /// requested voltage. An AFS60 at 5 V, for example, allows 4.5 to 5.5 V.
     pub(super) const fn with_voltage(millivolt: u16) -> SupplyVoltage {
         SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: millivolt + millivolt / 10 }
     }
 }
 
 impl Station {
-    /// Creates the state for an adapter that has not been identified. `margin` is the time allowed for a reply in
-    /// addition to the maximum of the protocol.
+    /// Creates the state for an adapter that has not been identified. `margin` is the extra time allowed for a reply
+    /// beyond the protocol's maximum.
     pub fn new(margin: Duration) -> Self {
         Station {
             line: LineState::new(margin),
@@ -123,15 +123,15 @@ impl Station {
         Ok(station)
     }
 
-    /// Discards all data about the adapter. Before the next use, the adapter is identified and configured again.
+    /// Discards all data about the adapter, so that the adapter is identified and configured again before its next use.
     pub(super) fn forget_adapter(&mut self) {
         self.adapter.forget_identity();
         self.flow = None;
         self.forget_settings();
     }
 
-    /// Discards the settings and the state of the supply. A reset adapter has lost its settings and has switched off
-    /// the supply.
+    /// Discards the settings and the supply state, because a reset adapter has lost its settings and switched off the
+    /// supply.
     pub(super) fn forget_settings(&mut self) {
         self.set = None;
         if let Some(supply) = &mut self.supply {

@@ -1,4 +1,4 @@
-//! Words as received. A word contains the bits of one clock burst.
+//! SSI words as received. A word contains the bits of one clock burst.
 
 use std::time::Duration;
 
@@ -7,10 +7,10 @@ use crate::buses::bridge::procedures::Chunk;
 use crate::buses::bridge::protocol::SsiData;
 use crate::units::Moment;
 
-/// Series of words at equal intervals, or a single requested word.
+/// A series of words at equal intervals, or a single requested word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Words {
-    /// Number of the first word since the settings last changed. Missing words are included in the count.
+    /// Number of the first word, counted from the last change of the settings. The count includes missing words.
     pub first: u64,
     /// Time at which the first word was read.
     pub at: Moment,
@@ -25,7 +25,7 @@ pub struct Words {
     pub words: Vec<u64>,
     /// Actual clock frequency in hertz, as set by the adapter.
     pub clock_hz: u32,
-    /// Whether the adapter uses a longer interval than requested, because the requested one is too short.
+    /// Whether the adapter uses a longer interval than requested, because it does not support the requested one.
     pub is_limited: bool,
 }
 
@@ -59,7 +59,7 @@ impl Words {
         }
     }
 
-    /// Returns whether the series contains the first words received in a stream.
+    /// Returns whether the series is the first one of a stream.
     pub const fn is_stream_start(&self) -> bool {
         self.first == self.lost
     }

@@ -1,4 +1,4 @@
-//! Differences between two SSI profiles. Each entry of a profile is an item and is named as in the file.
+//! Comparison of two SSI profiles, entry by entry. Entries are named as in the profile file.
 
 use super::SsiProfile;
 use crate::devices::ssi::protocol::{Range, Word};

@@ -5,7 +5,7 @@ use crate::devices::ssi::protocol::LayoutError;
 /// The reason why an entry of a profile is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
-    /// The frame is impossible.
+    /// The frame is invalid.
     #[error(transparent)]
     Layout(#[from] LayoutError),
     /// The preset exceeds the range of the frame.
@@ -16,7 +16,7 @@ pub enum EntryError {
         /// Last position of the frame.
         last: u64,
     },
-    /// The entry cannot be combined with another entry. Contains the name of the other entry.
+    /// The entry cannot be combined with the entry named here.
     #[error("this entry cannot be combined with {0}")]
     NotWith(&'static str),
     /// The range of positions is missing.

@@ -33,11 +33,11 @@ pub struct ReadingSettings {
     pub pause_us: u16,
     /// Cable length in metres, or `None` if the cable is not checked.
     pub cable_metres: Option<u16>,
-    /// Whether the encoder is in synchronous mode, in which the clock of the host triggers the sampling of a position.
+    /// Whether the encoder is in synchronous mode, in which the host's clock triggers the sampling of a position.
     pub synchronous: bool,
 }
 
-/// Unknown entries of a profile, by the structure in which they occur.
+/// Unknown entries of a profile, grouped by the structure that contains them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries {
     pub(super) frame: UnknownValues,
@@ -58,7 +58,7 @@ impl Default for ReadingSettings {
 }
 
 impl SsiProfile {
-    /// Creates a profile for a frame without a family, with default counting.
+    /// Creates a profile for a frame without an encoder family. Counting direction and preset have their defaults.
     pub fn new(descriptor: FrameDescriptor) -> Self {
         SsiProfile {
             name: String::new(),
@@ -71,7 +71,7 @@ impl SsiProfile {
         }
     }
 
-    /// Returns the conditions for reading the encoder, which are needed to check the timing of the frame.
+    /// Returns the conditions under which the encoder is read, for a check of the timing limits.
     pub fn read_conditions(&self) -> ReadConditions {
         let ReadingSettings { clock_hz, pause_us, cable_metres, synchronous } = self.reading;
         ReadConditions {
@@ -84,7 +84,7 @@ impl SsiProfile {
         }
     }
 
-    /// Creates a profile from the settings of a family and the resulting frame.
+    /// Creates a profile from a family and the frame that its settings yield.
     pub fn from_family(family: &Family, resolved: &ResolvedFrame) -> Self {
         SsiProfile {
             family: Some(family.key.clone()),

@@ -1,11 +1,12 @@
-//! Adoption of a single entry of another profile.
+//! Copying of single entries from one profile to another.
 
 use super::SsiProfile;
 use crate::devices::ssi::protocol::{ErrorBit, Pattern, Range};
 
 impl SsiProfile {
-    /// Returns the profile with an entry of another one, named as in a comparison. Entries that make sense only together,
-    /// such as those of an error bit that this profile does not have, are adopted together. The frame may be impossible.
+    /// Returns the profile with one entry copied from another profile. Entries are named as in a comparison. Entries
+    /// that make sense only together, such as those of an error bit that this profile lacks, are copied together. The
+    /// resulting frame may be invalid.
     #[must_use]
     pub fn with_item(mut self, item: &str, from: &SsiProfile) -> Self {
         let (own, other) = (&mut self.descriptor, &from.descriptor);
@@ -37,7 +38,7 @@ impl SsiProfile {
     }
 }
 
-/// Splits a name such as `errors[0].clock` into its index and its part.
+/// Splits a name such as `errors[0].clock` into its index and the part after it.
 fn numbered<'i>(item: &'i str, list: &str) -> Option<(usize, &'i str)> {
     let (index, part) = item.strip_prefix(list)?.strip_prefix('[')?.split_once("].")?;
     Some((index.parse().ok()?, part))
@@ -67,7 +68,8 @@ fn take_pattern_part(own: &mut Vec<Pattern>, other: &[Pattern], index: usize, pa
     }
 }
 
-/// Returns a range with one part of another one, or the other one if it is of another kind.
+/// Returns a range with one part replaced by that of another range. If the ranges are of different kinds, the other
+/// range is returned.
 fn with_range_part(own: Range, other: Range, part: &str) -> Range {
     match (own, other, part) {
         (Range::Bits { singleturn, .. }, Range::Bits { multiturn, .. }, "multiturn")

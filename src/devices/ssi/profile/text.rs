@@ -1,5 +1,5 @@
 //! The text format of an SSI profile, which users can read and edit. Default values are omitted. Each error names the
-//! entry that caused it, and an impossible frame is rejected with the reason.
+//! entry that caused it, and an invalid frame is rejected with the reason.
 
 use std::collections::VecDeque;
 use std::str::FromStr;
@@ -251,7 +251,7 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Fram
     Ok(frame)
 }
 
-/// Parses the range of positions, which is given either by turn and step bits, or by a number of steps, or by a length.
+/// Parses the range of positions, which is given by turn and step bits, a number of steps, or a length.
 fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
     let multiturn: Option<u8> = entries.take_optional("multiturn", BYTE_RANGE)?;
     let singleturn: Option<u8> = entries.take_optional("singleturn", BYTE_RANGE)?;

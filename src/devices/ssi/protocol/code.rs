@@ -10,18 +10,18 @@ pub enum Code {
     Binary,
     /// Gray: one bit changes between adjacent positions.
     Gray,
-    /// Gray excess, which is the middle part of a complete Gray code. Only one bit changes at the end of the range as
-    /// well, even if the number of steps is not a power of two. The number of steps must be even.
+    /// Gray excess: the middle part of a complete Gray code. A single bit changes even where positions wrap, for any
+    /// even number of steps.
     GrayExcess,
     /// BCD: four bits per decimal digit.
     Bcd,
 }
 
-/// The reason why a code cannot represent the positions.
+/// The reason why a code cannot represent a range of positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CodeError {
-    /// The number of steps is odd. Gray excess omits as many words before the positions as after them, so the number of
-    /// steps must be even.
+    /// The number of steps is odd. Gray excess omits equally many words before and after the positions, so the number
+    /// must be even.
     #[error(
         "Gray excess requires an even number of steps, because with {0} steps two bits would change at the end of the \
          range"

@@ -1,4 +1,4 @@
-//! Description of a frame: the content of each clock. A description may be contradictory until [`super::Layout`] has
+//! Description of a frame: what each clock transmits. A description may be contradictory until [`super::Layout`] has
 //! checked it.
 
 use serde::Deserialize;
@@ -17,8 +17,8 @@ pub struct FrameDescriptor {
     pub code: Code,
     /// Bits that a Gray code covers.
     pub coded: GrayCoverage,
-    /// Number of clocks at the start of the frame that contain the position and the zeros around it. A shift to the
-    /// right only moves the bits of these clocks.
+    /// Number of clocks at the start of the frame that transmit the position and the zeros around it. A right shift
+    /// moves only these bits.
     pub area: u8,
     /// Number of zeros before the position.
     pub lead: u8,
@@ -45,8 +45,7 @@ pub struct FrameDescriptor {
 pub enum GrayCoverage {
     /// The position bits only, without zeros and error bits.
     Position,
-    /// The whole area including zeros, which is another possible interpretation of the manual. See reference section 2,
-    /// `U`.
+    /// The whole area including zeros. The manual can also be understood this way. See reference section 2, `U`.
     Area,
     /// The whole area and the error bits after it, for sensors that treat error bits as data.
     AreaAndErrors,

@@ -22,8 +22,8 @@ pub struct ExtractedFrames {
     pub clocks: u8,
     /// Right-justified frames in recording order.
     pub frames: Vec<u64>,
-    /// Number of bursts that were ignored because they have a different number of clocks. Such a burst was disturbed or
-    /// not recorded completely.
+    /// Number of bursts that were ignored because their number of clocks differs. Such a burst was disturbed or only
+    /// partly recorded.
     pub left_out: usize,
 }
 
@@ -50,7 +50,7 @@ pub enum BurstError {
 /// Minimum monoflop time tm in seconds. The encoder considers a burst finished once the clock has stayed at one level
 /// for this time.
 const MIN_MONOFLOP: f64 = 15e-6;
-/// Minimum pause between bursts at a slow clock, in half clock periods.
+/// Minimum pause between bursts in half clock periods, for slow clocks.
 const MIN_PAUSE_HALF_PERIODS: f64 = 3.0;
 /// Sampling point of the last bit as a fraction of a half period. The data line falls after the full half period.
 const SAMPLING_POINT: f64 = 0.9;

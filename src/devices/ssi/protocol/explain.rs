@@ -1,10 +1,10 @@
-//! Meaning of every bit of a frame, and findings about the frame as a whole.
+//! The role of every bit in a frame, and findings about the frame as a whole.
 
 use super::descriptor::{BitMeaning, Word};
 use super::layout::{Flags, FrameReading, Layout};
 use super::range::Range;
 
-/// Content of a clock in a frame.
+/// The role of a bit in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
     /// Always 0.
@@ -16,20 +16,20 @@ pub enum Role {
     /// Bit of the code word with the given number, where 0 is the lowest. Used if multiturn and singleturn have no
     /// separate bits.
     Position(u8),
-    /// Error bit with the given index in the list of the descriptor.
+    /// Error bit, given by its index in the descriptor's list.
     Error(usize),
     /// The parity bit.
     Parity,
-    /// Repetition of the bit at the given clock.
+    /// Repetition of the bit sent at this earlier clock.
     Again(u8),
 }
 
-/// One clock of a frame, with its content and its bit.
+/// A bit of a frame, with its clock and role.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
     /// Clock number, starting at 1.
     pub clock: u8,
-    /// Content of the clock.
+    /// Role of the bit.
     pub role: Role,
     /// Transmitted bit.
     pub bit: bool,
@@ -89,7 +89,7 @@ impl FrameFinding {
 }
 
 impl Layout {
-    /// Returns the content of each clock, first to last.
+    /// Returns the role of the bit at each clock, first to last.
     pub fn clock_roles(&self) -> Vec<Role> {
         let descriptor = self.descriptor();
         let word = descriptor.clocks_per_word();
@@ -127,14 +127,14 @@ impl Layout {
         roles
     }
 
-    /// Returns every bit of a frame with its meaning.
+    /// Returns every bit of a frame with its role.
     pub fn to_cells(&self, frame: u64) -> Vec<Cell> {
         let clocks = self.clock_count();
         let numbered = (1..=clocks).zip(self.clock_roles());
         numbered.map(|(clock, role)| Cell { clock, role, bit: frame >> (clocks - clock) & 1 == 1 }).collect()
     }
 
-    /// Returns the findings about a reading. Findings that make the position invalid come first.
+    /// Returns the findings about a decoded frame. Findings that make the position invalid come first.
     pub fn to_findings(&self, reading: FrameReading) -> Vec<FrameFinding> {
         let descriptor = self.descriptor();
         let flags = reading.flags;
@@ -175,7 +175,7 @@ impl Layout {
         !reading.flags.intersects(self.invalid_flags()) && !stuck
     }
 
-    /// Returns whether the reading has a flag that an encoder without faults never causes.
+    /// Returns whether the frame has a flag that a fault-free encoder never causes.
     fn is_position_invalid(&self, reading: FrameReading) -> bool {
         let form = Flags::CODE.union(Flags::PADDING).union(Flags::PARITY).union(Flags::REPEAT);
         let errors = (0..self.descriptor().errors.len()).fold(form, |all, index| all.union(Flags::error(index)));

@@ -1,6 +1,6 @@
-//! Families of SSI encoders, described in RON files in `assets/devices/ssi/` and in the folder of the user. A
-//! description contains the frames that a family can send, its timing and its additional signals. [`Settings`] selects
-//! one of the frames.
+//! Families of SSI encoders, described in RON files in `assets/devices/ssi/` and in the user's folder. A description
+//! contains the frames that a family can send, its timing and its additional signals. [`Settings`] selects one of the
+//! frames.
 
 mod setting_name;
 mod settings;
@@ -28,7 +28,7 @@ pub struct Family {
     pub key: String,
     /// Product name used by the manufacturer.
     pub name: String,
-    /// Document from which the description was made.
+    /// Document on which the description is based.
     pub source: String,
     /// Length of a step in nanometres. It is `None` for rotary encoders.
     #[serde(default)]
@@ -39,14 +39,13 @@ pub struct Family {
     pub multiturn: Option<(u8, u8, u8)>,
     /// Minimum, factory and maximum width of the singleturn part, or of a linear position, in bits.
     pub singleturn: (u8, u8, u8),
-    /// Maximum width of the position in bits, if this width is less than the sum of the multiturn and singleturn
-    /// widths.
+    /// Maximum width of the position in bits, if it is less than the multiturn and singleturn widths together.
     #[serde(default)]
     pub together: Option<u8>,
     /// Limits for a number of steps that is not a power of two.
     #[serde(default)]
     pub steps: Option<StepLimits>,
-    /// Codes named in the manual, starting with the factory setting. Another code is accepted with a remark.
+    /// Codes named in the manual, starting with the factory setting. Other codes are accepted with a remark.
     pub codes: Vec<Code>,
     /// Possible alignments. The factory setting is the first one with enough room for the position.
     pub align: Vec<Alignment>,
@@ -95,7 +94,7 @@ pub struct Frame {
     /// Number of clocks for the position and the zeros around it. `None` means one clock per bit of the position.
     #[serde(default)]
     pub area: Option<u8>,
-    /// Error bits in the order sent. The `clock` of the first error bit is used if the bits have a fixed location.
+    /// Error bits in transmission order. If their location is fixed, the `clock` of the first one is used.
     #[serde(default)]
     pub errors: Vec<ErrorBit>,
     /// Possible locations of the error bits, starting with the factory setting.
@@ -154,7 +153,7 @@ pub struct Signal {
     pub supply_volts: Option<(f64, f64)>,
 }
 
-/// Error in a family file with its line and column.
+/// An error in a family file, with its line and column.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}, line {line}, column {column}: {problem}")]
 pub struct FamilyError {
@@ -164,23 +163,23 @@ pub struct FamilyError {
     pub line: usize,
     /// Column, counted from 1.
     pub column: usize,
-    /// The problem.
+    /// Reason why the family is invalid.
     pub problem: FamilyProblem,
 }
 
 /// The reason why a family is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FamilyProblem {
-    /// The file is not valid RON or lacks the expected structure, with the parser's message.
+    /// The file is not valid RON or lacks the expected structure. Contains the parser's message.
     #[error("{0}")]
     Parser(String),
     /// The key cannot be used on the command line.
     #[error("the key {0:?} may contain only lower-case letters, digits, - and _")]
     Key(String),
-    /// A German text translates neither the source nor a note.
+    /// A German text is not the translation of the source or a note.
     #[error("german: {0:?} is neither the source nor one of the notes of the family")]
     German(String),
-    /// The factory settings do not result in a valid frame.
+    /// The factory settings do not yield a valid frame.
     #[error("factory setting: {0}")]
     Delivered(SettingsError),
 }

@@ -29,19 +29,21 @@ use reading::{FrameNumbers, best_readings};
 use super::family::{Families, Settings};
 use super::layout::Layout;
 
-/// Maximum number of frames analysed, counted from the newest.
+/// Maximum number of frames analysed. Only the newest frames are used.
 const MAX_FRAMES: usize = 4_000;
-/// Minimum number of different frames. With fewer frames, the shaft is assumed to stand still.
+/// Minimum number of different frames. With fewer frames, the shaft is assumed to be at rest.
 const MIN_DIFFERENT_FRAMES: usize = 32;
 const CLASSES: usize = 6;
-/// Penalty in bits for each setting that makes a class less common. It applies once for the whole recording.
+/// Penalty in bits per unit of weight. Less common layouts have a higher weight. The penalty applies once per
+/// recording.
 const WEIGHT_BITS: f64 = 8.0;
-/// Maximum difference in weight between a class member and the most probable member. Less probable members are omitted.
+/// Maximum difference in weight between any layout in a class and the most probable one. Less probable layouts are
+/// omitted.
 const MAX_EXTRA_WEIGHT: f64 = 8.0;
-/// Minimum number of frames per thousand in which two readings must agree to be considered the same.
+/// Minimum number of frames per thousand in which two interpretations must agree to be considered the same.
 const SAME_PERMILLE: usize = 995;
-/// Maximum excess of a reading's information over that of the best reading, in bits over all frames. Readings with a
-/// larger excess are not compared with families.
+/// Maximum number of bits by which an interpretation may need more information than the best one. Beyond this limit, it
+/// is not compared with families.
 const NEAR_BITS: f64 = 300.0;
 
 /// Result of a search for layouts.
@@ -51,14 +53,14 @@ pub struct Search {
     pub frames: usize,
     /// Number of different frames.
     pub different: usize,
-    /// Reason why the first class is uncertain. It is `None` if every bit is explained and no other class fits equally
+    /// Reason why the best result is uncertain, or `None` if every bit is explained and no other class fits equally
     /// well.
     pub doubt: Option<SearchUncertainty>,
     /// Classes of possible layouts, best first. The list may be empty.
     pub classes: Vec<Class>,
 }
 
-/// Reason why the result of a search is uncertain.
+/// The reason why the result of a search is uncertain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SearchUncertainty {
     /// The shaft stood still or hardly moved.
@@ -77,15 +79,15 @@ pub enum SearchUncertainty {
     Open,
 }
 
-/// Class of layouts that the recorded frames cannot distinguish.
+/// A class of layouts that the recorded frames cannot distinguish.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Class {
-    /// Members of the class, most probable first. Factory settings come before changed ones, and usual widths before
+    /// Layouts in the class, most probable first. Factory settings come before changed ones, and usual widths before
     /// unusual ones.
     pub members: Vec<LayoutProposal>,
     /// Evidence for the class.
     pub evidence: ClassEvidence,
-    /// Motions of the shaft that would distinguish or confirm the members.
+    /// Shaft motions that would distinguish or confirm the layouts.
     pub open: Vec<OpenQuestion>,
 }
 
@@ -112,7 +114,7 @@ impl LayoutProposal {
     }
 }
 
-/// The evidence for a layout.
+/// The evidence for a class of layouts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClassEvidence {
     /// Score from 0 to 1, which depends on how well the layout explains the frames and how common it is.
@@ -121,7 +123,7 @@ pub struct ClassEvidence {
     pub explained: usize,
     /// Median distance between consecutive frames in steps of the lowest bit.
     pub steps_a_frame: i64,
-    /// Information per frame in bits that cannot be predicted from the previous frames.
+    /// Bits of information per frame that cannot be predicted from the previous frames.
     pub bits_a_frame: f64,
     /// Number of frames whose position jumps relative to the previous frame.
     pub jumps: usize,
@@ -131,41 +133,41 @@ pub struct ClassEvidence {
     pub bits_seen: u8,
 }
 
-/// Open question about a class, with the motion of the shaft that answers it.
+/// An open question about a class, with the shaft motion that answers it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum OpenQuestion {
-    /// Boundary between turns and steps. To find the boundary, turn the shaft exactly once and note the increase of the
-    /// position.
+    /// The boundary between turns and steps is unknown. Turn the shaft exactly once and note how much the position
+    /// increases.
     TurnOnce,
-    /// Meaning of clocks that never changed. To find the meaning, turn the shaft until these clocks change or the
-    /// position wraps.
+    /// The meaning of clocks that never changed is unknown. Turn the shaft until they change or the position wraps.
     TurnFarther {
         /// First clock that never changed.
         from: u8,
         /// Last clock that never changed.
         to: u8,
     },
-    /// End of the range. To find the end, turn the shaft until the position wraps.
+    /// The end of the range is unknown. Turn the shaft until the position wraps.
     PassAnEnd,
-    /// Swapped wires or reversed counting. To decide, turn clockwise, and check whether the position increases.
+    /// Swapped wires look the same as reversed counting. Turn the shaft clockwise and check whether the position
+    /// increases.
     Direction,
-    /// Lowest bit of the position. To find the bit, turn the shaft at a different and uneven speed.
+    /// The lowest bit of the position is unknown. Turn the shaft at a different and uneven speed.
     OtherSpeed,
-    /// Number of steps. To find the number, turn the shaft slowly across the end of the range.
+    /// The number of steps is unknown. Turn the shaft slowly across the end of the range.
     PassTheEnd {
         /// Minimum number of steps.
         least: u32,
         /// Maximum number of steps.
         most: u32,
     },
-    /// Meaning of a clock whose bit changes without an explanation.
+    /// A bit changes without an explanation.
     Unexplained {
-        /// The first such clock.
+        /// First clock with such a bit.
         clock: u8,
     },
-    /// Error bits. To find the bits, cause an error, for example by turning the shaft too fast.
+    /// The error bits are unknown. Cause an error, for example by turning the shaft too fast.
     SeeAnError,
-    /// The family, if several families send the same frame. To decide, check the type label.
+    /// Several families send the same frame. Check the type label of the encoder.
     TypeLabel,
 }
 
@@ -237,8 +239,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     search(doubt, verdict::merge_classes(&words, groups))
 }
 
-/// Returns whether two readings result in the same motion. The motion may be reversed, or its steps may differ by a
-/// small power of two.
+/// Returns whether two readings result in the same motion. It may be reversed, or scaled by a small power of two.
 fn is_same_motion(one: &Motion, other: &Motion) -> bool {
     let halvings = |motion: &Motion| {
         let steps =

@@ -17,8 +17,8 @@ pub struct FindingCounts {
 pub struct CountedFinding {
     /// The finding.
     pub finding: FrameFinding,
-    /// Number of occurrences. A finding about a single transfer is counted in each frame. Other findings are counted
-    /// each time they begin.
+    /// Number of occurrences. A finding about a single transfer is counted in every frame, and any other finding each
+    /// time it begins.
     pub count: u64,
     /// Time of the first frame with the finding.
     pub first: SampleTime,
@@ -77,20 +77,20 @@ impl FindingCounts {
         &self.noted
     }
 
-    /// Ends all current findings, because names in the layout have changed. They are counted again with the next frame.
+    /// Ends all current findings, because names in the layout have changed. Findings in the next frame count as new
+    /// occurrences.
     pub fn rename(&mut self) {
         self.noted.iter_mut().for_each(|noted| noted.stands = false);
         self.before = (Flags::NONE, Vec::new());
     }
 
-    /// Removes all counts. Findings that are still present are counted again with the next frame.
+    /// Removes all counts. Findings in the next frame count as new.
     pub fn reset(&mut self) {
         *self = FindingCounts::default();
     }
 }
 
-/// Returns whether a finding concerns only a single transfer. Such a finding is counted again if the next frame has the
-/// same finding.
+/// Returns whether a finding concerns only a single transfer. Such a finding is counted in every frame.
 fn is_single_transfer_finding(finding: &FrameFinding) -> bool {
     matches!(
         finding,

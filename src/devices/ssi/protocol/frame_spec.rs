@@ -1,6 +1,5 @@
-//! Notation of any frame as one word for the command line, such as
-//! `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. Names and patterns are not included, because they require a
-//! profile.
+//! One-word notation of any frame for the command line, such as `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`.
+//! Names and patterns are not included, because they require a profile.
 
 use super::code::Code;
 use super::descriptor::{BitMeaning, ErrorBit, FrameDescriptor, GrayCoverage, Parity, Repeat};

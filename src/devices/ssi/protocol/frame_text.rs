@@ -1,4 +1,4 @@
-//! Frames in the notation of users: bits in clock order, or a number.
+//! Frames as users write them: bits in clock order, or a number.
 
 /// The reason why a string is not a frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -22,10 +22,10 @@ pub struct Layout {
     pub(super) parts: [BitPart; 2],
     /// Whether the shift drops the lowest bit of the code word.
     pub(super) lost: bool,
-    /// Number of bits in a word after the area of the position.
+    /// Number of bits in a word after the position area.
     pub(super) behind_area: u8,
-    /// Number of bits that are Gray coded as a whole, and number of bits after them. The first number is 0 if only the
-    /// position is coded.
+    /// Number of bits that are Gray coded as a whole, and the number of bits after them. The first number is 0 if only
+    /// the position is coded.
     pub(super) gray: (u8, u8),
     /// Mask of the bits in a word that are always 0.
     pub(super) zeros: u64,
@@ -132,12 +132,12 @@ impl Layout {
     /// Creates the layout of a frame.
     ///
     /// # Errors
-    /// Returns a [`LayoutError`] if the frame is impossible.
+    /// Returns a [`LayoutError`] if the frame is invalid.
     pub fn new(descriptor: FrameDescriptor) -> Result<Self, LayoutError> {
         check::build_layout(descriptor)
     }
 
-    /// Returns the descriptor from which the layout was created.
+    /// Returns the description from which the layout was created.
     pub const fn descriptor(&self) -> &FrameDescriptor {
         &self.descriptor
     }

@@ -1,7 +1,7 @@
 //! SSI: frames of any layout, the encoder families in the manual, and their timing limits.
 //!
 //! "The manual" is SICK, *SSI Schnittstellenbeschreibung*, and "reference" is the project's reference. The bit diagrams
-//! of the manual are not available. The layouts follow its text, which numbers the clocks from 1.
+//! of the manual are not available, so the layouts follow its text, which numbers the clocks from 1.
 
 #![warn(missing_docs)]
 

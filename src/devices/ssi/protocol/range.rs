@@ -59,7 +59,7 @@ pub enum Direction {
     CounterClockwise,
 }
 
-/// The reason why a range is impossible.
+/// The reason why a range is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RangeError {
     /// A part of the position exceeds the maximum width.
@@ -103,7 +103,7 @@ impl Range {
     /// Returns the last position.
     ///
     /// # Errors
-    /// Returns a [`RangeError`] if the range is impossible.
+    /// Returns a [`RangeError`] if the range is invalid.
     pub fn last_position(&self) -> Result<u64, RangeError> {
         match *self {
             Range::Bits { multiturn, singleturn } => {
@@ -236,7 +236,7 @@ impl Range {
     /// Returns the number of bits required for positions in binary.
     ///
     /// # Errors
-    /// Returns a [`RangeError`] if the range is impossible.
+    /// Returns a [`RangeError`] if the range is invalid.
     pub fn bits(&self) -> Result<u8, RangeError> {
         self.last_position().map(bit_width)
     }

@@ -12,8 +12,8 @@ use serde::Deserialize;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Times {
-    /// Minimum and maximum monoflop time tm. The data line stays low for this time after the last clock, and the
-    /// encoder keeps the value.
+    /// Minimum and maximum monoflop time tm, for which the data line stays low after the last clock and the encoder
+    /// holds the value.
     pub monoflop: (f64, f64),
     /// Maximum clock frequency in hertz.
     pub most_hz: u32,
@@ -103,7 +103,7 @@ pub struct ReadConditions {
     pub any_steps: bool,
 }
 
-/// Times that result from the reading conditions.
+/// Times and violated limits under certain read conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
     /// Duration of a clock period.
@@ -114,7 +114,7 @@ pub struct Timing {
     pub cycle: Duration,
     /// Minimum and maximum monoflop time tm.
     pub monoflop: (Duration, Duration),
-    /// Minimum pause between bursts, which must be exceeded.
+    /// Lower limit of the pause between bursts. The pause must be longer.
     pub least_pause: Duration,
     /// Number of bursts per second at the shortest pause.
     pub most_reads_hz: f64,
@@ -171,12 +171,12 @@ pub enum Warning {
 const CABLES: [(f64, u32); 4] = [(50.0, 400_000), (100.0, 300_000), (200.0, 200_000), (400.0, 100_000)];
 
 impl Times {
-    /// General SSI times for an encoder without a family. The interval between positions is unknown. See SICK SSI
-    /// description 2.2 and reference section 1.
+    /// Timing limits of SSI in general, for an encoder without a family. The interval between positions is unknown. See
+    /// SICK SSI description 2.2 and reference section 1.
     pub const GENERAL: Self =
         Times { monoflop: (15.0, 25.0), most_hz: 2_000_000, asynchronous: None, synchronous: None, any_steps: None };
 
-    /// Calculates the times for reading an encoder without a family.
+    /// Calculates the times for reading an encoder of an unknown family.
     pub fn for_any_encoder(reads: &ReadConditions) -> Timing {
         let mut timing = Self::GENERAL.calculate_timing(reads);
         for warning in timing.warnings.iter_mut().filter(|own| **own == Warning::NoSynchronous) {

@@ -17,8 +17,8 @@ parameters! {
         encoder: Option<Encoder> = None,
             "ssi" => OptionalValue(CustomNotation(AllowedValues::Family, Encoder::parse)),
             "connect.ssi_layout" like "atm60,code=gray";
-        /// Active error bits, and words sent instead of the frame, such as `ERRSYNC:0.5,ERRSI:4` or `safety-fault`. The
-        /// number is the interval in seconds.
+        /// Active error bits, and words sent in place of the frame, such as `ERRSYNC:0.5,ERRSI:4` or `safety-fault`.
+        /// The number is the interval in seconds.
         troubles: String = String::new(), "ssi-error" => ANY;
     }
 }
@@ -30,10 +30,10 @@ pub struct AttachableEncoder {
 }
 
 impl AttachableEncoder {
-    /// Adapter with an encoder in factory settings, unless the link names another one.
+    /// An adapter whose encoder has factory settings unless the link names another one.
     pub const DEFAULT_ADAPTER: AttachableEncoder = AttachableEncoder { encoder: None };
 
-    /// Creates an adapter with the given encoder, unless the link names another one.
+    /// Creates an adapter with the given encoder, which is used unless the link names another one.
     pub const fn with_default_encoder(encoder: Encoder) -> Self {
         AttachableEncoder { encoder: Some(encoder) }
     }

@@ -1,4 +1,4 @@
-//! Frames of the virtual encoder with its position.
+//! The virtual encoder's position and the frames that it sends.
 
 use super::injected_fault::InjectedFault;
 use crate::buses::bridge::sim::SsiDevice;

@@ -1,5 +1,5 @@
-//! Simulated faults of the virtual SSI encoder: active error bits, and words that report a fault instead of a position.
-//! The layout defines the possible faults. See SICK SSI description, chapter 3.
+//! Simulated faults of the virtual SSI encoder: active error bits, and words that report a fault in place of a
+//! position. The layout defines the possible faults. See SICK SSI description, chapter 3.
 
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ enum FaultIndication {
         /// Whether a transfer clears the bit.
         cleared: bool,
     },
-    /// A right-justified word that is sent instead of the frame.
+    /// A right-justified word that is sent in place of the frame.
     Word(u64),
 }
 

@@ -73,7 +73,7 @@ proptest! {
     }
 }
 
-/// At 60 rpm, a revolution of 2^13 steps takes a second. The shaft turns even if no other device is attached.
+/// The shaft turns even if no other device is attached. At 60 rpm, a revolution of 2^13 steps takes a second.
 #[test]
 fn the_encoder_turns_without_other_devices() {
     let mut host = Host::to("ssi=atm60,code=binary&rpm=60", &[&AttachableEncoder::DEFAULT_ADAPTER]);

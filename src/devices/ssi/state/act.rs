@@ -1,5 +1,5 @@
-//! Handling the user's actions on an encoder or a layout. A change of the layout takes effect immediately. Everything
-//! else is a job of the session or a task.
+//! Handles the user's actions on an SSI encoder or layout. Changes to the layout take effect immediately. Everything
+//! else runs as a job or a background task.
 
 use std::path::PathBuf;
 

@@ -24,7 +24,7 @@ pub enum SsiAction {
     AskFrames,
     FindIn(PathBuf),
     ForgetSearch,
-    /// Adopts a layout found by a search, given the index of its class and its index in the class.
+    /// Adopts a layout found by a search. The numbers are the index of its class and its index in the class.
     Take(usize, usize),
     ForgetErrors,
     AskExport(ExportFormat, Language),
@@ -39,12 +39,12 @@ pub enum SsiAction {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TrialInput {
     Position(u64),
-    /// Sets the frame for a turn and a step within the turn.
+    /// Sets the trial frame to a turn and a step within the turn.
     Place(u64, u64),
     Bits(String),
-    /// Inverts the bit at the given clock, counted from 1.
+    /// Inverts the bit of the trial frame at the given clock, counted from 1.
     Toggle(u8),
-    /// Follows the most recently read word.
+    /// Shows the most recently read word in place of the trial frame.
     Live,
 }
 

@@ -1,4 +1,5 @@
-//! Connection form of an SSI encoder behind an adapter. The form creates a link but does not open it.
+//! The connection form for an SSI encoder, which is virtual, behind an adapter, or in a recording. The form creates a
+//! link but does not open it.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -28,7 +29,7 @@ pub enum SsiLinkKind {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SsiForm {
     pub kind: SsiLinkKind,
-    /// Whether the adapter is connected over a network and not to a serial port of this computer.
+    /// Whether the adapter is connected over a network, rather than at a serial port of this computer.
     pub network: bool,
     pub port: String,
     pub host: String,
@@ -87,8 +88,7 @@ impl FormModel for SsiForm {
 }
 
 impl SsiForm {
-    /// Returns the link parameters that have an entry in the form. Those of a virtual encoder are included if it is
-    /// selected.
+    /// Returns the form's entries for link parameters. Those of a virtual encoder are included if it is selected.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == SsiLinkKind::Virtual { Self::virtual_device_entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
@@ -98,7 +98,7 @@ impl SsiForm {
         [Settings::entries(), bridge::entries()].concat()
     }
 
-    /// Returns the entries for the supply of the encoder, and those for the other link parameters.
+    /// Returns the form's entry for the supply voltage, and its entries for the other link parameters.
     pub fn link_entries() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| own.key == "voltage")
     }

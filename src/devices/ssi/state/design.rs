@@ -1,5 +1,5 @@
-//! Design of a layout. Every change can be undone. An impossible change is rejected with a message, so that the frame
-//! is always valid.
+//! Design of a layout. Every change can be undone. An invalid change is rejected with a message, so that the frame is
+//! always valid.
 
 mod reshape;
 
@@ -35,12 +35,12 @@ pub struct Design {
 pub enum Edit {
     /// Switches to the factory layout of the family with this key.
     Family(String),
-    /// Detaches the frame from its family, so that every part of the frame can be edited.
+    /// Detaches the frame from its family, so that every part of it can be edited.
     Free,
     /// Changes the family settings.
     Settings(Box<Settings>),
     Frame(Box<FrameDescriptor>),
-    /// Changes the positions or the code. The frame becomes longer or shorter as required.
+    /// Changes the range of positions or the code. The frame becomes longer or shorter as required.
     Position(Range, Code),
     Direction(Direction),
     /// Sets the position at the zero point of the shaft.
@@ -61,11 +61,11 @@ pub struct LayoutDesigner {
 }
 
 impl Design {
-    /// Creates the design of a layout with its family. If several settings result in the frame, the `requested` ones
-    /// are preferred, and otherwise the fewest.
+    /// Creates the design of a layout with its family. If several combinations of settings yield the frame, `requested`
+    /// is preferred, or else the smallest one.
     ///
     /// # Errors
-    /// Returns an error with the reason if the layout is impossible.
+    /// Returns an error with the reason if the layout is invalid.
     fn from_profile(profile: SsiProfile, families: &Families, requested: Option<&Settings>) -> Result<Self, Text> {
         let layout = Layout::new(profile.descriptor.clone()).map_err(|error| explain::layout_error_text(&error))?;
         let family = profile.family.as_deref().and_then(|key| families.find_by_key(key));
@@ -91,15 +91,14 @@ impl Default for Design {
 }
 
 impl LayoutDesigner {
-    /// Creates a designer for a saved layout. An impossible layout, which no file can contain, is replaced by the
-    /// default.
+    /// Creates a designer for a saved layout. An invalid layout, which no file can contain, is replaced by the default.
     fn from_profile(profile: SsiProfile, families: Arc<Families>) -> Self {
         let now = Design::from_profile(profile, &families, None).unwrap_or_default();
         let saved = now.profile.clone();
         LayoutDesigner { families, now, saved, history: History::default(), problem: None }
     }
 
-    /// Creates a designer for the factory layout of a family.
+    /// Creates a designer for the factory layout of the default family.
     pub(super) fn factory_default(families: Arc<Families>) -> Self {
         let profile = parse_profile(DEFAULT_FAMILY, &families);
         LayoutDesigner::from_profile(profile, families)
@@ -113,8 +112,8 @@ impl LayoutDesigner {
         LayoutDesigner::from_profile(profile, families)
     }
 
-    /// Returns the reading settings after a change of the link. Parameters that differ between the links are taken from
-    /// the new link. Other settings are kept.
+    /// Returns the reading settings after a change of the link. Parameters that have changed are taken from the new
+    /// link, and all other settings are kept.
     pub(super) fn reading_after_link_change(&self, before: &LinkUrl, now: &LinkUrl) -> ReadingSettings {
         reading_for_link(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
     }
@@ -149,7 +148,7 @@ impl LayoutDesigner {
     }
 
     /// Returns whether error and parity bits move with the end of the position. The family settings determine this if
-    /// there are any, and the frame otherwise.
+    /// there are any; otherwise, it depends on the frame.
     pub fn error_bits_follow(&self) -> bool {
         let settings = self.family().zip(self.now.settings.as_ref());
         match settings.and_then(|(family, settings)| settings.resolve(family).ok()) {
@@ -299,7 +298,7 @@ impl PendingEdits for LayoutDesigner {
     }
 }
 
-/// Returns the reading settings, overridden by the link parameters for which `counts` is true.
+/// Returns the reading settings, overridden by those link parameters for which `counts` returns `true`.
 fn reading_for_link(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> bool) -> ReadingSettings {
     let number = |name: &str| url.query.get(name).filter(|_| counts(name)).and_then(|text| text.parse::<u32>().ok());
     let pause_us = number("pause").and_then(|pause| u16::try_from(pause).ok());
@@ -310,7 +309,7 @@ fn reading_for_link(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&st
     }
 }
 
-/// Parses a layout of a family. An invalid text results in a minimal layout.
+/// Parses a family with its settings. An invalid text results in a minimal layout.
 fn parse_profile(text: &str, families: &Families) -> SsiProfile {
     let resolved = Settings::parse(text).ok().and_then(|(key, settings)| {
         let family = families.find_by_key(&key)?;

@@ -1,5 +1,5 @@
-//! Drafts of layout changes, which survive a crash. They are stored entry by entry, so that changes that others make to
-//! the file are preserved.
+//! Drafts of layout changes that survive a crash. They are stored entry by entry, so that changes by others to the file
+//! are preserved.
 
 use super::design::Edit;
 use super::encoder::Encoder;

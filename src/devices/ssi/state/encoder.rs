@@ -26,7 +26,7 @@ pub struct Encoder {
     pub record: Record,
     pub hunt: SearchState,
     pub(super) searches: u32,
-    /// Identity of the adapter with its settings for reading words, once known.
+    /// Identity of the adapter and its settings for reading words, once known.
     pub identity: Option<Identity>,
     pub check: Option<Vec<CheckLine>>,
     pub motor: Option<Motor>,
@@ -80,12 +80,12 @@ impl Encoder {
         self.record.current_stream().filter(|_| self.session.is_polling())
     }
 
-    /// Returns the number of clocks per word. This is the number in the layout, unless another one is being tried.
+    /// Returns the number of clocks per word, which is that of the layout unless another one is being tried.
     pub fn clock_count(&self) -> u8 {
         self.clocks.unwrap_or_else(|| self.designer.layout().clock_count())
     }
 
-    /// Returns whether a number of clocks is being tried that differs from the layout.
+    /// Returns whether a number of clocks is being tried that differs from that of the layout.
     pub fn has_trial_clocks(&self) -> bool {
         self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clock_count())
     }
@@ -132,7 +132,7 @@ impl Encoder {
     }
 
     /// Returns the link to a virtual encoder that sends this layout. Returns `None` if the current virtual encoder
-    /// already does, or if the layout belongs to no family and therefore cannot be part of a link.
+    /// already does, or if the layout has no family, because a link can only specify a family.
     pub fn link_for_layout(&self) -> Option<LinkUrl> {
         let Source::Link(url) = &self.session.source else { return None };
         let (family, settings) = (self.designer.family()?, self.design().settings.as_ref()?);
@@ -157,7 +157,7 @@ impl Encoder {
 }
 
 impl LayoutDesigner {
-    /// Returns the timing limits of the family, or the general limits of SSI if there is no family.
+    /// Returns the timing limits of the family, or those of SSI in general if there is no family.
     pub fn applicable_times(&self) -> Times {
         self.times().copied().unwrap_or(Times::GENERAL)
     }

@@ -1,4 +1,5 @@
-//! Texts for SSI: findings about a frame, settings that the manual does not mention, and reasons why no words arrive.
+//! Messages for SSI: findings about a frame, settings that the manual does not mention, and reasons why no words
+//! arrive.
 
 mod check;
 mod export;
@@ -25,7 +26,7 @@ pub use rejection::{
     too_wide_text,
 };
 
-/// Returns texts that explain why a job ended early. Each can be shown on a separate line.
+/// Returns messages that explain why a job ended early. Each can be shown on a separate line.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     vec![match error {
         JobError::Link(error) => link_error_text(error),
@@ -173,7 +174,7 @@ pub fn open_question_text(open: OpenQuestion) -> Text {
     }
 }
 
-/// Returns whether the first layout found is certain and, if it is not, the reason.
+/// Returns a message that the best layout is certain, or the reason why it is not.
 pub fn uncertainty_text(doubt: Option<SearchUncertainty>) -> Text {
     TEXTS.text(match doubt {
         None => "ssi_find.sure",
@@ -195,7 +196,7 @@ pub fn evidence_for(evidence: &ClassEvidence) -> Text {
         .with("bits", evidence.bits_seen)
 }
 
-/// Returns a text that states how often and when a finding occurred.
+/// Returns a message that states how often and when a finding occurred.
 pub fn finding_counts(noted: &CountedFinding) -> Text {
     let seconds = |time: crate::analysis::SampleTime| time.as_nanoseconds() as f64 / 1e9;
     let id = if noted.count == 1 { "ssi_tally.once" } else { "ssi_tally.often" };

@@ -1,5 +1,5 @@
-//! The form of a layout: its rows as data, and the effect of each entry. A family has a row for each of its settings,
-//! and any other frame has all rows.
+//! The form for editing a layout: its rows as data, and the effect of each entry. For a family, the form has a row for
+//! each setting, and for any other frame it has all rows.
 
 mod family;
 mod free;
@@ -45,7 +45,7 @@ pub enum FieldInput {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Field {
-    /// Kind of the range: bits, steps, round axis or length.
+    /// Type of range: bits, steps, round axis or length.
     Range,
     /// Number of bits for turns.
     Multiturn,
@@ -90,7 +90,7 @@ pub enum Field {
     Pause,
     /// Cable length in metres, or 0 if the cable is not checked.
     Cable,
-    /// Whether the encoder takes a position when the host starts a transfer.
+    /// Whether the encoder samples a position when the host starts a transfer.
     Synchronous,
 }
 
@@ -115,8 +115,7 @@ impl Group {
         self.rows.iter().any(|row| row.field == Field::Lead)
     }
 
-    /// Returns whether the group can be folded in a low window. The position, which is used most often, and the error
-    /// bits always remain open.
+    /// Returns whether the group can be collapsed in a low window. The position and the error bits always stay open.
     pub fn is_foldable(&self) -> bool {
         matches!(self.title, "ssi_form.frame" | "ssi_form.counting")
     }
@@ -224,7 +223,7 @@ impl LayoutDesigner {
     }
 }
 
-/// Returns the name of a direction. A linear encoder has another one than a rotary encoder.
+/// Returns the name of a counting direction, which differs between linear and rotary encoders.
 pub(super) fn direction_text(direction: Direction, is_length: bool) -> Text {
     TEXTS.text(match (direction, is_length) {
         (Direction::Clockwise, false) => "ssi_form.cw",
@@ -298,7 +297,8 @@ impl RangeKind {
     }
 }
 
-/// Returns the rows for the positions and the code of a frame. The user can select one of `kinds` as the kind of range.
+/// Returns the form rows for the positions and the code of a frame. The user can select one of `kinds` as the type of
+/// range.
 fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &FrameDescriptor) -> Vec<Row> {
     let mut rows = Vec::new();
     if kinds.len() > 1 {

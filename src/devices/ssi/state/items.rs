@@ -1,4 +1,4 @@
-//! Names and values of the entries of a layout for lists: comparisons and reports. They are those of the form.
+//! Names and values of layout entries in comparisons and reports. They are the same as in the form.
 
 use super::form::{coverage_text, direction_text};
 use super::{TEXTS, explain};
@@ -63,7 +63,7 @@ pub(super) fn item_name(item: &str) -> Option<Text> {
     }))
 }
 
-/// Returns the part of the form to which an entry belongs, as the heading of a group.
+/// Returns the heading under which an entry is listed. It is the same as in the form.
 pub(super) fn item_group(item: &str) -> Option<Text> {
     if item.starts_with("reading.") {
         return Some(Text::new("report.interface"));
@@ -113,7 +113,7 @@ fn with_unit(value: Text, unit: Text) -> Text {
     Text::new("item_value.unit").with_text("value", value).with_text("unit", unit)
 }
 
-/// Splits an item such as `errors[0].clock` into its number, counted from 1, and its part.
+/// Splits an entry name such as `errors[0].clock` into its number, counted from 1, and the part after it.
 fn numbered_part<'i>(item: &'i str, list: &str) -> Option<(usize, &'i str)> {
     let (index, part) = item.strip_prefix(list)?.strip_prefix('[')?.split_once("].")?;
     Some((index.parse::<usize>().ok()?.checked_add(1)?, part))

@@ -1,4 +1,4 @@
-//! SSI as a kind of device, before a device is open.
+//! SSI encoders as a device type: what is possible before a device is open.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,5 @@
-//! Recording an SSI encoder: the received words, their positions as lines over time, and the findings about them. If
-//! the layout changes, the same words are decoded again.
+//! Recording of an SSI encoder: the received words, their positions over time, and the findings about them. If the
+//! layout changes, the stored words are decoded again.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -27,7 +27,7 @@ pub struct Record {
     kept: VecDeque<Words>,
     held: usize,
     tally: FindingCounts,
-    /// Time until which findings are hidden, if any.
+    /// Time up to which findings are hidden, if any.
     forgotten: Option<Moment>,
     last: Option<ReceivedWord>,
     stream: Option<WordStream>,
@@ -84,7 +84,7 @@ impl Record {
         (self.held, self.stream, self.last, self.forgotten) = (0, None, None, None);
     }
 
-    /// Adds new words. `dropped` words were lost before them.
+    /// Adds new words, before which `dropped` words were lost.
     pub(super) fn add_words(&mut self, runs: Vec<Words>, dropped: u64) {
         match self.stream {
             // The numbers of streamed words show how many were dropped.
@@ -98,7 +98,7 @@ impl Record {
         }
     }
 
-    /// Compares a run with the previous one. Missing words are counted and leave a gap in the recording.
+    /// Compares a series of words with the previous one. Missing words are counted and leave a gap in the recording.
     fn compare_with_previous(&mut self, run: &Words) {
         let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
@@ -175,19 +175,19 @@ impl Record {
         (self.kept, self.lost, self.stream) = (kept, lost, stream);
     }
 
-    /// Returns the newest stored words without a gap that have the given number of clocks.
+    /// Returns the newest stored words that follow each other without a gap and have `clocks` bits.
     pub(super) fn latest_words(&self, clocks: u8) -> Vec<u64> {
         let mut runs: Vec<&Words> = self.recent_runs(clocks).collect();
         runs.reverse();
         runs.into_iter().flat_map(|run| run.words.iter().copied()).collect()
     }
 
-    /// Returns the number of the newest stored words without a gap that have the given number of clocks.
+    /// Returns how many of the newest stored words follow each other without a gap and have `clocks` bits.
     pub fn count(&self, clocks: u8) -> usize {
         self.recent_runs(clocks).map(|run| run.words.len()).sum()
     }
 
-    /// Returns an iterator over consecutive runs, from the newest to the oldest.
+    /// Returns an iterator over the newest contiguous series of words with `clocks` bits, newest first.
     fn recent_runs(&self, clocks: u8) -> impl Iterator<Item = &Words> {
         let mut later: Option<&Words> = None;
         self.kept.iter().rev().take_while(move |run| {
@@ -254,7 +254,7 @@ fn descriptor_without_names(layout: &Layout) -> FrameDescriptor {
     descriptor
 }
 
-/// Returns the meaning of a layout's positions.
+/// Returns the range and scale of a layout's positions.
 fn position_scales(layout: &Layout) -> PositionScales {
     let range = layout.descriptor().range;
     let all = range.last_position().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));

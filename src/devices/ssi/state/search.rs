@@ -13,7 +13,7 @@ use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 use crate::store::{FileError, FileErrorKind, read_file};
 
-/// Maximum number of frames searched, counted from the newest.
+/// Maximum number of frames searched. Only the newest frames are used.
 pub(super) const MAX_SEARCHED_FRAMES: usize = 8_000;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub struct Frames {
     pub frames: Vec<u64>,
     /// Number of incomplete bursts in a logic analyser recording.
     pub left_out: usize,
-    /// Whether the frames are given as numbers, in which leading zeros are not visible.
+    /// Whether the frames are given as numbers, which do not show leading zeros.
     pub are_numbers: bool,
 }
 

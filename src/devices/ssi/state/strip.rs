@@ -1,5 +1,5 @@
-//! A frame as a row of cells, one for each clock, with its movable parts, which are the boundaries between fields and
-//! single bits. A move returns the resulting frame and does not change the layout.
+//! A frame as a row of cells, one for each clock. The boundaries between fields and single bits can be moved. A move
+//! returns a new frame and does not change the layout.
 
 mod labels;
 mod moving;

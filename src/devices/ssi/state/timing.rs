@@ -9,7 +9,7 @@ use crate::app::Text;
 use crate::devices::ssi::protocol::{Layout, ReadConditions, SamplingMoment, Times, Timing};
 use crate::devices::ssi::state::TEXTS;
 
-/// Timing diagram of a burst, until the next burst has begun.
+/// Timing diagram from one burst to the start of the next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BurstDiagram {
     strip: Strip,
@@ -60,7 +60,7 @@ pub struct TimingMark {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TimingEvent {
     Latched,
-    /// The encoder takes the position that it sends with the next burst.
+    /// The encoder samples the position that it sends in the next burst.
     Taken,
     Started,
     Ready,
@@ -77,9 +77,9 @@ pub struct Bit {
     pub to: f64,
 }
 
-/// Minimum time without an event that is replaced by a break, in bursts.
+/// Minimum time without events that is replaced by a break, in burst durations.
 const MIN_BREAK_BURSTS: f64 = 1.5;
-/// Time that is drawn on either side of a break, in bursts.
+/// Time that is drawn on either side of a break, in burst durations.
 const BREAK_MARGIN_BURSTS: f64 = 0.4;
 /// Number of clocks of the next burst that are drawn.
 const NEXT_BURST_CLOCKS: f64 = 2.5;
@@ -170,8 +170,8 @@ impl BurstDiagram {
         (comes(field.first), comes(field.last + 1).min(self.timing.burst.as_secs_f64()))
     }
 
-    /// Returns three times in seconds. After the bits, the data line goes low at the first time. It returns high
-    /// between the second and the third, or with the next burst at the latest.
+    /// Returns the time in seconds at which the data line goes low after the bits, and the earliest and latest time at
+    /// which it returns high. The next burst ends the low level in any case.
     pub fn low_times(&self) -> (f64, f64, f64) {
         let (burst, cycle) = (self.timing.burst.as_secs_f64(), self.timing.cycle.as_secs_f64());
         let (least, most) = self.timing.monoflop;
@@ -187,8 +187,8 @@ impl BurstDiagram {
         self.pieces.last().map_or(0.0, |piece| piece.to)
     }
 
-    /// Returns texts about a moment: its time, and either the current clock with its content or the reason why the
-    /// lines are idle.
+    /// Returns texts for a point in time: the time itself, and either the bit being sent or the reason why the lines
+    /// are idle.
     pub fn texts_at(&self, at: f64) -> Vec<Text> {
         let mut texts = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {

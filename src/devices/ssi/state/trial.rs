@@ -1,4 +1,4 @@
-//! Trial of a layout: a frame that can be entered as a position or as bits.
+//! A trial frame for a layout, which can be entered as a position or as bits.
 
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Cell, Flags, FrameFinding, FrameReading, Layout, Location, parse_frame};
@@ -96,7 +96,7 @@ impl TrialFrame {
     }
 }
 
-/// Returns the flags of error bits. Only these can be encoded.
+/// Returns the error bits among the flags. Other flags cannot be encoded.
 fn error_bits(layout: &Layout, flags: Flags) -> Flags {
     let all = (0..layout.descriptor().errors.len()).map(Flags::error);
     all.filter(|error| flags.contains(*error)).fold(Flags::NONE, Flags::union)

@@ -10,7 +10,7 @@ use crate::ui::Theme;
 
 pub(super) fn frames_ui(ui: &mut Ui, theme: &Theme, left: &SsiProfile, right: &SsiProfile) {
     for (id, profile) in [("comparison.left", left), ("comparison.right", right)] {
-        // A profile with an impossible frame cannot be opened.
+        // A profile with an invalid frame cannot be opened.
         let Ok(layout) = Layout::new(profile.descriptor.clone()) else { continue };
         let (label, strip) = (theme.translate(id), Strip::from_layout(&layout));
         ui.label(theme.heading(&label));

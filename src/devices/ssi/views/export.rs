@@ -74,7 +74,8 @@ pub(super) fn page_ui(
     });
 }
 
-/// Wraps the lines of a sheet at spaces. A line continues below its value, which follows two spaces.
+/// Wraps long lines of a settings sheet at spaces. Continuation lines are aligned with the value, which follows two
+/// spaces.
 fn wrap_sheet(text: &str, columns: usize) -> String {
     text.lines().map(|line| wrap_line(line, columns)).collect::<Vec<_>>().join("\n")
 }

@@ -21,7 +21,7 @@ pub(super) struct FindUiState {
     unfolded: Option<usize>,
 }
 
-/// Maximum number of classes shown. All others fit even worse.
+/// Maximum number of classes shown. The others fit even worse.
 const CLASSES: usize = 6;
 /// Number of members of a class that are shown before it is expanded.
 const MEMBERS: usize = 4;

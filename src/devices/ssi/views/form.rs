@@ -1,4 +1,4 @@
-//! Drawing the rows of a form: a number, a choice, a switch or a name. The state defines their meaning.
+//! Draws form rows with a number, a choice, a switch or a name. The state module defines their meaning.
 
 use std::collections::BTreeMap;
 

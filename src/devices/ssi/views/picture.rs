@@ -1,4 +1,4 @@
-//! Drawing an exported picture. The exported file contains the same shapes.
+//! Draws an exported picture in the window, with the same shapes as in the exported file.
 
 use egui::accesskit::Role;
 use egui::{

@@ -179,7 +179,7 @@ proptest! {
 }
 
 proptest! {
-    /// Any entered numbers yield either a valid frame that survives a round trip, or an error with the reason.
+    /// Any numbers yield either a valid frame that survives a round trip, or an error with the reason.
     #[test]
     fn any_numbers_are_parsed_or_refused(
         clocks in 0..=70_u8,

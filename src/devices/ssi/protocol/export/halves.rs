@@ -20,7 +20,7 @@ pub enum TooWideError {
         /// Width of the code word in bits.
         bits: u8,
     },
-    /// The calculation of turns and steps of a round axis exceeds 32 bits.
+    /// Calculating the turns and steps of a round axis requires more than 32 bits.
     #[error("the turns of this round axis need numbers of more than 32 bits")]
     RoundAxis,
 }

@@ -33,7 +33,7 @@ pub enum UnsupportedProperty {
 /// The reason why a frame has no format string, or a format string does not describe a frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
-    /// LinuxCNC cannot decode the frame.
+    /// LinuxCNC cannot decode a frame with this property.
     #[error("LinuxCNC cannot decode {0}")]
     Cannot(UnsupportedProperty),
     /// A field is not of the form `name%bits` followed by a letter.
@@ -53,7 +53,7 @@ pub enum FormatError {
     /// The fields exceed the length of a frame.
     #[error("the fields together have more than 64 bits")]
     Long,
-    /// The frame is impossible.
+    /// The frame is invalid.
     #[error(transparent)]
     Layout(#[from] LayoutError),
 }
@@ -121,7 +121,7 @@ enum BitField {
 }
 
 /// Parses a format string as a frame whose position is a single number. Bit fields become error bits that make the
-/// position invalid. The user can change this later.
+/// position invalid, which the user can change later.
 ///
 /// # Errors
 /// Returns a [`FormatError`] with the invalid field if the format string is not a frame.

@@ -1,13 +1,13 @@
-//! The decoder as a list of statements for one layout, which follow the steps of [`Layout::decode`]. The list is the
-//! same in every language.
+//! The decoder for one layout as a list of statements, which follow the steps of [`Layout::decode`]. The list is the
+//! same for every target language.
 
 use crate::devices::ssi::protocol::code::{Code, low_bits_mask};
 use crate::devices::ssi::protocol::descriptor::GrayCoverage;
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 use crate::devices::ssi::protocol::range::{Fraction, Range};
 
-/// Syntax of a target language. A word contains all bits of a frame or a part of them. A number is text that is valid
-/// in every language.
+/// Syntax of a target language. A word is an expression for the bits of a frame or some of them. A number is text that
+/// is valid in every language.
 pub(super) trait Dialect {
     type Word;
     /// Returns the word expression that refers to a variable.

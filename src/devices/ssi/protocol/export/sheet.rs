@@ -1,5 +1,5 @@
-//! Settings for the SSI module of a PLC that reads this frame, in the terms of the module manuals. The settings of the
-//! encoder remain the same.
+//! Settings with which the SSI module of a PLC can read this frame, in the terms of the module manuals. The settings of
+//! the encoder stay the same.
 
 use std::fmt::Write;
 

@@ -38,7 +38,7 @@ fn family(role: Role) -> &'static str {
     }
 }
 
-/// Returns the name of a clock's content, translated by `say`. See also [`Layout::role_name`].
+/// Returns the name of a bit's role, translated by `say`. See also [`Layout::role_name`].
 pub(super) fn role_name(layout: &Layout, role: Role, say: TranslateFn<'_>) -> String {
     match role {
         Role::Parity => say(&ExportText::ParityBit),

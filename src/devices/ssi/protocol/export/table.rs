@@ -1,4 +1,4 @@
-//! CSV table of the clocks in a frame, with the content of each clock.
+//! CSV table of the bits in a frame.
 
 use std::fmt::Write;
 
@@ -8,8 +8,7 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 
 impl Layout {
-    /// Returns the name of a clock's content as in the manual, such as `MT11`, `ST0`, `P3`, `0`, or the name of an
-    /// error bit.
+    /// Returns the name of a bit as in the manual, such as `MT11`, `ST0`, `P3`, `0`, or the name of an error bit.
     pub fn role_name(&self, role: Role) -> String {
         match role {
             Role::Zero => "0".to_owned(),
@@ -23,7 +22,7 @@ impl Layout {
     }
 }
 
-/// Returns a CSV table with the number, the bit and the content of each clock.
+/// Returns a CSV table with one row per clock: its number, the number of its bit, and what the bit means.
 pub fn bit_table(layout: &Layout, say: TranslateFn<'_>) -> String {
     let mut text = say(&ExportText::TableHeading) + "\n";
     let clocks = layout.clock_count();

@@ -100,7 +100,7 @@ fn a_parity_bit_is_not_an_error_bit_in_the_sheet() {
     assert!(lines.iter().any(|line| line.contains("divide the value by 2 ")), "{lines:?}");
 }
 
-/// If two flags had the same name, the compiler would report a redefinition, and one of the flags would be lost.
+/// Two flags with the same name would be a redefinition in C, and one of them would be lost.
 #[test]
 fn flags_have_unique_names() {
     let text = generate_c99(&from_linuxcnc("ones%1berror%1bposition%14eerror%1b").unwrap(), "");

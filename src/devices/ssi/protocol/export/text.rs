@@ -1,10 +1,10 @@
-//! Texts of the exports as values that the window can translate. The command line uses the English texts below.
+//! Texts in exported files, as values that the window can translate. The command line uses the English texts below.
 
 use std::fmt;
 
 use crate::devices::ssi::protocol::code::Code;
 
-/// A piece of text in an export.
+/// A text in an exported file.
 #[expect(missing_docs, reason = "its English, below, says what each is")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExportText {

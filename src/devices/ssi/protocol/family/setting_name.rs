@@ -15,7 +15,7 @@ pub enum SettingName {
     /// Multiturn width as named on the command line.
     #[error("mt")]
     Mt,
-    /// Multiturn part.
+    /// Multiturn part of the position.
     #[error("multiturn")]
     Multiturn,
     /// Multiturn width that is outside its limits.
@@ -30,7 +30,7 @@ pub enum SettingName {
     /// Width of a linear position.
     #[error("bits")]
     Bits,
-    /// Steps.
+    /// Number of steps.
     #[error("steps")]
     Steps,
     /// Steps per turn.
@@ -42,10 +42,10 @@ pub enum SettingName {
     /// Number of steps on all turns of a round axis.
     #[error("steps over this number of revolutions")]
     StepsAround,
-    /// Turns.
+    /// Number of turns.
     #[error("turns")]
     Turns,
-    /// Turns given without steps.
+    /// Number of turns without a number of steps.
     #[error("number of turns without steps")]
     TurnsWithoutSteps,
     /// Number of revolutions of a round axis.
@@ -57,7 +57,7 @@ pub enum SettingName {
     /// Denominator of the revolutions.
     #[error("denominator of revolutions")]
     RevolutionsBelow,
-    /// Round axis.
+    /// Round axis, whose positions wrap after a fractional number of turns.
     #[error("round axis")]
     RoundAxis,
     /// Step length as named on the command line.

@@ -1,4 +1,4 @@
-//! Conversion of a family's settings to a frame with its resolution, code, alignment, error bits and clocks.
+//! Derivation of a frame from the settings of an encoder family.
 
 use super::{Alignment, ErrorPlace, Family, Frame, SettingName};
 use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode};
@@ -14,7 +14,7 @@ pub struct Settings {
     pub multiturn: Option<u8>,
     /// Width of the singleturn part, or of a linear position, in bits.
     pub singleturn: Option<u8>,
-    /// Number of steps per turn, or in total on a round axis, that is not a power of two.
+    /// Number of steps per turn, or in total on a round axis, if it is not a power of two.
     pub steps: Option<u32>,
     /// Number of turns of `steps` steps each.
     pub turns: Option<u32>,
@@ -40,7 +40,7 @@ pub struct Settings {
     pub preset: Option<u64>,
 }
 
-/// The frame that results from the settings of a family.
+/// The frame that a family sends with certain settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResolvedFrame {
     /// The frame.
@@ -71,7 +71,7 @@ pub enum SettingAdvice {
     },
 }
 
-/// The reason why settings are impossible.
+/// The reason why settings are invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingsError {
     /// The family does not have this setting.
@@ -131,13 +131,13 @@ pub enum SettingsError {
         /// Requested number of clocks.
         clocks: u8,
     },
-    /// The range is impossible.
+    /// The range is invalid.
     #[error(transparent)]
     Range(#[from] RangeError),
     /// The code cannot represent the positions.
     #[error(transparent)]
     Code(#[from] CodeError),
-    /// The frame is impossible.
+    /// The frame is invalid.
     #[error(transparent)]
     Layout(#[from] LayoutError),
 }
@@ -332,7 +332,7 @@ fn fits_frame(frame: &Frame, lead: u8, bits: u8) -> bool {
     lead + bits <= frame.area.unwrap_or(bits)
 }
 
-/// Returns the error bits of a frame at the given location. `behind` is the last clock of the position.
+/// Returns the error bits of a frame at the given location. The last position bit is on clock `behind`.
 fn error_bits_at(frame: &Frame, place: ErrorPlace, behind: u8) -> Vec<ErrorBit> {
     let first = frame.errors.iter().map(|bit| bit.clock).min().unwrap_or(1);
     let moved = |bit: &ErrorBit| match place {

@@ -101,7 +101,7 @@ mod tests {
         Some(resolved.layout.descriptor().clone())
     }
 
-    /// Returns every combination of the given values that the family can send.
+    /// Returns the specifications of many combinations of settings, without those that the family cannot send.
     fn spread(families: &Families, family: &Family) -> Vec<String> {
         let resolutions: &[&str] = match family.key.as_str() {
             "kh53" | "ttk70" => &["", ",step=500"],

@@ -1,4 +1,4 @@
-//! Tests of the golden frames (reference section 8) and the pitfalls (section 6) with the settings of each family.
+//! Tests of all families against the golden frames (reference section 8) and the pitfalls (section 6).
 
 use super::*;
 use crate::devices::ssi::protocol::{BitMeaning, Direction, Flags, FrameFinding, Location, Range, gray_to_binary};
@@ -78,7 +78,7 @@ const GOLDEN: [(&str, u64, u64, &str, &str); 28] = [
     ("ttk70,clocks=31", 0, 0x12_3456, "gap", "0001001000110100010101101000000"),
 ];
 
-/// If these settings were ignored, the result would be a different position.
+/// Ignoring one of these settings would yield a wrong position.
 #[test]
 fn settings_that_would_be_ignored_are_refused() {
     let cases = [

@@ -1,4 +1,4 @@
-//! Notation of a family with its settings as one word, such as `ahm36,code=gray,st=12`.
+//! One-word notation of a family with its settings, such as `ahm36,code=gray,st=12`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -42,7 +42,7 @@ impl Settings {
         Ok((key, settings))
     }
 
-    /// Returns the family key and the settings that are not `None` as one word, such as `ahm36,code=gray,st=12`.
+    /// Returns the family key and all settings that are not `None` as one word, such as `ahm36,code=gray,st=12`.
     pub fn emit(&self, key: &str) -> String {
         fn keyword_of<T: ToString>(value: Option<T>) -> Option<String> {
             value.map(|value| value.to_string())

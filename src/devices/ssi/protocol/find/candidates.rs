@@ -1,4 +1,5 @@
-//! Candidate layouts for a reading of the frames: possible settings of families, and other layouts of common widths.
+//! Candidate layouts for an interpretation of recorded frames: encoder families with possible settings, and other
+//! layouts of common widths.
 
 use super::custom_frames::try_custom_frames;
 use super::family_candidates::try_families;
@@ -27,7 +28,7 @@ pub(super) struct LayoutCandidate {
 /// Callback that tests a candidate layout with its weight, and keeps the layout if it fits.
 pub(super) type TestCandidateFn<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 'a;
 
-/// Returns the layouts that fit the reading and result in the motion of the probe, in no particular order.
+/// Returns the layouts that fit the reading and yield the motion of the probe, in no particular order.
 pub(super) fn group_members(
     probe: &LayoutProbe<'_>,
     read: &FrameNumbers,
@@ -72,8 +73,8 @@ pub(super) fn encoder_parity(reading: &Reading, inverted: bool) -> Option<Parity
     reading.parity.map(|parity| Parity { even: parity.even != turned(parity), ..parity })
 }
 
-/// Returns an even parity bit after Gray code, which could also be a zero covered by the code. In both cases, it looks
-/// like the lowest position bit.
+/// Returns the even parity bit after a Gray code, if any. Both this bit and a zero that is covered by the code look like
+/// the lowest position bit.
 pub(super) fn find_ambiguous_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
     encoder_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
 }

@@ -1,5 +1,5 @@
-//! Candidate layouts for encoders that belong to no known family. They have common widths, and separate bits for clocks
-//! that are always 1, were active at some time, or are unexplained.
+//! Candidate layouts of common widths for encoders that belong to no known family. Clocks that are always 1, were
+//! active at some time, or are unexplained become separate bits.
 
 use super::candidates::{
     EXCHANGE_WEIGHT, NO_FAMILY_WEIGHT, PADDED, TestCandidateFn, encoder_parity, find_ambiguous_parity, sum,

@@ -1,5 +1,5 @@
-//! Candidate layouts of a family. Only settings with which the position ends at the same clock as in the reading are
-//! tried.
+//! Candidate layouts of an encoder family. Only settings whose position ends at the clock found in the recorded frames
+//! are tried.
 
 use super::candidates::{EXCHANGE_WEIGHT, PADDED, TestCandidateFn, find_ambiguous_parity, sum};
 use super::frame_set::FrameSet;
@@ -14,7 +14,7 @@ use crate::devices::ssi::protocol::range::Range;
 /// Weight of a setting that differs from the factory setting.
 const CHANGE_WEIGHT: f64 = 0.8;
 
-/// Tries every frame that the family can send. Families that come first in the list are slightly preferred.
+/// Tries every frame that the family can send. Families earlier in the list are slightly preferred.
 pub(super) fn try_families(
     take: &mut TestCandidateFn<'_>,
     read: &FrameNumbers,

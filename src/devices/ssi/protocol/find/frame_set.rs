@@ -1,12 +1,12 @@
-//! Recorded frames as bits over time, from which changing clocks, constant clocks and repeated words are recognised.
-//! This module does not decode anything.
+//! Detection of changing clocks, constant clocks and repeated words in recorded frames. This module does not decode
+//! anything.
 
 use std::collections::HashMap;
 
 use crate::devices::ssi::protocol::code::low_bits_mask;
 use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 
-/// Maximum number of consecutive frames in which a disturbed bit or an error bit deviates.
+/// Maximum number of consecutive frames in which a bit deviates because of a disturbance or an error.
 const MAX_DISTURBED_FRAMES: usize = 2;
 /// Maximum percentage of frames in which a constant bit deviates from its usual value.
 const RARE_PERCENT: usize = 25;
@@ -134,13 +134,13 @@ impl Bit {
         }
     }
 
-    /// Returns the information in bits of a clock whose bits are not explained by anything else.
+    /// Returns the information content in bits of a clock whose bits nothing else explains.
     pub(super) fn information_bits(&self, frames: usize) -> f64 {
         binary_entropy(self.changes, frames)
     }
 }
 
-/// Returns the information in bits of choosing `some` items out of `all`.
+/// Returns the information content in bits of a choice of `some` items out of `all`.
 pub(super) fn binary_entropy(some: usize, all: usize) -> f64 {
     if some == 0 || some >= all {
         return 0.0;

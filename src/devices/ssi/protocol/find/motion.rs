@@ -1,18 +1,16 @@
-//! Information content of the motion that results from an interpretation of the frames. The measure is the information
-//! in each number that cannot be predicted from the previous ones. A wrong interpretation causes jumps, which cannot be
-//! predicted.
+//! Information content of the motion that an interpretation of the frames yields. It measures how badly each number is
+//! predicted by the previous ones. A wrong interpretation causes jumps, which cannot be predicted.
 
 /// Number of steps over which each median is taken.
 const BLOCK: usize = 16;
-/// Number of bits that each group of similar differences adds to the information, in addition to the differences
-/// themselves.
+/// Cost in bits of each group of similar differences, in addition to the differences themselves.
 const MODEL_BITS: f64 = 8.0;
-/// Number of bits that a frame without a valid number adds to the information.
+/// Cost in bits of a frame without a valid number.
 const NONE_BITS: f64 = 16.0;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
-    /// Information content of all steps in bits.
+    /// Information content in bits of all steps.
     pub(super) bits: f64,
     pub(super) median: i64,
     /// Number of steps from each frame to the next, or `None` if either frame has no valid number.
@@ -26,7 +24,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Analyses numbers that wrap after `round`. A `round` of 0 means 64 bits.
+    /// Analyses numbers that wrap after `round`, or after 64 bits if `round` is 0.
     pub(super) fn from_numbers(numbers: &[Option<u64>], round: u64) -> Self {
         let steps: Vec<Option<i64>> = numbers
             .iter()

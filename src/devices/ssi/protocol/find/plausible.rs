@@ -1,5 +1,5 @@
-//! Plausibility of a layout. Encoders have one of a few common widths, and never, for example, 4096 turns of 2 steps.
-//! The most common layout has a weight of 0. For comparison, a changed setting has a weight of about 1.
+//! Plausibility of a layout. Most encoders have one of a few common widths, and none has, for example, 4096 turns of 2
+//! steps. The most common layout has a weight of 0, and a changed setting has a weight of about 1.
 
 /// Common numbers of step bits with their weights.
 const STEPS: [(u8, f64); 16] = [

@@ -1,4 +1,4 @@
-//! Test of a candidate layout. It must result in the same motion as the reading of the frames.
+//! Test of a candidate layout, which must yield the same motion as the reading of the frames.
 
 use super::frame_set::FrameSet;
 use super::motion::shortest_step;
@@ -22,8 +22,8 @@ pub(super) struct TrialReading {
 pub(super) struct LayoutProbe<'a> {
     seen: &'a FrameSet,
     read: &'a FrameNumbers,
-    /// Indices of frames that the next frame follows evenly. The flag is set if the position wraps between these two
-    /// frames.
+    /// Indices of frames from which the motion to the next frame is steady. The flag is set if the position wraps
+    /// between the two frames.
     pairs: Vec<(usize, bool)>,
 }
 

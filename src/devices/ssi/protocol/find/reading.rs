@@ -15,8 +15,8 @@ const FIRST_TEST_FRAMES: usize = 620;
 const RUN_LENGTH: usize = 31;
 /// Number of the best readings that are tested with all frames.
 const BEST_READINGS: usize = 8;
-/// Maximum excess of a reading's information over that of the best reading, in bits. Readings within this limit are
-/// also tested with other numbers of steps.
+/// Maximum number of bits by which a reading may need more information than the best one. Readings within this limit
+/// are also tested with other numbers of steps.
 const NEAR_BITS: f64 = 400.0;
 /// Minimum number of changes per thousand frames for a clock to be considered the lowest bit of the position.
 const LAST_PERMILLE: usize = 10;
@@ -52,7 +52,7 @@ pub(super) struct FrameNumbers {
     /// complete Gray code.
     pub(super) numbers: Vec<Option<u64>>,
     pub(super) motion: Motion,
-    /// Information of the motion and of all other bits, in bits.
+    /// Information content in bits of the motion and all other bits.
     pub(super) bits: f64,
     /// Clocks whose bits change without an explanation.
     pub(super) unexplained: Vec<u8>,
@@ -133,7 +133,7 @@ impl Reading {
         Some((from, to))
     }
 
-    /// Returns the information in bits of everything except the motion, with the list of unexplained clocks.
+    /// Returns the information content in bits of everything except the motion, and the unexplained clocks.
     fn non_motion_information(&self, seen: &FrameSet) -> (f64, Vec<u8>) {
         let frames = seen.words().len();
         let mut bits = 0.0;
@@ -184,7 +184,7 @@ impl FrameNumbers {
         read
     }
 
-    /// Returns the total information in bits without the penalty for unexplained clocks.
+    /// Returns the total information content in bits without the penalty for unexplained clocks.
     pub(super) fn total_cost(&self) -> f64 {
         self.bits - UNEXPLAINED_BITS * self.unexplained.len() as f64
     }

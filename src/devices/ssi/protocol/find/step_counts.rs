@@ -6,7 +6,7 @@ use super::reading::{FrameNumbers, Reading};
 use crate::devices::ssi::protocol::code::Code;
 
 const TRIED_COUNTS: usize = 40;
-/// Maximum excess of information, in bits, with which another number of steps is considered as good as the best one.
+/// Maximum number of additional bits with which another number of steps is considered as good as the best one.
 const ALTERNATIVE_MARGIN_BITS: f64 = 10.0;
 
 /// Returns the possible codes, each with two possible numbers of steps: the most common one and the largest one that
@@ -32,8 +32,8 @@ pub(super) fn possible_codes(read: &FrameNumbers) -> Vec<(Code, (u64, u64))> {
     found
 }
 
-/// Returns two pairs of the lowest and the highest number: for all consistent frames, and for nearly all of them. A
-/// disturbed frame can be consistent by chance.
+/// Returns the lowest and the highest number, first in all consistent frames, then in nearly all of them. A disturbed
+/// frame can be consistent by chance.
 fn number_extremes(read: &FrameNumbers) -> Vec<(u64, u64)> {
     let good = |frame: &usize| read.motion.is_good(*frame);
     let frames = (0..read.numbers.len()).filter(good);

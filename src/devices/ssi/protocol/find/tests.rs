@@ -189,10 +189,10 @@ fn reads(proposal: &LayoutProposal, frames: &[u64], meant: &[Option<u64>]) -> bo
     frames.iter().zip(meant).all(read)
 }
 
-/// The test uses recordings of fifteen encoders, generated in Python, with noise and disturbed frames. The flag
-/// specifies whether the result may be certain, which requires that every bit is explained. Until the end of the range
-/// is passed, a 1 before the position looks like its highest bit. A decreasing binary position looks like swapped
-/// wires, and 3600 steps look like 3598 as long as the shaft skips the first and the last one (issue 22.22).
+/// The recordings of fifteen encoders were generated in Python, with noise and disturbed frames. The flag specifies
+/// whether the result may be certain, which requires that every bit is explained. Until the end of the range is passed,
+/// a 1 before the position looks like its highest bit. A decreasing binary position looks like swapped wires, and 3600
+/// steps look like 3598 as long as the shaft skips the first and the last one (issue 22.22).
 #[test]
 fn independent_recordings_are_recognized() {
     let vectors = [
@@ -233,8 +233,8 @@ fn independent_recordings_are_recognized() {
     assert_eq!((first, foremost), (15, 14), "the truth in the first class, and as its first member");
 }
 
-/// A layout that reads a frame differently than intended is never reported as certain. `cargo bench --bench ssi` tests
-/// all thousand recordings (issue 22.22).
+/// A layout that decodes a frame incorrectly is never reported as certain. `cargo bench --bench ssi` tests all thousand
+/// recordings (issue 22.22).
 #[test]
 fn no_confirmed_layout_is_wrong() {
     let families = Families::built_in();
@@ -251,7 +251,7 @@ fn no_confirmed_layout_is_wrong() {
     assert!(ticks >= 1, "a tick is given where it may be");
 }
 
-/// The text of a proposal can be used as a layout specification without changes (issue 22.22).
+/// Every layout found can be passed to `--layout` as printed (issue 22.22).
 #[test]
 fn every_proposal_round_trips_as_text() {
     let families = Families::built_in();

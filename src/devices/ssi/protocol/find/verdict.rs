@@ -1,5 +1,5 @@
-//! Assessment of the classes: the certainty of the result, the fit of each class, and the motion that would distinguish
-//! them.
+//! Assessment of the layout classes: how certain the result is, how well each class fits, and which motion would
+//! distinguish them.
 
 use super::candidates::{LayoutCandidate, has_only_even_steps};
 use super::frame_set::FrameSet;
@@ -8,12 +8,11 @@ use super::reading::FrameNumbers;
 use super::{CLASSES, Class, ClassEvidence, Group, LayoutProposal, OpenQuestion, SearchUncertainty, WEIGHT_BITS};
 use crate::devices::ssi::protocol::range::Range;
 
-/// Minimum lead of the first class over the second one, in bits.
+/// Minimum lead of the best class over the next one, in bits.
 const LEAD_BITS: f64 = 100.0;
-/// Maximum information content of motion that is considered steady, as a fraction of the bits in the position values.
+/// Maximum information content of steady motion, as a fraction of the bits in the position values.
 const EVEN_MOTION_INFORMATION: f64 = 0.7;
-/// Maximum information content of steady motion with which a result can be reported as certain, as a fraction of the
-/// bits in the position values.
+/// Maximum information content of motion in a certain result, as a fraction of the bits in the position values.
 const CERTAIN_INFORMATION: f64 = 0.35;
 /// Maximum percentage of frames that jump or have no valid number.
 const DISTURBED_PERCENT: usize = 15;
@@ -52,8 +51,8 @@ fn has_uniform_jumps(read: &FrameNumbers) -> bool {
     alike.is_some_and(|alike| alike > 4 && alike * 4 > sizes.len())
 }
 
-/// Returns whether the motion has less information than the given fraction of the bits of its numbers, and few frames
-/// are disturbed.
+/// Returns whether the motion is steady and few frames are disturbed. Steady motion has less information than the given
+/// fraction of the position bits.
 fn is_even(read: &FrameNumbers, frames: usize, part: f64) -> bool {
     let disturbed = read.motion.jumps / 2 + read.motion.nones;
     read.motion.bits < part * f64::from(read.reading.width()) * frames as f64
@@ -158,7 +157,7 @@ fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> ClassEvidence {
     }
 }
 
-/// Returns the shaft motions that are still required to distinguish the members of a group or to confirm them.
+/// Returns the shaft motions that are still needed to distinguish or confirm the layouts in a group.
 fn open_questions(words: &FrameSet, group: &Group) -> Vec<OpenQuestion> {
     let mut open = unproven_properties(words, group);
     let members = &group.members;

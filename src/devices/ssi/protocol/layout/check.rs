@@ -5,7 +5,7 @@ use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode, low_bit
 use crate::devices::ssi::protocol::descriptor::{BitMeaning, FrameDescriptor, GrayCoverage, Parity, Word};
 use crate::devices::ssi::protocol::range::{Range, RangeError};
 
-/// The reason why a frame is impossible.
+/// The reason why a frame is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
     /// The number of clocks is 0 or above 64.
@@ -60,10 +60,10 @@ pub enum LayoutError {
         /// Number of clocks in the frame.
         clocks: u8,
     },
-    /// There are too many error bits or patterns.
+    /// The frame has too many error bits or patterns.
     #[error("at most {limit} {what} are supported, not {count}")]
     Many {
-        /// The part that occurs too often.
+        /// Part that occurs too often.
         what: RepeatedPart,
         /// Maximum number.
         limit: usize,

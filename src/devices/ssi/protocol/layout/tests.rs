@@ -1,11 +1,11 @@
-//! Tests that possible layouts round-trip through a frame, and that impossible ones are rejected with a reason.
+//! Tests that positions round-trip through valid layouts, and that invalid layouts are rejected with a reason.
 
 use proptest::prelude::*;
 
 use super::*;
 use crate::devices::ssi::protocol::{BitMeaning, Code, ErrorBit, Fraction, Parity, Range, Repeat};
 
-/// Generates possible frames with error bits, zeros, repetition, parity, and any code.
+/// Generates valid layouts with error bits, zeros, repetition, parity, and any code.
 pub(crate) fn layouts() -> impl Strategy<Value = Layout> {
     let range = prop_oneof![
         (0..=32_u8, 0..=32_u8).prop_map(|(multiturn, singleturn)| Range::Bits { multiturn, singleturn }),
@@ -177,8 +177,8 @@ fn impossible_layouts_are_refused_with_a_reason() {
     }
 }
 
-/// The frames contain the position ABCDEFh in Gray code followed by an error bit of 1, which may be part of the Gray
-/// code or not (reference section 8).
+/// The frames contain the position ABCDEFh in Gray code and an error bit of 1, which the Gray code may or may not cover
+/// (reference section 8).
 #[test]
 fn gray_decodes_with_and_without_the_error_bit() {
     let descriptor = |coded| FrameDescriptor {
@@ -197,7 +197,7 @@ fn gray_decodes_with_and_without_the_error_bit() {
     assert_eq!(gray_to_binary(0x1FC_5631), 0x157_9BDE);
 }
 
-/// The Gray code may cover the zeros around the position or not. The frames differ if the lowest bit is 1 (reference
+/// If the lowest bit is 1, the frames depend on whether the Gray code covers the zeros around the position (reference
 /// section 2).
 #[test]
 fn gray_may_cover_the_position_or_also_the_zeros() {

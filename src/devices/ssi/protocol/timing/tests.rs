@@ -18,8 +18,8 @@ fn times(key: &str) -> Times {
     Families::built_in().find_by_key(key).unwrap().times
 }
 
-/// An encoder without a family has a tm of 15 to 25 µs, a maximum of 2 MHz, and the cable table of all SSI encoders. 33
-/// bits at 400 kHz take 82.5 µs. The interval between its positions is unknown (reference section 1).
+/// Without a family, tm is 15 to 25 µs, the clock is at most 2 MHz, and the cable table of all SSI encoders applies. 33
+/// bits at 400 kHz take 82.5 µs. The interval between positions is unknown (reference section 1).
 #[test]
 fn any_encoder_has_the_general_times() {
     let reads = ReadConditions { cable_metres: Some(80.0), ..reads(33, 400e3, 20) };

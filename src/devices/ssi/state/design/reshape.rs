@@ -1,5 +1,5 @@
-//! Adapts a frame to a different position range or code. The frame becomes longer or shorter, as if a user had redrawn
-//! it.
+//! Adaptation of a frame to a different position range or code. The frame becomes longer or shorter, as if the user had
+//! redrawn it.
 
 use crate::devices::ssi::protocol::{Code, FrameDescriptor, LayoutError, PositionCode, Range};
 
@@ -7,8 +7,8 @@ use crate::devices::ssi::protocol::{Code, FrameDescriptor, LayoutError, Position
 /// change. Otherwise, the parts after the position move, and the frame becomes longer or shorter.
 ///
 /// # Errors
-/// Returns an error if the positions or code words are impossible. The caller must check whether the complete frame is
-/// possible.
+/// Returns an error if the positions or code words are invalid. The caller must check whether the complete frame is
+/// valid.
 pub(super) fn with_positions(
     before: &FrameDescriptor,
     range: Range,

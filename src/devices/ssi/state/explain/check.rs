@@ -1,4 +1,4 @@
-//! Texts for the device check.
+//! Messages of the device check.
 
 use super::finding_text as said;
 use crate::app::Text;

@@ -1,4 +1,4 @@
-//! Texts of the exports in both languages. The English texts are the same as on the command line.
+//! Texts of exported files in both languages. The English texts are the same as on the command line.
 
 use super::code_text;
 use crate::app::Text;
@@ -87,7 +87,7 @@ mod tests {
     use crate::app::Language::{English, German};
     use crate::devices::ssi::protocol::english_text;
 
-    /// The English texts of the catalogue match the texts of the command line.
+    /// The English texts in the catalogue match those of the command line.
     #[test]
     fn both_languages_have_the_same_content() {
         let codes = [Code::Binary, Code::Gray, Code::GrayExcess, Code::Bcd].map(ExportText::CodeName);

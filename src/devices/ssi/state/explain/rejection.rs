@@ -1,4 +1,4 @@
-//! Messages about impossible layouts in both languages. The cause is an error in a frame, a family or a format string.
+//! Messages about invalid layouts in both languages. The cause is an error in a frame, a family or a format string.
 
 use crate::app::Text;
 use crate::app::explain::literal_text;
@@ -18,7 +18,7 @@ pub fn settings_error_text(error: &SettingsError) -> Text {
     rejection_text(settings_error_reason(error))
 }
 
-/// Returns the reason why settings are impossible, as a part of a sentence.
+/// Returns the reason why settings are invalid, as part of a sentence.
 pub(super) fn settings_error_reason(error: &SettingsError) -> Text {
     match error {
         SettingsError::None { family, field } => {
@@ -132,7 +132,7 @@ fn field_name(field: SettingName) -> Text {
     })
 }
 
-/// Returns the reason why a frame is impossible, as a part of a sentence.
+/// Returns the reason why a frame is invalid, as part of a sentence.
 pub(super) fn layout_error_reason(error: &LayoutError) -> Text {
     match error {
         LayoutError::Clocks(clocks) => TEXTS.text("ssi_reason.clocks").with("clocks", clocks),

@@ -1,4 +1,4 @@
-//! Form rows for a family, which are the settings of its encoders.
+//! Form rows for a family, one for each of its settings.
 
 use super::{CODES, Field, FieldInput, GRAY_COVERAGES, Group, RangeKind, Row, byte, number_word, position_rows};
 use crate::app::Text;
@@ -30,7 +30,7 @@ pub(super) fn family_groups(designer: &LayoutDesigner, family: &Family, settings
     vec![Group { title: "ssi_form.position", rows: position }, Group { title: "ssi_form.frame", rows: frame }]
 }
 
-/// Returns the settings of a family after an entry, or `None` if the field does not belong to them.
+/// Returns the family settings after a field was changed, or `None` if the field is not a family setting.
 pub(super) fn settings_after_entry(
     designer: &LayoutDesigner,
     family: &Family,

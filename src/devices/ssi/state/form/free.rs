@@ -70,7 +70,7 @@ fn error(index: usize, bit: &ErrorBit) -> Group {
     }
 }
 
-/// Returns the change of a frame without a family after an entry, or `None` if the field does not belong to the frame.
+/// Returns the edit for a changed field of a frame without a family, or `None` if such a frame does not have the field.
 pub(super) fn edit_after_entry(designer: &LayoutDesigner, field: Field, input: &FieldInput) -> Option<Edit> {
     let before = &designer.design().profile.descriptor;
     if let Some(range) = apply_range_input(&before.range, field, input) {
@@ -179,7 +179,7 @@ fn with_padding(before: &FrameDescriptor, lead: u8, between: u8) -> Option<Frame
     Some(next)
 }
 
-/// Returns the frame with another parity. A new parity bit becomes an additional clock at the end.
+/// Returns the frame with another parity. A new parity bit is added as a clock at the end.
 fn with_parity(mut next: FrameDescriptor, choice: usize) -> Option<FrameDescriptor> {
     match (choice, next.parity) {
         (0, Some(parity)) => {

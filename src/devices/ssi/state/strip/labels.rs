@@ -1,11 +1,11 @@
-//! Texts about the cells, fields and handles of a frame.
+//! Labels of the cells, fields and handles of a frame.
 
 use super::{Field, Handle, Kind, Strip};
 use crate::app::Text;
 use crate::devices::ssi::protocol::{BitMeaning, GrayCoverage, Role};
 use crate::devices::ssi::state::TEXTS;
 
-/// Returns a sentence about the content of a clock.
+/// Returns a sentence about the bit at a clock.
 pub fn cell_text(strip: &Strip, clock: u8) -> Text {
     let index = usize::from(clock).checked_sub(1);
     let cell = index.and_then(|index| strip.cells().get(index));

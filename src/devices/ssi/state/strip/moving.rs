@@ -1,5 +1,5 @@
-//! Moving parts of a frame. The result is always a possible frame. If the requested clock is not possible, the nearest
-//! possible clock on the side of the current one is used.
+//! Moves parts of a frame. The result is always a valid frame. If the requested clock is not possible, the part moves
+//! towards it as far as possible.
 
 use super::{Handle, PositionParts, has_explicit_bit_patterns};
 use crate::devices::ssi::protocol::{FrameDescriptor, GrayCoverage, Layout, Parity, Pattern, Range, Repeat, Word};
@@ -102,8 +102,8 @@ const fn depends_on_area_end(descriptor: &FrameDescriptor) -> bool {
     descriptor.shift_right || !matches!(descriptor.coded, GrayCoverage::Position)
 }
 
-/// Returns the frame with a part moved from one clock to another. The frame may be impossible. Returns `None` if no
-/// descriptor can express it.
+/// Returns the frame with a part moved from one clock to another, or `None` if no descriptor can express it. The frame
+/// may be invalid.
 fn try_move(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) -> Option<FrameDescriptor> {
     let by = i16::from(to) - i16::from(at);
     let mut new = layout.descriptor().clone();

@@ -1,4 +1,4 @@
-//! Tests of the cells of frames, and of moves compared with frames of the reference (section 8).
+//! Tests of frame cells, and of moves that must yield frames of the reference (section 8).
 
 use proptest::prelude::*;
 
@@ -79,7 +79,7 @@ fn layouts() -> impl Strategy<Value = Layout> {
     )
 }
 
-/// Returns the frame without an area that has no effect because it covers the whole word.
+/// Returns the frame with its area extended to the whole word if the area has no effect.
 fn without_area(layout: &Layout) -> FrameDescriptor {
     let mut descriptor = layout.descriptor().clone();
     if !descriptor.shift_right && descriptor.coded == GrayCoverage::Position {

@@ -150,7 +150,7 @@ fn frequencies_are_formatted_and_parsed_with_units() {
 }
 
 proptest! {
-    /// Every event is on the axis, whose sections are in order. Together, they are not much longer than a burst.
+    /// Every event is on the axis. The sections of the axis are in order and together not much longer than a burst.
     #[test]
     fn every_event_is_on_the_axis(hz in 1e3..2e6_f64, pause in 0.0..1e6_f64, synchronous: bool, key in 0..3_usize) {
         let diagram = diagram(["ahm36", "atm60", "ttk70"][key], hz, pause, synchronous);

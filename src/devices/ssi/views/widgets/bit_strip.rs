@@ -101,7 +101,7 @@ struct StripContext<'a> {
     theme: &'a Theme,
     model: &'a BitStrip<'a>,
     shown: &'a Strip,
-    /// Bits of the frame, if known.
+    /// States of the cells, or empty if no frame is known.
     cells: &'a [CellState],
     rows: &'a Rows,
     base: Id,

@@ -7,15 +7,15 @@ use super::rows::Rows;
 use super::{Drag, StripContext, StripEvent, paint, reserve_arrow_keys};
 use crate::devices::ssi::state::strip::{self, Handle, Strip};
 
-/// Distance in points of a handle's sensitive area from its edge.
+/// Distance in points from a boundary to the sensitive area of its handle.
 const GRIP_DISTANCE: f32 = 7.0;
 const GRIP_WIDTH: f32 = 14.0;
-/// Width in points of the last handle's sensitive area after the last clock.
+/// Width in points of the last handle's sensitive area beyond the last clock.
 const LAST_GRIP_WIDTH: f32 = 9.5;
-/// Distance in points of a handle's visible tab from its edge.
+/// Distance in points from a boundary to the visible tab of its handle.
 const TAB_DISTANCE: f32 = 3.0;
 const SECOND_TAB_DISTANCE: f32 = 8.0;
-/// Length of each end of a field, as a fraction of the field, in which a drag does not move the whole field.
+/// Fraction of a field at each end in which a drag does not move the whole field.
 const END_FRACTION: f32 = 0.25;
 
 pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {

@@ -28,7 +28,7 @@ pub(super) struct NameTag {
 const NAME_SPACING: f32 = 6.0;
 /// Maximum width of a name. A longer name is truncated, and the tooltip shows it in full.
 const MAX_NAME_WIDTH: f32 = 160.0;
-/// Number of rows that are searched for free space for a name. It equals the maximum number of error bits in a frame.
+/// Number of rows that are searched for free space for a name, which equals the maximum number of error bits.
 const LEVELS: usize = 8;
 
 /// A name that is wider than its field.
@@ -36,9 +36,9 @@ struct OverflowingName {
     index: usize,
     line: usize,
     x: f32,
-    /// Whether the names of both neighbours fit into their fields.
+    /// Whether the names of both neighbouring fields fit below their fields.
     alone: bool,
-    /// Whether the name starts at its leader line. Otherwise, it ends there.
+    /// Whether the name starts at its leader line, rather than ends there.
     begins: bool,
     room: f32,
     galley: Arc<Galley>,
