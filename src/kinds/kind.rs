@@ -1,4 +1,4 @@
-//! Kinds of devices and tools, and the assembly of a program from them.
+//! Kinds of devices and tools, from which a program is assembled.
 
 use crate::app::{DeviceKind, KindRegistry, ToolKind};
 use crate::buses::bridge::sim::AttachableKind;
@@ -10,8 +10,8 @@ use crate::ui::{DeviceView, TabViews, ToolView};
 pub struct Kind {
     pub view: &'static dyn DeviceView,
     pub commands: &'static dyn DeviceCommands,
-    /// The virtual device for the virtual adapter. `None` for a kind that uses no adapter. The adapter offers only the
-    /// built-in list (`kinds::attachable_kinds`), which does not contain external kinds.
+    /// Virtual device for the virtual adapter, or `None` for a kind that does not use the adapter. The adapter offers
+    /// only the built-in list (`kinds::attachable_kinds`), which does not contain external kinds.
     pub at_adapter: Option<&'static dyn AttachableKind>,
 }
 
@@ -20,7 +20,7 @@ pub struct ToolTab {
     pub view: &'static dyn ToolView,
 }
 
-/// The device kinds and tools that make up the program, in the lists that the window and the command line use.
+/// A program, made up of the device kinds and tools that its window and command line offer.
 #[derive(Clone, Copy)]
 pub struct Program {
     pub studio: KindRegistry,
@@ -29,9 +29,9 @@ pub struct Program {
 }
 
 impl Program {
-    /// Creates a program with the given device kinds and tools, in the order of the navigation and the help.
-    /// `protocols` adds protocols to decode, and `further` adds commands to those of the devices. The lists are kept
-    /// for the lifetime of the process.
+    /// Creates a program from device kinds and tools, in the order in which the navigation and the help list them.
+    /// `protocols` adds protocols to decode, and `further` adds commands to those of the devices. The lists are never
+    /// freed.
     pub fn new(
         kinds: &[Kind],
         tools: &[ToolTab],

@@ -1,4 +1,4 @@
-//! Tests of profiles of every kind: ready-made profiles, profiles of schema 1, and misspelt entry names.
+//! Tests with profiles of every kind: ready-made ones, ones of schema 1, and ones with misspelt entry names.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ fn profiles_in(folder: &str) -> Vec<(PathBuf, String)> {
     all.map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
 }
 
-/// Returns the names before colons outside strings and comments, each with its start and end.
+/// Returns the start and end of each entry name, which is a word before a colon outside strings and comments.
 fn names(text: &str) -> Vec<(usize, usize)> {
     let bytes = text.as_bytes();
     let (mut at, mut found) = (0, Vec::new());
@@ -56,7 +56,7 @@ fn typing_errors(name: &str) -> Vec<String> {
         .collect()
 }
 
-/// Previously, 153 of 393 misspelt names were accepted (issue 22.17).
+/// No misspelt name may be accepted, as 153 of 393 once were (issue 22.17).
 #[test]
 fn misspelt_names_in_ready_made_profiles_are_reported() {
     let mut misspelt = 0;
@@ -77,7 +77,7 @@ fn misspelt_names_in_ready_made_profiles_are_reported() {
     assert!(misspelt >= 393, "{misspelt}");
 }
 
-/// The ready-made profiles of schema 1, and a saved profile of each kind from that time, can be opened (issue 22.17).
+/// Covers the ready-made profiles of schema 1, and a profile of each kind saved at that time (issue 22.17).
 #[test]
 fn schema_1_profiles_can_be_opened() {
     let files = profiles_in("tests/fixtures/schema-1");

@@ -1,4 +1,4 @@
-//! Parameter values: parsing, printing, and descriptions of the allowed ones.
+//! Parameter values: how they are parsed, printed and described.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -41,21 +41,21 @@ pub trait ParameterValues {
 #[derive(Clone, Debug)]
 pub struct WholeNumbers<T>(pub Quantity, pub RangeInclusive<T>);
 
-/// Numbers that may have a decimal point, with their quantity and range, exact to a thousandth.
+/// Numbers with an optional decimal point, with their quantity and range, exact to a thousandth.
 #[derive(Clone, Debug)]
 pub struct DecimalNumbers(pub Quantity, pub RangeInclusive<f64>);
 
 #[derive(Clone, Debug)]
 pub struct Milliseconds(pub RangeInclusive<u64>);
 
-/// Voltages entered in volts and stored in millivolts, with the allowed range in millivolts.
+/// Voltages entered in volts and stored in millivolts. The allowed range is in millivolts.
 #[derive(Clone, Debug)]
 pub struct Millivolts(pub RangeInclusive<u16>);
 
 #[derive(Clone, Copy, Debug)]
 pub struct Keywords<T: 'static>(pub &'static [(&'static str, T)]);
 
-/// Values in a custom notation, with the function that parses them.
+/// Values in a custom notation, parsed by the given function.
 #[derive(Clone, Debug)]
 pub struct CustomNotation<T>(pub AllowedValues, pub fn(&str) -> Option<T>);
 
@@ -64,10 +64,10 @@ pub struct OptionalValue<V>(pub V);
 
 pub const SWITCH: Keywords<bool> = Keywords(&[("on", true), ("off", false)]);
 
-/// Any string. All strings are accepted at this stage, because the meaning depends on other parameters.
+/// Any string, accepted without a check, because its meaning depends on other parameters.
 pub const ANY: CustomNotation<String> = CustomNotation(AllowedValues::words(&[]), |text| Some(text.to_owned()));
 
-/// Parses a whole number that fits into `T`, in decimal or in hexadecimal after `0x`.
+/// Parses a whole number that fits into `T`. It is decimal, or hexadecimal after `0x`.
 pub fn parse_whole<T: TryFrom<i128>>(text: &str) -> Option<T> {
     let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         Some(digits) => u64::from_str_radix(digits, 16).ok()?.into(),

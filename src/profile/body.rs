@@ -1,5 +1,5 @@
-//! Content of profiles for any kind of device. A device module implements [`Profile`] for its own type, and this module
-//! derives from it the untyped traits that documents use.
+//! The content of a profile, for any kind of device. A device module implements [`Profile`] for its own type. The
+//! untyped traits used by documents are derived from it here.
 
 use std::any::Any;
 use std::fmt;
@@ -16,7 +16,7 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     /// Profile format of this kind, for use in [`ProfileFormats`].
     const FORMAT: &'static dyn ProfileFormat = &ProfileFormatAdapter::<Self>(PhantomData);
 
-    /// List that contains only this format, for callers that accept no other kind.
+    /// A list of only this format, for code that accepts no other kind.
     const FORMATS: ProfileFormats = ProfileFormats::new(&[Self::FORMAT]);
 
     /// Parses the profile from the entries of a document.
@@ -37,11 +37,11 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
         vec![item.clone()]
     }
 
-    /// Removes from the backup of a write the values that the write did not change. The default is for kinds whose
-    /// backups contain only the surroundings of the write.
+    /// Removes from a write's backup all values that the write did not change. By default, nothing is removed, for kinds
+    /// whose backups contain little more than the written values.
     fn keep_items(&mut self, _items: &[ChangedItem]) {}
 
-    /// Returns what the user must do about a written item that restoring this backup cannot write back.
+    /// Returns what the user must do about a written item that cannot be restored from this backup.
     fn redo(&self, _item: &ChangedItem) -> Option<Redo> {
         None
     }
@@ -79,10 +79,10 @@ pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
     /// Returns the function that splits a changed item from the logbook into single values.
     fn single_values(&self) -> fn(&ChangedItem) -> Vec<ChangedItem>;
 
-    /// Removes from the backup of a write the values that the write did not change.
+    /// Removes from a write's backup all values that the write did not change.
     fn keep_items(&mut self, items: &[ChangedItem]);
 
-    /// Returns what the user must do about a written item that restoring this backup cannot write back.
+    /// Returns what the user must do about a written item that cannot be restored from this backup.
     fn redo(&self, item: &ChangedItem) -> Option<Redo>;
 }
 
@@ -174,23 +174,23 @@ impl Body {
         self.0.keep_items(items);
     }
 
-    /// Returns what the user must do about a written item that restoring this backup cannot write back.
+    /// Returns what the user must do about a written item that cannot be restored from this backup.
     pub fn redo(&self, item: &ChangedItem) -> Option<Redo> {
         self.0.redo(item)
     }
 
-    /// Returns the error that reports that this profile is not for the kind of device `wanted`.
+    /// Returns the error that this profile is not for the kind of device `wanted`.
     pub fn wrong_kind_error(&self, wanted: &'static str) -> ProfileError {
         ProfileError::OtherKind { found: self.kind(), wanted }
     }
 
-    /// Returns the profile as `P`, or `None` if the profile is of another kind of device.
+    /// Returns the profile as `P`, or `None` if it is for another kind of device.
     pub fn get<P: Profile>(&self) -> Option<&P> {
         let any: &dyn Any = self.0.as_ref();
         any.downcast_ref()
     }
 
-    /// Returns the profile as mutable `P`, or `None` if the profile is of another kind of device.
+    /// Returns the profile as mutable `P`, or `None` if it is for another kind of device.
     pub fn get_mut<P: Profile>(&mut self) -> Option<&mut P> {
         let any: &mut dyn Any = self.0.as_mut();
         any.downcast_mut()

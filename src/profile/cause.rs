@@ -4,7 +4,7 @@ use std::any::Any;
 use std::error::Error;
 use std::fmt;
 
-/// The device-specific reason why a profile entry is invalid. It displays and compares like the wrapped error.
+/// The device-specific reason why a profile entry is invalid. Display and comparison are those of the wrapped error.
 pub struct Cause(Box<dyn DynCause>);
 
 trait DynCause: Any + Error + Send + Sync {

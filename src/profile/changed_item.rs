@@ -1,14 +1,14 @@
-//! A changed item of a write, as stored in the logbook.
+//! An item changed by a write, as stored in the logbook.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// A changed item with its old and new value. The item and the values are in the notation of the command line,
-/// independent of the language of the window. Access codes are never included.
+/// An item with its old and new value, all in the notation of the command line regardless of the display language.
+/// Access codes are never included.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ChangedItem {
-    /// Name of the item. The `read` command accepts it if the item is readable.
+    /// Name of the item. If the item is readable, the `read` command accepts this name.
     pub item: String,
     /// Name of the register or area in the manual, if `item` is an address.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -25,7 +25,7 @@ impl ChangedItem {
         ChangedItem { item: item.to_string(), name: None, old, new }
     }
 
-    /// Creates an item whose new value does not replace a single old value.
+    /// Creates an item with a new value that does not replace a single old one.
     pub fn new_value(item: impl ToString, new: impl ToString) -> Self {
         ChangedItem::new(item, None, Some(new.to_string()))
     }

@@ -1,17 +1,17 @@
-//! Comparison of two profiles, or of a profile with a device.
+//! Compares two profiles, or a profile with a device.
 
 use std::ops::Range;
 
 use crate::bits::hex_compact;
 
-/// An item of one or both sides.
+/// An item that one or both sides have.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ComparedItem {
     /// Name of the item as accepted by `read`, such as `field:1@3+2`.
     pub item: String,
     /// Name of the register or area in the manual, if `item` is an address.
     pub name: Option<String>,
-    /// Value on the left side, with bytes as upper-case hex. Empty if it could not be read, and `None` if the left side
+    /// Value on the left side, with bytes as upper-case hex. It is empty if unreadable, and `None` if the left side
     /// does not have the item.
     pub left: Option<String>,
     /// Value on the right side.
@@ -32,10 +32,10 @@ pub struct Difference {
 /// Result of a comparison.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Comparison {
-    /// All items in the order of the device memory. Consecutive bytes that differ are one item, and so are consecutive
-    /// bytes that are equal.
+    /// All items in the order of the device memory. Each run of differing bytes is one item, and so is each run of
+    /// equal bytes.
     pub items: Vec<ComparedItem>,
-    /// Number of compared values. Each byte of a data field is one value, including the status byte.
+    /// Number of values compared. Each byte of a data field, including its status byte, counts as one value.
     pub compared: u64,
 }
 
@@ -47,7 +47,7 @@ impl ComparedItem {
 }
 
 impl Comparison {
-    /// Compares an item that is a single value. `None` means that a side does not have the item.
+    /// Compares an item with a single value, which is `None` on a side that does not have the item.
     pub fn compare_item<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
         if left.is_some() && right.is_some() {
             self.compared += 1;
@@ -58,7 +58,7 @@ impl Comparison {
         }
     }
 
-    /// Compares the bytes that both sides have. `item` names a range of them.
+    /// Compares the bytes that both sides have. `item` returns the name for a range of bytes.
     pub(crate) fn compare_bytes(&mut self, left: &[u8], right: &[u8], item: impl Fn(Range<usize>) -> ComparedItem) {
         self.compared += left.len().min(right.len()) as u64;
         for (_, run) in runs(left, right) {
@@ -92,12 +92,12 @@ impl Comparison {
     }
 }
 
-/// Returns the ranges of consecutive bytes that differ. Bytes beyond the shorter side are ignored.
+/// Returns the ranges in which bytes differ. Bytes beyond the end of the shorter side are ignored.
 pub(crate) fn differing_ranges(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
     runs(left, right).into_iter().filter(|(differs, _)| *differs).map(|(_, run)| run).collect()
 }
 
-/// Returns the ranges of consecutive bytes, and whether the bytes in each range differ.
+/// Splits the bytes into ranges that are equal or different throughout, and returns which.
 fn runs(left: &[u8], right: &[u8]) -> Vec<(bool, Range<usize>)> {
     let mut runs: Vec<(bool, Range<usize>)> = Vec::new();
     for (at, (left, right)) in left.iter().zip(right).enumerate() {

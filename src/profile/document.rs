@@ -1,4 +1,4 @@
-//! Profile documents, which consist of the schema version, the kind of device, and the saved content.
+//! Profile documents, with the schema version, the kind of device and the saved content.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -28,10 +28,10 @@ pub struct ProfileDocument {
     pub body: Body,
     /// Unknown entries, which are preserved when the profile is saved.
     pub unknown: UnknownValues,
-    /// Schema version. A profile with a version above [`SCHEMA`] can only be viewed, because saving it would lose its
-    /// unknown parts.
+    /// Schema version. A profile newer than [`SCHEMA`] can only be viewed, because saving it would lose its unknown
+    /// parts.
     pub schema: u32,
-    /// Paths of entries that the schema does not define. In older files, such entries are moved to `extra`.
+    /// Paths of entries that the schema does not define. Saving moves such entries to `extra`.
     pub beyond: Vec<String>,
 }
 
@@ -93,8 +93,8 @@ impl ProfileDocument {
         Ok(ProfileDocument { saved, note, body, unknown, schema, beyond: reading.undefined_entries() })
     }
 
-    /// Returns whether the schema is newer than supported. Such a profile can be viewed and compared, but not saved or
-    /// written to a device.
+    /// Returns whether the schema is newer than this program supports. Such a profile can be viewed and compared, but
+    /// not saved or written to a device.
     pub fn is_newer(&self) -> bool {
         self.schema > SCHEMA
     }

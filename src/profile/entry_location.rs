@@ -1,4 +1,4 @@
-//! Source locations of profile entries. The parser's values do not contain them.
+//! Finds where an entry is in the source of a profile, since the parsed values do not tell.
 
 use std::fmt;
 
@@ -21,7 +21,7 @@ pub(crate) fn find_location(text: &str, path: &str) -> Option<(usize, usize)> {
     Some((line, at.unwrap_or(found.span.end.col)))
 }
 
-/// Error message that ends the search when the entry is found.
+/// Error message that stops the parser when the entry is found.
 const FOUND_MESSAGE: &str = "found";
 
 struct EntrySearch<'w> {

@@ -17,7 +17,7 @@ pub enum ProfileError {
         /// Description of the problem.
         what: SyntaxErrorKind,
     },
-    /// The name of an entry is unknown and resembles that of a missing entry.
+    /// An unknown entry name resembles that of a missing entry.
     #[error("line {line}, column {column}: {path} is unknown, and {intended} is missing")]
     Misspelt {
         /// Line number, starting at 1.
@@ -29,8 +29,7 @@ pub enum ProfileError {
         /// Name of the missing entry.
         intended: String,
     },
-    /// The schema version is missing or newer than supported. A newer version is an error only where a supported
-    /// version is required.
+    /// The schema version is missing, or is newer than supported where a supported version is required.
     #[error("schema {found} is not supported (supported: 1 to {known})")]
     Schema {
         /// Version in the file.
@@ -46,7 +45,7 @@ pub enum ProfileError {
         /// Known kinds of device.
         known: Vec<&'static str>,
     },
-    /// The profile is for a different kind of device than required.
+    /// The profile is for a kind of device other than the required one.
     #[error("the profile is for a {found} device, not for a {wanted} device")]
     OtherKind {
         /// Kind of device in the file.
@@ -76,7 +75,7 @@ pub enum ProfileError {
         /// Description of the problem.
         problem: HexError,
     },
-    /// A value or a combination of values is invalid for the kind of device.
+    /// A value or combination of values is invalid for the kind of device.
     #[error("{path}: {cause}")]
     Refused {
         /// Path of the entry.
@@ -86,13 +85,13 @@ pub enum ProfileError {
     },
 }
 
-/// A violation of the RON syntax or of the rules for RON in profiles.
+/// A violation of RON syntax, or of the stricter rules for RON in profiles.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SyntaxErrorKind {
     /// Structures are nested too deeply.
     #[error("the structures are nested too deeply")]
     TooDeep,
-    /// A name occurs twice within a structure.
+    /// A name occurs twice in the same structure.
     #[error("{0} appears twice")]
     Twice(String),
     /// Message of the RON parser.

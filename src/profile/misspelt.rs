@@ -1,4 +1,4 @@
-//! Detection of misspelt and undefined entries while a profile is being read.
+//! Detects misspelt and undefined entries while a profile is being read.
 
 use std::cell::{Cell, RefCell};
 
@@ -7,14 +7,14 @@ use super::{ProfileError, SCHEMA};
 /// State shared by the structures of a file while it is being read.
 #[derive(Default)]
 pub(super) struct Reading {
-    /// Schema version of the file if it is newer than supported. Unknown entries of such a file are kept.
+    /// Schema version of the file, if it is newer than supported. Unknown entries of such a file are kept.
     newer: Cell<Option<u32>>,
     beyond: RefCell<Vec<String>>,
-    /// Misspelt name that may explain the error about a missing entry.
+    /// A misspelt name that may explain why an entry is missing.
     slip: RefCell<Option<Misspelling>>,
 }
 
-/// A misspelt name of an entry. Misspellings are ordered by the number of wrong letters.
+/// A misspelt entry name. Misspellings are ordered by the number of wrong letters.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Misspelling {
     pub(super) letters: usize,
@@ -23,7 +23,7 @@ pub(super) struct Misspelling {
 }
 
 impl Misspelling {
-    /// Converts the misspelling to an error. The line number is added later.
+    /// Converts the misspelling to an error, still without its line and column.
     pub(super) fn error(self) -> ProfileError {
         let Misspelling { path, intended, .. } = self;
         ProfileError::Misspelt { line: 0, column: 0, path, intended }
@@ -49,14 +49,14 @@ impl Reading {
         self.beyond.borrow().clone()
     }
 
-    /// Records a misspelt name unless one has already been recorded. The innermost structure reports first.
+    /// Records a misspelt name, unless a structure further inside has already recorded one.
     pub(super) fn record_misspelling(&self, slip: Misspelling) {
         self.slip.borrow_mut().get_or_insert(slip);
     }
 
-    /// Returns the error to report. For a file with a newer schema, this is the schema error. An error caused by a
-    /// misspelt name is replaced with an error about that name. An error about another entry is attributed to a
-    /// misspelt name only if at most one letter differs.
+    /// Returns the error to report in place of `error`. For a newer schema, this is the schema error. An error caused
+    /// by a misspelt name becomes an error about that name. Any other error is attributed to a misspelt name only if at
+    /// most one letter is wrong.
     pub(super) fn reported_error(&self, error: ProfileError) -> ProfileError {
         if let Some(found) = self.newer.get() {
             return ProfileError::Schema { found, known: SCHEMA };
@@ -71,8 +71,8 @@ impl Reading {
     }
 }
 
-/// Returns the number of wrong letters if the name looks like a misspelling of `intended`, or `None` otherwise. Only a
-/// few letters may be wrong, or one name must be a prefix of the other. Case, hyphens and underscores are ignored.
+/// Returns the number of wrong letters if a name looks like a misspelling of `intended`. Only a few letters may be
+/// wrong, or one name must be a prefix of the other. Case, hyphens and underscores are ignored.
 pub(super) fn edit_distance(name: &str, intended: &str) -> Option<usize> {
     let plain = |text: &str| -> Vec<char> {
         text.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()

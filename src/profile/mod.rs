@@ -1,4 +1,4 @@
-//! Profiles, differences and plans. This module does no I/O. The `store` module opens files, and the procedures of a
+//! Profiles, differences and plans. There is no I/O here: the `store` module opens files, and the procedures of a
 //! device access the device.
 
 #![warn(missing_docs)]

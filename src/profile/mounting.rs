@@ -1,4 +1,4 @@
-//! Marks in profiles for values that are valid only for one device on a particular machine.
+//! Marks for profile values that are valid only for one device on a particular machine.
 
 use std::error::Error;
 
@@ -20,8 +20,8 @@ pub struct MountingMark<Item> {
 const ENTRY: &str = "mounting";
 
 impl<Item> MountingMark<Item> {
-    /// Reads all marks of a profile. `item` parses a marked item or returns the reason why it is invalid. `expected`
-    /// describes the valid form of an item.
+    /// Reads all marks of a profile. `item` parses the marked item or returns why it is invalid. `expected` describes
+    /// the valid form of an item.
     pub(crate) fn read_all<E: Error + Clone + Eq + Send + Sync + 'static>(
         entries: &mut Entries,
         expected: AllowedValues,
@@ -48,7 +48,7 @@ impl<Item> MountingMark<Item> {
 }
 
 impl<Item: ToString> MountingMark<Item> {
-    /// Writes all marks of a profile with a comment. If there are none, nothing is written.
+    /// Writes all marks of a profile below a comment, or nothing if there are none.
     pub(crate) fn write_all(marks: &[Self], comment: &str, writer: &mut Writer) {
         if marks.is_empty() {
             return;
@@ -64,5 +64,5 @@ impl<Item: ToString> MountingMark<Item> {
     }
 }
 
-/// Comment for items that are copied to another encoder only on request.
+/// Comment above the items that are copied to another encoder only on request.
 pub(crate) const MOUNTING_COMMENT: &str = "belongs to the mounting: never restored onto another encoder by itself";

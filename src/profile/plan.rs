@@ -1,9 +1,8 @@
-//! Plans, which are the only way to write to a device: read → difference → plan → consent to this plan → write → read
-//! back.
+//! Plans, the only way to write to a device: read → difference → plan → consent to this plan → write → read back.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// A planned write that the user reviews. Only the operations in the plan are executed.
+/// A planned write for the user to review. Only the operations in the plan are executed.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Plan<Base, Op> {
     /// The values on which the plan is based. They are read again before the first operation and must be unchanged.
@@ -14,16 +13,16 @@ pub struct Plan<Base, Op> {
 
 /// An operation of a plan.
 pub trait Operation {
-    /// Returns the number of persistent writes of the operation, not counting repetitions.
+    /// Returns how many persistent writes the operation needs if nothing has to be repeated.
     fn write_cycles(&self) -> u64;
 }
 
-/// The identifier of a plan, to which a consent refers.
+/// The identifier of a plan. A consent refers to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanId(u64);
 
 impl<Base: Hash, Op: Hash> Plan<Base, Op> {
-    /// Returns the identifier of the plan, which is derived from its base and its operations.
+    /// Returns the identifier of the plan, which is a hash of its base and operations.
     pub fn id(&self) -> PlanId {
         let mut hasher = DefaultHasher::new();
         self.hash(&mut hasher);
@@ -39,7 +38,7 @@ impl<Base, Op> Plan<Base, Op> {
 }
 
 impl<Base, Op: Operation> Plan<Base, Op> {
-    /// Returns the number of persistent writes of the plan, not counting repetitions.
+    /// Returns how many persistent writes the plan needs if nothing has to be repeated.
     pub fn write_cycles(&self) -> u64 {
         self.ops.iter().map(Operation::write_cycles).sum()
     }
@@ -50,7 +49,7 @@ impl<Base, Op: Operation> Plan<Base, Op> {
 pub struct Consent(PlanId);
 
 impl Consent {
-    /// Creates the consent of a user who has seen and approved the plan with this identifier.
+    /// Creates the consent of a user who has approved the plan with this identifier.
     pub fn to(plan: PlanId) -> Self {
         Consent(plan)
     }

@@ -1,4 +1,4 @@
-//! Options and result of a restore for any kind of device.
+//! Options for restoring a profile, and the result of planning it, for any kind of device.
 
 /// Options for restoring a profile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,9 +18,9 @@ pub struct Restore<Plan, Item, Missing = String> {
     pub plan: Plan,
     /// Number of values that already match the profile, counted as in a comparison.
     pub unchanged: u64,
-    /// Items that stay unchanged because one side does not have them or cannot read them.
+    /// Items that stay unchanged because they are missing or unreadable on one side.
     pub missing: Vec<Missing>,
-    /// Mounting-specific items that differ but stay unchanged.
+    /// Mounting-specific items that differ but are left unchanged.
     pub mounting_left: Vec<Item>,
     /// Mounting-specific items that are copied from another device and must be readjusted.
     pub mounting_written: Vec<Item>,

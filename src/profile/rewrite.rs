@@ -1,11 +1,11 @@
-//! Saving of a profile over a file that a user has edited, and merging of profiles edited by two users.
+//! Saves a profile over a file that a user has edited, and merges profiles edited by two users.
 
 use super::source::{Change, UpdatedText, apply_all, carry_changes, find_changes, lost_comments};
 use super::{ProfileDocument, ProfileError, ProfileFormats};
 
 impl ProfileDocument {
-    /// Updates `text` to the content of the document. Unchanged entries keep their notation, comments, order and line
-    /// endings.
+    /// Updates `text` to the content of the document. Entries that have not changed keep their notation, comments,
+    /// order and line endings.
     pub fn rewrite_text(&self, text: &str, formats: ProfileFormats) -> UpdatedText {
         let own = self.emit();
         let before = ProfileDocument::parse(text, formats).map(|before| before.emit());
@@ -50,7 +50,7 @@ pub enum ChangedSide {
     Both,
 }
 
-/// Returns the changes that turn `theirs` into `mine`, each with the side that made it.
+/// Returns the changes that turn `theirs` into `mine`, and which side made each of them since `base`.
 pub fn diverging_changes(
     base: &ProfileDocument,
     theirs: &ProfileDocument,

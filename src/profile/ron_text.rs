@@ -1,5 +1,5 @@
-//! RON for profiles. The `ron` crate parses the text, and unknown entries are preserved. The writer is implemented here
-//! to produce readable files with hexadecimal numbers, sixteen bytes per line, and comments.
+//! RON for profiles. The `ron` crate parses the text, but the writer is implemented here, so that files are readable:
+//! hexadecimal numbers, sixteen bytes per line, and comments. Unknown entries are preserved.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -16,15 +16,15 @@ use crate::expected::AllowedValues;
 /// Unknown entries by name. They were added by the user or belong to a newer schema.
 pub type UnknownValues = BTreeMap<String, Value>;
 
-/// Name of the structure that contains entries added by the user.
+/// Name of the structure for entries added by the user.
 const EXTRA_ENTRY: &str = "extra";
 
-/// The entries of a structure. The parser removes them one by one. The remaining ones were added by the user or are
+/// The entries of a structure. Parsing removes them one by one. Those that remain were added by the user or are
 /// misspelt.
 pub struct Entries {
     path: String,
     entries: BTreeMap<String, Value>,
-    /// Names that were requested but are missing.
+    /// Names that were requested but not found.
     missed: Vec<String>,
     reading: Rc<Reading>,
 }
@@ -59,7 +59,7 @@ impl Entries {
         value
     }
 
-    /// Returns the remaining entry whose name is most similar to a missing one. At most `most` letters may differ.
+    /// Returns the best match between a remaining entry and a missing one. At most `most` letters may differ.
     fn find_misspelling(&self, most: usize) -> Option<Misspelling> {
         if self.reading.is_newer() {
             return None;
@@ -73,12 +73,12 @@ impl Entries {
         slips.min()
     }
 
-    /// Returns the path of the structure for use in messages.
+    /// Returns the path of the structure, as shown in messages.
     pub fn path(&self) -> &str {
         &self.path
     }
 
-    /// Returns the path of an entry for use in messages.
+    /// Returns the path of an entry, as shown in messages.
     pub fn entry_path(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
@@ -124,7 +124,7 @@ impl Entries {
         }
     }
 
-    /// Parses bytes that are written as one hex string or as a list of hex strings.
+    /// Parses bytes written as one hex string or as a list of them.
     pub fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
         let path = self.entry_path(name);
         let Some(value) = self.take_optional::<Value>(name, AllowedValues::HexLines)? else { return Ok(None) };
@@ -161,7 +161,7 @@ impl Entries {
         }
     }
 
-    /// Takes a map with arbitrary keys and preserves their order. Returns an empty map if the entry is missing.
+    /// Takes a map with arbitrary keys, in their original order. Returns an empty map if the entry is missing.
     pub fn take_map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
         match self.take_value(name).map(unwrap_value) {
             None | Some(Value::Unit) => Ok(Vec::new()),
@@ -170,8 +170,8 @@ impl Entries {
         }
     }
 
-    /// Returns the remaining entries, which were added by the user or belong to a newer schema. Entries added outside
-    /// `extra`, as in older files, are moved to `extra`.
+    /// Returns the remaining entries, which were added by the user or belong to a newer schema. Those outside `extra`,
+    /// as found in older files, are moved to `extra`.
     ///
     /// # Errors
     /// Returns [`ProfileError::Misspelt`] if a remaining entry is a misspelling of a missing one.
@@ -210,7 +210,7 @@ impl Entries {
 }
 
 impl Drop for Entries {
-    /// Records a misspelt name if an error has ended the parsing early.
+    /// Records a misspelt name, in case an error has ended the parsing early.
     fn drop(&mut self) {
         if let Some(slip) = self.find_misspelling(2) {
             self.reading.record_misspelling(slip);
@@ -218,8 +218,8 @@ impl Drop for Entries {
     }
 }
 
-/// Parses bytes of two hexadecimal digits each. A single digit is an error, because an editor may have removed the
-/// other one.
+/// Parses bytes of two hexadecimal digits each. A single digit is an error, because its other half may have been
+/// deleted by mistake.
 fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     match line.split_whitespace().find(|group| group.len() == 1) {
         Some(digit) => Err(HexError::Odd(digit.to_owned())),
@@ -227,7 +227,7 @@ fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     }
 }
 
-/// Returns `x` for `Some(x)`, and any other value unchanged. Profiles may contain both forms.
+/// Returns `x` for `Some(x)`, and any other value unchanged. A profile may contain either form.
 fn unwrap_value(value: Value) -> Value {
     match value {
         Value::Option(Some(inner)) => *inner,
@@ -264,7 +264,7 @@ impl Writer {
         self.entry(name, &quote(text), "");
     }
 
-    /// Writes bytes as a list of strings with sixteen bytes each. Each string is followed by its ASCII characters.
+    /// Writes bytes as a list of strings of sixteen bytes each, with their ASCII characters as comments.
     pub fn bytes(&mut self, name: &str, bytes: &[u8]) {
         self.open(name, '[');
         for row in bytes.chunks(16) {
@@ -310,7 +310,7 @@ pub(crate) fn quote(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
-/// Formats the entries added by the user, for the end of a single-line structure, such as `, extra: {…}`.
+/// Formats the entries added by the user for the end of a single-line structure, for example as `, extra: {…}`.
 pub(crate) fn entries_text(unknown: &UnknownValues) -> String {
     if unknown.is_empty() { String::new() } else { format!(", {EXTRA_ENTRY}: {}", extra_text(unknown)) }
 }

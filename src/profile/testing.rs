@@ -1,8 +1,8 @@
-//! Helpers for profile tests of any kind of device.
+//! Helpers for profile tests, for any kind of device.
 
 use super::{Profile, ProfileDocument, UpdatedText};
 
-/// Edits a profile and its note and saves it over the text from which it was read.
+/// Edits a profile and its note, and saves it over the text from which it was read.
 pub(crate) fn edit_profile<P: Profile>(
     text: &str,
     edit: impl FnOnce(&mut Option<String>, &mut P),
@@ -14,8 +14,7 @@ pub(crate) fn edit_profile<P: Profile>(
     (document, carried)
 }
 
-/// Checks that an edit of the profile only replaces `from` with `to` in the text. If both are empty, the text must not
-/// change.
+/// Checks that an edit only replaces `from` with `to` in the text. If both are empty, the text must not change.
 pub(crate) fn assert_edit_in_place<P: Profile>(text: &str, edit: impl FnOnce(&mut P), from: &str, to: &str) {
     let (_, same) = edit_profile(text, |_, _: &mut P| {});
     assert_eq!(same, UpdatedText { text: text.to_owned(), lost: Vec::new() });

@@ -1,4 +1,4 @@
-//! Tests of documents of invented kinds: a light with its steps, and a fan.
+//! Tests of documents with invented kinds of devices: a light with steps, and a fan.
 
 use super::testing::{assert_edit_in_place, edit_profile};
 use super::*;
@@ -129,7 +129,7 @@ fn user_entries_and_newer_schema_entries_are_kept() {
     assert_eq!(error, "line 7, column 5: color is unknown, and colour is missing");
 }
 
-/// Issues 22.25 and 22.26: a document is saved over a user's text, and merged with the changes of another user.
+/// A document is saved over a user's text, and merged with another user's changes (issues 22.25 and 22.26).
 #[test]
 fn a_document_is_merged_into_text_and_with_another() {
     assert_edit_in_place(TEXT, |own: &mut Lamp| own.colour = "blue".to_owned(), "\"red\"", "\"blue\"");

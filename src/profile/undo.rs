@@ -1,12 +1,12 @@
-//! Undoing a write of the logbook, provided that each value is still the written one. A value that has changed since is
-//! not overwritten.
+//! Undoes a write from the logbook, but only where the device still has the written value. A value that has changed
+//! since is not overwritten.
 
 use std::collections::BTreeMap;
 
 use super::{Body, ChangedItem};
 
-/// The total changes of values by a series of operations, from the first old value to the last new one. Values that the
-/// operations change and change back, such as the protection of a field, are not included.
+/// The total changes made by a series of operations, from the first old value to the last new one. Values that are
+/// changed and changed back, such as the protection of a field, are not included.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ValueChanges(BTreeMap<String, Change>);
 
@@ -27,12 +27,12 @@ pub struct ChangedSince {
     pub found: Option<String>,
 }
 
-/// Instruction for an item whose write cannot be undone.
+/// What the user must do about an item whose write cannot be undone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Redo {
     /// Write this value again. The backup does not contain it.
     Write(String),
-    /// Write the previous value again. It could not be read before the write, so it is not known.
+    /// Write the previous value again. It is unknown, because it could not be read before the write.
     WriteUnknown,
     /// Delete the created data if they are not needed. Their content may have been used since.
     Delete,
@@ -40,7 +40,7 @@ pub enum Redo {
     SetPosition,
     /// Change the access code again. Access codes are never stored.
     ChangeCode,
-    /// Change the settings of the network again.
+    /// Change the network settings again.
     ChangeNetwork,
     /// Repeat the procedure.
     Repeat,
@@ -48,7 +48,7 @@ pub enum Redo {
     KeepCounter,
 }
 
-/// An item of a write that cannot be undone.
+/// A written item that cannot be undone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KeptItem {
     /// Name of the item.
@@ -67,7 +67,7 @@ pub struct UndoneWrite {
 }
 
 impl UndoneWrite {
-    /// Prepares the undo of a write of these items. Removes from the backup the values that the write did not change.
+    /// Prepares to undo a write of these items. All values that the write did not change are removed from the backup.
     pub fn new(items: &[ChangedItem], backup: &mut Body) -> Self {
         let kept = |item: &ChangedItem| Some(KeptItem { item: item.item.clone(), redo: backup.redo(item)? });
         let kept: Vec<KeptItem> = items.iter().filter_map(kept).collect();
@@ -88,22 +88,22 @@ impl UndoneWrite {
         self.kept.len() < self.item_count
     }
 
-    /// Returns whether a message about a profile item concerns the write.
+    /// Returns whether a message about a profile item is relevant to the write.
     pub fn concerns(&self, item: &str) -> bool {
         let is_part =
             |value: &str| value.strip_prefix(item).is_some_and(|rest| rest.is_empty() || rest.starts_with('@'));
         self.changes.items().any(is_part)
     }
 
-    /// Returns the values that have changed since the write. `planned` are the items that the restore of the backup
-    /// would change.
+    /// Returns the values that have changed since the write. `planned` are the changes that restoring the backup would
+    /// make.
     pub fn changed_since(&self, planned: impl IntoIterator<Item = ChangedItem>) -> Vec<ChangedSince> {
         let planned = ValueChanges::of(planned.into_iter().flat_map(|item| (self.single_values)(&item)));
         self.changes.changed_since(&planned)
     }
 }
 
-/// Splits an item whose values are hexadecimal bytes into one item for each byte. `name` returns the name of a byte.
+/// Splits an item with hexadecimal bytes into one item per byte. `name` returns the name of a byte.
 pub(crate) fn single_bytes(item: &ChangedItem, name: impl Fn(usize) -> String) -> Vec<ChangedItem> {
     let bytes = |text: &Option<String>| -> Vec<String> {
         let text = text.as_deref().unwrap_or_default().as_bytes();
@@ -135,7 +135,7 @@ impl ValueChanges {
         self.0.keys().map(String::as_str)
     }
 
-    /// Compares a write with the operations that would undo it. Returns the values that have changed in between,
+    /// Compares a write with the operations that would undo it, and returns the values that have changed since,
     /// including those that the write did not change.
     pub fn changed_since(&self, undoing: &ValueChanges) -> Vec<ChangedSince> {
         let changed = undoing.0.iter().filter_map(|(item, Change { old: found, new: back })| {

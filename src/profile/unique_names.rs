@@ -1,5 +1,5 @@
-//! Detection of names that occur twice in a structure. The `ron` crate keeps only the last one, which would silently
-//! drop an entry from a file edited by hand.
+//! Detects names that occur twice in a structure. The `ron` crate keeps only the last one, which would silently drop an
+//! entry from a file edited by hand.
 
 use std::cell::RefCell;
 use std::collections::HashSet;
@@ -8,7 +8,7 @@ use std::fmt;
 use ron::Value;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-/// A visitor that rejects duplicate names in the structures of any RON document. It discards the content.
+/// A visitor that rejects duplicate names in the structures of any RON document and discards everything else.
 #[derive(Clone, Copy)]
 pub(super) struct UniqueNames<'t> {
     /// First duplicate name, if any.

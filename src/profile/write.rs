@@ -1,5 +1,5 @@
-//! Execution of a plan, common to all kinds of devices. The base of the plan is read again, the operations are executed
-//! in order, and the mode of the device is restored. Each kind of device implements [`Write`].
+//! Executes a plan for any kind of device: reads the base of the plan again, executes the operations in order, and
+//! restores the mode of the device. Each kind of device implements [`Write`].
 //!
 //! This module is used only by `worker::commit`, which saves the backup before the first operation.
 
@@ -21,8 +21,8 @@ pub trait Write {
     /// The state of the device after an interrupted write.
     type EndState;
 
-    /// Reads the base of the plan again without writing. Before that, checks that the device is the one for which the
-    /// plan was made.
+    /// Checks that the device is the one for which the plan was made, then reads the base of the plan again. Nothing is
+    /// written.
     ///
     /// # Errors
     /// Returns an error if the device or the values have changed.
@@ -62,7 +62,7 @@ pub trait Write {
         Ok(())
     }
 
-    /// Returns the device to a safe state after the operations, whether or not they succeeded.
+    /// Returns the device to a safe state after the operations, whether they succeeded or not.
     ///
     /// # Errors
     /// Returns the reason why the operations were aborted, or why the mode of the device could not be restored.
@@ -87,7 +87,7 @@ pub trait OperationError: fmt::Display {
     /// Returns the error from the device or its connection, or `None` for any other cause.
     fn device(&self) -> Option<&Self::Device>;
 
-    /// Returns whether the user cancelled and no other error occurred.
+    /// Returns whether the only cause is that the user cancelled.
     fn is_only_cancelled(&self) -> bool;
 }
 
@@ -114,7 +114,7 @@ impl<E: DeviceError> OperationError for E {
     }
 }
 
-/// A plan that the user has approved and whose base is unchanged. Every operation requires such a plan.
+/// A plan that the user has approved and whose base is unchanged. It is required to execute any operation.
 pub struct ConfirmedPlan<'p, Base, Op> {
     plan: &'p Plan<Base, Op>,
 }
@@ -136,8 +136,7 @@ pub(crate) type InterruptedWriteOf<W> =
     InterruptedWrite<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::EndState>;
 
 impl<'p, Base: Hash, Op: Clone + Hash> ConfirmedPlan<'p, Base, Op> {
-    /// Checks the consent and reads the base of the plan again. Returns `None` if the consent was given for another
-    /// plan.
+    /// Checks the consent, then reads the base of the plan again. Returns `None` if the consent is for another plan.
     pub(crate) fn confirm<W: Write<Base = Base, Op = Op>>(
         plan: &'p Plan<Base, Op>,
         consent: Consent,
@@ -151,7 +150,7 @@ impl<'p, Base: Hash, Op: Clone + Hash> ConfirmedPlan<'p, Base, Op> {
         self.plan
     }
 
-    /// Executes the plan. `tell` is called before each operation with the operation and its index.
+    /// Executes the plan. `tell` is called before each operation, with the operation and its index.
     ///
     /// # Errors
     /// Returns the progress and the cause if the write was interrupted.

@@ -7,9 +7,9 @@ pub struct WrittenChanges {
     pub ops: usize,
     /// Number of changed values, counted as in a comparison. Some operations change only one value.
     pub written: u64,
-    /// Number of values that were read back and are correct.
+    /// Number of values that were read back and found correct.
     pub verified: u64,
-    /// Number of persistent writes, including repetitions and writes that may not have taken place.
+    /// Number of persistent writes, including repetitions and those that may not have taken place.
     pub write_cycles: u64,
 }
 

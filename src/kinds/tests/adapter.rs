@@ -1,4 +1,4 @@
-//! Tests of the settings of the virtual adapter with all attachable devices.
+//! Tests of the virtual adapter's settings with every device that can be attached.
 
 use crate::buses::bridge::sim::{Adapter, all_setting_names};
 use crate::kinds::attachable_kinds;

@@ -1,4 +1,4 @@
-//! Tests of the command line as used by scripts: commands, options and values of all kinds together.
+//! Tests of the command line that scripts rely on: the commands, options and values of all kinds.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -8,8 +8,8 @@ use clap::Arg;
 use crate::cli::command;
 use crate::kinds::program;
 
-/// Commands, options and their values without descriptions, on which scripts rely. With `ENCODER_STUDIO_RECORD=1` the
-/// recording is written again.
+/// Scripts rely on the commands, options and their values, but not on descriptions. `ENCODER_STUDIO_RECORD=1` updates
+/// the recorded list.
 #[test]
 fn commands_and_options_are_as_recorded() {
     let mut text = String::new();

@@ -1,4 +1,4 @@
-//! Tests of profiles saved over edited texts, for every kind.
+//! Tests that save profiles of every kind over edited text.
 
 use super::program;
 use crate::profile::{ProfileDocument, UpdatedText};
@@ -15,13 +15,13 @@ fn ready_made() -> Vec<(&'static str, String)> {
     found
 }
 
-/// Returns a commented profile of this kind, as written by a user.
+/// Returns a profile of this kind with comments by a user.
 fn commented_profile(kind: &str) -> String {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/commented");
     std::fs::read_to_string(folder.join(kind).with_extension("ron")).unwrap()
 }
 
-/// Saving an unchanged profile leaves the text unchanged, for every kind and with any line ends (issue 22.26).
+/// Saving an unchanged profile keeps the text, for every kind and any line endings (issue 22.26).
 #[test]
 fn unchanged_text_is_kept_verbatim() {
     for kind in program().studio.formats.kinds() {
@@ -35,8 +35,8 @@ fn unchanged_text_is_kept_verbatim() {
     }
 }
 
-/// A changed profile that is saved over an existing text is written exactly, and each user comment in the text is kept
-/// or reported as lost (issue 22.26).
+/// Saving a different profile over a text writes its exact content, and each user comment is kept or reported as lost
+/// (issue 22.26).
 #[test]
 fn any_rewrite_is_exact_and_lists_lost_comments() {
     let all = ready_made();
@@ -68,7 +68,8 @@ fn any_rewrite_is_exact_and_lists_lost_comments() {
     }
 }
 
-/// Returns a text whose whitespace is replaced with the entries of `picks` in turn. Comments are numbered.
+/// Returns the text with its whitespace replaced by spaces, line ends and numbered comments, as selected by `picks`.
+/// Also returns the number of comments.
 fn with_varied_whitespace(text: &str, picks: &[usize]) -> (String, usize) {
     const WAYS: usize = 9;
     let (mut out, mut comments, mut at, mut pick) = (String::new(), 0, 0, picks.iter().cycle());
@@ -117,8 +118,8 @@ fn with_varied_whitespace(text: &str, picks: &[usize]) -> (String, usize) {
 proptest::proptest! {
     #![proptest_config(proptest::test_runner::Config { cases: 256, ..Default::default() })]
 
-    /// Comments and line ends between any words are kept or reported as lost, for any profile saved over the text
-    /// (issue 22.26).
+    /// Wherever a text has comments and line endings, saving any profile over it keeps the comments or reports them as
+    /// lost (issue 22.26).
     #[test]
     fn comments_between_any_tokens_are_kept_or_listed(
         from in 0_usize..100,

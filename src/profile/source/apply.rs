@@ -1,4 +1,4 @@
-//! Application of changes to a text. The rest of the text stays unchanged.
+//! Applies changes to a text and leaves the rest of it unchanged.
 
 use std::ops::Range;
 
@@ -39,7 +39,7 @@ pub(in crate::profile) fn apply_change(text: &str, change: &Change) -> Option<St
     }
 }
 
-/// Returns the value at a path, and the steps to the preceding values, nearest first.
+/// Returns the value at a path, and the path steps to its preceding siblings, nearest first.
 pub(super) fn value_at(text: &str, path: &[PathStep]) -> Option<(String, Vec<PathStep>)> {
     let root = read(text)?;
     let (last, way) = path.split_last()?;
@@ -63,7 +63,7 @@ fn replace_range(text: &str, place: &Range<usize>, by: &str) -> Option<String> {
     Some([text.get(..place.start)?, by, text.get(place.end..)?].concat())
 }
 
-/// Replaces the comment that the program wrote after an entry. A comment written by the user stays unchanged.
+/// Replaces the comment that the program wrote after an entry. A comment by the user stays.
 fn replace_comment(text: &str, at: usize, comments: &(Option<String>, Option<String>)) -> Option<String> {
     let found = trailing_comment(text, at);
     match (found, comments) {
@@ -75,7 +75,7 @@ fn replace_comment(text: &str, at: usize, comments: &(Option<String>, Option<Str
     }
 }
 
-/// Returns the text without an entry. If the entry is alone on its line, the line is removed.
+/// Returns the text without an entry. The whole line is removed if nothing else is on it.
 fn remove_entry(text: &str, part: &NodePart) -> Option<String> {
     let before = text.get(..part.start())?;
     let after = part.end;
@@ -169,7 +169,7 @@ fn indent_value(value: &str, indent: &str, end: &str) -> String {
     rest.into_iter().fold(first, |all, line| format!("{all}{end}{indent}{}", line.get(own..).unwrap_or(line.trim())))
 }
 
-/// Joins a multi-line value into one line, or returns `None` if the value contains a comment.
+/// Joins a multi-line value into one line, or returns `None` if it contains a comment.
 fn to_single_line(value: &str) -> Option<String> {
     if !value.contains('\n') {
         return Some(value.to_owned());

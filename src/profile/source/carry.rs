@@ -1,4 +1,4 @@
-//! Transfer of the changes between two generated texts to the user's text.
+//! Transfers the changes between two generated texts to a text edited by the user.
 
 use super::apply::{apply_change, value_at};
 use super::changes::{Change, find_changes};
@@ -26,7 +26,7 @@ pub(in crate::profile) fn carry_changes(text: &str, before: &str, after: &str) -
     Some(UpdatedText { text: carried, lost })
 }
 
-/// Replaces the nearest enclosing value that can be replaced.
+/// Replaces the innermost enclosing value that can be replaced.
 fn replace_enclosing_value(text: &str, change: &Change, after: &str) -> Option<String> {
     (1..change.path.len()).rev().find_map(|length| {
         let path = change.path.get(..length)?.to_vec();

@@ -1,4 +1,4 @@
-//! Differences between two texts written by the program, entry by entry.
+//! Compares two generated texts entry by entry.
 
 use std::fmt;
 
@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 
 use super::tree::{Kind, NodePart, SourceNode, read, trailing_comment};
 
-/// Entries by which the elements of a list are identified. The first one that exists is used.
+/// Entries that can identify the elements of a list. The first one that exists is used.
 const NAMES: [&str; 7] = ["number", "program", "cam", "bank", "banks", "item", "name"];
 
 /// A step of the path to an entry.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum PathStep {
-    /// A list element, identified by the name and value of one of its entries.
+    /// An entry of a structure, identified by its name.
     Entry(String),
     /// A list element, identified by the name and value of one of its entries.
     Named(String, String),
@@ -30,7 +30,7 @@ pub struct Change {
     pub from: Option<String>,
     /// Source text on the right, or `None` if the entry does not exist there.
     pub to: Option<String>,
-    /// Preceding entries in the same structure or list on the right, nearest first.
+    /// Preceding siblings on the right, nearest first.
     pub behind: Vec<PathStep>,
     /// Trailing comments on the left and on the right.
     #[serde(default)]
@@ -69,7 +69,7 @@ pub(in crate::profile) fn find_changes(left: &str, right: &str) -> Option<Vec<Ch
     Some(walk.found)
 }
 
-/// Returns whether two simple values are equal even if their notation differs, as with `0x10` and `16`.
+/// Returns whether two simple values are equal, even in a different notation such as `0x10` and `16`.
 pub(super) fn is_equivalent_value(one: &str, other: &str) -> bool {
     let value = |text| ron::from_str::<Value>(text).ok();
     one == other || value(one).is_some_and(|own| Some(own) == value(other))
@@ -103,7 +103,7 @@ fn named_step(text: &str, element: &SourceNode) -> Option<PathStep> {
     matches!(element.kind, Kind::Entries(_)).then(|| NAMES.into_iter().find_map(entry)).flatten()
 }
 
-/// Normalises the notation of a value, so that for example `0x10` and `16` yield the same text.
+/// Normalises the notation of a value, so that `0x10` and `16`, for example, become the same text.
 fn normalize_value(value: &str) -> String {
     ron::from_str::<Value>(value).ok().and_then(|value| ron::to_string(&value).ok()).unwrap_or_else(|| value.to_owned())
 }
@@ -177,8 +177,8 @@ impl TreeWalk<'_> {
     }
 }
 
-/// Returns whether the elements on both sides have the same order. Named elements may be added or removed if the others
-/// keep their order. Unnamed elements must keep their index.
+/// Returns whether the elements that both sides have in common are in the same order. If any element is identified by
+/// its index, both sides must also have the same length.
 fn is_same_order(own: &[PathStep], other: &[PathStep]) -> bool {
     let common = |these: &[PathStep], those: &[PathStep]| -> Vec<PathStep> {
         these.iter().filter(|step| those.contains(step)).cloned().collect()

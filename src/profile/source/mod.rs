@@ -1,5 +1,5 @@
-//! The source text of a profile edited by a user: entries with their locations, differences between two texts, and
-//! changes. Comments, order, notation and line endings are preserved.
+//! The source text of a profile edited by a user: where its entries are, how two texts differ, and how to change one.
+//! Comments, order, notation and line endings are preserved.
 
 mod apply;
 mod carry;

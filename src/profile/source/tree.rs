@@ -1,11 +1,11 @@
-//! A RON syntax tree with source locations. The `ron` crate has already parsed the text successfully. If this parser
-//! returns `None`, the whole file is rewritten.
+//! A RON syntax tree with source locations, for text that the `ron` crate has already parsed. If this parser returns
+//! `None`, the whole file is rewritten.
 
 use std::ops::Range;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SourceNode {
-    /// Range of the value in the source text. For `Some(…)`, this is the range of the content.
+    /// Range of the value in the source text. For `Some(…)`, only its content is included.
     pub(super) span: Range<usize>,
     pub(super) kind: Kind,
 }
@@ -44,7 +44,7 @@ impl SourceNode {
     }
 }
 
-/// Parses a text, or returns `None` if its syntax is not supported.
+/// Parses a text, or returns `None` if it contains unsupported syntax.
 pub(super) fn read(text: &str) -> Option<SourceNode> {
     let mut reader = TreeReader { text, at: 0 };
     reader.skip_blanks();
@@ -71,7 +71,7 @@ pub(super) fn comments_in(text: &str) -> Vec<&str> {
     found
 }
 
-/// Returns the comment that follows a position on the same line, and its range.
+/// Returns the comment that follows a position on the same line, with its range.
 pub(super) fn trailing_comment(text: &str, at: usize) -> Option<(Range<usize>, &str)> {
     let rest = text.get(at..)?;
     let blanks = rest.len() - rest.trim_start_matches([' ', '\t']).len();
@@ -190,7 +190,7 @@ impl<'t> TreeReader<'t> {
         Some(SourceNode { span: start..self.at, kind })
     }
 
-    /// Parses a structure, or a tuple as a single value.
+    /// Parses the content of parentheses as a structure, or as a single value if it is a tuple.
     fn read_bracketed(&mut self) -> Option<Kind> {
         let (parts, named) = self.read_parts('(', ')')?;
         Some(if named || parts.is_empty() { Kind::Entries(parts) } else { Kind::Plain })

@@ -1,4 +1,4 @@
-//! The command `do` with preset, factory settings, device check and the return to the previous mode.
+//! The command `do`: preset, factory settings, device check, and the return to the previous mode.
 
 use serde_json::json;
 

@@ -1,4 +1,4 @@
-//! Options of `decode` specific to words of INTERBUS encoders.
+//! Options of the `decode` command for INTERBUS words.
 
 use clap::{Args, ValueEnum};
 

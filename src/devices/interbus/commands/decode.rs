@@ -1,5 +1,4 @@
-//! The command `decode interbus`, which explains process data words. It lists all meanings, or the one that the options
-//! select.
+//! The command `decode interbus`, which explains process data words. Options narrow an ambiguous word to one meaning.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -34,9 +33,9 @@ pub(super) fn decode(output: &Output, arguments: &DecodeArgs) -> Result {
 
 #[derive(Clone, Copy)]
 enum CapturedData {
-    /// Word with 4 digits.
+    /// A 16-bit word, entered as 4 digits.
     K1(u16),
-    /// Word with 8 digits.
+    /// A 32-bit word, entered as 8 digits.
     Long(u32),
 }
 
@@ -56,7 +55,7 @@ fn parse_captured(text: &str) -> Result<CapturedData> {
     })
 }
 
-/// Parses a read-out from its hyphenated name or its number.
+/// Parses a read-out given as a hyphenated name or a number.
 fn read_out(text: &str) -> Result<ReadOutNumber> {
     let named = READ_OUTS.iter().find(|row| row.name.replace(' ', "-") == text).map(|row| row.read_out);
     let numbered = || parse_number(text).and_then(|number| u16::try_from(number).ok()).map(ReadOutNumber::new);

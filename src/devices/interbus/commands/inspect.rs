@@ -53,7 +53,7 @@ fn format_turns(turns: u32) -> String {
     if turns == 1 { "1 revolution".to_owned() } else { format!("{turns} revolutions") }
 }
 
-/// Returns the name of a startup mode for JSON output, such as `velocity` or `cam 3`.
+/// Returns the name of a start-up mode for JSON output, such as `velocity` or `cam 3`.
 pub(super) fn mode(mode: StartupMode) -> String {
     match mode {
         StartupMode::K2 => "K2".to_owned(),
@@ -91,7 +91,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
     Ok(Success::Well)
 }
 
-/// Returns the bits of a position word that are set although they should be 0, with a message.
+/// Returns the bits of a position word that should be 0 but are set, with a message.
 fn unexpected_bits(status: &Status) -> Option<(u32, String)> {
     let bits = u32::from(status.reading.unexpected_bits()) << Value::BITS;
     (bits != 0).then(|| (bits, format!("the bits 0x{bits:08X} of IN should be 0")))

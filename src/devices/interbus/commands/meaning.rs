@@ -1,4 +1,4 @@
-//! Description of a process data word in text.
+//! Explains process data words in text.
 
 use serde_json::{Value as Json, json};
 
@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{
     WindowShift,
 };
 
-/// Information about a word in addition to its digits.
+/// What is known about the encoder that sent or received a word.
 pub(super) struct WordContext {
     pub(super) mode: Option<EncoderMode>,
     pub(super) read_out: Option<ReadOutNumber>,
@@ -16,11 +16,11 @@ pub(super) struct WordContext {
 
 pub(super) struct WordMeaning {
     direction: &'static str,
-    /// Modes in which the word has this meaning. If the list is empty, the meaning applies to all modes.
+    /// Modes in which the word has this meaning, or an empty list for all modes.
     modes: Vec<EncoderMode>,
     words: String,
     value: Option<u32>,
-    /// Whether the word is allowed in these modes.
+    /// Whether the word may be sent in these modes.
     legal: bool,
 }
 
@@ -48,7 +48,7 @@ pub(super) fn k1_word_meaning(word: SingleWord) -> WordMeaning {
     WordMeaning { direction: "IN", modes: Vec::new(), words, value: Some(position), legal: true }
 }
 
-/// Returns the meanings of an OUT word, or an error with the reason if the word must not be sent.
+/// Returns every meaning of an OUT word, or the reason why the word must not be sent.
 pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>, String> {
     let readings = Command::all_meanings(word);
     if let [Command::Unknown(_)] = readings.as_slice() {
@@ -75,7 +75,7 @@ pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<Wo
     }
 }
 
-/// Returns the meanings that an OUT word has in other modes if it must not be sent in the known mode.
+/// Returns what an OUT word would mean in another mode, if it must not be sent in the known one.
 pub(super) fn meanings_in_other_modes(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let refused = known.mode.and_then(|mode| Command::in_mode(word, mode).err());
     refused
@@ -97,8 +97,7 @@ fn wrong_mode_text(command: Command) -> String {
     format!("\"{}\" is for {} mode", command_description(command).0, modes.join(" or "))
 }
 
-/// Returns the meaning of an IN word in the known mode. Without a mode, it returns the meaning in every mode that
-/// allows the word.
+/// Returns the meaning of an IN word in the known mode, or all possible meanings if the mode is unknown.
 pub(super) fn in_word_meanings(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let reply = Reply::parse(word);
     let meaning = |modes: &[EncoderMode], words: String, value: Option<u32>| WordMeaning {

@@ -104,8 +104,7 @@ impl DeviceCommands for InterbusCommands {
     }
 }
 
-/// Parses the name of an item. If the item names a program or cam that does not exist, the error states the valid
-/// range.
+/// Parses an item name. The error for a nonexistent program or cam states the valid range.
 fn parse_item(text: &str) -> Result<Item> {
     text.parse().map_err(|error: ItemError| match error {
         ItemError::Unknown(_) => Failure::Usage(error.to_string()),
@@ -113,20 +112,19 @@ fn parse_item(text: &str) -> Result<Item> {
     })
 }
 
-/// Effect of a command on the process data that a connected machine uses.
+/// How much a command disturbs the process data that a connected machine uses.
 #[derive(Clone, Copy)]
 enum DisturbanceLevel {
     Reading,
     /// All cam programs are selected one after the other.
     Programs,
-    /// The encoder leaves a state in which another program has left it, and stores the settings of this state.
+    /// The encoder returns to operation from a state in which another program left it, and stores the values set there.
     RestoringMode,
 }
 
 impl DisturbanceLevel {
-    /// Prints the effect of a command before it begins. If the command switches live outputs, the user must confirm it
-    /// on a terminal. No confirmation is required if a write was approved, for a virtual encoder, or without a
-    /// terminal.
+    /// Prints the effect of a command before it begins. A command that switches live outputs must be confirmed on the
+    /// terminal, except for a virtual encoder, an approved write, or if there is no terminal.
     fn confirm_start(self, common: &CommonArgs, output: &Output, consent: Option<&ConsentArgs>) -> Result<()> {
         self.print_effect(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == LinkScheme::Sim);

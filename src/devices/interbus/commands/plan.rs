@@ -1,4 +1,4 @@
-//! Plans for an INTERBUS encoder on the command line: display, confirmation and execution.
+//! Plans for an INTERBUS encoder on the command line: printing, confirming and executing them.
 
 use serde_json::Value as Json;
 
@@ -18,7 +18,7 @@ use crate::devices::interbus::state::explain;
 use crate::profile::Operation as _;
 use crate::result_of;
 
-/// Plans a change. No data is written.
+/// Plans a change without writing anything.
 pub(super) fn prepare_plan(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let reads_all = match &change {
         Change::Restore { profile, .. } => programs_to_read(profile).len() == ProgramNumber::COUNT,
@@ -39,7 +39,7 @@ fn reduces_steps(op: &Op) -> bool {
     changes.iter().any(|change| change.parameter == Parameter::Steps && change.to < change.from)
 }
 
-/// Executes a plan after asking for consent if required. An empty plan sends nothing.
+/// Executes a plan, after asking for consent if required. An empty plan sends nothing.
 pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,
@@ -69,7 +69,7 @@ pub(super) fn commit_plan(
     Ok(WriteSummary::from_commit(output, committed))
 }
 
-/// Returns the plan as text and JSON. It contains the cost and the old and new value of each item.
+/// Returns the plan as text and JSON, with its cost and the old and new value of each item.
 pub(super) fn plan_report(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     PlanReport::from_plan(
@@ -80,12 +80,12 @@ pub(super) fn plan_report(prepared: &Prepared) -> PlanReport {
     )
 }
 
-/// Returns the operations as JSON. Items that are stored together share one cost.
+/// Returns the operations as JSON. Items that share an EEPROM write cycle are grouped under one cost.
 pub(super) fn operations_json(plan: &InterbusPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(operation_steps).map(|step| step.json()).collect()
 }
 
-/// Returns the operations as text with the old and new values, one per line.
+/// Returns one line of text per operation, with the old and new values.
 pub(super) fn change_lines(plan: &InterbusPlan) -> String {
     plan::step_lines(plan.ops.iter().flat_map(operation_steps)).text()
 }

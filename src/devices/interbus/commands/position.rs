@@ -1,4 +1,4 @@
-//! The command `position`, which prints IN words that are converted with the gear of the encoder.
+//! The command `position`, which reads IN words and converts them to turns, steps and degrees.
 
 use serde_json::json;
 
@@ -14,7 +14,7 @@ use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
 use crate::result_of;
 
-/// Reads positions. The encoder is only identified once to determine its gear. After that, only the IN word is read.
+/// Reads positions. The encoder is identified once to learn its gear, and then only the IN word is read.
 pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     DisturbanceLevel::Reading.print_effect(output);

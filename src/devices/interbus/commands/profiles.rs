@@ -1,4 +1,4 @@
-//! The commands `save` and `restore` for INTERBUS profiles, and the reading of an encoder for a comparison.
+//! The commands `save` and `restore` for INTERBUS profiles, and reading an encoder for a comparison.
 
 use serde_json::json;
 
@@ -53,7 +53,7 @@ impl ProfileCommands for InterbusCommands {
         })
     }
 
-    /// Reads the encoder for a comparison. If a profile is given, only its items are read. Reading a cam program
+    /// Reads the encoder for a comparison, limited to the items of the profile if one is given. Reading a cam program
     /// switches the outputs of the encoder.
     fn read_for_comparison(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body> {
         let profile = match profile.and_then(Body::get::<InterbusProfile>) {
@@ -71,7 +71,7 @@ impl ProfileCommands for InterbusCommands {
         Ok(DeviceReading { body: Body::new(profile), status: Some(status_lines(status.error)) })
     }
 
-    /// Returns a message if two profiles belong to different encoders. A profile without a serial number matches every
+    /// Returns a message if two profiles belong to different encoders. A profile without a serial number matches any
     /// encoder of the same type.
     fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {
         let error =

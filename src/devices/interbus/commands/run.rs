@@ -1,4 +1,4 @@
-//! Execution of jobs on an INTERBUS encoder.
+//! Runs jobs on an INTERBUS encoder.
 
 use super::InterbusCommands;
 use crate::app::TypeMap;
@@ -32,7 +32,7 @@ pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     Ok(identity)
 }
 
-/// Reads all values that are available without selecting a cam program.
+/// Reads everything that can be read without selecting a cam program.
 pub(super) fn read_survey(runner: &mut Runner) -> Result<Box<Survey>> {
     let survey = result_of!(runner.run(InterbusJob::Survey)?, InterbusOutput::Surveyed(survey) => survey);
     survey.identity.gear().map_err(|why| to_failure(&explain::implausible_value_text(why)))?;

@@ -5,8 +5,8 @@ use crate::cli::{Failure, Result};
 use crate::devices::interbus::profile::{Direction, Item, ItemValue};
 use crate::devices::interbus::protocol::{Cam, Parameter, Value};
 
-/// Parses the value of an item. Values that the item can never have are rejected with its limits. Values that only this
-/// encoder cannot have are rejected later by the plan.
+/// Parses the value of an item. A value that no encoder accepts is rejected here with the limits. The plan rejects
+/// values that only this encoder does not accept.
 pub(super) fn value(item: Item, text: &str) -> Result<ItemValue> {
     Ok(match item {
         Item::Steps | Item::Revolutions | Item::Preset | Item::ZeroShift => {

@@ -14,52 +14,52 @@ use crate::devices::interbus::protocol::{
 };
 use crate::store::{DeviceKey, EntryKind};
 
-/// Number of stores at which the user is first warned of wear. The EEPROM is designed for about 200 and at most 500
-/// stores. See reference 3.
+/// Number of EEPROM write cycles at which the user is first warned of wear. The EEPROM is designed for about 200 cycles
+/// and for at most 500 (reference 3).
 pub const WEAR_WARNING: u64 = 150;
-/// Number of stores above which the user has to confirm a second time.
+/// Number of EEPROM write cycles above which the user has to confirm a second time.
 pub const WEAR_CONFIRMATION: u64 = NOMINAL_STORES as u64;
-/// Maximum number of stores that the manufacturer guarantees.
+/// Maximum number of EEPROM write cycles that the manufacturer guarantees.
 pub const WEAR_LAST: u64 = GUARANTEED_STORES as u64;
-/// Number of stores from which the EEPROM is considered worn.
+/// Number of EEPROM write cycles from which the EEPROM counts as worn out.
 pub const WEAR_LIMIT: u64 = 450;
 
-/// Returns the number of stores up to which a plan with this cost may start without being forced. There is no limit if
-/// the cost is 0, because such a plan causes no wear.
+/// Returns the number of EEPROM write cycles up to which a plan with this cost may start without being forced. A plan
+/// with a cost of 0 causes no wear and has no limit.
 pub const fn wear_limit(cost: u64) -> u64 {
     if cost == 0 { u64::MAX } else { WEAR_LIMIT - 1 }
 }
 
-/// A job of a session with an INTERBUS encoder. All jobs except [`Hello`](Self::Hello) and [`Position`](Self::Position)
-/// briefly replace the position and make the cam outputs invalid. Reading a cam program selects it. After the job, the
-/// encoder returns to its previous mode unless the job selects another mode.
+/// A job on an INTERBUS encoder. All jobs except [`Hello`](Self::Hello) and [`Position`](Self::Position) briefly
+/// replace the position and make the cam outputs invalid. Reading a cam program selects it. After the job, the encoder
+/// returns to its previous mode unless the job selects another mode.
 #[derive(Debug)]
 pub enum InterbusJob {
-    /// Reads the IN word after a window has connected. Nothing is sent to the encoder.
+    /// Reads the IN word once the connection is open. Nothing is sent to the encoder.
     Hello,
-    /// Reads all values that are available without selecting a cam program.
+    /// Reads everything that can be read without selecting a cam program.
     Survey,
     /// Reads the given cam programs and the window shift.
     Programs(Vec<ProgramNumber>),
     Identify,
     Status,
-    /// Checks the gateway and the encoder. Each line of the result has a verdict.
+    /// Checks the gateway and the encoder, with a verdict for each step.
     Check,
     /// Reads the IN word once. Nothing is sent to the encoder.
     Position,
     Read(Item),
-    /// Reads a single read-out or a register of the chip.
+    /// Reads a single read-out or OPC chip register.
     ReadOut(ReadOutNumber),
-    /// Selects the position, the speed or a cam program. The encoder stays in this mode.
+    /// Switches the IN word to the position, the speed or a cam program. The encoder stays in this mode.
     Select(StartupMode),
     Save {
         programs: bool,
     },
-    /// Plans a change. Nothing is written.
+    /// Plans a change without writing anything.
     Prepare(Change),
     Commit(Box<Commit>),
-    /// Ends an earlier parameterisation, error or read-out. Values that were set but not stored are now stored, which
-    /// uses one store cycle.
+    /// Ends an interrupted parameterisation, an error or a read-out. Values that were set but not stored are now
+    /// stored, which uses one EEPROM write cycle.
     RestoreMode,
 }
 
@@ -69,22 +69,22 @@ pub enum Change {
         profile: Box<InterbusProfile>,
         options: RestoreOptions,
     },
-    /// Writes the values of the image. Items that are missing in the image are neither read nor changed.
+    /// Writes the given EEPROM content. Missing items are neither read nor changed.
     Write(Box<Image>),
     Item(Item, ItemValue),
-    /// Stores the preset and sets the position at the current shaft angle to it. The shaft must be at standstill.
+    /// Stores a preset value and sets the current position to it. The shaft must be at standstill.
     Preset {
         value: u32,
     },
-    /// Restores the factory settings. This is experimental, see reference 6.10.
+    /// Restores the factory settings. This is experimental (see reference 6.10).
     Default,
 }
 
-/// Kind of change, which determines how an interrupted change is completed.
+/// Kind of change, which determines how to complete it after an interruption.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// A write of edited values. Values that were not written remain as edits.
+    /// A write of edited values. After an interruption, the values not yet written remain as edits.
     Edits,
     Preset,
     Default,
@@ -118,36 +118,36 @@ pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: InterbusPlan,
     pub identity: Identity,
-    /// Position parameters of the encoder that were read for the plan.
+    /// Position parameters that were read from the encoder for the plan.
     pub parameters: Parameters,
-    /// Number of stores that the logbook of this computer contains for the encoder, or `None` if it has no record.
+    /// EEPROM write cycles of the encoder in the logbook of this computer, or `None` if there is no record.
     pub cycles_seen: Option<CycleCount>,
     /// Number of items that already have the planned value.
     pub unchanged: u64,
-    /// Items of the profile that the encoder does not have.
+    /// Profile items that the encoder does not have.
     pub missing: Vec<String>,
-    /// Mounting values that differ from the profile and are left unchanged.
+    /// Mounting-dependent values that differ from the profile but are left unchanged.
     pub mounting_left: Vec<Item>,
     pub other_type: Option<TypeMismatch>,
-    /// Mounting values of another device that are written anyway. They must be set up again.
+    /// Mounting-dependent values that are copied from another device and must be readjusted.
     pub mounting_written: Vec<Item>,
 }
 
-/// Wear of the EEPROM after a plan.
+/// Wear of the EEPROM after a plan, counted in write cycles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WearAfterPlan {
-    /// Number of stores after the plan. The user should be informed that stores are limited.
+    /// The number of cycles should be shown to the user.
     Known(u64),
-    /// Number of stores after the plan. It exceeds the manufacturer's specification, so the user has to confirm.
+    /// The number of cycles exceeds the design limit, so the user must confirm.
     Ask(u64),
-    /// Number of stores after the plan. The plan is rejected unless it is forced.
+    /// The number of cycles is so high that the plan is rejected unless it is forced.
     Worn(u64),
-    /// The number of earlier stores is unknown. The plan is rejected unless it is forced.
+    /// The number of earlier cycles is unknown, so the plan is rejected unless it is forced.
     Unknown,
 }
 
 impl WearAfterPlan {
-    /// Returns the wear after the given number of stores, or `None` if the wear is too low for a message.
+    /// Returns the wear after the given number of EEPROM write cycles, or `None` if it needs no message.
     pub const fn from_stores(stores: u64) -> Option<Self> {
         match stores {
             WEAR_LIMIT.. => Some(WearAfterPlan::Worn(stores)),
@@ -159,7 +159,7 @@ impl WearAfterPlan {
 }
 
 impl Prepared {
-    /// Returns the wear after the plan, or `None` if the wear is too low for a message.
+    /// Returns the wear after the plan, or `None` if it needs no message.
     pub fn wear_to_report(&self) -> Option<WearAfterPlan> {
         let cost = self.plan.write_cycles();
         let Some(CycleCount { seen, .. }) = self.cycles_seen else {
@@ -224,8 +224,7 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// Returns the key of an encoder in backups and in the logbook. It is derived from the serial number, since the
-/// manufacturer and type are always the same.
+/// Returns the key of an encoder in backups and in the logbook. Only the serial number differs between encoders.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     logbook_key(&identity.serial_number, is_virtual)
 }

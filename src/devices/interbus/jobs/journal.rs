@@ -1,4 +1,5 @@
-//! Records that outlast a job: the mode in which an encoder was found, and the store cycles that reading may have used.
+//! Records that outlive a job: the mode in which an encoder was found, and the EEPROM write cycles that reading may
+//! have caused.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +13,7 @@ use crate::worker::{SessionContext, SessionLog};
 
 use super::job::logbook_key;
 
-/// Description in the entry of the logbook.
+/// Description of the logbook entry for reading cam programs.
 pub const PROGRAM_READ_NOTE: &str = "cam programs read, each of which may be stored when it is left";
 
 pub(super) struct WriteJournal {
@@ -32,8 +33,8 @@ impl WriteJournal {
         self.store.pending_mode_restores()
     }
 
-    /// Returns the name of an encoder in the records. A virtual encoder is marked, since it may have the serial number
-    /// of a real one.
+    /// Returns the name under which an encoder is recorded. Virtual encoders are marked, because their serial numbers
+    /// may equal those of real ones.
     fn name(&self, serial_number: &str) -> String {
         format!("{serial_number}{}", if self.is_virtual { " (virtual)" } else { "" })
     }
@@ -53,7 +54,7 @@ impl WriteJournal {
     }
 }
 
-/// Logs an error that occurred while the job was being recorded, and returns `None` for it. The job continues.
+/// Logs a failure to record something and returns `None`, so that the job continues.
 fn log_error<T, E: std::fmt::Display>(ended: Result<T, E>) -> Option<T> {
     ended.inspect_err(|why| tracing::warn!("{why}")).ok()
 }
@@ -95,8 +96,7 @@ impl Journal for WriteJournal {
     }
 }
 
-/// Formats a mode switch as mode numbers of read-out 9. The first is the mode in which the encoder was found, followed
-/// by the modes to which it was switched.
+/// Formats a mode switch as a list of mode numbers (read-out 9): the original mode, then the modes entered since.
 fn emit(excursion: &ModeSwitch) -> String {
     let modes: Vec<u32> =
         std::iter::once(excursion.found).chain(excursion.sent.iter().copied()).map(StartupMode::emit).collect();
@@ -113,7 +113,7 @@ fn parse(text: &str) -> Option<ModeSwitch> {
 mod tests {
     use super::*;
 
-    /// In read-out 9, 1 is position mode and 6 is cam program 4.
+    /// Mode number 1 is position mode, and 6 is cam program 4.
     #[test]
     fn an_excursion_is_stored_as_mode_numbers() {
         let mode = |number| StartupMode::parse(Value::from_word(number));

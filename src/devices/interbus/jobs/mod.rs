@@ -1,4 +1,4 @@
-//! An INTERBUS encoder behind its gateway as the device of a session, and its jobs.
+//! An INTERBUS encoder behind a gateway as a session device, and its jobs.
 
 mod commit;
 mod job;
@@ -47,7 +47,7 @@ impl fmt::Debug for Interbus {
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Interbus {
-    /// Returns the master of the encoder. It calls `on_step` for each step of the handshake.
+    /// Creates the master for the encoder. It calls `on_step` at each step of the handshake.
     fn create_master<'a>(
         &'a mut self,
         context: &'a mut SessionContext,
@@ -61,8 +61,8 @@ impl Interbus {
 }
 
 impl Session<Interbus> {
-    /// Creates a session from an open connection. `motor` is `Some` for a virtual encoder in this process. Its stores
-    /// are counted separately.
+    /// Creates a session from an open connection. `motor` is `Some` for a virtual encoder in this process, whose EEPROM
+    /// write cycles are counted separately.
     pub fn for_gateway(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -78,7 +78,7 @@ impl Session<Interbus> {
         &self.device.station
     }
 
-    /// Returns the motor on the shaft of a virtual encoder in this process. Other encoders have none.
+    /// Returns the motor that turns the shaft of a virtual encoder in this process, or `None` for other encoders.
     pub fn motor(&self) -> Option<Motor> {
         self.device.motor.clone()
     }
@@ -90,7 +90,7 @@ impl Device for Interbus {
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
     type Sample = WordReading;
-    /// There are no values to watch, since reading any value replaces the position.
+    /// Never used: reading any value would replace the position, so there is nothing to watch.
     type Watch = Infallible;
     type JobStep = JobStep;
 
@@ -195,12 +195,12 @@ impl Device for Interbus {
     }
 }
 
-/// Progress callback with the number of completed steps, the total number of steps and the current step.
+/// Progress callback, called with the number of completed steps, the total, and the current step.
 type Steps<'s> = &'s mut dyn FnMut(u64, u64, JobStep);
 
 impl Interbus {
-    /// Runs a job that only reads or that returns the encoder to its mode. Except for reading the IN word, these jobs
-    /// briefly replace the position.
+    /// Runs a job that only reads, or one that returns the encoder to its mode. All of these jobs except reading the IN
+    /// word briefly replace the position.
     fn run_reading_job(
         &mut self,
         context: &mut SessionContext,

@@ -1,4 +1,4 @@
-//! Creation of a session with an INTERBUS encoder from a link URL.
+//! Opens a session with an INTERBUS encoder from a link URL.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::worker::open::{
 };
 use crate::worker::{OpenError, Session};
 
-/// Checks the link URL of an INTERBUS encoder. The link is not opened.
+/// Checks the link URL of an INTERBUS encoder without opening the link.
 ///
 /// # Errors
 /// Returns [`OpenError::Url`] or [`OpenError::Sim`] if a setting is invalid.
@@ -22,7 +22,7 @@ pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to an INTERBUS encoder. `modbus:` leads to its gateway, `sim:` to a virtual encoder and `replay:` to a
+/// Opens a link to an INTERBUS encoder: `modbus:` to a real gateway, `sim:` to a virtual encoder, `replay:` to a
 /// recording.
 ///
 /// # Errors
@@ -45,7 +45,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
     Ok(Session::for_gateway(wire, clock, station, store, motor))
 }
 
-/// Returns the settings of the gateway and of the virtual encoder. Only `sim:` links use the latter.
+/// Returns the settings of the gateway and of the virtual encoder, which only `sim:` links use.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Modbus | LinkScheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, modbus:, replay:"));
@@ -56,8 +56,8 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     Ok((station, config))
 }
 
-/// Masks the transaction number of a sent request. This number differs in each request, so requests would otherwise not
-/// match a recording.
+/// Masks the transaction number of a sent request. The number differs in every request and would prevent matches with a
+/// recording.
 fn mask_numbers(entry: TraceEntry) -> TraceEntry {
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
     TraceEntry { bytes: MaskedBytes::with_masked(&bytes, &[0, 1]), ..entry }

@@ -1,4 +1,4 @@
-//! Preparation of a plan from a change. The encoder is only read and remains in its mode.
+//! Prepares a plan from a change. The encoder is only read and remains in its mode.
 
 use super::{Change, DeviceMessage, Interbus, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::interbus::procedures::{identify, read_state};
@@ -77,7 +77,8 @@ pub(super) fn prepare_plan(
     })
 }
 
-/// Returns the programs that must be read for an image. Any program provides the window shift.
+/// Returns the programs that must be read before the given values can be planned. The window shift is read with any
+/// program.
 fn programs_to_read_for(wanted: &Image) -> Vec<ProgramNumber> {
     let known: Vec<ProgramNumber> = wanted.known_programs().map(|(number, _)| number).collect();
     match wanted.shift {

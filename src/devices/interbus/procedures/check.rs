@@ -1,5 +1,5 @@
-//! Device check of the gateway, the IN word and the encoder, with a verdict for each item. Nothing is set, since each
-//! setting would use a store cycle. Therefore, the handshake is only tested with read-outs.
+//! Checks the gateway, the IN word and the encoder, with a verdict for each step. The handshake is only tested with
+//! read-outs, because setting a value would use an EEPROM write cycle.
 
 use std::time::Duration;
 
@@ -18,11 +18,11 @@ pub enum CheckStep {
     Gateway,
     /// Order of the two halves of a word.
     WordOrder,
-    /// IN word before any request, which is a position, cam outputs or an error.
+    /// The IN word before any request: a position, cam outputs or an error.
     InputWord,
-    /// Identity of the encoder, including the plausibility of its steps and turns.
+    /// Identity of the encoder, and whether its steps and turns are plausible.
     Identity,
-    /// Read-outs, which show that the encoder receives OUT words and that its IN words arrive.
+    /// Read-outs, to show that the encoder receives OUT words and that its replies arrive.
     Handshake,
     Temperature,
     Wear,
@@ -30,15 +30,15 @@ pub enum CheckStep {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
-    /// Number of readings of the IN word and the longest reply time.
+    /// The number of IN word readings and the longest reply time.
     Replies {
         requested: u32,
         /// Longest reply time in milliseconds.
         slowest_ms: u64,
     },
-    /// Words are valid in the configured order.
+    /// Words are plausible in the configured order.
     OrderFits,
-    /// Words are only valid with their halves exchanged.
+    /// Words are plausible only with their halves swapped.
     OrderSwapped {
         input: u32,
         swapped: u32,
@@ -66,14 +66,14 @@ pub enum CheckFinding {
     Mode(StartupMode),
     ReadOuts {
         requested: u64,
-        /// Average time of a read-out in milliseconds.
+        /// Average duration of a read-out in milliseconds.
         each_ms: u64,
     },
     Failed(Error),
     /// Temperature in tenths of a degree Celsius.
     Temperature(i32),
     Wear {
-        /// Minimum number of stores so far.
+        /// Minimum number of EEPROM write cycles so far.
         seen: CycleCount,
         limit: u64,
     },
@@ -81,10 +81,10 @@ pub enum CheckFinding {
 
 /// Number of IN word readings used to measure the reply time of the gateway.
 const READING_COUNT: u32 = 20;
-/// Permissible temperature of the electronics in tenths of a degree Celsius. The manual states no limits (`U`).
+/// Assumed temperature limits of the electronics in tenths of a degree Celsius. The manual states none (`U`).
 const TEMPERATURE_RANGE: std::ops::RangeInclusive<i32> = -400..=850;
 
-/// Runs the check. `wear` is called after the encoder has been identified.
+/// Runs the device check. `wear` is called once the encoder has been identified.
 ///
 /// # Errors
 /// Returns an error if the gateway does not reply or the check is cancelled. Errors of the handshake are reported as
@@ -120,7 +120,8 @@ pub fn check_encoder(
     Ok(lines)
 }
 
-/// Reads the IN word several times without sending anything else. Also returns whether further requests are possible.
+/// Reads the IN word several times without sending anything else. Also returns whether it is safe to send further
+/// requests.
 fn check_in_word(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Error> {
     let (mut slowest, mut word) = (Duration::ZERO, 0);
     for _ in 0..READING_COUNT {

@@ -5,9 +5,9 @@ use std::time::Duration;
 use super::Error;
 use crate::units::Moment;
 
-/// Cyclic process data of an encoder, with a clock.
+/// Access to the cyclic process data of an encoder, with a clock.
 pub trait ProcessData {
-    /// Runs one cycle, which writes the OUT word and then reads the IN word.
+    /// Runs one cycle: writes the OUT word, then reads the IN word.
     ///
     /// # Errors
     /// Returns an error if the exchange fails or is cancelled.
@@ -19,7 +19,7 @@ pub trait ProcessData {
     /// Returns any error that [`run_cycle`](Self::run_cycle) returns.
     fn input(&mut self) -> Result<u32, Error>;
 
-    /// Reads the present OUT word. Returns `None` if the gateway cannot read it.
+    /// Reads the current OUT word, or returns `None` if the gateway cannot read it.
     ///
     /// # Errors
     /// Returns any error that [`run_cycle`](Self::run_cycle) returns.
@@ -27,7 +27,7 @@ pub trait ProcessData {
 
     fn now(&self) -> Moment;
 
-    /// Waits for a duration, or until the job is cancelled.
+    /// Waits for the given duration, or until the job is cancelled.
     ///
     /// # Errors
     /// Returns [`Error::Cancelled`] if the job is cancelled.

@@ -10,11 +10,11 @@ use crate::profile::DeviceError;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequestedItem {
-    /// Read of the IN word from two input registers with function 4.
+    /// Read the IN word from two input registers (Modbus function 4).
     Input { register: u16 },
-    /// Read of the OUT word from two holding registers with function 3.
+    /// Read the OUT word from two holding registers (Modbus function 3).
     Output { register: u16 },
-    /// Write of an OUT word to two holding registers (Modbus function 16).
+    /// Write an OUT word to two holding registers (Modbus function 16).
     Write { register: u16, word: u32 },
 }
 
@@ -48,7 +48,7 @@ impl fmt::Display for RequestedItem {
     }
 }
 
-/// An exception code with which a gateway rejects a request. See *MODBUS application protocol* 1.1b3, chapter 7.
+/// The exception code in a gateway's rejection of a request. See *MODBUS application protocol* 1.1b3, chapter 7.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exception(u8);
 
@@ -108,7 +108,7 @@ pub enum ReplyDamage {
     Unit { requested: u8, got: u8 },
     #[error("the reply is to function {got} instead of {requested}")]
     Function { requested: u8, got: u8 },
-    /// The reply covers other registers than the request, or a different number of registers.
+    /// The reply contains other registers than requested, or the wrong number of them.
     #[error("the reply does not contain the requested registers")]
     Registers,
 }
@@ -117,9 +117,9 @@ pub enum ReplyDamage {
 pub enum ExpectedWord {
     Echo,
     Value,
-    /// A word of a running encoder, which is a position, a speed or cam outputs.
+    /// A word from a running encoder: a position, a speed or cam outputs.
     Run,
-    /// The position equals the preset.
+    /// A position equal to the preset.
     Preset,
 }
 
@@ -155,17 +155,17 @@ pub enum Error {
     Damaged {
         requested: RequestedItem,
         tries: u32,
-        /// The damage to the last reply.
+        /// Damage to the last reply.
         cause: ReplyDamage,
     },
-    /// The gateway keeps sending although the line must be silent.
+    /// The gateway keeps sending when the line should be silent.
     #[error("the gateway sends data that was not requested")]
     NeverSilent,
     #[error("the gateway refuses {requested}: exception {:02X}, {}; {}", exception.code(), exception.name(), exception.cause())]
     Exception { requested: RequestedItem, exception: Exception },
     #[error("cancelled")]
     Cancelled,
-    /// The word was not sent. In its current mode, the encoder would interpret it as another command.
+    /// The word was not sent, because the encoder would interpret it as another command in its current mode.
     #[error(transparent)]
     Illegal(#[from] ForbiddenCommandError),
     /// The encoder rejected the command with an error word.
@@ -173,7 +173,7 @@ pub enum Error {
     Refused { sent: Command, error: ErrorWord },
     #[error("the encoder has no value for {:08X} ({})", command.emit(), command.name())]
     UnknownReadOut { command: Command },
-    /// The encoder did not react to a word within the time limit of the handshake.
+    /// The encoder did not react to a word within the handshake time limit.
     #[error(
         "no {awaited} within {milliseconds} ms after OUT {sent:08X}; IN is {input:08X}{}",
         unexpected_echo_note(*input)
@@ -187,11 +187,11 @@ pub enum Error {
     },
     #[error("another master is writing to the encoder: OUT is {output:08X}, but {sent:08X} was written")]
     OtherMaster { sent: u32, output: u32 },
-    /// The encoder is being parameterised, but not by this program. Either a write was interrupted or another master is
+    /// The encoder is being parameterised, but not by this program. A write was interrupted, or another master is
     /// active.
     #[error("the encoder is being parameterised: IN is {input:08X}")]
     NotRunning { input: u32 },
-    /// The IN word is only valid with its halves exchanged.
+    /// The IN word is plausible only with its halves swapped.
     #[error("IN {input:08X} is plausible only as {swapped:08X}: the word order may be swapped")]
     WordOrder {
         /// The word as received.
@@ -220,7 +220,7 @@ pub enum Error {
     /// The encoder could not be returned to its mode after the job.
     #[error("{cause}; the encoder could not be returned to operation: {standing}")]
     ModeNotRestored {
-        /// The error of the job. If the job succeeded, this is the error that prevented the return to the mode.
+        /// The job's error, or if the job succeeded, the error that prevented the return.
         cause: Box<Error>,
         standing: LeftState,
     },
@@ -254,7 +254,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the gateway can no longer be reached, which makes further attempts useless.
+    /// Returns whether the gateway is unreachable, so that further attempts are pointless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent => true,

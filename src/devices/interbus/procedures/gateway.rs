@@ -25,24 +25,24 @@ const MAX_UNANSWERED: u32 = 3;
 const MAX_ATTEMPTS: u32 = 5;
 /// Pause after a rejection before the request is repeated.
 const BUSY_PAUSE: Duration = Duration::from_millis(200);
-/// Required silence after bytes that are not a frame. The next bytes start a new frame.
+/// Silence required after bytes that are not a frame. The next byte then starts a new frame.
 const RESYNC_SILENCE: Duration = Duration::from_millis(50);
 /// Interval at which cancellation is checked.
 const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
-/// Number of bytes before the function code of a frame. They are its number, protocol, length and unit.
+/// Length of the header before the function code, in bytes: transaction number, protocol, length and unit.
 const HEADER: usize = 7;
-/// Length of the shortest frame, which is a rejection, in bytes.
+/// Length in bytes of the shortest frame, which is a rejection.
 const MIN_FRAME_LEN: usize = HEADER + 2;
-/// Bit that is set in the function code of a rejection.
+/// Bit of the function code that marks a rejection.
 const EXCEPTION_BIT: u8 = 0x80;
 
-/// A gateway with one encoder, for the duration of one job.
+/// Access to one encoder through its gateway, for the duration of one job.
 pub struct Gateway<'a> {
     line: SerialLine<'a>,
     link: LinkParameters,
     recorded: bool,
     state: State<'a>,
-    /// OUT word that was last written in this job. It is `None` if its reply was lost.
+    /// Last OUT word written in this job, or `None` if the reply to the write was lost.
     written: Option<u32>,
 }
 
@@ -60,11 +60,11 @@ enum ExchangeError {
     Exception(Exception),
 }
 
-/// A complete frame, or bytes that do not form a frame together with their damage.
+/// A complete frame, or the bytes that do not form one and what is wrong with them.
 type FrameResult = Result<Vec<u8>, (ReplyDamage, Vec<u8>)>;
 
 impl<'a> Gateway<'a> {
-    /// Creates the gateway of a station. Also returns the known state of the encoder behind it.
+    /// Creates the gateway for one job. Also returns what is known about the encoder behind it.
     pub(super) fn new(ctx: Ctx<'a>, station: &'a mut Station) -> (Self, &'a mut KnownState) {
         let Station { link, recorded, line, next, waiting, silent, known } = station;
         let (link, recorded) = (*link, *recorded);
@@ -75,8 +75,7 @@ impl<'a> Gateway<'a> {
         (gateway, known)
     }
 
-    /// Sends a request and returns the registers of its reply. The request is repeated after errors that may be
-    /// temporary.
+    /// Sends a request and returns the registers in its reply. Errors that may be temporary cause a repetition.
     fn send_request(&mut self, requested: RequestedItem) -> Result<Vec<u16>, Error> {
         let mut tries = 0;
         loop {
@@ -165,8 +164,8 @@ impl<'a> Gateway<'a> {
         request(requested, self.link.unit, number, self.link.order)
     }
 
-    /// Removes the next complete frame from the received bytes. If they do not form a frame, all of them are removed
-    /// and returned as an error.
+    /// Removes the next complete frame from the received bytes. If they do not form a frame, discards all of them and
+    /// returns them with the error.
     fn next_frame(&mut self) -> Option<FrameResult> {
         let waiting = &mut *self.state.waiting;
         if waiting.len() < HEADER {
@@ -212,8 +211,8 @@ pub enum GatewayFault {
     Refused(Exception),
 }
 
-/// Returns the fault of a frame in the trace that followed the given request. The result is `None` if the frame answers
-/// this request or, according to its number, an earlier one.
+/// Returns what is wrong with a received frame in the trace, given the request before it. Returns `None` if the frame
+/// answers this request or, by its number, an earlier one.
 pub fn find_fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<GatewayFault> {
     let broken = |damage| Some(GatewayFault::Broken(damage));
     let length = guess_response_frame_len(received, ModbusProto::TcpUdp).map(usize::from);
@@ -229,7 +228,7 @@ pub fn find_fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Gate
     }
 }
 
-/// Returns the number, the unit and the content of the request in a frame of the trace.
+/// Returns the transaction number, the unit and the content of a request in the trace.
 fn request_in_frame(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedItem)> {
     let [number_high, number_low, _, _, _, _, unit, function, high, low, ..] = *sent else { return None };
     let register = u16::from_be_bytes([high, low]);
@@ -242,7 +241,7 @@ fn request_in_frame(sent: &[u8], order: WordOrder) -> Option<(u16, u8, Requested
     Some((u16::from_be_bytes([number_high, number_low]), unit, requested))
 }
 
-/// Parses the reply to a request. The number of the reply is ignored.
+/// Parses the reply to a request. The transaction number of the reply is ignored.
 fn parse_reply(
     request: &ModbusRequest,
     requested: RequestedItem,
@@ -327,7 +326,7 @@ pub enum FrameWord {
     In(u32),
 }
 
-/// Returns the process data word of a frame in the trace, or `None` if the frame contains none.
+/// Returns the process data word in a frame of the trace, or `None` if there is none.
 pub fn word_in_frame(sent: bool, frame: &[u8], order: WordOrder) -> Option<FrameWord> {
     match (sent, frame.get(HEADER..)?) {
         (true, [16, _, _, 0, 2, 4, a, b, c, d]) => Some(FrameWord::Out(word_from_bytes(order, [*a, *b, *c, *d]))),

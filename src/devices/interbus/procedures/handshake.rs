@@ -1,11 +1,11 @@
-//! Steps of the handshake as reported to the user, and the state of an encoder after a failure.
+//! Handshake steps as reported to the user, and the state in which a failed job leaves the encoder.
 
 use std::fmt;
 
 use crate::devices::interbus::protocol::{Command, ErrorWord, Reply, StartupMode, Value};
 use crate::units::Moment;
 
-/// A step of the handshake, with the OUT word and the IN word.
+/// A step of the handshake: the OUT word that was sent and the IN word received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Handshake {
     pub at: Moment,
@@ -17,19 +17,19 @@ pub struct Handshake {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WordReply {
-    /// A word of a running encoder, which is a position, a speed or cam outputs.
+    /// A word from a running encoder: a position, a speed or cam outputs.
     Runs,
     Busy,
     Echoed,
-    /// Echo of an earlier word that arrived late. The echo is outdated unless it persists.
+    /// A late echo of an earlier word. It is ignored unless it persists.
     OldEcho,
     Value(Value),
     Error(ErrorWord),
     Unknown,
 }
 
-/// Returns whether `input` is the exact echo of the command. The echo of a parameter may contain the manufacturer's
-/// bit. In the echo of a cam, this bit selects the edge. See reference 2.
+/// Returns whether `input` is the exact echo of the command. The manufacturer's bit is ignored in the echo of a
+/// parameter, but not in the echo of a cam, where it selects the edge (reference 2).
 pub(super) fn is_echo(command: Command, input: u32) -> bool {
     const MANUFACTURER: u32 = 1 << 29;
     let echo = Reply::echo_of(command).emit();
@@ -55,9 +55,9 @@ impl WordReply {
 /// Last known state of an encoder that could not be returned to its mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LeftState {
-    /// Last OUT word, which remains in the gateway until another word is written.
+    /// Last OUT word, which the gateway keeps until another word is written.
     pub out: u32,
-    /// Whether parameters or cams were being set. If so, the encoder sends no position until it receives 80000000h.
+    /// Whether parameters or cams were being set. Until it receives 80000000h, such an encoder sends no position.
     pub parameterising: bool,
     /// Mode before the job, or `None` if it has not been read.
     pub found: Option<StartupMode>,

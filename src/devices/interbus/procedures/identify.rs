@@ -1,4 +1,4 @@
-//! Reading the identity, the settings and all other values of an encoder (reference 3 and 5).
+//! Reads the identity, the settings and all other values of an encoder (references 3 and 5).
 
 use super::error::ImplausibleValue;
 use super::{Error, Master, WordReading};
@@ -12,7 +12,7 @@ use crate::devices::interbus::protocol::{
 pub struct Identity {
     /// Serial number in decimal.
     pub serial_number: String,
-    /// Number of steps over all programmed turns as the encoder reports it. See [`gear`](Self::gear).
+    /// Number of steps over all programmed turns, as reported by the encoder. Use [`gear`](Self::gear) to interpret it.
     pub steps: u32,
     /// Number of turns after which the position repeats.
     pub revolutions: u32,
@@ -23,8 +23,8 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Returns the gear with these steps and turns. Older encoders report one step less than the total, according to
-    /// their flags. The manual does not explain this any further (`U`).
+    /// Returns the gear with these steps and turns. Older encoders, which are recognised by their flags, report one
+    /// step less than the total. The manual does not explain why (`U`).
     ///
     /// # Errors
     /// Returns [`ImplausibleValue::Gear`] if the steps and turns do not form a gear.
@@ -37,7 +37,7 @@ impl Identity {
 pub struct Survey {
     pub identity: Identity,
     pub parameters: Parameters,
-    /// Preset flag as the encoder reports it.
+    /// Preset flag as reported by the encoder.
     pub preset_flag: u32,
     /// Operating time in minutes.
     pub operating_minutes: u32,
@@ -47,7 +47,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Returns all read-outs with the values as received.
+    /// Returns all read-outs with their values as received.
     pub fn read_outs(&self) -> impl Iterator<Item = (ReadOutNumber, Value)> {
         self.values.iter().copied()
     }
@@ -56,7 +56,7 @@ impl Survey {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
     pub reading: WordReading,
-    /// Error that the encoder sends instead of a position.
+    /// The error that the encoder reports instead of a position.
     pub error: Option<ErrorWord>,
     pub mode: StartupMode,
     pub flags: Flags,
@@ -75,7 +75,7 @@ pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
     master.run_guarded(|master| read_identity(master, &mut Vec::new()))
 }
 
-/// Reads all values that are available without selecting a cam program.
+/// Reads everything that can be read without selecting a cam program.
 ///
 /// # Errors
 /// Returns any error that [`identify`] returns.
@@ -106,7 +106,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     })
 }
 
-/// Reads one value of the read-out table or one register of the chip.
+/// Reads a single read-out or OPC chip register.
 ///
 /// # Errors
 /// Returns [`Error::UnknownReadOut`] if the read-out does not exist, or an error of [`identify`].
@@ -114,7 +114,7 @@ pub fn read_single_value(master: &mut Master<'_>, read_out: ReadOutNumber) -> Re
     master.run_guarded(|master| master.read_out(read_out))
 }
 
-/// Reads cam programs and the window shift. Selecting a program for reading also switches the outputs of the encoder.
+/// Reads cam programs and the window shift. The outputs of the encoder switch to each program while it is read.
 ///
 /// # Errors
 /// Returns [`Error::NoMode`] if a program cannot be selected, or another error if the handshake or the exchange fails.
@@ -209,7 +209,7 @@ fn read_mode(master: &mut Master<'_>) -> Result<StartupMode, Error> {
     }
 }
 
-/// Reads the gear again after the steps or turns may have changed.
+/// Reads the gear again, in case the steps or turns have changed.
 pub(super) fn refresh_gear(master: &mut Master<'_>) -> Result<(), Error> {
     let mut read = |number: u16| master.read_out(ReadOutNumber::new(number));
     let [steps, revolutions, flags] = [read(1)?, read(2)?, read(0xA)?];
@@ -221,7 +221,7 @@ fn gear(steps: u32, revolutions: u32, flags: Flags) -> Result<Gear, ImplausibleV
     Ok(Gear::new(steps.saturating_add(u32::from(flags.steps_minus_one())), revolutions)?)
 }
 
-/// Reads the position parameters that the identity does not contain. The identity must have been read in the same job.
+/// Reads the position parameters that are not part of the identity. The identity must have been read in the same job.
 pub(super) fn read_other_parameters(master: &mut Master<'_>, identity: &Identity) -> Result<Parameters, Error> {
     let Identity { steps, revolutions, direction, .. } = *identity;
     let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOutNumber::new(number))?.get());
@@ -329,8 +329,8 @@ fn temperature_tenths(value: Value) -> i32 {
     }
 }
 
-/// Returns the direction for a read-out. It is the value of the parameter, or 0 or 1 as a flag. The manual calls the
-/// read-out a flag (`U`).
+/// Returns the direction for a read-out value: either the parameter value, or a flag of 0 or 1, as the manual describes
+/// it (`U`).
 pub(super) fn direction_from_read_out(code: u32) -> Result<Direction, ImplausibleValue> {
     let flag = match code {
         0 => Some(Direction::Clockwise),

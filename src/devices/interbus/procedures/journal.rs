@@ -1,5 +1,5 @@
-//! State that outlives a job: the original mode of an encoder, and the store cycles that a switch of the mode may have
-//! used.
+//! What is recorded beyond a job: the original mode of an encoder, and the EEPROM write cycles that switching the mode
+//! may have caused.
 
 use crate::devices::interbus::protocol::StartupMode;
 
@@ -12,24 +12,24 @@ pub struct ModeSwitch {
     pub sent: Vec<StartupMode>,
 }
 
-/// Persistent record of mode switches and stores by serial number. Reading continues if a record cannot be saved.
+/// Persistent record of mode switches and EEPROM write cycles, by serial number. A job continues even if a record
+/// cannot be saved.
 pub trait Journal {
-    /// Returns whether there is an encoder that was not returned to its mode.
+    /// Returns whether any encoder has not been returned to its mode.
     fn has_modes_to_restore(&self) -> bool;
 
-    /// Returns the mode switch from which an encoder was not returned, or `None` if there is no record.
+    /// Returns the recorded mode switch if the encoder was never returned from it.
     fn recorded_mode_switch(&self, serial_number: &str) -> Option<ModeSwitch>;
 
     /// Records that the encoder is about to enter the last mode in `excursion`.
     fn save_mode_switch(&mut self, serial_number: &str, excursion: &ModeSwitch);
 
-    /// Records that the encoder is back in the mode before the switch.
+    /// Records that the encoder is back in its original mode.
     fn record_mode_restored(&mut self, serial_number: &str);
 
-    /// Records how many cam programs are about to be selected, since leaving a program may store it.
+    /// Records how many cam programs are about to be selected. The encoder may store each of them when it leaves it.
     fn record_planned_stores(&mut self, serial_number: &str, stores: u64);
 
-    /// Records how many cam programs the encoder may have stored. It has no effect if no store was announced and none
-    /// can have happened.
+    /// Records how many cam programs the encoder may have stored. Does nothing if no store was planned or possible.
     fn record_possible_stores(&mut self, serial_number: &str, stores: u64);
 }

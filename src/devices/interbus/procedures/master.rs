@@ -1,5 +1,5 @@
-//! Host side of the handshake (reference 4). Each word is sent until it takes effect. A word that would have another
-//! meaning in the current mode of the encoder is never sent.
+//! Host side of the handshake (reference 4). Each word is sent until it takes effect. A word that the encoder would
+//! interpret differently in its current mode is never sent.
 
 mod acknowledge;
 mod modes;
@@ -33,13 +33,14 @@ pub struct Master<'a> {
     tell: Option<StepListener<'a>>,
     /// Mode of the encoder, or `None` if it has not been read in this job.
     is: Option<StartupMode>,
-    /// Whether the encoder still has to confirm a mode switch.
+    /// Whether a mode switch has not been confirmed by the encoder yet.
     unsure: bool,
-    /// Whether the encoder was switched to other modes in this job.
+    /// Whether this job has switched the encoder to another mode.
     switched: bool,
     /// Mode before this job, or `None` if it has not been read.
     found: Option<StartupMode>,
-    /// Error word that the encoder already sent before this job. It replaces the position until the cause is removed.
+    /// Error word that the encoder was already sending before this job. It replaces the position until its cause is
+    /// removed.
     found_error: Option<u32>,
     parameterising: bool,
     out: Option<Command>,
@@ -53,14 +54,14 @@ pub struct Master<'a> {
 }
 
 impl<'a> Master<'a> {
-    /// Creates a master for one job. It reaches the encoder through the gateway of the station.
+    /// Creates a master for one job, which reaches the encoder through the gateway.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         let (patience, recorded) = (station.link.handshake, station.recorded);
         let (gateway, known) = Gateway::new(ctx, station);
         Master { recorded, ..Master::from_parts(Box::new(gateway), known, patience) }
     }
 
-    /// Creates a master for one job from the given process data.
+    /// Creates a master for one job on the given process data.
     pub fn for_job(data: impl ProcessData + 'a, station: &'a mut Station) -> Self {
         let patience = station.link.handshake;
         Master::from_parts(Box::new(data), &mut station.known, patience)
@@ -88,7 +89,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Calls `tell` for each step of the handshake.
+    /// Sets the callback for each step of the handshake.
     #[must_use]
     pub fn with_reporter(mut self, tell: impl FnMut(Handshake) + 'a) -> Self {
         self.tell = Some(Box::new(tell));
@@ -99,17 +100,17 @@ impl<'a> Master<'a> {
         self.data.now()
     }
 
-    /// Returns the last known mode, which may be from an earlier job.
+    /// Returns the last known mode, which may date from an earlier job.
     pub fn mode(&self) -> Option<StartupMode> {
         self.is.or(self.known.mode)
     }
 
-    /// Returns the mode, or `None` if the encoder has not confirmed it in this job.
+    /// Returns the mode, or `None` if the encoder has not reported it in this job.
     pub(super) const fn reported_mode(&self) -> Option<StartupMode> {
         if self.unsure { None } else { self.is }
     }
 
-    /// Stores the gear of the encoder for this session.
+    /// Remembers the gear of the encoder for this session.
     pub(super) fn remember_gear(&mut self, gear: Option<Gear>) {
         self.known.gear = gear;
     }
@@ -141,7 +142,7 @@ impl<'a> Master<'a> {
         LeftState { out, parameterising: self.parameterising, found: self.found, is: self.is }
     }
 
-    /// Runs `work` without reacting to cancellation, so that the encoder can be returned to a safe state.
+    /// Runs `work` with cancellation ignored, so that the encoder can be returned to a safe state.
     pub(super) fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.data.ignore_cancellation(true);
         let result = work(self);
@@ -153,8 +154,8 @@ impl<'a> Master<'a> {
         self.data.wait(duration)
     }
 
-    /// Requests a value and waits until it is stable. The previous value must have disappeared first, since the new one
-    /// could not be distinguished from it. Late echoes of earlier words are ignored.
+    /// Requests a value and waits until it is stable. The previous value must be gone first, because the two could not
+    /// be told apart. Late echoes of earlier words are ignored.
     ///
     /// # Errors
     /// Returns [`Error::UnknownReadOut`] if the value does not exist, or an error of
@@ -215,7 +216,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Sends 40000000h until the position equals the preset, then 00000000h. A preset can be used once each time it is
+    /// Sends 40000000h until the position equals the preset, then 00000000h. A preset works only once after it is
     /// programmed. The word is sent for a minimum time, because the old position may already equal the preset.
     ///
     /// # Errors
@@ -238,8 +239,8 @@ impl<'a> Master<'a> {
         self.run_uncancellable(Self::return_to_operation).and(fired)
     }
 
-    /// Sends a command in every cycle until `judge` returns a result. `judge` receives the IN word and the time for
-    /// which the word has been unchanged. The function also records how long the encoder is busy.
+    /// Sends a command in every cycle until `judge` returns a result. `judge` receives the IN word and how long it has
+    /// been unchanged. The time for which the encoder is busy is also measured.
     fn repeat_until<T>(
         &mut self,
         command: Command,
@@ -295,7 +296,7 @@ impl<'a> Master<'a> {
         Ok(input)
     }
 
-    /// Returns the IN word with swapped halves, if this is the only explanation for the word as received.
+    /// Returns the IN word with swapped halves if it is plausible only that way.
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
@@ -329,8 +330,8 @@ impl<'a> Master<'a> {
         Ok(command.ensure_legal(self.effective_mode())?)
     }
 
-    /// Returns the mode in which the encoder will interpret the next word. A read-out is ignored, since it is ended
-    /// before another word is sent.
+    /// Returns the mode in which the encoder will interpret the next word. A requested read-out does not matter, since
+    /// it is ended first.
     fn effective_mode(&self) -> EncoderMode {
         match self.is {
             Some(StartupMode::Cams(_)) => EncoderMode::Cam,
@@ -345,8 +346,7 @@ impl<'a> Master<'a> {
     }
 }
 
-/// Returns whether the gateway has definitely not written the word. After any other exception, the word may have been
-/// written.
+/// Returns whether the gateway has certainly not written the word. After other exceptions, it may have been written.
 fn is_write_refused(error: &Error) -> bool {
     matches!(error, Error::Exception { requested: RequestedItem::Write { .. }, exception } if !exception.is_temporary())
 }

@@ -1,7 +1,7 @@
-//! Procedures of an INTERBUS encoder (POSITAL OCD-IB, K3). A Modbus/TCP gateway transmits its process data. Except for
-//! the position, all values are transferred with a handshake in these data. Reading or setting a value interrupts the
-//! position and makes the cam outputs invalid. Selecting another program switches the outputs. "Reference" is the
-//! project's reference "interbus".
+//! Procedures for an INTERBUS encoder (POSITAL OCD-IB, K3) behind a Modbus/TCP gateway. All values except the position
+//! are transferred by a handshake in the process data. Reading or setting a value interrupts the position and makes the
+//! cam outputs invalid. Selecting another cam program switches the outputs. "Reference" is the project's reference
+//! "interbus".
 //!
 //! ```text
 //! identify, survey, write ── master: the handshake, modes, back to the previous mode ──▶ data: OUT ⇄ IN ◀── gateway

@@ -3,14 +3,14 @@
 use crate::devices::interbus::protocol::{CamOutput, Gear, Reply, StartupMode, Value, WindowShift};
 use crate::units::Moment;
 
-/// An IN word, and the data about the encoder that is known in the session.
+/// An IN word, with what is known about the encoder when it is received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordReading {
     pub at: Moment,
     /// IN word as received.
     pub word: u32,
-    /// Mode of the encoder, or `None` if it has not been read yet. Without a mode, the word of a running encoder is
-    /// interpreted as a position.
+    /// Mode of the encoder, or `None` if it has not been read yet. The word of a running encoder is then interpreted as
+    /// a position.
     pub mode: Option<StartupMode>,
     /// Gear of the encoder, or `None` if it has not been read yet.
     pub gear: Option<Gear>,
@@ -34,13 +34,13 @@ impl WordReading {
         Reply::parse(self.word)
     }
 
-    /// Returns whether the encoder is running, which means that the word is a valid position, speed or cam output.
+    /// Returns whether the encoder is running, so that the word is a valid position, speed or cam output.
     pub fn is_valid(&self) -> bool {
         matches!(self.reply(), Reply::Run { .. })
     }
 
-    /// Returns the position in steps, or `None` if the word does not contain it. In cam mode, the window must contain
-    /// all bits of the position.
+    /// Returns the position in steps, or `None` if the word does not contain it. In cam mode, all bits of the position
+    /// must lie within the window.
     pub fn position(&self) -> Option<u32> {
         match (self.mode, self.reply()) {
             (Some(StartupMode::Velocity), _) => None,
@@ -55,8 +55,8 @@ impl WordReading {
         }
     }
 
-    /// Returns the speed in revolutions per minute if the encoder is in velocity mode. The value is read as a signed
-    /// number of 25 bits (`U`: not documented). See reference 6.13.
+    /// Returns the speed in revolutions per minute, if the encoder is in velocity mode. The value is interpreted as a
+    /// signed 25-bit number (`U`: not documented). See reference 6.13.
     pub fn rpm(&self) -> Option<i32> {
         match (self.mode, self.reply()) {
             (Some(StartupMode::Velocity), Reply::Run { value, .. }) => {
@@ -74,7 +74,7 @@ impl WordReading {
         }
     }
 
-    /// Returns the bits that are set although they should be 0 while the encoder is running.
+    /// Returns the bits that should be 0 while the encoder is running but are set.
     pub fn unexpected_bits(&self) -> u8 {
         match self.reply() {
             Reply::Run { stray, .. } => stray,
@@ -82,8 +82,7 @@ impl WordReading {
         }
     }
 
-    /// Returns the position as turns and steps. The result is `None` if the position or the gear is unknown, or if the
-    /// position is beyond the measuring range.
+    /// Returns the position as turns and steps, or `None` if it is beyond the measuring range or the gear is unknown.
     pub fn turn_position(&self) -> Option<TurnPosition> {
         let (position, gear) = (u64::from(self.position()?), self.gear?);
         let (all, turns) = (u64::from(gear.total_steps()), u64::from(gear.turns()));
@@ -98,7 +97,7 @@ impl WordReading {
     }
 }
 
-/// Returns the word with swapped halves, if this is a valid position and the word as received has stray bits.
+/// Returns the word with swapped halves, if that is a valid position and the word as received has stray bits.
 pub(super) fn swapped_position_word(word: u32) -> Option<u32> {
     let other = word.rotate_left(16);
     let strays = |word| matches!(Reply::parse(word), Reply::Run { stray, .. } if stray != 0);
@@ -106,7 +105,7 @@ pub(super) fn swapped_position_word(word: u32) -> Option<u32> {
     (strays(word) && runs(other)).then_some(other)
 }
 
-/// Returns the word with swapped halves if only this is a valid position. Unlike [`swapped_position_word`], it also
+/// Returns the word with swapped halves, if only that is a valid position. Unlike [`swapped_position_word`], this also
 /// examines words that are not positions, except error words without data.
 pub(super) fn swapped_word_if_unexplained(word: u32) -> Option<u32> {
     match Reply::parse(word) {

@@ -1,4 +1,4 @@
-//! Reading values that are saved, displayed as an item, or required for a plan.
+//! Reads the values to be saved, displayed as an item, or used for a plan.
 
 use super::identify::{direction_from_read_out, programs, read_cam, read_image, read_other_parameters, read_survey};
 use super::write::read_parameter;
@@ -33,8 +33,8 @@ impl Survey {
     }
 }
 
-/// Reads all values that can be restored. Cam programs are only read on request, since reading a program switches the
-/// outputs of the encoder.
+/// Reads all values that can be restored. Cam programs are read only on request, since reading one switches the outputs
+/// of the encoder.
 ///
 /// # Errors
 /// Returns an error if the handshake or the exchange fails.
@@ -78,7 +78,7 @@ pub fn read_state(
     })
 }
 
-/// Reads one item. If the item belongs to a cam program, the program is selected first.
+/// Reads one item. For an item of a cam program, the program is selected first.
 ///
 /// # Errors
 /// Returns an error if the handshake or the exchange fails.

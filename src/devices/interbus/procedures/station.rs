@@ -1,4 +1,4 @@
-//! State of a gateway and its encoder that outlives a job.
+//! A gateway and its encoder, with the state that outlives a job.
 
 use std::fmt;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use crate::parameter::{Milliseconds, ParameterGroup};
 use crate::parameters;
 
 parameters! {
-    /// Connection parameters of the gateway and the registers of the encoder.
+    /// Connection parameters of the gateway, and the registers of the encoder.
     #[derive(Copy)]
     pub struct LinkParameters: UrlError {
         pub unit: u8 = 1, "unit" => UNIT, "connect.unit";
@@ -21,7 +21,7 @@ parameters! {
         pub order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::KEYWORDS;
         /// Time limit for an echo, a value or a position (`U`: not documented). See reference 4.
         pub handshake: Duration = Duration::from_secs(2), "handshake" => Milliseconds(50..=8000), "connect.handshake";
-        /// Pause before each reading of the IN word, which is about the cycle time of a gateway.
+        /// Pause before each reading of the IN word. The default is about the cycle time of a gateway.
         pub cycle: Duration = Duration::from_millis(5), "cycle" => Milliseconds(1..=1000);
         /// Time limit for a reply from the gateway, not including the margin of the line.
         pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=2000);
@@ -31,7 +31,7 @@ parameters! {
 #[derive(Clone, Debug)]
 pub struct Station {
     pub link: LinkParameters,
-    /// Whether replies come from a recording. They then contain the request numbers of the recorded session.
+    /// Whether replies come from a recording, in which case they contain the recorded request numbers.
     pub recorded: bool,
     pub(super) line: LineState,
     pub(super) next: u16,
@@ -49,21 +49,21 @@ pub(super) struct KnownState {
     pub(super) serial_number: Option<u32>,
     pub(super) gear: Option<Gear>,
     pub(super) shift: Option<WindowShift>,
-    /// OUT word that must remain set to keep the encoder in its mode. It is `None` if 00000000h keeps the mode.
+    /// Mode that the encoder keeps only while an OUT word remains set, with this word. `None` if 00000000h keeps the
+    /// mode.
     pub(super) hold: Option<(StartupMode, Command)>,
     pub(super) kept: Option<StartupMode>,
-    /// Longest processing time of a word that was observed in this session.
+    /// Longest time for which the encoder was seen to be busy with a word in this session.
     pub(super) processing: Duration,
 }
 
 impl Station {
-    /// Returns the serial number of the encoder that was identified last.
+    /// Returns the serial number of the last encoder that was identified.
     pub fn serial_number(&self) -> Option<u32> {
         self.known.serial_number
     }
 
-    /// Creates the state for a gateway that has not been used in this session, with default parameters. `margin`
-    /// extends the time limit for replies.
+    /// Creates the state for a new gateway with default parameters. `margin` extends the time limit for replies.
     pub fn new(margin: Duration) -> Self {
         Station {
             link: LinkParameters::default(),
@@ -76,7 +76,7 @@ impl Station {
         }
     }
 
-    /// Creates a station from its connection parameters. Other parameters of the query are ignored.
+    /// Creates a station from the connection parameters in a query. Other parameters of the query are ignored.
     ///
     /// # Errors
     /// Returns an error with the valid values if a parameter is invalid.

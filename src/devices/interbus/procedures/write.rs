@@ -1,5 +1,5 @@
-//! Execution of a plan. The values on which it is based are read again. Each operation is executed and verified, and
-//! finally the encoder returns to its previous mode.
+//! Executes a plan. First, the values on which it is based are read again. Then each operation is executed and
+//! verified, and finally the encoder returns to its previous mode.
 
 use std::time::Duration;
 
@@ -30,9 +30,9 @@ pub enum EndState {
     Unknown(LeftState),
 }
 
-/// Time for which the shaft must be at standstill before a preset.
+/// How long the shaft must be at standstill before a preset.
 const STANDSTILL_TIME: Duration = Duration::from_millis(300);
-/// Interval between two readings of the position at standstill.
+/// Interval between two position readings at standstill.
 const READING_INTERVAL: Duration = Duration::from_millis(20);
 
 pub struct EncoderWriter<'w, 'm> {
@@ -131,7 +131,7 @@ fn execute(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Resul
     Ok(())
 }
 
-/// Sets all changed parameters in a single parameterisation and stores them with 80000000h.
+/// Sets all changed parameters in a single parameterisation, which 80000000h then stores.
 fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut WrittenChanges) -> Result<(), Error> {
     master.switch_to_mode(StartupMode::K3)?;
     done.write_cycles += 1;
@@ -152,7 +152,7 @@ fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut
     if changes.iter().any(of_gear) { refresh_gear(master) } else { Ok(()) }
 }
 
-/// Reads a parameter back. A direction is returned as the value of the parameter.
+/// Reads a parameter back. The direction is converted to its parameter value.
 fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
     let value = read_parameter(master, parameter)?;
     match parameter {
@@ -178,7 +178,7 @@ fn check_value(item: impl FnOnce() -> String, wanted: u32, reads: u32) -> Result
     if reads == wanted { Ok(()) } else { Err(Error::NotTaken { item: item(), wanted, reads }) }
 }
 
-/// Selects a cam program and changes it. The changes are stored with 80000000h and read back.
+/// Selects a cam program and changes it. The changes are stored with 80000000h, then read back.
 fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut WrittenChanges) -> Result<(), Error> {
     let number = change.program;
     master.switch_to_mode(StartupMode::Cams(number))?;
@@ -223,7 +223,7 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut WrittenCh
     Ok(())
 }
 
-/// Sets the position of the shaft to the preset value. The preset must have been programmed before.
+/// Sets the current position to the preset value, which must have been programmed before.
 fn trigger_preset(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     ensure_standstill(master)?;
     let gear = master.gear();
@@ -231,8 +231,8 @@ fn trigger_preset(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     master.trigger_preset(|position| shortest_distance(position, value, gear) <= 1)
 }
 
-/// Checks that the shaft is at standstill by reading its position for a short time. The encoder keeps sending the
-/// position afterwards.
+/// Checks that the shaft is at standstill by reading its position for a short time. Position output continues
+/// afterwards.
 ///
 /// # Errors
 /// Returns [`Error::Moving`] if the shaft moves, [`Error::NotRunning`] if there is no position, or another error if the
@@ -258,14 +258,14 @@ fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Returns whether two positions are so close that the shaft may be at standstill. They may differ by one step or, if a
-/// turn has many steps, by a thousandth of a turn.
+/// Returns whether two positions are close enough for a shaft at standstill. They may differ by one step or, with many
+/// steps per turn, by a thousandth of a turn.
 fn is_near(position: u32, other: u32, gear: Option<Gear>) -> bool {
     let most = gear.map_or(1, |gear| (gear.total_steps() / gear.turns() / 1000).max(1));
     shortest_distance(position, other, gear) <= most
 }
 
-/// Returns the shorter distance between two positions within the measuring range, in steps.
+/// Returns the shorter of the two distances between positions in the measuring range, in steps.
 fn shortest_distance(position: u32, other: u32, gear: Option<Gear>) -> u32 {
     let apart = position.abs_diff(other);
     gear.map_or(apart, |gear| apart.min(gear.total_steps().saturating_sub(apart)))

@@ -1,17 +1,17 @@
-//! Planning changes. Each change is checked against the rules of the encoder before anything is sent. A plan uses one
-//! store cycle for all parameters and one for each changed program.
+//! Plans changes. Each change is checked against the rules of the encoder before anything is sent. A plan uses one
+//! EEPROM write cycle for all parameters and one for each changed program.
 
 use super::{
     Base, CamChange, Edge, Image, InterbusPlan, Item, Op, ParameterChange, Parameters, PlanError, ProgramChange,
 };
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, Program, ProgramNumber, Value};
 
-/// Plans the changes that give an encoder the wanted values. Only differences are written. Values that are missing in
-/// the wanted image are left unchanged. `device` must contain all values of the wanted image.
+/// Plans the changes that turn the values of `device` into the wanted ones. Values missing in `wanted` are left
+/// unchanged, and all others must be known in `device`.
 ///
 /// Parameters are written first, in a single parameterisation. Their order keeps each value valid when it is sent, and
 /// the cams are within the new range afterwards. The window shift is set together with the first changed program. If no
-/// program changes, it is set with the first program that was read, which uses a store cycle.
+/// program changes, it is set with the first program that was read, which uses an EEPROM write cycle.
 ///
 /// # Errors
 /// Returns a [`PlanError`] if the plan would violate a rule of the encoder.
@@ -55,8 +55,8 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
     Ok(plan)
 }
 
-/// Plans to set the position at the current shaft angle. The preset is always programmed before it is executed, since
-/// it can be used only once each time it is programmed. See reference 4.
+/// Plans to set the current position to a preset value. The preset is always programmed before it is executed, because
+/// it can be executed only once each time it is programmed (reference 4).
 ///
 /// # Errors
 /// Returns an error if the value exceeds the measuring range.
@@ -67,13 +67,13 @@ pub fn plan_preset(device: &Parameters, value: u32) -> Result<InterbusPlan, Plan
     Ok(InterbusPlan { base, ops: vec![Op::Parameterise(vec![change]), Op::FirePreset { value }] })
 }
 
-/// Plans to restore the factory settings. The resulting values are not known in advance. This is experimental, see
-/// reference 6.10.
+/// Plans to restore the factory settings. The resulting values are not known in advance. This is experimental (see
+/// reference 6.10).
 pub fn plan_default(device: &Parameters) -> InterbusPlan {
     InterbusPlan { base: Base { parameters: Some(*device), ..Base::default() }, ops: vec![Op::Default] }
 }
 
-/// Returns the parameter changes, ordered so that each value is within its limits when it is sent.
+/// Returns the parameter changes in an order that keeps each value within its limits when it is sent.
 fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<ParameterChange>, PlanError> {
     if device == wanted {
         return Ok(Vec::new());
@@ -121,7 +121,7 @@ fn cam_changes(number: ProgramNumber, from: &Program, to: &Program, steps: u32) 
     Ok(changes)
 }
 
-/// Checks that no active cam remains beyond a shortened range.
+/// Checks that no active cam would be left beyond a shortened range.
 fn check_unchanged_cams_in_range(device: &Image, wanted: &Image) -> Result<(), PlanError> {
     if wanted.parameters.steps >= device.parameters.steps {
         return Ok(());
@@ -145,7 +145,7 @@ fn check_edge(item: Item, edge: Edge, position: Value, steps: u32) -> Result<(),
 }
 
 impl Edge {
-    /// Both edges in the order in which they are set.
+    /// Both edges, in the order in which they are set.
     pub const BOTH: [Edge; 2] = [Edge::Start, Edge::Stop];
 
     /// Returns the position of this edge of a cam.

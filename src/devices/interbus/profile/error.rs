@@ -3,8 +3,8 @@
 use super::{Edge, Item};
 use crate::devices::interbus::protocol::{Flags, GearError, OutOfRange};
 
-/// The types of a profile and an encoder, which differ according to their flags. Either only one of them counts turns,
-/// or only one reports its steps minus one, which gives the same number a different meaning. See manual 10.2.
+/// The encoder types of a profile and of a connected encoder, which differ. They differ if only one counts turns or
+/// only one reports its steps minus one, so that equal numbers mean different things (manual 10.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the profile is for a {} encoder, but this encoder is {}", profile.type_name(), device.type_name())]
 pub struct TypeMismatch {
@@ -14,7 +14,7 @@ pub struct TypeMismatch {
     pub device: Flags,
 }
 
-/// The reason why a change cannot be planned. In this case, nothing has been written.
+/// The reason why a change cannot be planned. Nothing has been written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another encoder.
@@ -34,10 +34,10 @@ pub enum PlanError {
     /// A parameter is out of range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// A mounting value does not fit the values to be written, and the restore does not change mounting values.
+    /// A mounting-dependent value, which the restore leaves unchanged, is invalid with the values to be written.
     #[error("{item} belongs to the mounting and is kept: {value} is outside the range {low} to {high}")]
     MountingLeft {
-        /// Item with the mounting value.
+        /// The mounting-dependent item.
         item: Item,
         /// Value in the encoder.
         value: u32,
@@ -61,7 +61,7 @@ pub enum PlanError {
     /// The current value of an item is unknown, so the item cannot be changed.
     #[error("{item} cannot be changed because it has not been read")]
     NotRead {
-        /// The item.
+        /// Item with the unknown value.
         item: Item,
     },
 }

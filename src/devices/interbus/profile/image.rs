@@ -1,18 +1,20 @@
-//! The content of a K3 encoder's EEPROM, to the extent that it can be read.
+//! The readable part of a K3 encoder's EEPROM.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::devices::interbus::protocol::{Gear, GearError, Parameter, Program, ProgramNumber, WindowShift};
 
-/// Values of an encoder that can be written and read back. A value is `None` if it was not read or is not in a profile.
+/// The values of an encoder that can be written and read back. A value is `None` if it was not read or is not in a
+/// profile.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Image {
     /// Position parameters.
     pub parameters: Parameters,
-    /// Shift of the position in the window in cam mode. It is common to all programs.
+    /// Window shift in cam mode, shared by all programs.
     pub shift: Option<WindowShift>,
-    /// Cam programs, with program 1 at index 0. A program that was read contains all cams, including the inactive ones.
+    /// Cam programs, with program 1 at index 0. A program read from an encoder contains all cams, including inactive
+    /// ones.
     pub programs: [Option<Program>; ProgramNumber::COUNT],
 }
 
@@ -25,13 +27,13 @@ pub struct Parameters {
     pub revolutions: u32,
     /// Counting direction.
     pub direction: Direction,
-    /// Position assigned to the current shaft angle when the preset is executed. It depends on the mounting.
+    /// The preset: the position at the shaft angle at which it is executed. It depends on the mounting.
     pub preset: u32,
     /// Zero shift, which depends on the mounting.
     pub zero_shift: u32,
 }
 
-/// Counting direction, seen when looking at the shaft.
+/// Counting direction, as seen when looking at the shaft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// Value 3: the position increases when the shaft turns clockwise.
@@ -73,7 +75,7 @@ impl fmt::Display for Direction {
     }
 }
 
-/// Error for a text that is not the keyword of a direction.
+/// Error for a text that is not a direction keyword.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the direction must be cw (3) or ccw (4)")]
 pub struct DirectionError;
@@ -113,7 +115,7 @@ impl Parameters {
 }
 
 impl Image {
-    /// Creates an image that contains only parameters.
+    /// Creates the content of an encoder with parameters only.
     pub const fn from_parameters(parameters: Parameters) -> Self {
         Image { parameters, shift: None, programs: [None; ProgramNumber::COUNT] }
     }
@@ -123,7 +125,7 @@ impl Image {
         self.programs.get(usize::from(number.get() - 1)).and_then(Option::as_ref)
     }
 
-    /// Returns the entry of a program, which is `None` while the program is unknown.
+    /// Returns a mutable program entry, which is `None` while the program is unknown.
     pub fn program_mut(&mut self, number: ProgramNumber) -> Option<&mut Option<Program>> {
         self.programs.get_mut(usize::from(number.get() - 1))
     }

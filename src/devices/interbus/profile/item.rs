@@ -1,5 +1,5 @@
-//! Items of an encoder and their values. The command `read` accepts their names, such as `steps`, `cam:2:5` and
-//! `cam-mask:2`.
+//! The settings and measured values of an encoder. The command `read` accepts their names, such as `steps`, `cam:2:5`
+//! and `cam-mask:2`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -20,9 +20,9 @@ pub enum Item {
     Preset,
     /// Zero point shifting.
     ZeroShift,
-    /// Shift of the position in the window of cam mode. It is common to all programs.
+    /// Window shift in cam mode, shared by all programs.
     Shift,
-    /// Mask of the active cams of a program.
+    /// Mask of active cams in a program.
     CamMask(ProgramNumber),
     /// Both edges of a cam.
     Cam(ProgramNumber, CamNumber),
@@ -45,14 +45,14 @@ pub enum ItemValue {
     Cam(Cam),
     /// Temperature in tenths of a degree Celsius.
     TenthsOfDegree(i32),
-    /// Operating time in minutes, with a resolution of ten.
+    /// Operating time in minutes, in units of ten minutes.
     Minutes(u32),
 }
 
-/// The reason why a string does not name an item.
+/// The reason why a string is not an item name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ItemError {
-    /// The string has none of the valid forms.
+    /// The string matches none of the item names.
     #[error("{0:?} is not an item; items are {ITEMS}")]
     Unknown(String),
     /// The program does not exist.

@@ -1,5 +1,5 @@
-//! Changes of an operation for the logbook, with old and new values. They use the terms of the manual regardless of the
-//! language of the window.
+//! Changes made by an operation, as text for the logbook. The text uses the terms of the manual, regardless of the
+//! display language.
 
 use super::{CamChange, Direction, Op, ParameterChange};
 use crate::devices::interbus::protocol::Parameter;
@@ -29,8 +29,7 @@ impl Op {
         }
     }
 
-    /// Returns the individual changes of parameters, masks and cam edges. The result is empty for operations without
-    /// such values.
+    /// Returns the individual changes of parameters, masks and cam edges. Returns an empty list for other operations.
     pub fn change_steps(&self) -> Vec<ChangeStep> {
         let step = |name: String, from: &dyn ToString, to: &dyn ToString| ChangeStep {
             name,

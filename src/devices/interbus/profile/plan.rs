@@ -1,4 +1,4 @@
-//! Operations that change an encoder, and the values on which the operations are based.
+//! Operations that change an encoder, and the values on which they are based.
 
 use std::fmt;
 
@@ -9,8 +9,8 @@ use crate::profile::{Operation, Plan};
 /// A planned write to an INTERBUS encoder.
 pub type InterbusPlan = Plan<Base, Op>;
 
-/// The values on which a plan is based. They are the values that its operations change and the range of its cams.
-/// Unchanged programs are excluded, since reading a program switches the outputs of the encoder.
+/// The encoder values on which a plan is based: those that the plan changes, and the measuring range for its cams.
+/// Unchanged programs are left out, since reading a program switches the outputs of the encoder.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Parameters, or `None` if the plan is empty.
@@ -21,23 +21,22 @@ pub struct Base {
     pub programs: Vec<(ProgramNumber, Program)>,
 }
 
-/// An operation, from entering a mode to leaving it. Every operation except firing the preset uses one store cycle of
-/// the EEPROM.
+/// An operation, from entering a mode to leaving it. Every operation except executing the preset uses one EEPROM write
+/// cycle.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// Sets parameters in the given order in a single parameterisation. Afterwards, word 80000000h stores the
-    /// parameters. See reference 4.
+    /// Sets parameters in the given order in a single parameterisation, then stores them with 80000000h (reference 4).
     Parameterise(Vec<ParameterChange>),
-    /// Selects and changes a cam program. Leaving the program stores the changes. See reference 5.
+    /// Selects and changes a cam program. Leaving the program stores the changes (reference 5).
     Program(ProgramChange),
-    /// Sets the position at the current shaft angle to the preset value (word 40000000h). The preset must have been
-    /// programmed before. See reference 4.
+    /// Sets the current position to the preset value (word 40000000h). The preset must have been programmed before
+    /// (reference 4).
     FirePreset {
         /// Preset value.
         value: u32,
     },
-    /// Restores the factory settings (word 0E000000h). It is experimental, since only the appendix of the manual
-    /// mentions it. See reference 6.10.
+    /// Restores the factory settings (word 0E000000h). This is experimental, since only the appendix of the manual
+    /// mentions it (reference 6.10).
     Default,
 }
 
@@ -48,7 +47,7 @@ pub struct ParameterChange {
     pub parameter: Parameter,
     /// Current value.
     pub from: u32,
-    /// New value. It equals the current value if a preset must be programmed again before it can be executed.
+    /// New value, or the current one again if a preset must be reprogrammed before it can be executed.
     pub to: u32,
 }
 
@@ -57,12 +56,12 @@ pub struct ParameterChange {
 pub struct ProgramChange {
     /// Program number.
     pub program: ProgramNumber,
-    /// Changed cam edges in the order of the cams. The start of a cam precedes its stop.
+    /// Changed cam edges, ordered by cam, with the start of a cam before its stop.
     pub cams: Vec<CamChange>,
     /// Current and new activation mask, or `None` if the mask does not change.
     pub mask: Option<(u8, u8)>,
-    /// Current and new window shift, or `None` if it does not change. The shift is common to all programs but can only
-    /// be set together with a program.
+    /// Current and new window shift, or `None` if it does not change. All programs share the shift, but it can only be
+    /// set together with a program.
     pub shift: Option<(WindowShift, WindowShift)>,
 }
 
@@ -79,7 +78,7 @@ pub struct CamChange {
     pub to: Value,
 }
 
-/// An edge of a cam. The cam is also on at the positions of its edges.
+/// An edge of a cam. The cam is on at both of its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Edge {
     /// First position of the cam.
@@ -98,8 +97,8 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the changed items. A cam is listed once even if both edges change. Executing the preset and restoring
-    /// the factory settings return no items.
+    /// Returns the changed items, listing a cam once even if both edges change. Executing the preset and restoring the
+    /// factory settings change no items.
     pub fn affected_items(&self) -> Vec<Item> {
         match self {
             Op::Parameterise(changes) => {
@@ -119,7 +118,7 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes that a comparison would count.
+    /// Returns the number of changes, counted as in a comparison.
     pub fn change_count(&self) -> u64 {
         match self {
             Op::FirePreset { .. } | Op::Default => 1,
@@ -129,7 +128,7 @@ impl Op {
 }
 
 impl ProgramChange {
-    /// Returns whether nothing changes.
+    /// Returns whether the operation changes nothing.
     pub fn is_empty(&self) -> bool {
         self.cams.is_empty() && self.mask.is_none() && self.shift.is_none()
     }

@@ -1,5 +1,5 @@
-//! Saved content of an INTERBUS encoder, which consists of the identity, the EEPROM, cam names and recorded values. See
-//! [`text`](super::text) for the file format.
+//! The saved data of an INTERBUS encoder: identity, EEPROM content, cam names and recorded values. The
+//! [`text`](super::text) module defines the file format.
 
 use std::collections::BTreeMap;
 
@@ -12,13 +12,13 @@ use crate::profile::ron_text::UnknownValues;
 pub struct InterbusProfile {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// Content of the EEPROM. Programs, cams and the window shift are `None` if the profile does not contain them.
+    /// EEPROM content. Programs, cams and the window shift are `None` if they are missing from the profile.
     pub image: Image,
     /// Names of programs and cams, which the encoder does not store.
     pub names: CamNames,
-    /// Values that depend on the mounting. They are never written to another encoder without asking.
+    /// Values that depend on the mounting. They are never copied to another encoder without asking.
     pub mounting: Vec<MountingMark>,
-    /// Values that change without being written, or that cannot be written. They are neither compared nor restored.
+    /// Values that change by themselves or cannot be written. They are neither compared nor restored.
     pub recorded: RecordedValues,
     /// Entries that this version does not recognise. They are preserved when the profile is saved.
     pub unknown: UnknownEntries,
@@ -27,15 +27,15 @@ pub struct InterbusProfile {
 /// Identity of an encoder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileIdentity {
-    /// Serial number in decimal, read-out 0. It is empty if the profile belongs to no particular encoder.
+    /// Serial number in decimal (read-out 0). It is empty if the profile is not for a particular encoder.
     pub serial_number: String,
-    /// Flags, read-out Ah, or `None` if unknown. They state how steps are counted and whether turns are counted.
+    /// Flags (read-out Ah), or `None` if unknown. They state how steps are counted and whether turns are counted.
     pub flags: Option<Flags>,
     /// Entries that this version does not recognise. They are preserved when the profile is saved.
     pub unknown: UnknownValues,
 }
 
-/// Values that change without being written, or that cannot be written.
+/// Values that change by themselves or cannot be written.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedValues {
     /// Software version, read-out 7.
@@ -44,7 +44,7 @@ pub struct RecordedValues {
     pub operating_minutes: Option<u32>,
     /// Temperature in tenths of a degree Celsius, read-out Ch.
     pub temperature_tenths: Option<i32>,
-    /// Mode in which the encoder was found, read-out 9.
+    /// Mode in which the encoder was found (read-out 9).
     pub mode: Option<StartupMode>,
     /// Preset flag, read-out 6.
     pub preset_flag: Option<u32>,
@@ -52,17 +52,17 @@ pub struct RecordedValues {
     pub unknown: UnknownValues,
 }
 
-/// A mark on a value that is only valid for one encoder in one machine.
+/// A mark for a value that is valid only for one encoder in a particular machine.
 pub type MountingMark = crate::profile::MountingMark<Item>;
 
-/// User-defined names of programs and cams. A missing name is empty.
+/// User-defined names of programs and cams. An unnamed one has an empty name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct CamNames {
     programs: BTreeMap<ProgramNumber, String>,
     cams: BTreeMap<(ProgramNumber, CamNumber), String>,
 }
 
-/// Entries that this version does not recognise, by the structure that contains them.
+/// Entries that this version does not recognise, grouped by the structure that contains them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries {
     pub(super) parameters: UnknownValues,
@@ -85,7 +85,7 @@ impl InterbusProfile {
         profile
     }
 
-    /// Marks the preset and the zero shift, which depend on the mounting.
+    /// Marks the preset and the zero shift as mounting-dependent.
     pub fn mark_mounting_dependent_values(&mut self) {
         for (item, meaning) in [(Item::Preset, "preset value"), (Item::ZeroShift, "zero point shifting")] {
             if !self.depends_on_mounting(item) {
@@ -94,7 +94,7 @@ impl InterbusProfile {
         }
     }
 
-    /// Returns whether an item is marked as a mounting value.
+    /// Returns whether an item is marked as mounting-dependent.
     pub fn depends_on_mounting(&self, item: Item) -> bool {
         self.mounting.iter().any(|mark| mark.item == item)
     }

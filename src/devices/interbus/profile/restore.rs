@@ -1,18 +1,18 @@
-//! Planning a restore. Only differences are written, in as few store cycles as possible. Values that depend on the
-//! mounting of another encoder are omitted. A preset is stored but never executed.
+//! Plans a restore. Only differences are written, in as few EEPROM write cycles as possible. Values that depend on the
+//! mounting of another encoder are left out. A preset is stored but never executed.
 
 pub use crate::profile::RestoreOptions;
 
 use super::{Image, InterbusPlan, InterbusProfile, Item, PlanError, ProfileIdentity, TypeMismatch, plan_edits};
 use crate::devices::interbus::protocol::{Flags, OutOfRange, ProgramNumber};
 
-/// Current state of an encoder, which is the basis for planning.
+/// The current state of an encoder, for which a restore is planned.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// Content of the EEPROM. It contains at least the programs of [`programs_to_read`], and the window shift if there
-    /// are any.
+    /// EEPROM content, with at least the programs listed by [`programs_to_read`]. It contains the window shift if any
+    /// program was read.
     pub image: Image,
 }
 
@@ -20,7 +20,7 @@ pub struct DeviceState {
 pub type Restore = crate::profile::Restore<InterbusPlan, Item>;
 
 /// Returns the programs that must be read before a restore of this profile can be planned. The window shift is read
-/// together with a program. If the profile contains only the shift, the first program is read.
+/// with a program. If the profile contains only the shift, the first program is read.
 pub fn programs_to_read(profile: &InterbusProfile) -> Vec<ProgramNumber> {
     let of_cams = profile.image.known_programs().map(|(number, _)| number);
     let all: Vec<ProgramNumber> = of_cams.collect();
@@ -30,7 +30,7 @@ pub fn programs_to_read(profile: &InterbusProfile) -> Vec<ProgramNumber> {
     }
 }
 
-/// Plans a restore. No data is written.
+/// Plans a restore without writing anything.
 ///
 /// # Errors
 /// Returns a [`PlanError`] if the encoder does not match the profile or a value is invalid.
@@ -77,15 +77,14 @@ pub fn check_device(profile: &InterbusProfile, device: &ProfileIdentity) -> Resu
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Returns the types of a profile and an encoder if they differ. Returns `None` if they are equal or one of them is
-/// unknown.
+/// Returns the types of a profile and an encoder if they differ, or `None` if they are equal or one is unknown.
 pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<TypeMismatch> {
     let (profile, device) = profile.flags.zip(device.flags)?;
     let what = |flags: Flags| (flags.counts_turns(), flags.steps_minus_one());
     (what(profile) != what(device)).then_some(TypeMismatch { profile, device })
 }
 
-/// Checks that an encoder matches the profile, unless the options allow a mismatch.
+/// Checks that an encoder matches the profile, unless the options allow the mismatch.
 ///
 /// # Errors
 /// Returns an error from [`check_device`] if the encoder does not match.

@@ -1,4 +1,4 @@
-//! Conversion of encoder steps to the position of a machine in degrees or millimetres.
+//! Converts encoder steps to machine positions in degrees or millimetres.
 
 /// Unit of a machine position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -12,12 +12,12 @@ pub enum Unit {
     Millimetres,
 }
 
-/// Relation between machine positions and encoder positions.
+/// How machine positions relate to encoder positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     unit: Unit,
     steps: f64,
-    /// Encoder position at the zero of the machine.
+    /// Encoder position at machine zero.
     zero: u32,
 }
 
@@ -51,7 +51,7 @@ pub struct ScaleError;
 const MAX_DECIMALS: usize = 6;
 /// Tolerance within which two computed numbers are considered equal.
 const EQUALITY_TOLERANCE: f64 = 1e-9;
-/// Upper limit for the steps in a unit and for the units in a range.
+/// Upper limit for the number of steps per unit and for the length of the range in units.
 const MAX_SCALE_VALUE: f64 = 1e12;
 
 impl Default for Scale {
@@ -76,8 +76,8 @@ impl Unit {
 }
 
 impl Scale {
-    /// Creates a scale in degrees from the number of steps in a turn of the machine. `zero` is the encoder position at
-    /// the zero of the machine.
+    /// Creates a scale in degrees. `steps_in_turn` is the number of steps in a turn of the machine, and `zero` is the
+    /// encoder position at machine zero.
     ///
     /// # Errors
     /// Returns [`ScaleError`] if `steps_in_turn` is not above 0.
@@ -85,8 +85,8 @@ impl Scale {
         Scale::new(Unit::Degrees, steps_in_turn, zero)
     }
 
-    /// Creates a scale in millimetres from the number of steps in a millimetre. `zero` is the encoder position at the
-    /// zero of the machine.
+    /// Creates a scale in millimetres. `steps_in_one` is the number of steps per millimetre, and `zero` is the encoder
+    /// position at machine zero.
     ///
     /// # Errors
     /// Returns [`ScaleError`] if `steps_in_one` is not above 0.
@@ -119,7 +119,7 @@ impl Scale {
         self.steps
     }
 
-    /// Returns the encoder position at the zero of the machine.
+    /// Returns the encoder position at machine zero.
     pub const fn zero(&self) -> u32 {
         self.zero
     }
@@ -137,7 +137,7 @@ impl Scale {
         }
     }
 
-    /// Converts an encoder step to the unit of the scale.
+    /// Converts an encoder position to the unit of the scale.
     pub fn value(&self, step: u32, range: u32) -> f64 {
         let from_zero = f64::from(step) - f64::from(self.zero);
         self.round_to_step(from_zero, range) / self.steps
@@ -148,8 +148,8 @@ impl Scale {
         f64::from(range) / self.steps
     }
 
-    /// Returns the encoder step nearest to a machine position. If degrees wrap, the position may be beyond the
-    /// measuring range. Positions in steps must always be within the measuring range.
+    /// Returns the encoder step nearest to a machine position. Only positions in degrees that wrap may be beyond the
+    /// measuring range.
     ///
     /// # Errors
     /// Returns [`OutsideRangeError`] with the limits if the position is outside the measuring range.
@@ -177,7 +177,7 @@ impl Scale {
         }
     }
 
-    /// Returns the number of decimals that distinguish adjacent steps.
+    /// Returns the number of decimals needed to tell adjacent steps apart.
     pub fn decimal_places(&self) -> usize {
         let one = 1.0 / self.steps;
         let tells = |decimals: &usize| {

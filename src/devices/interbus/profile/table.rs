@@ -1,9 +1,9 @@
-//! Cam tables, as used in spreadsheets and on machine drawings. They are read from a file or from pasted text, and can
-//! be written. Each row defines a pulse with its program, cam or name, start and stop. Its positions are in steps, or
+//! Cam tables, as found in spreadsheets and machine drawings. They are read from a file or pasted text, and can be
+//! saved. Each row defines one pulse with its program, cam or name, start and stop. Positions are in encoder steps, or
 //! in degrees or millimetres of the machine.
 //!
-//! Invalid entries are reported with their line and column, and all others are read. Each edge is rounded to encoder
-//! steps. Its rounding error is recorded.
+//! Invalid entries are reported with their line and column, and the rest is still read. Each edge is rounded to encoder
+//! steps, and its rounding error is recorded.
 
 mod columns;
 mod emit;
@@ -24,26 +24,26 @@ pub struct TableOptions {
     pub scale: Scale,
     /// Number of steps in the measuring range.
     pub range: u32,
-    /// Program of the rows that do not name one.
+    /// Program for rows that do not name one.
     pub program: ProgramNumber,
 }
 
-/// Content of a cam table, including its problems.
+/// Content of a cam table, with the problems found in it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CamTable {
     /// Delimiter between the columns.
     pub delimiter: Option<Delimiter>,
-    /// Whether the first line contains the column names.
+    /// Whether the first line is a header with column names.
     pub header: bool,
     /// Valid rows in table order.
     pub rows: Vec<TableRow>,
     /// Problems in table order.
     pub problems: Vec<TableProblem>,
-    /// Notes about rows that are otherwise valid.
+    /// Notes about valid rows.
     pub notes: Vec<TableNote>,
 }
 
-/// A row of a cam table, which defines one pulse.
+/// A row of a cam table. Each row defines one pulse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableRow {
     /// Line number, counted from 1.
@@ -60,7 +60,7 @@ pub struct TableRow {
     pub stop: TableEdge,
 }
 
-/// A cam edge as requested in the table and as rounded to encoder steps.
+/// A cam edge, both as given in the table and rounded to encoder steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableEdge {
     /// Requested position in the unit of the scale.
@@ -71,7 +71,7 @@ pub struct TableEdge {
     pub off: f64,
 }
 
-/// A problem that prevents a table entry from being read.
+/// A problem because of which a table entry cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}, column {column}: {kind}")]
 pub struct TableProblem {
@@ -101,13 +101,13 @@ pub enum TableProblemKind {
         /// Text in the table.
         text: String,
     },
-    /// The text is not the number of a program.
+    /// The text is not a program number.
     #[error("{text:?} is not a cam program from 1 to 8")]
     Program {
         /// Text in the table.
         text: String,
     },
-    /// The text is not the number of a cam.
+    /// The text is not a cam number.
     #[error("{text:?} is not a cam from 0 to 7")]
     Cam {
         /// Text in the table.
@@ -145,7 +145,7 @@ pub enum TableProblemKind {
 /// A note about rows that are valid.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TableNote {
-    /// Several pulses share a name, and each of them uses a separate cam.
+    /// Several pulses of a program share a name, and each uses a separate cam.
     Pulses {
         /// Program of the pulses.
         program: ProgramNumber,
@@ -154,7 +154,7 @@ pub enum TableNote {
         /// Cams that the pulses use.
         cams: Vec<CamNumber>,
     },
-    /// The first line contains no known column name, so the columns are assumed to be in the usual order.
+    /// The first line contains no known column name, so the columns are assumed to be in the standard order.
     OtherHeader,
     /// The unit in the header differs from the selected one.
     OtherUnit {
@@ -165,7 +165,7 @@ pub enum TableNote {
     },
 }
 
-/// A column of a cam table, by its content.
+/// A column of a cam table, identified by its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Column {
     /// Number of the program, 1 to 8.
@@ -180,7 +180,7 @@ pub enum Column {
     Stop,
 }
 
-/// A program imported from a table. Only its cams are active. The edges of other cams are left unchanged.
+/// A program imported from a table. All other cams become inactive but keep their edges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImportedProgram {
     /// The program.
@@ -233,7 +233,7 @@ impl CamTable {
             .collect()
     }
 
-    /// Returns the rows in which at least one edge was rounded.
+    /// Returns the rows with at least one rounded edge.
     pub fn rounded_rows(&self) -> impl Iterator<Item = &TableRow> {
         self.rows.iter().filter(|row| row.start.is_rounded() || row.stop.is_rounded())
     }

@@ -33,7 +33,7 @@ pub(super) fn image_with(image: &Image, items: &[(&str, ItemValue)]) -> Image {
     image
 }
 
-/// Returns an image with 3600 steps over one turn and 8 active cams in each program, where cam c of program p spans
+/// Returns EEPROM content with 3600 steps over one turn and 8 active cams in each program. Cam c of program p spans
 /// 100·c + p to 100·c + p + 49.
 pub(super) fn image() -> Image {
     let parameters =
@@ -68,7 +68,7 @@ pub(super) fn profile(serial_number: &str) -> InterbusProfile {
     InterbusProfile::new(identity(serial_number), image(), recorded)
 }
 
-/// Returns the description of the changes of an operation in the logbook.
+/// Returns the logbook description of an operation's changes.
 pub(super) fn logbook_note(op: &Op) -> String {
     op.changed_items().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }

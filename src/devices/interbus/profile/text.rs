@@ -1,4 +1,4 @@
-//! The text format of an INTERBUS profile, which users can read and edit. Each error names the entry that caused it.
+//! The text format of INTERBUS profiles, which users can read and edit. Each error names the entry at fault.
 
 use super::{
     CamNames, Direction, EntryError, Image, InterbusProfile, Item, ItemError, MountingMark, Parameters,

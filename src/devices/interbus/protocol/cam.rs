@@ -2,8 +2,8 @@
 
 use super::value::Value;
 
-/// Number of a cam within its program, 0 to 7. The words have room for 16 cams, but the manual only mentions 8. See
-/// reference 6.9.
+/// Number of a cam within its program, 0 to 7. The words have room for 16 cams, but the manual mentions only 8
+/// (reference 6.9).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CamNumber(u8);
 
@@ -11,8 +11,8 @@ pub struct CamNumber(u8);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProgramNumber(u8);
 
-/// A cam, which is on from one position to another, including both (`U`: not documented). If the start is after the
-/// stop, the range wraps around the end of the measuring range.
+/// A cam, which is on from one position to another, both included (`U`: not documented). If the start is after the
+/// stop, the cam wraps around the end of the measuring range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cam {
     /// First position at which the cam is on.
@@ -24,7 +24,7 @@ pub struct Cam {
 /// A program of eight cams. Only the cams in the activation mask are active.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Program {
-    /// Cams by number. Undefined cams are `None`.
+    /// Cams by number, or `None` where undefined.
     pub cams: [Option<Cam>; Program::CAMS],
     /// Activation mask, in which bit i activates cam i.
     pub mask: u8,
@@ -101,7 +101,7 @@ impl Program {
     /// Number of cams in a program.
     pub const CAMS: usize = 8;
 
-    /// Returns whether a cam is active, which means that its bit in the mask is set.
+    /// Returns whether a cam is active, that is, whether its bit in the mask is set.
     pub const fn is_on(&self, cam: CamNumber) -> bool {
         self.mask >> cam.0 & 1 == 1
     }
@@ -116,7 +116,7 @@ impl Program {
         self.cams.get(usize::from(number.0)).copied().flatten()
     }
 
-    /// Sets a cam, or removes the cam if `cam` is `None`. The activation mask is left unchanged.
+    /// Sets or removes a cam. The activation mask is left unchanged.
     pub fn set_cam(&mut self, number: CamNumber, cam: Option<Cam>) {
         if let Some(place) = self.cams.get_mut(usize::from(number.0)) {
             *place = cam;

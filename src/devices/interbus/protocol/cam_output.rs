@@ -1,4 +1,4 @@
-//! IN word of a running cam program: eight outputs and a window of the position (reference 5).
+//! IN word of a running cam program: eight outputs, and a window with 17 bits of the position (reference 5).
 
 use super::value::Value;
 
@@ -7,13 +7,13 @@ use super::value::Value;
 pub struct CamOutput {
     /// Outputs in bits 7..0. Bit i is set while cam i is on.
     pub outputs: u8,
-    /// Window in bits 24..8, which contains 17 bits of the position from bit `shift_iw` upwards.
+    /// Bits 24..8, the window: 17 bits of the position, starting with bit `shift_iw`.
     pub window: u32,
     /// Bits 30..25, which should be 0.
     pub stray: u8,
 }
 
-/// Error for a word that contains no cam outputs, because its bit 31 is set.
+/// Error for a word that contains no cam outputs because its bit 31 is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cam outputs are not valid in {word:08X}")]
 pub struct CamOutputError {
@@ -21,14 +21,14 @@ pub struct CamOutputError {
     pub word: u32,
 }
 
-/// Number of bits by which the position is shifted right in the window, 0 to 25. The manual calls it `shift_iw`.
+/// Number of low position bits that are shifted out of the window, 0 to 25. The manual calls it `shift_iw`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct WindowShift(u8);
 
 /// Meaning of a bit in the cam output word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CamBit {
-    /// Bit 31, which makes all other bits invalid if it is set.
+    /// Bit 31. If it is set, all other bits are invalid.
     Invalid,
     /// A bit that should be 0.
     Zero,
@@ -39,7 +39,7 @@ pub enum CamBit {
 }
 
 const WINDOW_BITS: u32 = 17;
-/// Number of output bits, which are below the window.
+/// Number of output bits. The window starts above them.
 const OUTPUT_BITS: u32 = 8;
 
 impl WindowShift {
@@ -53,7 +53,7 @@ impl WindowShift {
         self.0
     }
 
-    /// Returns the mask of the position bits in the window, which is 0 for a shift of 25.
+    /// Returns the mask of the position bits in the window. It is 0 for a shift of 25.
     pub const fn mask(self) -> u32 {
         (((1_u64 << WINDOW_BITS) - 1) << self.0) as u32 & Value::MAX.get()
     }
@@ -81,18 +81,18 @@ impl CamOutput {
         })
     }
 
-    /// Returns the word. Bits of the window and stray bits that do not fit into the word are dropped.
+    /// Returns the word. Window and stray bits that do not fit into it are dropped.
     pub const fn emit(self) -> u32 {
         let window = self.window & ((1 << WINDOW_BITS) - 1);
         ((self.stray & 0x3F) as u32) << Value::BITS | window << OUTPUT_BITS | self.outputs as u32
     }
 
-    /// Returns the position bits of the window, shifted to their original positions. See [`WindowShift::mask`].
+    /// Returns the position bits in the window, shifted back to their place in the position. See [`WindowShift::mask`].
     pub const fn position_bits(self, shift: WindowShift) -> u32 {
         ((self.window as u64) << shift.0) as u32 & shift.mask()
     }
 
-    /// Returns the meaning of a bit, or `None` for bits above 31. The lowest bit is bit 0.
+    /// Returns the meaning of a bit, or `None` for bits above 31. Bit 0 is the lowest bit.
     pub const fn bit(bit: u8, shift: WindowShift) -> Option<CamBit> {
         Some(match bit {
             0..=7 => CamBit::Cam(bit),

@@ -1,16 +1,16 @@
-//! The three classes of encoders, their identification codes on the bus, and the words of K1 and K2 encoders, which
-//! have no commands (reference 1).
+//! The three encoder classes with their identification codes on the bus, and the words of K1 and K2 encoders, which
+//! accept no commands (reference 1).
 
 use super::value::Value;
 
-/// Class of the process data that an encoder exchanges with its master.
+/// Class of an encoder, which determines the process data that it exchanges with its master.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Class {
     /// An IN word of 16 bits, which contains the position.
     K1,
     /// An IN word of 32 bits, which contains the position.
     K2,
-    /// An IN word and an OUT word of 32 bits. Each word has seven bits of status or command and 25 data bits.
+    /// An IN word and an OUT word of 32 bits each: seven bits for status or command, and 25 data bits.
     K3,
 }
 
@@ -34,7 +34,7 @@ impl Class {
     /// All classes.
     pub const ALL: [Class; 3] = [Class::K1, Class::K2, Class::K3];
 
-    /// Returns the number of bytes that the encoder sends and the number of bytes that it receives.
+    /// Returns the number of bytes that the encoder sends, and the number that it receives.
     pub const fn bytes(self) -> (usize, usize) {
         match self {
             Class::K1 => (2, 0),
@@ -44,8 +44,8 @@ impl Class {
     }
 }
 
-/// Returns the identification code of an encoder. The code of K3 with copper or fibre is 37h (55), although the manual
-/// gives it as 36h (55). See manual 5.1 and reference 6.1.
+/// Returns the identification code of an encoder. The manual gives the code of K3 with copper or fibre as 36h (55), but
+/// 55 is 37h (manual 5.1, reference 6.1).
 pub const fn id_code(class: Class, interface: Interface) -> u8 {
     match (class, interface) {
         (Class::K1 | Class::K2, Interface::Standard | Interface::OpticalFibre) => 0x36,
@@ -55,7 +55,7 @@ pub const fn id_code(class: Class, interface: Interface) -> u8 {
     }
 }
 
-/// Returns the devices with an identification code. Several devices may share a code, and an unknown code yields none.
+/// Returns the devices with an identification code. Several may share a code, and none has an unknown code.
 pub fn devices_with_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
     Class::ALL
         .into_iter()
@@ -63,7 +63,7 @@ pub fn devices_with_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
         .filter(move |(class, interface)| id_code(*class, *interface) == code)
 }
 
-/// Word of a K1 or K2 encoder. The position is right-justified, and the bits above it should be 0 but are preserved.
+/// The word of a K1 or K2 encoder, with the position right-justified. The bits above it should be 0, but are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SingleWord {
     /// 12 position bits of a single-turn encoder in a 16-bit word.
@@ -99,7 +99,7 @@ impl SingleWord {
         }
     }
 
-    /// Returns the bits above the position that are set although they should be 0.
+    /// Returns the bits above the position that should be 0 but are set.
     pub const fn unexpected_bits(self) -> u32 {
         self.emit() & !self.position().get()
     }

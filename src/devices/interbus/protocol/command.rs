@@ -1,4 +1,5 @@
-//! OUT words, which are the commands of the master to a K3 encoder (reference 3 and 5), and the modes that allow them.
+//! OUT words, which are the master's commands to a K3 encoder (references 3 and 5), and the modes in which they are
+//! allowed.
 
 use super::cam::{CamNumber, ProgramNumber};
 use super::cam_output::WindowShift;
@@ -12,24 +13,23 @@ use super::value::{Code, Value};
 pub enum Command {
     /// 00000000h: normal operation.
     Normal,
-    /// 80000000h: runs the encoder. The rising edge of bit 31 ends parameterisation, a read-out and the setting of
-    /// cams.
+    /// 80000000h: runs the encoder. The rising edge of bit 31 ends a parameterisation, a read-out or a change of cams.
     Run,
     /// 40000000h: applies the programmed preset to the position. A preset can be applied once each time it is
     /// programmed.
     Preset,
-    /// 60000000h: applies the preset any number of times. Each use must be followed by *run*.
+    /// 60000000h: applies the preset, any number of times. Each use must be followed by *run*.
     FrabaPreset,
     /// Sets a parameter.
     Set(Parameter, Value),
-    /// 20400001h and 20400000h: selects the speed or the position for the IN word.
+    /// 20400001h and 20400000h: outputs the speed or the position in the IN word.
     Velocity(bool),
     /// 2021xxxxh: requests a read-out.
     ReadOut(ReadOutNumber),
     /// 2080000ph: selects cam mode with the given program. `None` selects position mode.
     Cams(Option<ProgramNumber>),
-    /// 2040cccch: sets the active cams, with bit i for cam i. The upper byte is 0 because there are only 8 cams. See
-    /// reference 6.9.
+    /// 2040cccch: sets the active cams, with bit i for cam i. The upper byte is 0, as there are only 8 cams (reference
+    /// 6.9).
     Activate(u16),
     /// 201000ssh: sets the window shift.
     Shift(WindowShift),
@@ -43,14 +43,14 @@ pub enum Command {
     ReadCamStart(CamNumber),
     /// 2020002ch: reads the stop position of a cam.
     ReadCamStop(CamNumber),
-    /// 20200040h: reads the window shift. The 20200030h of the manual is a misprint. See reference 6.5.
+    /// 20200040h: reads the window shift. The manual's 20200030h is a misprint (reference 6.5).
     ReadShift,
     /// A word that the manual does not define.
     Unknown(u32),
 }
 
-/// The error for a command that must not be sent. In its current mode, the encoder would interpret the word as a
-/// different command or as none.
+/// Error for a command that must not be sent, because in its current mode the encoder would interpret it differently or
+/// ignore it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{:08X} ({}) is not valid in {mode}", command.emit(), command.name())]
 pub struct ForbiddenCommandError {
@@ -101,8 +101,8 @@ impl Command {
         }
     }
 
-    /// Returns the meanings that a word has in all modes. There are one or two, or [`Command::Unknown`] if the manual
-    /// does not define the word.
+    /// Returns the meanings that a word has in any mode. There are one or two, or only [`Command::Unknown`] if the
+    /// manual does not define the word.
     pub fn all_meanings(word: u32) -> Vec<Command> {
         let both: Vec<Command> =
             [Command::decode_non_cam_command(word), Command::parse_cam_word(word)].into_iter().flatten().collect();
@@ -114,11 +114,11 @@ impl Command {
         }
     }
 
-    /// Parses a word as an encoder in the given mode interprets it.
+    /// Parses a word the way an encoder in the given mode interprets it.
     ///
     /// # Errors
-    /// Returns [`ForbiddenCommandError`] if the word has no meaning in this mode. The error contains its meaning in another mode, if
-    /// any.
+    /// Returns [`ForbiddenCommandError`] if the word has no meaning in this mode. The error contains its meaning in
+    /// another mode, if any.
     pub fn in_mode(word: u32, mode: EncoderMode) -> Result<Command, ForbiddenCommandError> {
         let readings = Command::all_meanings(word);
         match readings.iter().find(|command| command.is_legal_in(mode)) {
@@ -130,7 +130,7 @@ impl Command {
         }
     }
 
-    /// Checks that an encoder in the given mode interprets the command as intended.
+    /// Checks that an encoder in the given mode would interpret the command as intended.
     ///
     /// # Errors
     /// Returns [`ForbiddenCommandError`] if the command must not be sent in this mode.
@@ -138,9 +138,9 @@ impl Command {
         if self.is_legal_in(mode) { Ok(()) } else { Err(ForbiddenCommandError { command: self, mode }) }
     }
 
-    /// Returns whether the command may be sent in a mode. A word remains in the process data until the next word is
+    /// Returns whether the command may be sent in a mode. A word stays in the process data until the next one is
     /// written, so a word that enters a mode is also legal in that mode. Read-outs are allowed while the outputs are
-    /// valid, since one of them reveals the mode (`U`: not documented).
+    /// valid, since one of them returns the mode (`U`: not documented).
     pub const fn is_legal_in(self, mode: EncoderMode) -> bool {
         use EncoderMode::{Cam, Parameterisation, Position, ReadOut, Velocity};
         match self {

@@ -3,12 +3,12 @@
 use super::cam::{Program, ProgramNumber};
 use super::value::Value;
 
-/// Cam programs as a list of sections with constant outputs. A preview evaluates them at millions of positions.
+/// Cam programs, stored as a list of sections with constant outputs. A preview evaluates them at millions of positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompiledPrograms {
-    /// Starts of the sections in ascending order. The outputs before the first section are in `before`.
+    /// Start positions of the sections in ascending order. `before` holds the outputs in front of the first section.
     starts: Vec<u32>,
-    /// Outputs of each section, one byte per program with the first program in the lowest byte.
+    /// Outputs in each section, one byte per program, with the first program in the lowest byte.
     outputs: Vec<u64>,
     before: u64,
 }
@@ -28,7 +28,7 @@ impl CompiledPrograms {
         CompiledPrograms { starts, outputs, before: at(0) }
     }
 
-    /// Returns the outputs at a position, with one byte per program and bit i for cam i. The bytes equal
+    /// Returns the outputs of all programs at a position, one byte per program with bit i for cam i. Each byte equals
     /// [`Program::outputs`].
     pub fn outputs(&self, position: Value) -> [u8; ProgramNumber::COUNT] {
         let begun = self.starts.partition_point(|start| *start <= position.get());

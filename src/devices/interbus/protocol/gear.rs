@@ -1,4 +1,4 @@
-//! The gear: a number of steps over a number of turns (reference 3).
+//! The gear, which scales the position to a number of steps over a number of turns (reference 3).
 
 use super::value::Value;
 
@@ -7,24 +7,24 @@ pub const STEPS_PER_TURN: u32 = 8192;
 /// Maximum number of turns that an encoder counts.
 pub const TURNS: u32 = 4096;
 
-/// A gear, which divides a number of turns of the shaft into position steps. The encoder stores the two numbers
-/// separately, but uses them together.
+/// A gear, which divides a number of shaft turns into position steps. The encoder stores both numbers separately but
+/// uses them together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Gear {
     steps: u32,
     turns: u32,
 }
 
-/// The reason why two numbers do not form a gear.
+/// The reason why steps and turns do not form a gear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GearError {
-    /// The number of turns exceeds the number that an encoder counts.
+    /// The number of turns exceeds what an encoder counts.
     #[error("the number of turns must be from 1 to {TURNS}, not {turns}")]
     Turns {
         /// Given number of turns.
         turns: u32,
     },
-    /// The number of steps exceeds 25 bits, or the resolution of the disc over the given number of turns.
+    /// The number of steps exceeds 25 bits, or the disc resolution over these turns.
     #[error("the number of steps over {turns} turns must be from 1 to {most}, not {steps}")]
     Steps {
         /// Given number of steps.
@@ -52,14 +52,13 @@ impl Gear {
         Ok(Gear { steps, turns })
     }
 
-    /// Returns the maximum number of steps over the given number of turns. All 4096 turns have one step more than the
-    /// largest 25-bit value.
+    /// Returns the maximum number of steps over the given number of turns: all disc steps, but at most 25 bits.
     pub(super) const fn max_steps(turns: u32) -> u32 {
         let all = STEPS_PER_TURN * turns;
         if all > Value::MAX.get() { Value::MAX.get() } else { all }
     }
 
-    /// Returns the measuring range, which is the number of position steps over all turns.
+    /// Returns the measuring range, that is, the number of position steps over all turns.
     pub const fn total_steps(self) -> u32 {
         self.steps
     }
@@ -74,14 +73,14 @@ impl Gear {
         STEPS_PER_TURN * self.turns
     }
 
-    /// Converts disc steps to position steps with `raw · steps / (8192 · turns)`, rounded down. The result does not
-    /// wrap, so the complete range yields all steps. The manual does not state the formula (`U`).
+    /// Converts disc steps to position steps: `raw · steps / (8192 · turns)`, rounded down. The result does not wrap,
+    /// so converting the complete range yields all steps. The manual does not state the formula (`U`).
     pub const fn scaled_value(self, raw: u32) -> u64 {
         raw as u64 * self.steps as u64 / self.total_disc_steps() as u64
     }
 
-    /// Returns the position that the encoder sends for a disc position. This is the
-    /// [`scaled_value`](Self::scaled_value) within the range (`U`: not documented).
+    /// Returns the position that the encoder sends for a disc position: the [`scaled_value`](Self::scaled_value),
+    /// wrapped to the range (`U`: not documented).
     pub const fn position(self, raw: u32) -> Value {
         // The result is less than `steps`, which has 25 bits.
         Value::from_word(self.scaled_value(raw % self.total_disc_steps()) as u32)

@@ -1,4 +1,4 @@
-//! Meaning of the four LEDs of an encoder (reference 1).
+//! Meaning of the four encoder LEDs (reference 1).
 
 /// State of an LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -11,7 +11,7 @@ pub enum LedState {
     Blinking,
 }
 
-/// States of the four LEDs, which are named by their labels on the encoder.
+/// States of the four LEDs, named by their labels on the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Leds {
     /// LED labelled UL.
@@ -29,9 +29,9 @@ pub struct Leds {
 pub struct LedRow {
     /// Combination of LED states.
     pub leds: Leds,
-    /// Meaning as worded in the manual.
+    /// Meaning in the words of the manual.
     pub meaning: &'static str,
-    /// Suggested remedy. The manual has none (`U`).
+    /// Suggested remedy. The manual does not give one (`U`).
     pub remedy: &'static str,
 }
 
@@ -62,7 +62,7 @@ pub const LEDS: [LedRow; 4] = [
 ];
 
 impl Leds {
-    /// Returns the table row of this LED combination, or `None` if the manual does not define it.
+    /// Returns the table row for this LED combination, or `None` if the manual does not define it.
     pub fn row(self) -> Option<&'static LedRow> {
         LEDS.iter().find(|row| row.leds == self)
     }

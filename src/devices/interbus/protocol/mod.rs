@@ -1,7 +1,7 @@
 //! INTERBUS: process data words of POSITAL OCD-IB encoders (ENCOM profile 71, classes K1, K2 and K3).
 //!
-//! Source: POSITAL, manual UME-IB ("the manual"). "Reference" refers to the project's reference. Facts that the manual
-//! leaves open are marked `U`. Where the manual contradicts itself, reference 6 states the interpretation used.
+//! Source: POSITAL, manual UME-IB ("the manual"). "Reference" is the project's reference "interbus". Facts that the
+//! manual leaves open are marked `U`. Where the manual contradicts itself, reference 6 states the interpretation used.
 //!
 //! ```text
 //! bit  31               30                      29            28..25                   24..0
@@ -33,9 +33,9 @@ mod word_order;
 /// Keyword for INTERBUS encoders on the command line, in profiles and in stored data.
 pub const KIND: &str = "interbus";
 
-/// Number of stores for which the EEPROM is designed (reference 3).
+/// Number of EEPROM write cycles for which the encoder is designed (reference 3).
 pub const NOMINAL_STORES: u32 = 200;
-/// Maximum number of stores that the manufacturer guarantees (reference 3).
+/// Maximum number of EEPROM write cycles that the manufacturer guarantees (reference 3).
 pub const GUARANTEED_STORES: u32 = 500;
 
 pub use cam::{Cam, CamNumber, Program, ProgramNumber};

@@ -1,19 +1,20 @@
-//! The mode of an encoder, which determines the meaning of an OUT word (reference 6.3).
+//! The mode of an encoder, which determines how it interprets an OUT word (reference 6.3).
 
 use std::fmt;
 
 /// A mode of a K3 encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EncoderMode {
-    /// Normal operation, in which IN contains the position.
+    /// Normal operation. The IN word contains the position.
     Position,
-    /// A parameter has been sent, but [`Command::Run`](super::Command::Run) has not, so the outputs are invalid.
+    /// Parameterisation: a parameter has been sent but [`Command::Run`](super::Command::Run) has not, so the outputs
+    /// are invalid.
     Parameterisation,
-    /// A read-out has been requested, and IN contains its value.
+    /// A read-out was requested. The IN word contains its value.
     ReadOut,
-    /// Velocity mode, in which IN contains the speed in revolutions per minute.
+    /// Velocity mode. The IN word contains the speed in revolutions per minute.
     Velocity,
-    /// A cam program is selected, and IN contains the cam output word.
+    /// A cam program is selected. The IN word is the cam output word.
     Cam,
 }
 

@@ -14,12 +14,12 @@ pub enum Parameter {
     Turns,
     /// Counting direction: 3 clockwise, 4 counterclockwise.
     Direction,
-    /// Position that the encoder adopts when the preset is executed.
+    /// Position to which the encoder is set when the preset is executed.
     Preset,
-    /// Zero shift. It does not apply the preset, contrary to manual 5.4.1. See reference 6.2.
+    /// Zero shift. Contrary to manual 5.4.1, it does not execute the preset (reference 6.2).
     ZeroShift,
-    /// Restores the factory settings. It is experimental, since only the appendix of the manual mentions it. See
-    /// reference 6.10.
+    /// Restores the factory settings. This is experimental, since only the appendix of the manual mentions it
+    /// (reference 6.10).
     Default,
 }
 
@@ -41,9 +41,9 @@ pub struct ParameterRow {
 enum Limit {
     /// Constant limits.
     Fixed(u32, u32),
-    /// The value is between 1 and the number of steps that the disc has over the programmed turns.
+    /// From 1 to the number of disc steps over the programmed turns.
     StepsOfTurns,
-    /// The value is between 0 and the last position of the measuring range.
+    /// From 0 to the last position of the measuring range.
     WithinRange,
 }
 
@@ -110,7 +110,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the values that are valid with at least one gear.
+    /// Returns the values that are valid with some gear.
     pub const fn range_with_any_gear(self) -> RangeInclusive<u32> {
         match self.row().limit {
             Limit::Fixed(low, high) => low..=high,

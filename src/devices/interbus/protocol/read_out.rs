@@ -1,10 +1,9 @@
-//! Values that a K3 encoder returns on request, and their meaning (reference 3).
+//! Values that a K3 encoder returns on request (reference 3).
 
 use super::cam::ProgramNumber;
 use super::value::Value;
 
-/// Number of a read-out, which the word 2021xxxxh contains in bits 15..0. It may be a number that the manual does not
-/// define.
+/// Number of a read-out, sent in bits 15..0 of the request 2021xxxxh. It need not be one that the manual defines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ReadOutNumber(u16);
 
@@ -39,13 +38,13 @@ const fn row(read_out: ReadOutNumber, name: &'static str, unit: &'static str) ->
     ReadOutRow { read_out, name, unit }
 }
 
-/// Lowest hexadecimal digit of each read-out number that belongs to a chip register.
+/// Lowest hexadecimal digit of the read-outs that return chip registers.
 const CHIP: u16 = 0xD;
 
 /// Value of a read-out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadOutValue {
-    /// A number in the unit of its table row. This variant is also used for unknown read-outs and chip registers.
+    /// A number in the unit of the table row. Unknown read-outs and chip registers also use this variant.
     Plain(u32),
     /// Operating time in minutes.
     Minutes(u32),
@@ -57,8 +56,8 @@ pub enum ReadOutValue {
     Flags(Flags),
 }
 
-/// Current mode and start-up mode of the encoder, read-out 9. The manual prints `3h to 10h` for the programs but means
-/// decimal 3 to 10.
+/// Current mode and start-up mode of the encoder (read-out 9). The manual prints `3h to 10h` for the programs, but
+/// decimal 3 to 10 is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StartupMode {
     /// Code 0: the encoder operates like a K2 encoder.
@@ -73,7 +72,7 @@ pub enum StartupMode {
     Unknown(Value),
 }
 
-/// Flags of the encoder, read-out Ah.
+/// Encoder flags (read-out Ah).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Flags(Value);
 
@@ -94,7 +93,7 @@ impl ReadOutNumber {
         ReadOutNumber(number)
     }
 
-    /// Returns the read-out `xDh` of OPC chip register x, or `None` if the register is above 15.
+    /// Returns the read-out `xDh` for OPC chip register x, or `None` if the register is above 15.
     pub const fn chip_register(register: u8) -> Option<Self> {
         if register < 16 { Some(ReadOutNumber((register as u16) << 4 | CHIP)) } else { None }
     }
@@ -104,12 +103,12 @@ impl ReadOutNumber {
         self.0
     }
 
-    /// Returns the number of the chip register, or `None` if the read-out is not one.
+    /// Returns the number of the chip register, or `None` if this read-out is not for a chip register.
     pub const fn register(self) -> Option<u8> {
         if self.0 & 0xF == CHIP && self.0 <= 0xFF { Some((self.0 >> 4) as u8) } else { None }
     }
 
-    /// Returns the table row of the read-out. Chip registers and numbers that the manual does not define have none.
+    /// Returns the table row of the read-out, or `None` for chip registers and numbers that the manual does not define.
     pub fn row(self) -> Option<&'static ReadOutRow> {
         READ_OUTS.iter().find(|row| row.read_out == self)
     }
@@ -126,8 +125,8 @@ impl ReadOutNumber {
     }
 }
 
-/// Returns the value as a signed number of 25 bits. If bit 24 is clear and the value is above 7FFFh, it is a signed
-/// number of 16 bits. The manual does not specify how negative values are sent (`U`). See reference 3.
+/// Returns the value as a signed 25-bit number, or as a signed 16-bit number if it is above 7FFFh and bit 24 is clear.
+/// The manual does not say how negative values are sent (`U`). See reference 3.
 const fn to_signed(value: Value) -> i32 {
     let number = value.get();
     if number >> (Value::BITS - 1) == 0 && number > 0x7FFF { number as u16 as i16 as i32 } else { value.to_signed() }
@@ -173,12 +172,12 @@ impl Flags {
         self.0.get() & 1 != 0
     }
 
-    /// Returns whether the encoder counts turns, which is bit 1.
+    /// Returns whether bit 1 is set, which means that the encoder counts turns.
     pub const fn counts_turns(self) -> bool {
         self.0.get() & 2 != 0
     }
 
-    /// Returns the English name of the encoder type that the flags indicate.
+    /// Returns the English name of the encoder type according to the flags.
     pub const fn type_name(self) -> &'static str {
         match (self.counts_turns(), self.steps_minus_one()) {
             (true, false) => "multiturn",
@@ -188,7 +187,7 @@ impl Flags {
         }
     }
 
-    /// Returns all other flags. Their meaning is unknown.
+    /// Returns all other flags, whose meaning is unknown.
     pub const fn unknown_bits(self) -> u32 {
         self.0.get() & !3
     }

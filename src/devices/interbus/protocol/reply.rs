@@ -1,4 +1,4 @@
-//! IN words of a K3 encoder (reference 2). The mode determines whether a word contains a position or another value. See
+//! IN words of a K3 encoder (reference 2). Whether a word contains a position or another value depends on the mode. See
 //! [`CamOutput`](super::CamOutput) and [`ReadOutNumber::value`](super::ReadOutNumber::value).
 
 use super::command::Command;
@@ -8,15 +8,15 @@ use super::value::{Code, Value};
 /// Meaning of an IN word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reply {
-    /// The encoder is running, since bit 31 is clear. The value is a position, the speed in velocity mode, or the cam
-    /// output word in cam mode.
+    /// The encoder is running: bit 31 is clear. Depending on the mode, the value is a position, a speed or a cam output
+    /// word.
     Run {
         /// Bits 24..0 of the word.
         value: Value,
-        /// Bits 30..25, which should be 0. Any other value justifies a warning.
+        /// Bits 30..25, which should be 0. Other values deserve a warning.
         stray: u8,
     },
-    /// The encoder is processing a parameter (prefix 110 or 111, code 0). For cam 0, the word may also be the echo.
+    /// The encoder is processing a parameter (prefix 110 or 111, code 0). For cam 0, the word may also be its echo.
     Busy {
         /// Bit 29 of the word.
         manufacturer: bool,
@@ -91,9 +91,9 @@ impl Reply {
         }
     }
 
-    /// Returns the echo of a command, which is its word with bits 31 and 30 set. The data are as sent, which is an
-    /// assumption for cams (`U`). Always compare complete words, since an older reply may have the same code. See
-    /// reference 4.
+    /// Returns the echo of a command, which is its word with bits 31 and 30 set. For cams, it is an assumption that the
+    /// data are echoed unchanged (`U`). Always compare complete words, because an older reply may have the same code
+    /// (reference 4).
     pub fn echo_of(command: Command) -> Self {
         Reply::parse(command.emit() | ECHO)
     }
@@ -118,7 +118,7 @@ impl ErrorWord {
     /// Data of error code Ch if a cam edge is beyond the measuring range.
     pub const CAM_BEYOND_RANGE: u32 = 4;
 
-    /// Returns the meaning of the error as worded in the manual.
+    /// Returns the meaning of the error in the words of the manual.
     pub const fn meaning(self) -> &'static str {
         match (self.code.get(), self.data.get()) {
             (1, _) => "wrong parameter data",
@@ -130,7 +130,7 @@ impl ErrorWord {
         }
     }
 
-    /// Returns a remedy for the error. Most remedies are not in the manual (`U`).
+    /// Returns a remedy for the error. Most remedies are not from the manual (`U`).
     pub const fn remedy(self) -> &'static str {
         match (self.code.get(), self.data.get()) {
             (1, _) => "send a number within its limits, then run",

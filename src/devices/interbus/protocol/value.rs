@@ -1,4 +1,4 @@
-//! The two numeric fields of a word (reference 2).
+//! The two numeric parts of a process data word (reference 2).
 
 /// Bits 24..0 of a word: a position, parameter data or a cam edge, 0 to 1FFFFFFh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -24,7 +24,7 @@ impl Value {
         self.0
     }
 
-    /// Returns the value as a signed number with the sign in bit 24. Speeds use this form (`U`: not documented). See
+    /// Returns the value as a signed number with its sign in bit 24, as used for speeds (`U`: not documented). See
     /// reference 6.13.
     pub const fn to_signed(self) -> i32 {
         let above = u32::BITS - Value::BITS;

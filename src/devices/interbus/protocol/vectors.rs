@@ -1,5 +1,5 @@
-//! Tests of the words in the reference in both directions, and of contradictions in the manual. Property tests for all
-//! other words.
+//! Tests of the words in the reference, in both directions, and of contradictions in the manual. Property tests cover
+//! all other words.
 
 use proptest::prelude::*;
 
@@ -28,7 +28,7 @@ fn program(number: u8) -> Command {
     Command::Cams(ProgramNumber::new(number))
 }
 
-/// Each row contains a command, its word, and a mode in which the word has this meaning (references 3, 5 and 7).
+/// Each row has a command, its word, and a mode in which the word has this meaning (references 3, 5 and 7).
 #[test]
 fn published_commands_match() {
     let register = |number| Command::ReadOut(ReadOutNumber::chip_register(number).unwrap());
@@ -152,7 +152,7 @@ fn read_outs_have_their_units() {
     assert_eq!((ReadOutNumber::new(0x5D).register(), ReadOutNumber::new(0xC).register()), (Some(5), None));
 }
 
-/// The labels refer to the contradictions in reference 6 that concern words. Number 8 is the echo of 255 steps.
+/// The labels are the numbers of the contradictions in reference 6. Number 8 is the echo of 255 steps.
 #[test]
 fn contradictions_in_the_manual_are_resolved() {
     assert_eq!(id_code(Class::K3, Interface::Standard), 55, "1: 37h");
@@ -174,7 +174,7 @@ fn contradictions_in_the_manual_are_resolved() {
     assert!(matches!(Reply::parse(0xC200_00FF), Reply::Echo { .. }), "11: received");
 }
 
-/// The mode determines the meaning of a word, and some words must not be sent (reference 6.3).
+/// Some words mean different things in different modes, and some must not be sent (reference 6.3).
 #[test]
 fn the_mode_determines_the_meaning_of_a_word() {
     let (zero, start) = (value(0), Command::Velocity(true));
@@ -208,7 +208,7 @@ fn the_mode_determines_the_meaning_of_a_word() {
     }
 }
 
-/// The echoes are from references 4 and 5. The echo of a cam is an assumption.
+/// The echoes are from references 4 and 5, except that the echo of a cam is an assumption.
 #[test]
 fn the_mode_determines_the_echo() {
     assert_eq!(Reply::parse(0xC200_00FF).echoed_command(Parameterisation), Some(set_command(P::Steps, 255)));
@@ -224,7 +224,7 @@ fn the_mode_determines_the_echo() {
     }
 }
 
-/// The position window is tested at different shifts, with cam 5 on (reference 7).
+/// Words with the position window at different shifts, all with cam 5 on (reference 7).
 #[test]
 fn published_cam_outputs_match() {
     for (word, at) in [(0x01CD_EF20, 0), (0x01AB_CD20, 8), (0x00BC_DE20, 4), (0x0000_0020, 25)] {
@@ -275,7 +275,7 @@ fn led_states_match_the_reference() {
     assert_eq!(says(Off, Off, Off, Off), None);
 }
 
-/// The positions are from reference 7, where the wrap is an assumption.
+/// The positions are from reference 7, where wrapping is an assumption.
 #[test]
 fn the_gear_rounds_down() {
     let cases = [
@@ -301,7 +301,7 @@ fn the_gear_rounds_down() {
     assert!(Gear::new(0x200_0000, 4096).is_err());
 }
 
-/// Parameters have limits, some of which depend on the gear (reference 3).
+/// Some limits of the parameters depend on the gear (reference 3).
 #[test]
 fn parameter_limits_are_checked() {
     let gear = Gear::new(3600, 10).unwrap();
@@ -341,7 +341,7 @@ fn cams_are_on_between_their_edges() {
     assert_eq!([0x14, 0x15, 0x213, 0x214].map(|at| program.outputs(value(at))), [0, 8, 8, 0]);
 }
 
-/// Generates programs in which many cams are short, at the ends of the range or across them.
+/// Generates programs with many cams that are short, or that lie at or across the ends of the range.
 fn arbitrary_programs() -> impl Strategy<Value = [Program; 8]> {
     let edge = prop_oneof![0_u32..40, 0x1FF_FFD0_u32..=0x1FF_FFFF, 0..=0x1FF_FFFF_u32];
     let cam = (edge.clone(), edge).prop_map(|(start, stop)| Cam { start: value(start), stop: value(stop) });
@@ -370,7 +370,7 @@ proptest! {
         }
     }
 
-    /// Tests words that begin like the words in the manual, which random words seldom do.
+    /// Random words seldom begin like the words in the manual, so these do.
     #[test]
     fn words_near_the_manuals_round_trip(high in prop::sample::select(vec![0x2010, 0x2020, 0x2021, 0x2040, 0x2080]), low: u16) {
         let word = high << 16 | u32::from(low);
@@ -385,7 +385,7 @@ proptest! {
         prop_assert!(legal <= 1);
     }
 
-    /// The window is compared with the formula of the reference.
+    /// The formula for the window is from the reference.
     #[test]
     fn the_window_matches_its_formula(position in 0..=0x1FF_FFFF_u32, outputs: u8, at in 0..=25_u8) {
         let output = CamOutput::at_position(value(position), outputs, shift(at));
@@ -394,7 +394,7 @@ proptest! {
         prop_assert_eq!(output.position_bits(shift(at)), position & shift(at).mask());
     }
 
-    /// The outputs equal those of the original programs at all edges, next to them, and at a random position.
+    /// At all edges, next to them, and at a random position, the outputs equal those of the original programs.
     #[test]
     fn compiled_programs_equal_plain_ones(programs in arbitrary_programs(), anywhere in 0..=0x1FF_FFFF_u32) {
         let compiled = CompiledPrograms::new(&programs);

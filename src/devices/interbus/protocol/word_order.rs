@@ -1,4 +1,4 @@
-//! Order of the two 16-bit registers in which a gateway keeps a process data word (reference 1, `U`).
+//! The order in which a gateway splits a process data word into two 16-bit registers (reference 1, `U`).
 
 use crate::expected::Quantity;
 use crate::parameter::{Keywords, WholeNumbers};
@@ -9,10 +9,10 @@ pub const UNIT: WholeNumbers<u8> = WholeNumbers(Quantity::Unit, 0..=255);
 pub const INPUT: WholeNumbers<u16> = WholeNumbers(Quantity::InputRegister, 0..=LAST);
 /// Valid addresses of the first holding register of an OUT word.
 pub const OUTPUT: WholeNumbers<u16> = WholeNumbers(Quantity::HoldingRegister, 0..=LAST);
-/// Last register address that has a successor.
+/// Last register address that is followed by another one.
 const LAST: u16 = u16::MAX - 1;
 
-/// Word order, named by the half of the word that the first register contains.
+/// Word order, named after the half of the word in the first register.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WordOrder {
     /// Bits 31..16 come first, which is the usual order in INTERBUS (`U`: not documented).
@@ -23,7 +23,7 @@ pub enum WordOrder {
 }
 
 impl WordOrder {
-    /// Names of the word orders in the address of a connection.
+    /// Word-order keywords in a link URL.
     pub const KEYWORDS: Keywords<WordOrder> =
         Keywords(&[("high-first", WordOrder::HighFirst), ("low-first", WordOrder::LowFirst)]);
 

@@ -1,4 +1,4 @@
-//! Settings of a virtual encoder and its gateway, which are the query of a `sim:` link. An example is
+//! Settings of a virtual encoder and its gateway, given in the query of a `sim:` link. An example is
 //! `steps=360&revolutions=1&cams=demo&rpm=10`.
 
 use std::time::Duration;
@@ -24,7 +24,7 @@ parameters! {
         revolutions: Option<String> = None, "revolutions" => OptionalValue(ANY);
         pub(super) memory: Memory = Memory::factory_default();
         counterclockwise: bool = false, "direction" => Keywords(&[("cw", false), ("ccw", true)]);
-        /// Preset in steps within the range. It is programmed but has not been executed.
+        /// Preset in steps, which is programmed but not yet executed.
         preset: Option<String> = None, "preset" => OptionalValue(ANY);
         zero_shift: u32 = 0, "zero-shift" => VALUE;
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
@@ -34,9 +34,9 @@ parameters! {
         /// Operating time in units of ten minutes.
         pub(super) operating_time: u32 = 1000, "operating-time" => VALUE;
         pub(super) celsius: f64 = 25.3, "temperature" => DecimalNumbers(Quantity::Celsius, -273.0..=1000.0);
-        /// Whether a negative temperature has 16 bits instead of 25 (`U`: not documented). See reference 3.
+        /// Whether a negative temperature is sent with 16 bits instead of 25 (`U`: not documented). See reference 3.
         pub(super) narrow_temperature: bool = false, "temperature-bits" => Keywords(&[("25", false), ("16", true)]);
-        /// Whether read-out 3 returns 0 or 1 instead of the parameter value (`U`: not documented).
+        /// Whether read-out 3 returns a flag of 0 or 1 instead of the parameter value (`U`: not documented).
         pub(super) complement_bit: bool = false, "complement" => Keywords(&[("code", false), ("bit", true)]);
         /// Selected cam program, or normal operation.
         pub(super) mode: StartupMode = StartupMode::K3, "program" => CustomNotation(AllowedValues::Program, mode);
@@ -46,9 +46,9 @@ parameters! {
         /// Whether the encoder reports its number of steps minus one, as older encoders do.
         pub(super) steps_minus_one: bool = false, "steps-minus-one" => SWITCH;
         pub(super) busy: Duration = Duration::from_millis(5), "busy" => Milliseconds(0..=60_000);
-        /// Number of cycles for which the old IN word remains after a new OUT word.
+        /// Number of cycles for which the old IN word is still returned after a new OUT word.
         pub(super) stale: u32 = 1, "stale" => WholeNumbers(Quantity::Cycles, 0..=1000);
-        /// Whether the echo of a program selection precedes the outputs of the program (`U`: not documented).
+        /// Whether selecting a program is echoed before its outputs are sent (`U`: not documented).
         pub(super) acknowledges_selection: bool = true, "selection" => Keywords(&[("echo", true), ("output", false)]);
         pub(super) class: Class = Class::K3, "class" => Keywords(&[("K1", Class::K1), ("K2", Class::K2), ("K3", Class::K3)]);
         /// Number of encoders. Each has two registers, starting at `input` and `output`.
@@ -57,11 +57,11 @@ parameters! {
         pub(super) input: u16 = 0, "input" => INPUT;
         pub(super) output: u16 = 0, "output" => OUTPUT;
         pub(super) order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::KEYWORDS;
-        /// Fraction of requests that are rejected with exception 0Bh.
+        /// Fraction of requests that the gateway rejects with exception 0Bh.
         pub(super) exceptions: f64 = 0.0, "exception" => DecimalNumbers(Quantity::RefusedRequests, 0.0..=1.0);
         pub(super) seed: u64 = 0, "seed" => SEED;
-        /// Fractions of replies that are lost (`drop`), have one inverted bit (`flip`) or are replaced by random bytes
-        /// (`garbage`).
+        /// Fractions of replies that are lost (`drop`), have one inverted bit (`flip`) or are replaced with random
+        /// bytes (`garbage`).
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
@@ -69,7 +69,7 @@ parameters! {
 const VALUE: WholeNumbers<u32> = WholeNumbers(Quantity::Number, 0..=Value::MAX.get());
 
 impl Config {
-    /// Parses percent-decoded keys and values. If a key is repeated, its last value applies. Numbers are decimal or
+    /// Parses percent-decoded keys and values. The last value of a repeated key applies. Numbers are decimal, or
     /// hexadecimal with the prefix `0x`.
     ///
     /// # Errors
@@ -85,8 +85,8 @@ impl Config {
         (self.celsius * 10.0).round() as i32
     }
 
-    /// Stores the gear, the preset and the cams in the memory. If only steps or turns are given, the other is as large
-    /// as possible.
+    /// Stores the gear, the preset and the cams in the memory. If only the steps or the turns are given, the other
+    /// number is as large as possible.
     fn apply_memory_settings(&mut self) -> Result<(), ConfigError> {
         let memory = &mut self.memory;
         if let Some(turns) = self.revolutions.take() {

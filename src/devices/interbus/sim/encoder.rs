@@ -1,17 +1,16 @@
-//! The encoder without its line. This module determines the effect of an OUT word and the resulting IN word (reference
-//! 2 to 5).
+//! The encoder without its connection: the effect of an OUT word, and the resulting IN word (references 2 to 5).
 //!
 //! ```text
 //! running ── parameter, cam word ──▶ setting ── run ──▶ store, running
 //!   ├── 2021xxxxh, 2020xxxxh ──▶ reading out ── normal, run ──▶ running (setting, if something was set and not stored)
-//!   └── 2080000ph ──▶ cam program; of a changed one before it a store
+//!   └── 2080000ph ──▶ cam program (the previous one is stored first if it was changed)
 //! ```
 //! Assumptions (`U`: not documented):
-//! - Every parameterisation and every program with a write uses a store cycle, even if no value has changed.
+//! - Every parameterisation and every program with a write uses an EEPROM write cycle, even if no value has changed.
 //! - A parameter in a mode that does not allow it is reported as unknown (84000000h).
 //! - Any other word without a meaning in the mode has no effect.
-//! - The mode, the zero point and a fired preset survive a loss of power without a store.
-//! - The speed is a signed number of 25 bits.
+//! - The mode, the zero point and an executed preset survive a power loss without being stored.
+//! - The speed is a signed 25-bit number.
 //! - IN is 86000000h while the content of the EEPROM is lost.
 
 mod cams;
@@ -35,7 +34,7 @@ pub struct Encoder {
     identity: Identity,
     motor: Motor,
     shaft: Shaft,
-    /// Offset that is added to the shaft position, in disc steps.
+    /// Offset added to the shaft position, in disc steps.
     offset: i64,
     mode: StartupMode,
     activity: Activity,
@@ -43,10 +42,10 @@ pub struct Encoder {
     eeprom: Eeprom,
     unstored: Option<StoredSettings>,
     power: bool,
-    /// OUT word of the master, which remains in effect until the master changes it.
+    /// OUT word of the master, which stays in effect until the master changes it.
     out: u32,
     content: InWordContent,
-    /// Previous IN word, which is still returned for some time after a new OUT word.
+    /// The previous IN word, which is still returned for a while after a new OUT word.
     old: PreviousInWord,
     busy_until: Moment,
     busy: Duration,
@@ -67,7 +66,7 @@ struct Identity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Activity {
     Running,
-    /// A parameter or a cam has been set, so the position and the cam outputs are invalid.
+    /// A parameter or cam has been set but not stored, so the position and the cam outputs are invalid.
     Setting,
     ReadingOut,
 }
@@ -78,17 +77,17 @@ enum InWordContent {
     Word(u32),
 }
 
-/// Previous IN word after a change of the OUT word. It is returned for a number of cycles. A cycle elapses with each
-/// reading and with time.
+/// The previous IN word, which is still returned for some cycles after the OUT word has changed. A cycle ends with each
+/// reading, and also with time.
 #[derive(Clone, Copy, Debug, Default)]
 struct PreviousInWord {
     word: u32,
-    /// Remaining number of cycles for which the old word is returned.
+    /// Number of cycles for which the old word will still be returned.
     cycles: u32,
     until: Moment,
 }
 
-/// Reason why a word is rejected. See reference 2.
+/// Reason why a word is rejected (reference 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum WordFault {
     WrongData,
@@ -96,11 +95,11 @@ enum WordFault {
     BeyondRange,
 }
 
-/// Prefix of a word that contains no valid position or cam outputs.
+/// Prefix of a word without a valid position or cam outputs.
 const INVALID: u32 = 0x8000_0000;
 const LOST: u32 = 0x8600_0000;
 const BUSY: u32 = 0xC000_0000;
-/// Prefix of the echo of a word.
+/// Prefix of an echo.
 const ECHO: u32 = 0xC000_0000;
 
 impl WordFault {
@@ -114,13 +113,13 @@ impl WordFault {
 }
 
 impl Encoder {
-    /// Duration of a cycle without a reading. The value is chosen for the simulation.
+    /// Assumed duration of a cycle in which the IN word is not read.
     const CYCLE: Duration = Duration::from_millis(5);
-    /// Value of read-out 7. It is chosen for the simulation.
+    /// Value of read-out 7. It is invented for the simulation.
     const SOFTWARE_VERSION: u32 = 204;
 
-    /// Creates an encoder from `config`. `number` is its position behind the gateway, counted from 0. Its power has
-    /// been on for a long time.
+    /// Creates an encoder that has been powered for a long time. `number` is its index behind the gateway, counted from
+    /// 0.
     pub(super) fn new(config: &Config, number: u8) -> Self {
         let memory = config.memory.clone();
         Encoder {
@@ -180,7 +179,7 @@ impl Encoder {
         self.mode
     }
 
-    /// Returns the mode that determines the meaning of the next word.
+    /// Returns the mode that determines how the next word is interpreted.
     pub const fn mode(&self) -> EncoderMode {
         match (self.mode, self.activity) {
             (StartupMode::Cams(_), _) => EncoderMode::Cam,
@@ -200,7 +199,7 @@ impl Encoder {
         self.identity.temperature = tenths;
     }
 
-    /// Replaces the simulated faults of the EEPROM. The count of stores is kept.
+    /// Replaces the simulated EEPROM faults. The number of EEPROM write cycles is kept.
     pub(super) fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.eeprom.set_store_failure(faults.failing_store());
     }
@@ -217,7 +216,7 @@ impl Encoder {
         (self.content, self.old) = (InWordContent::Live, PreviousInWord::default());
     }
 
-    /// Switches the power on again. The present OUT word takes effect as a new one.
+    /// Switches the power on again. The current OUT word takes effect as if it were new.
     pub fn connect(&mut self, now: Moment) {
         if !self.power {
             self.power = true;
@@ -287,7 +286,7 @@ impl Encoder {
         }
     }
 
-    /// Handles a word without a meaning in the current mode. If it resembles a parameter, an edge, a shift or a
+    /// Handles a word that is not allowed in the current mode. If it resembles a parameter, an edge, a shift or a
     /// read-out, the corresponding error is returned.
     fn handle_illegal_word(&mut self, now: Moment, word: u32) {
         let of_cams = matches!(self.mode, StartupMode::Cams(_));
@@ -300,7 +299,7 @@ impl Encoder {
         }
     }
 
-    /// Completes a word that sets a value. Afterwards, the IN word is the echo of this word or an error.
+    /// Completes a word that sets a value. The IN word is then its echo or an error.
     fn complete_setting(&mut self, now: Moment, taken: Result<StoredSettings, WordFault>) {
         let word = match taken {
             Ok(_) => self.out | ECHO,
@@ -331,7 +330,7 @@ impl Encoder {
         Ok(())
     }
 
-    /// Handles the rising edge of the run command, which returns to operation.
+    /// Handles the rising edge of the run command, which returns the encoder to operation.
     fn run(&mut self) {
         self.store_memory();
         self.enter_activity(Activity::Running, InWordContent::Live);
@@ -356,7 +355,7 @@ impl Encoder {
         }
     }
 
-    /// Switches to another activity immediately, without the word of a busy encoder.
+    /// Switches to another activity immediately, without sending a busy word first.
     const fn enter_activity(&mut self, activity: Activity, content: InWordContent) {
         (self.activity, self.content, self.busy_until) = (activity, content, Moment::START);
     }
@@ -368,8 +367,7 @@ impl Encoder {
         }
     }
 
-    /// Selects the given cam program, or position mode for `None`. If the current program was changed, it is stored
-    /// first.
+    /// Selects a cam program, or position mode for `None`. If the current program was changed, it is stored first.
     fn select(&mut self, now: Moment, program: Option<ProgramNumber>) {
         self.store_memory();
         if !self.power {

@@ -1,4 +1,4 @@
-//! Modbus/TCP requests and replies with functions 3, 4, 6 and 16. See *MODBUS Messaging on TCP/IP Implementation Guide*
+//! Modbus/TCP requests and replies for functions 3, 4, 6 and 16. See *MODBUS Messaging on TCP/IP Implementation Guide*
 //! V1.0b and *MODBUS Application Protocol* V1.1b3.
 
 use rmodbus::ModbusProto;
@@ -22,14 +22,14 @@ pub(super) trait Registers {
     fn write(&mut self, first: u16, values: &[u16]) -> Result<(), Exception>;
 }
 
-/// Number of bytes before the unit, which are the transaction, the protocol and the length.
+/// Number of bytes before the unit: transaction number, protocol and length.
 const PREFIX: usize = 6;
-/// Valid lengths in the header of a frame. They cover at least the unit and the function, and a PDU of at most 253
+/// Valid values of the length field in the header. It counts the unit, the function code and the data, at most 254
 /// bytes.
 const LENGTHS: std::ops::RangeInclusive<usize> = 2..=254;
 
-/// Removes the next complete frame from the received bytes. Returns `None` if the frame is incomplete. Bytes that are
-/// not Modbus are dropped, since they do not show where the next frame begins.
+/// Removes the next complete frame from the received bytes, or returns `None` if it is incomplete. Bytes that are not
+/// Modbus are dropped, since they do not show where the next frame begins.
 pub(super) fn next(received: &mut Vec<u8>) -> Option<Vec<u8>> {
     let [_, _, protocol_high, protocol_low, high, low, ..] = *received.as_slice() else { return None };
     let length = usize::from(u16::from_be_bytes([high, low]));
@@ -76,7 +76,7 @@ fn execute_request(request: &[u8], unit: u8, registers: &mut impl Registers) -> 
     Ok(reply)
 }
 
-/// Checks the length of the data after the function code. Returns the values to be written.
+/// Checks the length of the data after the function code and returns the values to be written.
 fn check_request(function: ModbusFunction, rest: &[u8]) -> Result<Vec<u16>, Exception> {
     let words = |bytes: &[u8]| bytes.as_chunks().0.iter().copied().map(u16::from_be_bytes).collect();
     match (function, rest) {

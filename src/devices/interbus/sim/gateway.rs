@@ -1,6 +1,6 @@
-//! The gateway with the Modbus/TCP connections of its clients and the encoders behind it. Several clients may be
-//! connected at once. An encoder executes the last command of any client. It is assumed that a reply takes two
-//! milliseconds, and that requests for another unit or for an encoder without power return exception 0Bh.
+//! A virtual gateway that connects several Modbus/TCP clients to the encoders behind it. An encoder executes the last
+//! command, whichever client sent it. It is assumed that a reply takes two milliseconds, and that requests for another
+//! unit or an unpowered encoder return exception 0Bh.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -15,8 +15,7 @@ use crate::sim::line::TransitQueue;
 use crate::sim::{ByteDevice, Motor, SimulatedFaults};
 use crate::units::Moment;
 
-/// A virtual gateway, as seen through the connection of one client. [`new_connection`](Self::new_connection) creates a
-/// connection for another client.
+/// One client's connection to a virtual gateway. Use [`new_connection`](Self::new_connection) for another client.
 #[derive(Clone)]
 pub struct Gateway {
     shared: Arc<Mutex<Shared>>,
@@ -62,13 +61,13 @@ impl Gateway {
         self.with_encoder(|encoder| encoder.motor())
     }
 
-    /// Runs `work` on the first encoder. It may inspect the encoder or change it in ways that a bus does not allow.
+    /// Runs `work` on the first encoder, bypassing the bus.
     pub fn with_encoder<T>(&self, work: impl FnOnce(&mut Encoder) -> T) -> T {
         work(&mut self.lock().encoders.first)
     }
 
-    /// Replaces the simulated faults of the gateway, as a repair or a new defect would. The counts of requests and
-    /// stores are kept.
+    /// Replaces the simulated faults of the gateway, as if it were repaired or broke down. The numbers of requests and
+    /// EEPROM write cycles are kept.
     pub fn set_faults(&self, faults: &SimulatedFaults) {
         let mut shared = self.lock();
         shared.faults = faults.clone();
@@ -98,7 +97,7 @@ impl Registers for GatewayRegisters<'_> {
 }
 
 impl Shared {
-    /// Handles a request. Returns the reply that the host receives, or `None` if there is none.
+    /// Handles a request and returns the reply that reaches the host, if any.
     fn handle_request(&mut self, request: &[u8]) -> Option<Vec<u8>> {
         let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
         self.requests = self.requests.saturating_add(1);
@@ -115,8 +114,8 @@ impl Shared {
         self.apply_faults(reply)
     }
 
-    /// Applies the configured faults to a reply. A fault that would affect one byte on a serial line affects the whole
-    /// reply here, since TCP delivers complete data.
+    /// Applies the configured faults to a reply. A fault that would damage one byte on a serial line applies to the
+    /// whole reply, since TCP delivers complete data.
     fn apply_faults(&mut self, mut reply: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.transmit_byte(&mut self.rng, 0);
         let carried = passage.carried?;
@@ -154,8 +153,8 @@ impl ByteDevice for Gateway {
         self.to_host.next_due()
     }
 
-    /// Connects a client. Pending replies of the previous connection are dropped. Encoders that have lost power are
-    /// switched on again.
+    /// Connects a client. Replies still pending from its previous connection are dropped, and encoders that have lost
+    /// power are switched on again.
     fn connect(&mut self, now: Moment) {
         self.received.clear();
         self.to_host = TransitQueue::default();

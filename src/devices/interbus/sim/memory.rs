@@ -1,11 +1,11 @@
-//! The settings of an encoder and the EEPROM that stores them. The EEPROM is designed for about 200 and at most 500
-//! stores. See reference 3.
+//! The settings of an encoder, and the EEPROM that stores them. The EEPROM is designed for about 200 write cycles, and
+//! for at most 500 (reference 3).
 
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, GUARANTEED_STORES, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,
 };
 
-/// The settings of an encoder. All of them can be stored.
+/// The settings of an encoder, all of which can be stored in its EEPROM.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Memory {
     pub(super) gear: Gear,
@@ -19,7 +19,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Returns the factory settings, which have the largest gear and no active cams.
+    /// Returns the factory settings: the largest gear and no active cams.
     pub(super) fn factory_default() -> Self {
         Memory {
             gear: FULL,
@@ -36,7 +36,7 @@ impl Memory {
         self.gear
     }
 
-    /// Returns the value of the direction, which is 3 for clockwise and 4 for counterclockwise.
+    /// Returns the direction parameter: 3 for clockwise, 4 for counterclockwise.
     pub const fn direction(&self) -> u32 {
         if self.counterclockwise { 4 } else { 3 }
     }
@@ -58,7 +58,7 @@ impl Memory {
         self.shift
     }
 
-    /// Returns a cam program. It contains all cams, including the inactive ones.
+    /// Returns a cam program with all of its cams, including inactive ones.
     pub fn program(&self, number: ProgramNumber) -> &Program {
         let [first, ..] = &self.programs;
         self.programs.get(usize::from(number.get()) - 1).unwrap_or(first)
@@ -68,8 +68,8 @@ impl Memory {
         self.programs.get_mut(usize::from(number.get()) - 1)
     }
 
-    /// Adds cam programs for a demonstration. They contain a staircase, nested cams and cams that wrap around the end
-    /// of the range. If the range allows it, the example of the manual is added, which is cam 3 from 15 to 213.
+    /// Adds cam programs for demonstration: a staircase, nested cams, and cams that wrap around the end of the range.
+    /// If the range allows it, the example from the manual is added, with cam 3 on from 15 to 213.
     pub(super) fn with_demonstration_programs(mut self) -> Self {
         let steps = self.gear.total_steps();
         let place = |sixteenths: u32| (u64::from(steps) * u64::from(sixteenths) / 16) as u32;
@@ -100,7 +100,7 @@ const NONE: Program = {
     Program { cams: [Some(ZERO); Program::CAMS], mask: 0 }
 };
 
-/// Gear with all turns and the maximum number of steps that fits into 25 bits.
+/// The largest gear: all turns, with the maximum number of steps that fits into 25 bits.
 const FULL: Gear = match Gear::new(Value::MAX.get(), TURNS) {
     Ok(gear) => gear,
     Err(_) => unreachable!(),
@@ -110,15 +110,15 @@ const FULL: Gear = match Gear::new(Value::MAX.get(), TURNS) {
 #[derive(Clone, Debug)]
 pub(super) struct Eeprom {
     pub(super) kept: Memory,
-    /// Whether the content was lost. If so, the encoder sends 86000000h until the next store.
+    /// Whether the content was lost. If so, the encoder sends 86000000h until values are stored again.
     pub(super) lost: bool,
     stores: u32,
-    /// Number of stores in this simulation, which triggers the configured fault.
+    /// Number of EEPROM write cycles in this simulation. The configured fault occurs when a given number is reached.
     begun: u32,
     die_in_store: Option<u32>,
 }
 
-/// The settings that a store writes.
+/// The group of settings to be stored together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StoredSettings {
     Parameters,
@@ -128,10 +128,10 @@ pub(super) enum StoredSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StoreOutcome {
     Kept,
-    /// The EEPROM is worn out, and its content is lost. The manual guarantees 500 stores and does not mention later
-    /// ones (`U`).
+    /// The EEPROM is worn out and its content is lost. The manual guarantees 500 write cycles and does not say what
+    /// happens after that (`U`).
     Worn,
-    /// The power was lost during the store.
+    /// The power was lost while the settings were being stored.
     Died,
 }
 
@@ -148,8 +148,8 @@ impl Eeprom {
         self.die_in_store = number;
     }
 
-    /// Stores the settings. If a store fails, the settings that it would have written are reset to the factory settings
-    /// (`U`: not documented).
+    /// Stores the settings. If this fails, the settings that were to be stored return to the factory settings (`U`: not
+    /// documented).
     pub(super) fn store(&mut self, memory: &Memory, what: StoredSettings) -> StoreOutcome {
         self.stores = self.stores.saturating_add(1);
         self.begun = self.begun.saturating_add(1);
@@ -179,5 +179,5 @@ pub(super) fn cam_mut(program: &mut Program, number: CamNumber) -> Option<&mut C
     program.cams.get_mut(usize::from(number.get())).and_then(Option::as_mut)
 }
 
-/// Number of shaft positions that an encoder can distinguish, which is the number of disc steps over all turns.
+/// Number of shaft positions that an encoder can distinguish: its disc steps over all turns.
 pub(super) const DISC_POSITIONS: u32 = STEPS_PER_TURN * TURNS;

@@ -1,12 +1,12 @@
-//! A virtual K3 encoder behind a Modbus/TCP gateway. It simulates the handshake with busy words and old echoes, the
-//! modes, eight cam programs, the wear of the EEPROM and losses of power. Assumptions about facts that the manual
-//! leaves open (`U`) are documented or can be configured. See the INTERBUS reference.
+//! A virtual K3 encoder behind a Modbus/TCP gateway. It simulates the handshake with busy words and late echoes, the
+//! modes, eight cam programs, EEPROM wear and power loss. Assumptions where the manual leaves a fact open (`U`) are
+//! documented or configurable. See the INTERBUS reference.
 //!
 //! | file | content |
 //! |---|---|
 //! | `config` | the settings of a `sim:` link |
 //! | `shaft` | the turning shaft |
-//! | `memory` | settings, their storage and the number of store cycles |
+//! | `memory` | settings, their storage and the number of EEPROM write cycles |
 //! | `encoder` | the effect of an OUT word and the resulting IN word |
 //! | `registers` | process data as Modbus registers |
 //! | `frame` | a Modbus request and its reply |

@@ -1,6 +1,6 @@
-//! Process data as Modbus registers. Each encoder has two input registers for its IN word and two holding registers for
-//! its OUT word. Reading or writing one or both of them is a cycle of its process data. The word of a K1 encoder has
-//! only half the length and is in the lower register.
+//! Process data in Modbus registers. Each encoder has two input registers for its IN word and two holding registers for
+//! its OUT word. Any read or write of these registers is one cycle of its process data. The word of a K1 encoder is
+//! only 16 bits long and is in the lower register.
 
 use super::config::Config;
 use super::encoder::Encoder;
@@ -15,7 +15,7 @@ pub(super) struct RegisterMap {
     order: WordOrder,
 }
 
-/// Encoders in the order of their registers.
+/// Encoders, in the order of their registers.
 #[derive(Debug)]
 pub(super) struct EncoderList {
     pub(super) first: Encoder,
@@ -99,7 +99,8 @@ impl RegisterMap {
         Ok(registers)
     }
 
-    /// Returns the offset of a register from the first encoder's register. All of the registers must exist.
+    /// Returns the offset of a register from the first encoder's register. Returns an exception unless all requested
+    /// registers exist.
     fn register_offset(&self, encoders: &EncoderList, base: u16, first: u16, count: usize) -> Result<usize> {
         let begin = first.checked_sub(base).map(usize::from).ok_or(Exception::Address)?;
         if begin + count <= encoders.registers() { Ok(begin) } else { Err(Exception::Address) }

@@ -1,9 +1,9 @@
-//! The shaft, whose position is an exact function of time. A turn has 8192 disc steps.
+//! The shaft of a virtual encoder. Its position is an exact function of time. A turn has 8192 disc steps.
 
 use crate::devices::interbus::protocol::STEPS_PER_TURN;
 use crate::units::Moment;
 
-/// A shaft that turns at constant speed. Its position does not wrap, since this depends on the gear.
+/// A shaft that turns at constant speed. Its position is not wrapped here, since where it wraps depends on the gear.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shaft {
     rpm: f64,
@@ -17,8 +17,7 @@ impl Shaft {
         Shaft { rpm, place: f64::from(place), since: Moment::START }
     }
 
-    /// Returns the speed in revolutions per minute. It is positive if the shaft turns clockwise, which increases the
-    /// position.
+    /// Returns the speed in revolutions per minute. Positive speeds are clockwise and increase the position.
     pub(super) const fn rpm(&self) -> f64 {
         self.rpm
     }

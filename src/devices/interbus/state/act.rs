@@ -1,4 +1,5 @@
-//! Handling the user's actions on an encoder. Edits take effect immediately, and all other actions are jobs or tasks.
+//! Carries out the user's actions on an encoder. Edits take effect immediately, and all other actions start jobs or
+//! tasks.
 
 use super::action::InterbusAction;
 use super::encoder::Encoder;
@@ -61,7 +62,7 @@ impl Encoder {
         };
     }
 
-    /// Adds the cam names to a profile that was read for saving.
+    /// Adds the cam names to a profile that was read from the encoder, and saves it.
     pub(super) fn save_profile(&mut self, mut profile: InterbusProfile, services: &mut Services) {
         let programs: Vec<_> = profile.image.known_programs().map(|(number, own)| (number, *own)).collect();
         self.staged.refresh_parameters(profile.image.parameters);
@@ -74,7 +75,8 @@ impl Encoder {
         self.session.save_read_values(device, Body::new(profile), edits, Vec::new(), services);
     }
 
-    /// Reads the next unread part of a virtual encoder. Returns `false` if everything has been read.
+    /// Reads the next part of a virtual encoder that has not been read yet. Returns `false` if everything has been
+    /// read.
     pub(super) fn read_next_unread_part(&mut self, services: &mut Services) -> bool {
         if !self.session.is_virtual() || self.session.phase == Phase::Offline {
             return false;

@@ -1,7 +1,7 @@
-//! The cams of a program as a chart, with one lane for each cam. The lanes extend over the measuring range or around a
+//! The cams of a program as a chart, with one lane per cam. The lanes extend across the measuring range or around a
 //! ring. The chart also calculates the result of a drag, but does not apply it.
 //!
-//! A position is drawn with a width. A cam from 10 to 19 extends from 10 to 20, so adjoining cams have no gap between
+//! A position is drawn one step wide. A cam from 10 to 19 extends from 10 to 20, so adjoining cams have no gap between
 //! them.
 
 mod grid;
@@ -24,7 +24,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber,
 pub struct Chart {
     pub program: ProgramNumber,
     pub range: u32,
-    /// Lanes of the cams by cam number.
+    /// One lane per cam, by cam number.
     pub lanes: [Lane; Program::CAMS],
 }
 
@@ -33,15 +33,15 @@ pub struct Lane {
     pub cam: CamNumber,
     pub name: Option<String>,
     pub on: bool,
-    /// Edges of the cam, or `None` if the profile does not contain them.
+    /// Edges of the cam, or `None` if the profile does not contain the cam.
     pub edges: Option<Cam>,
     pub edited: bool,
     pub beyond: bool,
-    /// Whether the cam is active and overlaps another cam of the same name.
+    /// Whether the cam is active and overlaps another cam with the same name.
     pub clashes: bool,
 }
 
-/// A contiguous range of positions, including both ends.
+/// A contiguous range of positions, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionRange {
     pub first: u32,
@@ -56,9 +56,9 @@ pub struct VisibleRange {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutputState {
-    /// Output of the edited program, or `None` if the program or the position is unknown.
+    /// Output according to the edited program, or `None` if the program or the position is unknown.
     pub simulated: Option<bool>,
-    /// Output in the word of the encoder, or `None` if the word contains no outputs.
+    /// Output according to the word from the encoder, or `None` if the word contains no outputs.
     pub own: Option<bool>,
 }
 
@@ -94,7 +94,7 @@ impl Chart {
         self.lanes.get(usize::from(cam.get()))
     }
 
-    /// Returns the chart with one moved cam, for display during a drag.
+    /// Returns the chart with one cam moved, for display during a drag.
     #[must_use]
     pub fn with_cam(&self, cam: CamNumber, to: Cam) -> Self {
         let mut chart = self.clone();
@@ -105,7 +105,7 @@ impl Chart {
         chart
     }
 
-    /// Returns an inactive cam that can be drawn, or `None` if all cams are active.
+    /// Returns an inactive cam whose lane can be used to draw a new one, or `None` if all cams are active.
     pub fn unused_cam(&self) -> Option<CamNumber> {
         self.lanes.iter().find(|lane| !lane.on).map(|lane| lane.cam)
     }
@@ -142,12 +142,12 @@ impl Lane {
 }
 
 impl OutputState {
-    /// Returns whether the encoder reports a different output than the program.
+    /// Returns whether the encoder reports a different state than the program calls for.
     pub fn is_mismatch(self) -> bool {
         self.simulated.zip(self.own).is_some_and(|(simulated, own)| simulated != own)
     }
 
-    /// Returns the state of the output. The state that the encoder reports takes precedence.
+    /// Returns the state of the output. The state reported by the encoder takes precedence.
     pub const fn effective_state(self) -> Option<bool> {
         match self.own {
             Some(own) => Some(own),
@@ -161,7 +161,7 @@ impl VisibleRange {
         VisibleRange { first: 0.0, span: f64::from(range.max(1)) }
     }
 
-    /// Returns the position at the left end of the view, which may be a fraction.
+    /// Returns the position at the left end of the view, which may lie within a step.
     pub const fn first(&self) -> f64 {
         self.first
     }
@@ -174,7 +174,7 @@ impl VisibleRange {
         self.span >= f64::from(range)
     }
 
-    /// Returns the location of a position in the view. The left end is 0 and the right end is 1.
+    /// Returns where a position lies in the view, as a fraction from 0 at the left end to 1 at the right.
     pub fn fraction_at(&self, position: f64) -> f64 {
         (position - self.first) / self.span
     }
@@ -183,7 +183,7 @@ impl VisibleRange {
         self.first + part * self.span
     }
 
-    /// Returns the view zoomed by a factor. The position `around` stays at the same location.
+    /// Returns the view zoomed by a factor. The position `around` does not move on the screen.
     #[must_use]
     pub fn zoomed(&self, times: f64, around: f64, range: u32) -> Self {
         let most = f64::from(range.max(1));
@@ -198,7 +198,7 @@ impl VisibleRange {
         VisibleRange { first: self.first + by, ..*self }.clamped_to(range)
     }
 
-    /// Returns the view fitted into another range, which may be shorter.
+    /// Returns the view adjusted to fit into another range, which may be shorter.
     #[must_use]
     pub fn clamped_to(&self, range: u32) -> Self {
         let most = f64::from(range.max(1));

@@ -21,8 +21,8 @@ pub enum InterbusLinkKind {
     Replay,
 }
 
-/// Entries of the connection form. An empty entry selects the default. Entries of other connection types are kept, but
-/// are not included in the link.
+/// Entries of the connection form. An empty entry means the default. The entries for other connection types are kept,
+/// but do not appear in the link.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct InterbusForm {
     pub kind: InterbusLinkKind,
@@ -30,15 +30,15 @@ pub struct InterbusForm {
     /// TCP port. If it is empty, port 502 is used.
     pub tcp_port: String,
     pub file: String,
-    /// Entries of the remaining parameters.
+    /// Entries for the remaining parameters.
     pub typed: EnteredValues,
-    /// Whether the low word is in the first of two registers.
+    /// Whether the first of the two registers contains the low word.
     pub low_first: bool,
     /// Parameters of the link for which the form has no entry.
     pub rest: Vec<(String, String)>,
 }
 
-/// Link parameter and value if the low word comes first.
+/// Link parameter and value for the low word first.
 const LOW_FIRST: (&str, &str) = ("order", "low-first");
 const PORT: &str = "502";
 
@@ -86,13 +86,13 @@ impl FormModel for InterbusForm {
 }
 
 impl InterbusForm {
-    /// Returns the entries of the form for the link. A virtual encoder has additional entries.
+    /// Returns the form entries that affect the link. A virtual encoder has additional ones.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == InterbusLinkKind::Virtual { Config::entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
     }
 
-    /// Returns the entries that locate the words in the gateway, and the other entries, which are rarely needed.
+    /// Returns the entries that locate the words in the gateway, then the other entries, which are rarely needed.
     pub fn link_entries() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| ["unit", "input", "output"].contains(&own.key))
     }
@@ -101,7 +101,7 @@ impl InterbusForm {
         Config::entries()
     }
 
-    /// Fills in the input field for a parameter. Returns `false` if no input field can show the value.
+    /// Fills in the input field of a parameter. Returns `false` if no input field can show the value.
     fn fill_entry(&mut self, name: &str, value: &str) -> bool {
         let is_low_first = (name, value) == LOW_FIRST;
         self.low_first |= is_low_first;

@@ -1,4 +1,4 @@
-//! Parameter and cam edits that survive a crash.
+//! Saves parameter and cam edits so that they survive a crash.
 
 use super::encoder::Encoder;
 use super::staged::SavedEdit;

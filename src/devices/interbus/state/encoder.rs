@@ -34,17 +34,17 @@ pub struct Encoder {
     pub staged: StagedEdits,
     pub read_outs: BTreeMap<u16, Value>,
     pub record: Record,
-    /// Comparison between the outputs of the encoder and its cam programs.
+    /// Comparison of the encoder's outputs with its cam programs.
     pub preview: Preview,
-    /// Steps of the last handshakes in chronological order.
+    /// Steps of recent handshakes in chronological order.
     pub handshake: VecDeque<Handshake>,
     pub motor: Option<Motor>,
-    /// Cam table that was read but not applied yet.
+    /// Cam table that has been read but not applied yet.
     pub import: Option<Import>,
     pub scale: Scale,
     /// Reason why the last edit was rejected.
     pub refusal: Option<Text>,
-    /// Whether the user has confirmed the standstill of the machine.
+    /// Whether the user has confirmed that the machine is at standstill.
     stopped: bool,
     /// Program for rows of a table file that do not name one.
     pub(super) table_program: ProgramNumber,
@@ -79,7 +79,7 @@ impl Encoder {
         self.staged.edited_values().map(EditedValues::findings).unwrap_or_default()
     }
 
-    /// Returns the marks that every page shows. Marks of the given program come first.
+    /// Returns the messages about edits that every page shows, with those about the given program first.
     pub fn visible_marks(&self, program: Option<ProgramNumber>) -> Vec<Text> {
         let mut marks: Vec<EditFinding> = self.findings();
         marks.sort_by_key(|mark| program.is_none() || mark.program() != program);
@@ -91,7 +91,7 @@ impl Encoder {
         document.body.get::<InterbusProfile>()
     }
 
-    /// Returns the profile with the edits applied, or `None` if this is a connected encoder.
+    /// Returns the profile with the edits applied, or `None` for a connected encoder.
     pub(crate) fn edited_profile(&self) -> Option<InterbusProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.edited_values()?);
         Some(InterbusProfile { image: wanted.image.clone(), names: wanted.names.clone(), ..profile.clone() })
@@ -116,7 +116,7 @@ impl Encoder {
         self.record.last().and_then(|reading| reading.mode).or_else(read)
     }
 
-    /// Returns the facts that determine the meaning of an IN word.
+    /// Returns what is known about the encoder to interpret an IN word.
     pub fn word_context(&self) -> WordContext {
         let mode = match self.mode() {
             Some(StartupMode::Velocity) => EncoderMode::Velocity,
@@ -140,13 +140,13 @@ impl Encoder {
         url.query.read("order", &WordOrder::KEYWORDS).ok().flatten().unwrap_or_default()
     }
 
-    /// Returns whether the user has confirmed that the machine is at standstill. A virtual encoder has no machine and
-    /// needs no confirmation.
+    /// Returns whether the user has confirmed that the machine is at standstill. A virtual encoder needs no
+    /// confirmation.
     pub fn is_stopped(&self) -> bool {
         self.stopped || self.session.is_virtual()
     }
 
-    /// Returns whether the user has to confirm the standstill of the machine before the encoder may be disturbed.
+    /// Returns whether the user must confirm that the machine is at standstill before the encoder may be disturbed.
     pub fn needs_standstill_confirmation(&self) -> bool {
         self.session.phase != Phase::Offline && !self.session.is_virtual()
     }
@@ -155,7 +155,7 @@ impl Encoder {
         self.stopped = stopped;
     }
 
-    /// Returns the number of steps in the edited measuring range.
+    /// Returns the number of steps in the measuring range, as edited.
     pub fn step_count(&self) -> u32 {
         self.staged.edited_values().map_or(0, EditedValues::step_count)
     }
@@ -173,7 +173,7 @@ impl Encoder {
         self.staged.device().map_or(0, |image| image.known_programs().count())
     }
 
-    /// Returns the number of stores recorded on this computer. Stores by other programs are not included.
+    /// Returns the number of EEPROM write cycles recorded on this computer. Those by other programs are not included.
     pub fn store_count(&self) -> Option<CycleCount> {
         self.session.cycles
     }
@@ -190,7 +190,7 @@ impl Encoder {
         self.staged.is_dirty()
     }
 
-    /// Updates the encoder with the result of a survey. Edits are kept unless they belong to another encoder.
+    /// Updates the encoder with the values just read. Edits are kept unless they belong to another encoder.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         self.session.values_read_at = Some(services.current_time().timestamp());
         if self.is_different_device(&survey.identity) {

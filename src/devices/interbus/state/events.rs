@@ -1,4 +1,4 @@
-//! Events of the session: job results, received words and the loss of the connection.
+//! Handles the events of a connection: job results, received words and its loss.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;
@@ -139,7 +139,7 @@ impl SessionEvents for Encoder {
         words::is_no_response(error)
     }
 
-    /// Discards the review and the confirmation of the standstill.
+    /// Discards the planned write and the confirmation of the standstill.
     fn discard_requests(&mut self) {
         self.set_stopped(false);
         self.discard_plan();
@@ -149,7 +149,7 @@ impl SessionEvents for Encoder {
         self.handle_interrupted_write(how, texts)
     }
 
-    /// Submits a job. A job that disturbs the machine is only submitted at standstill.
+    /// Submits a job. A job that disturbs the machine requires a confirmed standstill.
     fn try_submit(&mut self, job: InterbusJob, services: &mut Services) -> bool {
         if job::requires_standstill(&job) && !self.is_stopped() {
             services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));

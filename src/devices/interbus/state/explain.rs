@@ -1,4 +1,4 @@
-//! Texts for job errors and session messages of an INTERBUS encoder.
+//! Explains job errors and device messages of an INTERBUS encoder.
 
 mod check;
 mod entry;
@@ -22,7 +22,7 @@ use crate::devices::interbus::procedures::{Error, ExpectedWord, ImplausibleValue
 use crate::devices::interbus::protocol::{ErrorWord, GearError, Reply};
 use crate::link::LinkError;
 
-/// Returns the sentences that explain why a job ended early. Each can be shown on a separate line.
+/// Returns the sentences that explain why a job ended early, one per line.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder_error_text(error)],
@@ -34,7 +34,7 @@ pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns the reason why the connection was lost, or `None` if it can still be used.
+/// Returns why the connection was lost, or `None` if it can still be used.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     lost_link(error.device()?).map(link_error_text)
 }
@@ -125,7 +125,7 @@ fn time_out(awaited: ExpectedWord) -> Text {
     })
 }
 
-/// Returns the reason for an error word and a remedy.
+/// Returns the meaning of an error word and a remedy.
 pub fn error_word_text(error: ErrorWord) -> Text {
     TEXTS.text(match (error.code.get(), error.data.get()) {
         (1, _) => "ib_refused.data",
@@ -152,7 +152,7 @@ pub fn implausible_value_text(why: ImplausibleValue) -> Text {
     }
 }
 
-/// Returns the possible state of an encoder that could not be returned to operation. The text is part of a sentence.
+/// Returns the state in which an encoder may be if it could not be returned to operation, as part of a sentence.
 fn left_state_text(standing: &LeftState) -> Text {
     let id = if standing.parameterising { "ib_standing.set" } else { "ib_standing.out" };
     let state = TEXTS.text(id).with("out", format_word(standing.out));

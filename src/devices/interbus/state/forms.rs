@@ -1,4 +1,4 @@
-//! Conversion of typed entries to values and edits.
+//! Converts typed entries to values and edits.
 
 use super::format;
 use super::staged::Edit;
@@ -8,7 +8,7 @@ use crate::devices::interbus::profile::{Parameters, Scale, Unit};
 use crate::devices::interbus::protocol::{Parameter, Value};
 use crate::devices::interbus::state::TEXTS;
 
-/// Parses a whole number. Blanks and apostrophes may separate its digits.
+/// Parses a whole number whose digits may be separated by blanks or apostrophes.
 pub fn parse_number(text: &str) -> Result<u32, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
@@ -18,8 +18,7 @@ pub fn parse_number(text: &str) -> Result<u32, Text> {
     number.ok_or_else(|| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
 
-/// Parses the entry of a parameter into an edit. The edit itself checks whether the value is compatible with other
-/// parameters.
+/// Parses a parameter entry into an edit. The edit itself checks whether the value is compatible with other parameters.
 ///
 /// # Errors
 /// Returns an error with a message if the entry is not a number.
@@ -36,7 +35,7 @@ pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<E
     })
 }
 
-/// Parses the entry of a preset. An empty entry selects the stored preset.
+/// Parses a preset entry. An empty entry means the stored preset.
 ///
 /// # Errors
 /// Returns an error with a message if the entry is not a number or is beyond the measuring range.
@@ -47,7 +46,7 @@ pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
     check_in_range(Parameter::Preset, parse_number(text)?, now)
 }
 
-/// Parses the number of steps by which a program is shifted. Negative numbers shift it to earlier positions.
+/// Parses the number of steps by which to shift a program. A negative number shifts it to earlier positions.
 ///
 /// # Errors
 /// Returns an error with a message if the entry is not a number.
@@ -56,7 +55,7 @@ pub fn offset(text: &str) -> Result<i64, Text> {
     entry.parse::<i32>().map(i64::from).map_err(|_| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
 
-/// Formats a position for an entry field in the unit of the scale.
+/// Formats a position for an entry field, in the unit of the scale.
 pub fn format_position(step: u32, scale: &Scale, range: u32) -> String {
     match scale.unit() {
         Unit::Steps if scale.zero() == 0 => step.to_string(),
@@ -82,7 +81,7 @@ pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
     Ok(placed.step)
 }
 
-/// Returns the initial scale of a unit. For degrees, the measuring range is one turn of the machine.
+/// Returns the initial scale for a unit. For degrees, the measuring range is one turn of the machine.
 pub fn default_scale(unit: Unit, zero: u32, range: u32) -> Scale {
     let steps = match unit {
         Unit::Degrees => f64::from(range.max(1)),
@@ -91,7 +90,7 @@ pub fn default_scale(unit: Unit, zero: u32, range: u32) -> Scale {
     Scale::new(unit, steps, zero).unwrap_or_default()
 }
 
-/// Returns the number of steps per turn of the machine or per millimetre. The unit *steps* has none.
+/// Returns the number of steps per turn of the machine or per millimetre, or `None` if the unit is the step.
 pub fn steps_per_unit(scale: &Scale) -> Option<f64> {
     match scale.unit() {
         Unit::Steps => None,
@@ -110,7 +109,7 @@ pub fn scale(unit: Unit, text: &str, zero: u32) -> Result<Scale, Text> {
     Scale::new(unit, steps, zero).map_err(|_| refused())
 }
 
-/// Returns the scale with its zero moved to the encoder position that was entered.
+/// Returns the scale with machine zero at the encoder position that was entered.
 ///
 /// # Errors
 /// Returns an error with a message if the entry is not a position within the measuring range.

@@ -1,4 +1,4 @@
-//! Names and values of the items of an encoder for lists: comparisons, the logbook and reports.
+//! Names and values of encoder items, as listed in comparisons, the logbook and reports.
 
 use super::{TEXTS, explain, format};
 use crate::app::explain::literal_text;
@@ -37,7 +37,7 @@ pub(super) fn item_name(item: &str) -> Option<Text> {
     })
 }
 
-/// Returns the cam program to which an item belongs, or the settings, as the heading of a group.
+/// Returns the heading under which an item is grouped: its cam program, or the settings.
 pub(super) fn item_group(item: &str) -> Option<Text> {
     Some(match item.parse::<Item>().ok()?.program() {
         Some(program) => TEXTS.text("report.ib_program").with("program", program.get()),
@@ -45,7 +45,7 @@ pub(super) fn item_group(item: &str) -> Option<Text> {
     })
 }
 
-/// Returns the value of an item of a profile with its unit and meaning.
+/// Returns the value of an item in a profile, with its unit and meaning.
 pub(super) fn item_value(profile: &InterbusProfile, item: &str) -> Option<ItemValue> {
     let item: Item = item.parse().ok()?;
     let text = match profile.image.value_of(item)? {

@@ -1,4 +1,4 @@
-//! Names of jobs and their effect on a running machine.
+//! Names of jobs, and their effect on a running machine.
 
 use crate::app::Text;
 use crate::devices::interbus::jobs::InterbusJob;
@@ -22,8 +22,7 @@ pub(super) fn job_name(job: &InterbusJob) -> Text {
     }
 }
 
-/// Returns whether a job interrupts the position or switches outputs. Such a job requires the machine to be at
-/// standstill.
+/// Returns whether a job interrupts the position or switches outputs, so that the machine must be at standstill.
 pub(super) fn requires_standstill(job: &InterbusJob) -> bool {
     !matches!(job, InterbusJob::Hello | InterbusJob::Position)
 }

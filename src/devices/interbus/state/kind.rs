@@ -1,4 +1,4 @@
-//! INTERBUS as a kind of device that the studio offers.
+//! The INTERBUS encoder as a kind of device in the program.
 
 use super::staged::StagedEdits;
 use super::{Encoder, InterbusForm, items, report};

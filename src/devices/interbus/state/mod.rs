@@ -1,4 +1,4 @@
-//! State of the INTERBUS tab, with the values of an encoder, its edits and its cams. It is independent of the window.
+//! State of the INTERBUS tab: the values of an encoder, its edits and its cams. It does not depend on the window.
 
 mod act;
 mod action;

@@ -1,4 +1,4 @@
-//! Implementation of the studio's device traits for INTERBUS encoders.
+//! Implements the common device traits for INTERBUS encoders.
 
 use super::cams::labels::edit_error_text;
 use super::trace::FrameDecoder;

@@ -1,9 +1,9 @@
-//! Comparison of the outputs in received words with the cam programs of the encoder.
+//! Compares the outputs in received words with the cam programs of the encoder.
 
 use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CompiledPrograms, Program, ProgramNumber, StartupMode, Value};
 
-/// Cam programs of the encoder, and the number of words whose outputs match them.
+/// The encoder's cam programs, and how many words had outputs that match them.
 #[derive(Clone, Debug)]
 pub struct Preview {
     programs: [Option<Program>; ProgramNumber::COUNT],
@@ -11,7 +11,7 @@ pub struct Preview {
     /// Number of words whose outputs match their program.
     pub same: u64,
     pub other: u64,
-    /// The latest word whose outputs differ from its program.
+    /// The latest word with outputs that differ from its program.
     pub last: Option<OutputMismatch>,
 }
 
@@ -35,14 +35,15 @@ impl Preview {
         Preview { programs, compiled, same: 0, other: 0, last: None }
     }
 
-    /// Sets the programs of the encoder. The comparison starts again if they have changed.
+    /// Sets the programs of the encoder. If they have changed, the comparison starts again.
     pub(super) fn set_programs(&mut self, programs: &[Option<Program>; ProgramNumber::COUNT]) {
         if self.programs != *programs {
             *self = Preview::from_programs(*programs);
         }
     }
 
-    /// Compares the outputs of a word with the program at its position. Words without outputs or position are ignored.
+    /// Compares the outputs in a word with its program at the same position. Words without outputs or a position are
+    /// ignored.
     pub(super) fn compare(&mut self, reading: &WordReading) {
         let Some(StartupMode::Cams(program)) = reading.mode else { return };
         let at = usize::from(program.get() - 1);

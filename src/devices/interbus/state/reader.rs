@@ -1,11 +1,11 @@
-//! Decoder for words that the user has typed, for example from a PLC monitor. It needs no device.
+//! Decodes words that the user has typed, for example from a PLC monitor. No device is needed.
 
 use super::word_meaning::{self, WordContext};
 use crate::app::Text;
 use crate::devices::interbus::protocol::{EncoderMode, ReadOutNumber, SingleWord, WindowShift};
 use crate::devices::interbus::state::TEXTS;
 
-/// Source of a word, which is its direction and the class of the encoder.
+/// Source of a word: its direction and the class of the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WordSource {
     /// IN word of a K3 encoder.
@@ -13,7 +13,7 @@ pub enum WordSource {
     In,
     /// OUT word to a K3 encoder.
     Out,
-    /// IN word of a K1 encoder, which has 16 bits.
+    /// 16-bit IN word of a K1 encoder.
     K1,
     /// IN word of a K2 encoder.
     K2,
@@ -47,7 +47,7 @@ impl WordSource {
 pub struct Reading {
     pub source: WordSource,
     pub mode: EncoderMode,
-    /// Read-out that the encoder is sending, if any.
+    /// The read-out to which the IN word replies, if any.
     pub read_out: Option<ReadOutNumber>,
     pub shift: WindowShift,
 }

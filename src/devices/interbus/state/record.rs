@@ -1,4 +1,4 @@
-//! Recording the positions, the speed and the cam outputs while the IN word is polled.
+//! Records the position, speed and cam outputs while the IN word is polled.
 
 use crate::devices::interbus::state::TEXTS;
 
@@ -11,7 +11,7 @@ use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, Gear, StartupMode};
 use crate::units::Moment;
 
-/// A value that an encoder sends instead of its position or in addition to it.
+/// A value that an encoder sends instead of its position, or together with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RecordedValue {
     Speed,
@@ -30,7 +30,7 @@ impl Record {
         self.track.begin_session(began);
     }
 
-    /// Adds new readings. `dropped` is the number of readings that could not be recorded in time.
+    /// Adds new readings. `dropped` is the number of readings lost because they could not be recorded in time.
     pub(super) fn add_readings(&mut self, readings: Vec<WordReading>, dropped: u64) {
         self.track.record_dropped(dropped);
         for reading in readings {

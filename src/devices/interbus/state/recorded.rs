@@ -1,4 +1,4 @@
-//! Tests of the draft format in users' files.
+//! Tests that saved drafts keep their format.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::interbus::jobs::Interbus;

@@ -1,4 +1,4 @@
-//! Values of an encoder in a report: identity, parameters, and the cam programs as charts and tables.
+//! The encoder's values in a report: identity, parameters, and cam programs as charts and tables.
 
 use super::cams::{Chart, Lane, VisibleRange, grid_ticks, labels as cam_labels};
 use super::explain::{direction_text, error_word_text, startup_mode_text};
@@ -14,15 +14,15 @@ use crate::drawing::{Drawing, DrawingLabel, DrawingShape, FAINT_COLOUR, LabelAli
 use crate::profile::ProfileDocument;
 use crate::report::{Block, CellStyle, Fact, Mark, Section};
 
-/// Width of the names beside a chart, in drawing units.
+/// Width of the cam names beside a chart, in drawing units.
 const HEAD: u32 = 130;
-/// Width of a chart.
+/// Width of a chart, in drawing units.
 const PLOT: u32 = 540;
 const LANE: u32 = 18;
 const RULER: u32 = 20;
-/// Space to the right of a chart for half of a number.
+/// Space to the right of a chart for half of a ruler number.
 const RIGHT: u32 = 30;
-/// Minimum distance between two numbers of the ruler.
+/// Minimum distance between two ruler numbers.
 const NUMBER_DISTANCE: f64 = 80.0;
 const ON: &str = "#8cc0ee";
 const OFF: &str = "#ffffff";
@@ -47,7 +47,7 @@ pub(super) fn content(
     Ok(ReportContent { title, key, sections })
 }
 
-/// Returns the error that an encoder sends instead of its position, if any, for a report.
+/// Returns the error that an encoder reports instead of its position, formatted for a report.
 pub fn status_lines(error: Option<ErrorWord>) -> Vec<StatusLine> {
     let line = |error: ErrorWord| StatusLine {
         mark: Mark::Bad,
@@ -118,12 +118,12 @@ fn program_section(
         .with(Block::Facts(facts.collect()))
 }
 
-/// Returns whether a cam is switched on or has edges. The edges of a new encoder are 0.
+/// Returns whether a cam is active or has edges other than the 0 of a new encoder.
 fn is_used(lane: &Lane) -> bool {
     lane.on || lane.edges.is_some_and(|cam| cam.start.get() != 0 || cam.stop.get() != 0)
 }
 
-/// Names the programs without a cam. Returns `None` if there are none.
+/// Returns a section that lists the unused programs, or `None` if there are none.
 fn unused_section(context: &ReportContext<'_>, programs: impl Iterator<Item = u8>) -> Option<Section> {
     let numbers: Vec<String> = programs.map(|number| number.to_string()).collect();
     let text = TEXTS.text("report.ib_unused").with("programs", numbers.join(", "));
@@ -131,7 +131,7 @@ fn unused_section(context: &ReportContext<'_>, programs: impl Iterator<Item = u8
     (!numbers.is_empty()).then(|| Section::new(title).with(Block::Paragraph(context.say(text))))
 }
 
-/// Draws the lanes of a program over the measuring range, as the window does.
+/// Draws the lanes of a program across the measuring range, as in the window.
 fn cam_chart(context: &ReportContext<'_>, chart: &Chart, title: String) -> Drawing {
     let height = RULER + Program::CAMS as u32 * LANE + 1;
     let mut drawing = Drawing::new(HEAD + PLOT + RIGHT, height, title);

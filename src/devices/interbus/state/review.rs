@@ -1,4 +1,4 @@
-//! Review of a write to an INTERBUS encoder, with the permits, warnings and cost of the plan.
+//! What the user reviews before a write to an INTERBUS encoder: permissions, warnings and the cost of the plan.
 
 use crate::app::explain::{cycle_count_text, literal_text};
 use crate::app::review::{self, OperationTexts, Permit, Reviewable};

@@ -1,10 +1,10 @@
-//! Edited values of a K3 encoder or a profile, and the values on which they are based. A plan is made from the
-//! differences. This module does not write anything to an encoder.
+//! Edited values of a K3 encoder or a profile, and the base values from which they started. A plan is made from the
+//! differences. Nothing is written to an encoder here.
 //!
-//! Every edit creates a complete new state, to which undo can return. Edits are kept if the encoder is read again. In
-//! all states of the history, the other values are updated from the encoder. A cam program cannot be edited before it
-//! has been read, because the cost of a change would be unknown. Earlier edits of such a program are kept until it is
-//! read. A profile can gain values that it did not contain.
+//! Every edit creates a complete new state, to which undo can return. Edits are kept when the encoder is read again,
+//! and all other values are updated in every state of the history. A cam program cannot be edited before it has been
+//! read, because the cost of a change would be unknown. Earlier edits of such a program are kept until it is read. A
+//! profile can gain values that it did not contain.
 //!
 //! Positions are in steps, from 0 to the measuring range minus one.
 
@@ -26,7 +26,7 @@ use crate::app::{EditHistoryParts, SnapshotEdits};
 use crate::devices::interbus::profile::{CamNames, Image, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
 
-/// All values that can be edited, in their edited state.
+/// All values that can be edited, including edits already made.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct EditedValues {
     pub image: Image,
@@ -35,21 +35,21 @@ pub struct EditedValues {
     pub names: CamNames,
 }
 
-/// Source of the base values.
+/// Where the base values come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum BaseSource {
-    /// Encoder. A missing value was not read and is unknown.
+    /// An encoder. Missing values were not read and are unknown.
     #[default]
     Encoder,
-    /// Profile. A missing value is not part of the profile.
+    /// A profile. Missing values are not part of it.
     Profile,
 }
 
-/// The base values, the edited values and the states of undo and redo.
+/// Base values, edited values, and the undo history.
 #[derive(Clone, Debug, Default)]
 pub struct StagedEdits {
     base_source: BaseSource,
-    /// Values of the encoder or the profile, without edits.
+    /// Values of the encoder or profile before any edits.
     base: Option<EditedValues>,
     wanted: Option<EditedValues>,
     history: History<EditedValues>,
@@ -58,7 +58,7 @@ pub struct StagedEdits {
 }
 
 impl EditedValues {
-    /// Creates values without names.
+    /// Creates editable values without names.
     pub fn from_image(image: Image) -> Self {
         EditedValues { image, names: CamNames::default() }
     }
@@ -83,7 +83,7 @@ impl EditedValues {
 }
 
 impl StagedEdits {
-    /// Creates the edits of a profile. Values that are missing in the profile can be added.
+    /// Creates the edits for a profile. Values missing from the profile can be added.
     pub fn for_profile(image: Image, names: CamNames) -> Self {
         let base = EditedValues { image, names };
         StagedEdits {
@@ -109,8 +109,8 @@ impl StagedEdits {
         self.take_draft(edits);
     }
 
-    /// Sets the values read from the encoder as the base. Values that were not read are kept, and so are edits and the
-    /// undo history.
+    /// Sets the values read from the encoder as the base. Values that were not read, edits and the undo history are
+    /// kept.
     pub fn refresh(&mut self, read: Image) {
         let known = self.base.take();
         let (names, image) = match &known {
@@ -141,7 +141,7 @@ impl StagedEdits {
         matches!(self.base_source, BaseSource::Encoder)
     }
 
-    /// Sets the base values and transfers the edits to them.
+    /// Replaces the base values and applies the edits to the new ones.
     fn rebase_edits(&mut self, now: EditedValues) {
         match (&self.base, &mut self.wanted) {
             (Some(before), Some(wanted)) => {
@@ -154,7 +154,7 @@ impl StagedEdits {
         self.take_draft(waiting);
     }
 
-    /// Discards all values and edits before another encoder is used.
+    /// Discards all values and edits, because another encoder will be used.
     pub fn clear(&mut self) {
         *self = StagedEdits { base_source: self.base_source, ..StagedEdits::default() };
     }
@@ -179,7 +179,7 @@ impl StagedEdits {
         self.wanted.as_ref()?.image.program(number)
     }
 
-    /// Applies an edit as a single undo step. Returns whether it has changed a value.
+    /// Applies an edit as a single undo step, and returns whether it changed a value.
     ///
     /// # Errors
     /// Returns an error with the reason if the edit is not possible. In this case, nothing has changed.
@@ -188,7 +188,7 @@ impl StagedEdits {
         Ok(self.apply_step(after))
     }
 
-    /// Returns the values after an edit, which is not applied. They are displayed during a drag.
+    /// Returns the values as an edit would change them, for display during a drag.
     ///
     /// # Errors
     /// Returns an error with the reason if the edit is not possible.

@@ -1,4 +1,4 @@
-//! Import of cam tables from a file or pasted text, and their export.
+//! Imports cam tables from a file or pasted text, and exports them.
 
 use std::path::PathBuf;
 
@@ -12,14 +12,14 @@ use crate::devices::interbus::profile::{CamTable, TableOptions, emit_table};
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::store::{read_file, write_atomically};
 
-/// A cam table that was read but not applied yet.
+/// A cam table that has been read but not applied yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
     pub origin: Text,
-    /// Content of the table. Its positions are read in the current unit of the scale.
+    /// Content of the table. Positions are in the unit of the scale that is currently selected.
     pub table: CamTable,
     text: String,
-    /// Program of the rows that do not name one.
+    /// Program for rows that do not name one.
     program: ProgramNumber,
 }
 
@@ -51,8 +51,8 @@ impl Encoder {
         }
     }
 
-    /// Adds the imported table to the edits, or discards it. A table with problems is never added, because the cam of
-    /// an omitted line would be switched off.
+    /// Adds the imported table to the edits, or discards it. A table with problems is never added, because a cam on an
+    /// omitted line would be switched off.
     pub(super) fn finish_import(&mut self, take: bool) {
         let Some(import) = &self.import else { return };
         if take && !import.table.problems.is_empty() {

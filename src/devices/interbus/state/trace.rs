@@ -1,4 +1,5 @@
-//! Meaning of frames in the trace. It depends on the mode of the encoder, which earlier OUT words have selected.
+//! Explains frames in the trace. Their meaning depends on the mode of the encoder, which earlier OUT words have
+//! selected.
 
 use super::word_meaning::{self, WordContext};
 use crate::app::{FrameExplanation, Text, TraceFault};
@@ -8,7 +9,7 @@ use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
 use crate::link::{Direction, TraceEntry};
 
-/// Decoder for a sequence of frames in the order of their transmission.
+/// Decodes frames in the order in which they were transmitted.
 #[derive(Debug)]
 pub(super) struct FrameDecoder {
     /// Order of the two halves of a word.
@@ -20,7 +21,7 @@ pub(super) struct FrameDecoder {
 }
 
 impl FrameDecoder {
-    /// Creates a decoder for a new link. It assumes position mode.
+    /// Creates a decoder for a new link. Initially, position mode is assumed.
     pub(super) fn new(order: WordOrder) -> Self {
         FrameDecoder { order, shift: None, mode: EncoderMode::Position, read_out: None, requested: Vec::new() }
     }
@@ -29,7 +30,7 @@ impl FrameDecoder {
         self.mode = mode;
     }
 
-    /// Explains a frame. The explanation is empty if an intact frame contains no word.
+    /// Explains a frame. There is no explanation for an intact frame without a process data word.
     pub(super) fn explain(&mut self, entry: &TraceEntry) -> FrameExplanation {
         let Some(bytes) = entry.bytes.to_bytes() else {
             return FrameExplanation::from_error(Text::new("trace.hidden"));
@@ -48,7 +49,7 @@ impl FrameDecoder {
         }
     }
 
-    /// Explains a reply. An error word is marked as an error that the encoder reports.
+    /// Explains a reply. An error word is marked as an error reported by the encoder.
     fn explain_received(&mut self, bytes: &[u8]) -> FrameExplanation {
         let meaning = self.word_meaning_texts(Direction::Received, bytes);
         let is_error = match word_in_frame(false, bytes, self.order) {
@@ -73,7 +74,7 @@ impl FrameDecoder {
         }
     }
 
-    /// Parses an OUT word in the known mode, or in a mode that allows the word if the known one does not.
+    /// Parses an OUT word in the known mode, or if that does not allow the word, in a mode that does.
     fn command(&self, word: u32) -> Command {
         let readings = || Command::all_meanings(word).into_iter().next();
         Command::in_mode(word, self.mode).ok().or_else(readings).unwrap_or(Command::Unknown(word))
@@ -102,8 +103,8 @@ mod tests {
     use crate::bits::{MaskedBytes, parse_hex};
     use crate::units::Moment;
 
-    /// Damaged gateway replies (Modbus application protocol 1.1b3, 6.4 and 7), rejections, and replies with an error
-    /// word of the encoder (reference 2) are explained and marked (issue 22.11).
+    /// Covers damaged gateway replies (Modbus application protocol 1.1b3, 6.4 and 7), rejections, and replies with an
+    /// error word from the encoder (reference 2) (issue 22.11).
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let request = "00 07 00 00 00 06 01 04 00 00 00 02";

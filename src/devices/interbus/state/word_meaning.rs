@@ -1,4 +1,4 @@
-//! Meaning of process data words. OUT words are commands, and the mode determines the meaning of IN words.
+//! Explains process data words. The meaning of an IN word depends on the mode.
 
 use super::format;
 use crate::app::Text;
@@ -9,7 +9,7 @@ use crate::devices::interbus::protocol::{
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
 
-/// Facts about an encoder that determine the meaning of its IN words.
+/// What must be known about an encoder to interpret its IN words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordContext {
     pub mode: EncoderMode,
@@ -18,14 +18,14 @@ pub struct WordContext {
 }
 
 impl WordContext {
-    /// Returns the session data that applies to replies to a command.
+    /// Returns the context for interpreting the reply to a command.
     pub fn for_command(command: Command, shift: Option<WindowShift>) -> Self {
         let read_out = if let Command::ReadOut(what) = command { Some(what) } else { None };
         WordContext { mode: mode_of_command(command), read_out, shift }
     }
 }
 
-/// Describes an OUT word, and whether it is illegal in the given mode.
+/// Describes an OUT word, even if it is illegal in the given mode.
 pub fn describe_out_word(word: u32, mode: EncoderMode) -> Text {
     match Command::in_mode(word, mode) {
         Ok(command) => command_text(command),
@@ -66,7 +66,7 @@ pub fn command_text(command: Command) -> Text {
     }
 }
 
-/// Returns a mode in which the encoder accepts a command. Position mode takes precedence over cam mode.
+/// Returns a mode in which the encoder accepts a command. Position mode is preferred over cam mode.
 pub fn mode_of_command(command: Command) -> EncoderMode {
     if command.is_legal_in(EncoderMode::Position) || !command.is_legal_in(EncoderMode::Cam) {
         EncoderMode::Position
@@ -101,7 +101,7 @@ pub fn word_text(word: u32, known: &WordContext) -> Text {
     }
 }
 
-/// Returns a warning if bits are set that should be 0.
+/// Returns a warning if bits that should be 0 are set.
 pub fn unexpected_bits(word: u32) -> Option<Text> {
     match Reply::parse(word) {
         Reply::Run { stray, .. } if stray != 0 => {

@@ -1,4 +1,4 @@
-//! Writing of edits or a profile to an encoder, its jobs, and the values that are read again afterwards.
+//! Writes edits or a profile to an encoder, and selects the values to read again afterwards.
 
 use super::cams::labels;
 use super::encoder::Encoder;
@@ -14,9 +14,9 @@ use crate::devices::interbus::state::TEXTS;
 use crate::profile::{Body, ProfileError};
 
 impl Encoder {
-    /// Returns the edited values. Only edited programs are included, since the plan has to read each program and
-    /// reading selects it. If the measuring range becomes shorter, all known programs are included, since their cams
-    /// must be within the new range.
+    /// Returns the edited values. Unedited programs are left out, since a plan would have to select them to read them.
+    /// If the measuring range becomes shorter, all known programs are included, since their cams must lie within the
+    /// new range.
     fn edited_image(&self) -> Option<Image> {
         let (wanted, device) = (&self.staged.edited_values()?.image, self.staged.device()?);
         let mut edited = Image::from_parameters(wanted.parameters);

@@ -1,4 +1,4 @@
-//! The cams page, which shows the cams of a program as lanes, ring and table, and the cam output word of the encoder.
+//! The cams page: the cams of a program as lanes, ring and table, and the encoder's cam output word.
 
 mod bar;
 mod chart;

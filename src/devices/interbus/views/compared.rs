@@ -1,4 +1,4 @@
-//! The cam programs of two profiles as charts over each other.
+//! The cam programs of two profiles in overlaid charts.
 
 use egui::Ui;
 
@@ -12,7 +12,7 @@ use crate::devices::interbus::state::staged::StagedEdits;
 use crate::ui::Theme;
 use crate::ui::controls::paragraph;
 
-/// Draws each program in which the profiles differ: the cams of the right side, with those of the left side as outlines.
+/// Draws each program in which two profiles differ, with the cams of the right profile and outlines of the left one's.
 pub(super) fn programs_ui(ui: &mut Ui, theme: &Theme, left: &InterbusProfile, right: &InterbusProfile) {
     let [left, right] = [left, right].map(|own| StagedEdits::for_profile(own.image.clone(), own.names.clone()));
     let scale = Scale::default();

@@ -1,4 +1,4 @@
-//! The encoder page with the identity, the current word and the wiring.
+//! The encoder page: identity, current word and wiring.
 
 use egui::{RichText, Ui};
 
@@ -167,9 +167,9 @@ mod tests {
     use crate::devices::interbus::state::TEXTS;
     use crate::ui::wiring::assert_notes;
 
-    /// The card matches the INTERBUS manual, 3.1 and 3.2 (9-pin round connectors, male for the input and female for the
-    /// output; no addresses; shield to the housing, and in Loop the housing to PE) and 6.1 (10 to 30 V DC absolute, 3.5
-    /// W, 500 kBaud or 2 MBaud; issue 22.23).
+    /// Sources: manual 3.1 and 3.2 (9-pin round connectors, male for the input and female for the output; no addresses;
+    /// shield to the housing, and in Loop the housing to PE), and 6.1 (10 to 30 V DC absolute, 3.5 W, 500 kBaud or 2
+    /// MBaud). See issue 22.23.
     #[test]
     fn the_wiring_card_matches_the_manual() {
         assert_notes(

@@ -1,4 +1,4 @@
-//! Meaning of the LEDs on the encoder, and the identification codes of its interfaces.
+//! What the LEDs on the encoder mean, and the identification codes of its interfaces.
 
 use egui::{RichText, Ui};
 
@@ -57,7 +57,7 @@ fn output_indicators_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     });
 }
 
-/// Draws a clickable LED. Each click selects the next state, which is off, on or, if `blinks` is set, blinking.
+/// Draws an LED that can be clicked. Each click selects its next state: off, on or, if `blinks` is set, blinking.
 fn led_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut LedState, blinks: bool) {
     let palette = theme.palette;
     let (id, ink) = match lamp {

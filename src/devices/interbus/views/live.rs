@@ -1,4 +1,4 @@
-//! The large display of an INTERBUS encoder with its position, its speed or the outputs of a program.
+//! The large live display: position, speed or the outputs of a cam program.
 
 use egui::{RichText, Ui};
 

@@ -1,5 +1,5 @@
-//! Problems of the edited values, shown below every page so that buttons and entries do not move. An edit on one page
-//! may cause problems on another, such as cams beyond a shorter measuring range.
+//! Problems with the edited values. They are shown at the bottom of every page so that no controls move, and because an
+//! edit on one page may affect another: a shorter measuring range may leave cams beyond it.
 
 use egui::{RichText, Ui};
 
@@ -8,7 +8,7 @@ use crate::devices::interbus::state::Encoder;
 use crate::ui::controls::{paragraph, problem_ui};
 use crate::ui::{Theme, icons, page};
 
-/// Draws the marks and the reason why the last edit was rejected. Marks of the program `shown` come first.
+/// Draws the problems, those of the program `shown` first, and the reason why the last edit was rejected.
 pub(super) fn marks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, shown: Option<ProgramNumber>) {
     let marks = encoder.visible_marks(shown);
     if marks.is_empty() && encoder.refusal.is_none() {

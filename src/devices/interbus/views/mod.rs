@@ -1,4 +1,4 @@
-//! The INTERBUS tab with one page for each task.
+//! The INTERBUS tab, with one page per task.
 
 mod cams;
 mod compared;
@@ -25,7 +25,7 @@ use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
 pub(crate) enum Page {
     #[default]
     Encoder,
-    /// Position parameters and the words that set them.
+    /// Position parameters, and the words that set them.
     Parameters,
     Cams,
     Diagnosis,
@@ -43,7 +43,7 @@ impl TabPage for Page {
 }
 
 impl Page {
-    /// Returns whether the page has a bar for writing its edits to the encoder.
+    /// Returns whether the page has a bar for writing edits to the encoder.
     fn has_edit_bar(self) -> bool {
         matches!(self, Page::Parameters | Page::Cams)
     }

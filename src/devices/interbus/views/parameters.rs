@@ -1,5 +1,4 @@
-//! The parameters page with the parameters, their edits, the preset, the wear of the EEPROM and the words of the
-//! handshake.
+//! The parameters page: parameters and their edits, preset, EEPROM wear, and the words of the handshake.
 
 use std::collections::BTreeMap;
 
@@ -33,7 +32,7 @@ pub(super) struct EncoderParametersUiState {
 
 const ENTRY_WIDTH: f32 = 96.0;
 const TEXT_WIDTH: f32 = 240.0;
-/// Width of a word in hexadecimal digits.
+/// Width of a process data word in hexadecimal digits.
 const WORD: f32 = 80.0;
 
 pub(super) fn page_ui(

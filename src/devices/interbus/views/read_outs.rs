@@ -1,4 +1,4 @@
-//! Read-outs of an encoder, and the registers of its OPC chip.
+//! The read-outs of an encoder, and the registers of its OPC chip.
 
 use egui::Ui;
 
@@ -9,7 +9,7 @@ use crate::devices::interbus::views::translate;
 use crate::ui::controls::{card, folding_card, icon_button, paragraph};
 use crate::ui::{Theme, icons};
 
-/// Minimum and maximum width of a column of names.
+/// Minimum and maximum width of the name column.
 const NAMES: [f32; 2] = [120.0, 168.0];
 /// Width of a cell with a chip register.
 const REGISTER_WIDTH: f32 = 132.0;

@@ -1,4 +1,4 @@
-//! Decoder for words that the user types.
+//! Decoder for process data words that the user types.
 
 use egui::{RichText, Ui};
 

@@ -1,4 +1,5 @@
-//! Confirmation of the standstill, which is required before an encoder in a machine may be disturbed.
+//! The bar for confirming that the machine is at standstill. Confirmation is required before its encoder may be
+//! disturbed.
 
 use egui::{RichText, Ui};
 

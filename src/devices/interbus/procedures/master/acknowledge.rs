@@ -1,9 +1,9 @@
-//! Words that the encoder echoes (reference 4), including those whose echo may equal the word of a busy encoder
-//! (reference 6.11a).
+//! Acknowledges settings by their echo (reference 4), even if the echo looks like the word of a busy encoder (reference
+//! 6.11a).
 //!
 //! The echo of a word that sets cam 0, the mask, the shift or a program has code 0. The word of a busy encoder has the
-//! same code, and may also contain the data just sent. Such an echo is accepted when it has lasted longer than any
-//! processing by this encoder so far. An edge of cam 0 is also read out before the program is left, because leaving the
+//! same code, and may also contain the data just sent. Such an echo is accepted once it has lasted longer than this
+//! encoder has ever been busy. An edge of cam 0 is also read out before the program is left, because leaving the
 //! program stores the edge.
 
 use std::time::Duration;
@@ -14,9 +14,9 @@ use crate::devices::interbus::procedures::error::ExpectedWord;
 use crate::devices::interbus::procedures::handshake::is_echo;
 use crate::devices::interbus::protocol::{Command, Reply, Value};
 
-/// IN word of a busy encoder without data bits. The echo is the same if the start of cam 0 is set to 0.
+/// IN word of a busy encoder without data bits. The echo looks the same when the start of cam 0 is set to 0.
 const BUSY: u32 = 0xC000_0000;
-/// Maximum number of attempts to set an edge of cam 0. None of the attempts stores the edge.
+/// Maximum number of attempts to set an edge of cam 0. None of them stores it.
 const MAX_ATTEMPTS: u32 = 4;
 
 impl Master<'_> {
@@ -29,8 +29,8 @@ impl Master<'_> {
         self.try_send_setting(command, 0)
     }
 
-    /// Sends a setting whose echo is ambiguous and reads the value back with `question`. Both are repeated with longer
-    /// waiting times until the encoder has accepted the value.
+    /// Sends a setting whose echo is ambiguous, then reads the value back with `question`. Both are repeated with
+    /// longer waiting times until the encoder has accepted the value.
     ///
     /// # Errors
     /// Returns [`Error::NotTaken`] with the name `item` if the value is not accepted, or an error of
@@ -61,8 +61,8 @@ impl Master<'_> {
         self.wait_for_acknowledgement(command, tried, false)
     }
 
-    /// Sends a word until its echo is stable. A missing echo is also accepted if the encoder keeps running (`U`: not
-    /// documented).
+    /// Sends a word until its echo is stable. An encoder that keeps running without an echo has also accepted it (`U`:
+    /// not documented).
     pub(super) fn send_mode_command(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.wait_until_value_cleared()?;
@@ -91,8 +91,8 @@ impl Master<'_> {
         })
     }
 
-    /// Returns how long the echo of a command must persist. The result is `None` if the echo cannot be mistaken for a
-    /// word of a busy encoder.
+    /// Returns how long the echo of a command must persist, or `None` if it cannot be mistaken for the word of a busy
+    /// encoder.
     fn required_echo_time(&self, command: Command, tried: u32) -> Option<Duration> {
         let echo = Reply::echo_of(command);
         let most = self.patience / 2;

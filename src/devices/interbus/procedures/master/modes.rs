@@ -1,4 +1,4 @@
-//! Mode of an encoder, which a job reads, changes and restores at its end.
+//! The mode of an encoder: read at the start of a job, changed by it, and restored at its end.
 
 use std::time::Duration;
 
@@ -8,13 +8,13 @@ use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::error::ExpectedWord;
 use crate::devices::interbus::protocol::{Command, ReadOutNumber, Reply, StartupMode};
 
-/// Time limit for a requested cam value to disappear after 00000000h. After it, 80000000h is sent (`U`: not
+/// Time limit for a requested cam value to disappear after 00000000h. After that, 80000000h is sent (`U`: not
 /// documented).
 const VALUE_CLEAR_TIMEOUT: Duration = Duration::from_millis(300);
-/// Number of times that the IN word is read again, because the first reading may return an old word.
+/// Number of additional readings of the IN word, because the first one may return an old word.
 const EXTRA_READINGS: u32 = 2;
 const READING_INTERVAL: Duration = Duration::from_millis(10);
-/// Time for which the mode does not have to be read again after a step of a job has returned the encoder to it.
+/// How long the mode need not be read again after a step of a job has restored it.
 const MODE_VALIDITY: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
@@ -51,9 +51,9 @@ impl Master<'_> {
         Err(Error::ModeNotRestored { cause: Box::new(cause), standing: self.left_state() })
     }
 
-    /// Ends a parameterisation, an error or a read-out of another program, and returns the resulting mode. Values that
-    /// were set but not stored are now stored, which uses one store cycle. A persistent error is not reported, since
-    /// the encoder can still be read and set.
+    /// Ends a parameterisation, error or read-out that another program left behind, and returns the resulting mode.
+    /// Values that were set but not stored are now stored, which uses one EEPROM write cycle. An error that persists is
+    /// not reported, since the encoder can still be read and set.
     ///
     /// # Errors
     /// Returns [`Error::ModeNotRestored`] with the cause if the encoder cannot be returned to operation.
@@ -110,12 +110,12 @@ impl Master<'_> {
         }
     }
 
-    /// Marks the current mode as the one to which the encoder returns after the job.
+    /// Keeps the current mode after the job instead of returning to the original one.
     pub(in crate::devices::interbus::procedures) fn keep_current_mode(&mut self) {
         self.found = self.is;
     }
 
-    /// Reads the state and the mode of the encoder, which determine the meaning of the words to be sent.
+    /// Reads the state and mode of the encoder. They determine what the words to be sent will mean.
     pub(in crate::devices::interbus::procedures) fn enter(&mut self) -> Result<(), Error> {
         let begun = self.data.now();
         let mut looks = 0;
@@ -164,8 +164,8 @@ impl Master<'_> {
         self.switch_to_mode(mode)
     }
 
-    /// Returns whether the encoder is known to be in its initial mode. The current OUT word must be normal operation,
-    /// no command may have been lost, and no parameters or cams may be in the process of being set.
+    /// Returns whether the encoder is certainly in its initial mode: the OUT word is normal operation, no command was
+    /// lost, and no parameters or cams are being set.
     fn is_in_initial_state(&self) -> bool {
         let rests = matches!(self.out, None | Some(Command::Normal));
         rests && !self.lost && !self.parameterising && !self.unsure && self.is == self.found
@@ -177,8 +177,8 @@ impl Master<'_> {
         Ok(mode)
     }
 
-    /// Sends a word that changes the mode, then 00000000h, and reads the mode. If the encoder does not keep the mode,
-    /// the word that keeps it is sent instead of 00000000h. The manual does not define which word is required (`U`).
+    /// Sends a word that changes the mode, then 00000000h, and reads the mode. If the encoder does not stay in the
+    /// mode, the word that holds it there replaces 00000000h. The manual does not say which word is required (`U`).
     fn send_mode_word(&mut self, command: Command, wanted: StartupMode) -> Result<(), Error> {
         let of_cams = matches!(command, Command::Cams(_));
         let keeps = if of_cams { Command::Run } else { command };
@@ -241,7 +241,7 @@ impl Master<'_> {
         self.send_idle_word()
     }
 
-    /// Sends 00000000h, so that the next 80000000h causes the rising edge that it needs to take effect.
+    /// Sends 00000000h, because 80000000h takes effect only on a rising edge.
     fn clear_run_command(&mut self) -> Result<(), Error> {
         for _ in 0..EXTRA_READINGS {
             self.run_cycle(Command::Normal)?;
@@ -249,7 +249,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Sends the word that keeps the mode without a request.
+    /// Sends the word that holds the mode and requests nothing.
     fn send_idle_word(&mut self) -> Result<(), Error> {
         self.wait_until_value_cleared()?;
         let word = self.idle_command();
@@ -261,7 +261,7 @@ impl Master<'_> {
         hold.map_or(Command::Normal, |(_, word)| word)
     }
 
-    /// Waits until the IN word contains no value. A new value could not be distinguished from the old one.
+    /// Waits until the IN word no longer contains a value, since a new value could not be told apart from the old one.
     pub(super) fn wait_until_value_cleared(&mut self) -> Result<(), Error> {
         let asks = self.out.is_some_and(is_read_command);
         let stands = matches!(Reply::parse(self.input), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
@@ -283,8 +283,8 @@ impl Master<'_> {
         }
     }
 
-    /// Sends 00000000h until the IN word contains no value. This is done while parameters or cams are being set,
-    /// because 80000000h would store them. A value that persists is accepted, because it differs from the next echo.
+    /// Sends 00000000h until the IN word no longer contains a value. While parameters or cams are being set, 80000000h
+    /// would store them. A value that persists is accepted, because it differs from the next echo.
     fn clear_query_while_setting(&mut self) -> Result<(), Error> {
         let patience = VALUE_CLEAR_TIMEOUT.min(self.patience);
         let ended =
@@ -299,8 +299,7 @@ impl Master<'_> {
     }
 }
 
-/// Returns whether two modes are equal. K2 and K3 are treated as equal, since the IN word contains the position in
-/// both.
+/// Returns whether two modes are equal. K2 and K3 count as equal, since the IN word contains the position in both.
 pub(super) fn is_same_operating_mode(is: StartupMode, wanted: StartupMode) -> bool {
     let is_plain = |mode| matches!(mode, StartupMode::K2 | StartupMode::K3);
     is == wanted || is_plain(is) && is_plain(wanted)

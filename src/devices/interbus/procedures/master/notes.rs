@@ -1,5 +1,5 @@
-//! Records of the encoders that a job switches to another mode. If the job is interrupted, the next run restores the
-//! mode.
+//! Notes about encoders that a job switches to another mode, so that the next run can restore the mode after an
+//! interruption.
 
 use super::Master;
 use super::modes::is_same_operating_mode;
@@ -12,14 +12,14 @@ pub(super) struct JournalNotes<'a> {
     journal: Option<Box<dyn Journal + 'a>>,
     serial_number: Option<String>,
     excursion: Option<ModeSwitch>,
-    /// Number of cam programs that were left without a change. The encoder may still have stored each of them.
+    /// Number of cam programs that were left unchanged. The encoder may have stored each of them anyway.
     left: u64,
-    /// Whether the selected cam program was changed. If so, its store is counted as part of the write.
+    /// Whether the selected cam program was changed. If so, storing it is counted as part of the write.
     is_set: bool,
 }
 
 impl<'a> Master<'a> {
-    /// Sets the journal that records mode switches and stores.
+    /// Sets the journal that records mode switches and EEPROM write cycles.
     #[must_use]
     pub fn with_journal(mut self, journal: impl Journal + 'a) -> Self {
         self.notes.journal = Some(Box::new(journal));
@@ -51,7 +51,7 @@ impl Master<'_> {
         self.notes.is_set = matches!(self.is, Some(StartupMode::Cams(_)));
     }
 
-    /// Marks the original mode as the one to return to, if an interrupted run has left the encoder in the given mode.
+    /// Continues with the original mode if an interrupted run left the encoder in the given mode.
     pub(super) fn resume(&mut self, mode: StartupMode) -> Result<(), Error> {
         if !self.notes.journal.as_ref().is_some_and(|journal| journal.has_modes_to_restore()) {
             return Ok(());
@@ -96,7 +96,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Records that the return to operation stored settings of another program.
+    /// Records that the return to operation stored settings made by another program.
     pub(super) fn note_foreign_store(&mut self) -> Result<(), Error> {
         if self.notes.journal.is_some() {
             self.serial_number()?;
@@ -105,7 +105,8 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Records the possible stores at the end of a step, and whether the encoder is back in its initial mode.
+    /// Records the possible EEPROM write cycles at the end of a step, and whether the encoder is back in its initial
+    /// mode.
     pub(super) fn record_step_end(&mut self, is_back: bool) {
         let JournalNotes { journal: Some(journal), serial_number: Some(serial_number), excursion, left, .. } =
             &mut self.notes

@@ -1,4 +1,4 @@
-//! Tests of planned edits: the writes, their order, and rejections.
+//! Tests of planned edits: what is written, in which order, and what is rejected.
 
 use super::super::test_profiles::{cam, cam_between, image, image_with, logbook_note, parse_item, program, value};
 use super::super::{Direction, ItemValue};
@@ -25,8 +25,7 @@ fn equal_values_are_not_written() {
     assert!(plan_edits(&nothing, &nothing).unwrap().is_empty());
 }
 
-/// A zero shift is a position within the measuring range. If it is beyond the new range, it is changed before the range
-/// (issue 22.6).
+/// If the zero shift is beyond the new measuring range, it must be changed before the range (issue 22.6).
 #[test]
 fn a_zero_shift_must_be_within_the_measuring_range() {
     let device = Image::from_parameters(Parameters {
@@ -55,8 +54,8 @@ fn a_zero_shift_must_be_within_the_measuring_range() {
     assert_eq!(sent(&device, &longer), [(Parameter::Steps, 1000), (Parameter::ZeroShift, 999)]);
 }
 
-/// A full set of 64 cams and 8 masks is written to an encoder that already has 60 of the cams. Only the differences are
-/// written, and each changed program uses one store cycle.
+/// Only the differences are written to an encoder that already has 60 of the 64 cams. Each changed program uses one
+/// EEPROM write cycle.
 #[test]
 fn a_full_set_writes_only_differences() {
     let device = image();
@@ -119,7 +118,7 @@ fn all_parameters_need_one_store() {
     assert_eq!(plan.ops[0].change_count(), 4);
 }
 
-/// A parameter is sent when its value is within its limits: steps ≤ 8192 · turns, and preset < steps (reference 3).
+/// Each parameter must be within its limits when it is sent: steps ≤ 8192 · turns, and preset < steps (reference 3).
 #[test]
 fn parameters_are_sent_in_a_legal_order() {
     use Parameter::{Preset, Steps, Turns};
@@ -195,7 +194,7 @@ fn invalid_values_are_refused_with_both_limits() {
     assert!(plan_edits(&device, &image_with(&device, &[("cam:2:5", ItemValue::Cam(cam_between(3599, 10)))])).is_ok());
 }
 
-/// Cams that are not written may be beyond the new range, unless they are active.
+/// Cams that are not written may lie beyond the new range, unless they are active.
 #[test]
 fn a_shorter_range_refuses_enabled_cams_beyond_it() {
     let device = image();

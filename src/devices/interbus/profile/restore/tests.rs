@@ -1,4 +1,4 @@
-//! What a restore writes, leaves and rejects; what a comparison names.
+//! Tests of what a restore writes, leaves unchanged and rejects, and of the items that a comparison names.
 
 use super::super::test_profiles::{cam_between, identity, image, image_with, logbook_note, profile, value};
 use super::super::{Base, ItemValue, Op};
@@ -58,7 +58,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
     assert_eq!(restore.mounting_written, [Item::Preset, Item::ZeroShift]);
 }
 
-/// The marks in the file count, not the usual ones of a mounting.
+/// The marks in the file decide which values depend on the mounting, even if they mark unusual items.
 #[test]
 fn only_marked_items_belong_to_the_mounting() {
     let mut of = profile(MINE);
@@ -72,7 +72,8 @@ fn only_marked_items_belong_to_the_mounting() {
     assert_eq!((operations(&restore), restore.mounting_left.len()), (vec!["preset: 7 → 500".to_owned()], 1));
 }
 
-/// A profile written by hand is of no particular encoder: it may be written to any, except the mounting.
+/// A handwritten profile without a serial number may be written to any encoder, except for the mounting-dependent
+/// values.
 #[test]
 fn a_profile_without_identity_suits_any_encoder() {
     let options = RestoreOptions::default();
@@ -89,8 +90,8 @@ fn a_kept_preset_must_be_within_the_range() {
     assert!(plan_restore(&profile(MINE), &other, RestoreOptions { with_mounting: true, ..options }).is_ok());
 }
 
-/// Issue 22.9: an encoder that reports its steps minus one, or that counts no turns, is of another type, which needs
-/// its own permission; another serial number needs the other one as well.
+/// An encoder that reports its steps minus one, or does not count turns, is a different type. Allowing another type
+/// does not allow another serial number (issue 22.9).
 #[test]
 fn another_type_needs_a_separate_permission() {
     let mut own = device(MINE, &[("preset", Number(7))]);
@@ -147,7 +148,7 @@ fn values_missing_on_the_encoder_are_listed() {
     assert_eq!(restore.missing[..3], ["shift", "cam-mask:3", "cam:3:0"]);
 }
 
-/// Written to an encoder with the programs of the tests.
+/// The profiles are written to an encoder with the test programs.
 #[test]
 fn ready_made_profiles_plan_the_expected_writes() {
     let read = |name: &str| {

@@ -1,4 +1,4 @@
-//! Recognition of table columns by their header in English or German. Without a header, their number determines them.
+//! Identifies table columns by their English or German headers or, without a header, by how many there are.
 
 use super::Column;
 use crate::analysis::capture::Delimiter;
@@ -8,7 +8,7 @@ use crate::devices::interbus::profile::Unit;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Columns {
     places: Vec<(Column, usize)>,
-    /// Whether the cam column may contain names as well as numbers.
+    /// Whether the cam column may contain names instead of numbers.
     pub(super) cam_or_name: bool,
 }
 
@@ -38,7 +38,7 @@ impl Columns {
         has_edge.then_some(Columns { places, cam_or_name })
     }
 
-    /// Returns the columns of a table without a header, depending on how many there are.
+    /// Returns the standard columns for a table without a header, given their number.
     pub(super) fn from_column_count(count: usize) -> Self {
         use Column::{Cam, Name, Program, Start, Stop};
         let order: &[Column] = match count {
@@ -56,8 +56,8 @@ impl Columns {
     }
 }
 
-/// Returns the delimiter that occurs on most lines, outside quotes. A comma must be more frequent than the other
-/// delimiters, since a comma may be a decimal separator.
+/// Returns the delimiter that occurs outside quotes on most lines. A tie is decided against the comma, which may be a
+/// decimal separator.
 pub(super) fn delimiter(text: &str) -> Delimiter {
     let has = |line: &str, sign: char| {
         let mut quoted = false;
@@ -84,7 +84,7 @@ pub(super) fn unit(cell: &str) -> Option<Unit> {
     })
 }
 
-/// Returns the first word of a cell in lower case.
+/// Returns the first word of a cell, in lower case.
 fn first_word(cell: &str) -> String {
     let cell = cell.trim().trim_start_matches('\u{FEFF}').to_lowercase();
     cell.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned()

@@ -1,4 +1,4 @@
-//! Output of the active cams as a table. Reading the table back activates the same cams.
+//! Writes the active cams as a table. Reading the table back activates the same cams.
 
 use std::fmt::Write;
 
@@ -6,8 +6,8 @@ use super::{CamNames, Scale, Unit};
 use crate::devices::interbus::profile::Image;
 use crate::devices::interbus::protocol::CamNumber;
 
-/// Formats the active cams of all known programs as a table in machine units. Semicolons separate the columns if a
-/// decimal comma is used, and commas otherwise. Reading the table back yields the same steps.
+/// Formats the active cams of all known programs as a table in machine units. The columns are separated by semicolons
+/// with a decimal comma, and by commas otherwise. Reading the table back yields the same steps.
 pub fn emit(image: &Image, names: &CamNames, scale: &Scale, decimal_comma: bool) -> String {
     let separator = if decimal_comma { ';' } else { ',' };
     let unit = match scale.unit() {

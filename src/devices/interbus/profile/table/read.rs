@@ -1,4 +1,4 @@
-//! Parsing a table into rows. The crate csv-core splits the lines, and each edge is rounded to the nearest step.
+//! Parses a table into rows. The csv-core crate splits the lines, and each edge is rounded to the nearest step.
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
@@ -10,9 +10,9 @@ use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::profile::{OutsideRangeError, RoundedPosition, Unit};
 use crate::devices::interbus::protocol::{CamNumber, Program, ProgramNumber};
 
-/// Maximum number of rows in a cam table. All eight programs need 64 rows.
+/// Maximum number of rows in a cam table. A table for all cams of all programs has only 64.
 const MAX_ROWS: usize = 1000;
-/// Maximum number of characters of an invalid cell that a message contains.
+/// Maximum number of characters that a message quotes from an invalid cell.
 const MAX_EXCERPT_CHARS: usize = 24;
 
 struct TableLine {
@@ -21,10 +21,10 @@ struct TableLine {
     cells: Vec<String>,
 }
 
-/// A row whose cam is not assigned yet, unless the row names one.
+/// A row that may not have been assigned a cam yet.
 struct DraftRow {
     line: u64,
-    /// Column that error messages refer to. This is the column of the cam or of the name, or else the first column.
+    /// Column to which error messages refer: the cam column, or else the name column, or else the first one.
     column: u64,
     program: ProgramNumber,
     cam: Option<CamNumber>,
@@ -63,7 +63,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
 }
 
 impl CamTable {
-    /// Determines the columns from the first line if it is a header.
+    /// Identifies the columns, from the first line if that is a header.
     fn columns(&mut self, options: &TableOptions, first: &TableLine, lines: &[TableLine]) -> Columns {
         let cells: Vec<&str> = first.cells.iter().map(String::as_str).collect();
         let count = lines.iter().map(|line| line.cells.len()).max().unwrap_or_default();
@@ -94,8 +94,7 @@ impl CamTable {
         columns
     }
 
-    /// Assigns a cam to each row. The cams that rows name are assigned first, and the other rows receive the remaining
-    /// cams.
+    /// Assigns a cam to each row. Cams named by a row are assigned first, and the remaining cams go to the other rows.
     fn assign_cams(&mut self, drafts: Vec<DraftRow>) {
         let mut taken: Vec<(ProgramNumber, CamNumber, u64)> = Vec::new();
         let mut rows: Vec<Option<CamNumber>> = vec![None; drafts.len()];
@@ -129,7 +128,7 @@ impl CamTable {
         self.rows = placed.collect();
     }
 
-    /// Adds a note for each name with several pulses, because every pulse takes up a cam.
+    /// Adds a note for each name shared by several pulses, because each pulse uses a separate cam.
     fn note_repeated_names(&mut self) {
         for program in ProgramNumber::all() {
             let mut tracks: Vec<(String, String, Vec<CamNumber>)> = Vec::new();
@@ -158,7 +157,7 @@ fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
     lines
 }
 
-/// Splits a line into cells, without their quotes and surrounding blanks.
+/// Splits a line into cells, and removes quotes and surrounding blanks.
 fn split_cells(reader: &mut Reader, line: &str) -> Vec<String> {
     // Since quotes are removed, the output is not longer than the input and has no more ends than characters.
     let (mut out, mut ends) = (vec![0; line.len() + 1], vec![0; line.len() + 2]);
@@ -227,7 +226,7 @@ fn parse_draft(
     Ok(DraftRow { line: line.number, column, program, cam, name, start, stop })
 }
 
-/// Returns both edges in steps. If a pulse spans the whole range, its stop is the step before its start.
+/// Returns both edges in steps. If a pulse spans the whole range, it stops one step before its start.
 fn parse_edges(
     options: &TableOptions,
     start: f64,
@@ -249,7 +248,7 @@ fn parse_edges(
     Ok((edge(start, first), edge(stop, last)))
 }
 
-/// Parses a number, which may be followed by a unit. A decimal comma is only accepted if `comma` is set.
+/// Parses a number, optionally followed by a unit. A decimal comma is accepted only if `comma` is set.
 fn parse_number(text: &str, comma: bool) -> Option<f64> {
     let text = text.trim();
     let text =
@@ -261,7 +260,7 @@ fn parse_number(text: &str, comma: bool) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| is_plain && value.is_finite())
 }
 
-/// Parses a whole number, which may be preceded by one of the given words.
+/// Parses a whole number, optionally preceded by one of the given words.
 fn parse_whole(text: &str, words: &[&str]) -> Option<u64> {
     let text = text.trim().to_lowercase();
     let bare = words.iter().find_map(|word| text.strip_prefix(word)).map_or(text.as_str(), str::trim);
@@ -278,5 +277,5 @@ fn text_excerpt(text: &str) -> String {
     excerpt
 }
 
-/// Checks that a table has room for every cam.
+/// A table has room for every cam of every program.
 const _: () = assert!(MAX_ROWS >= Program::CAMS * ProgramNumber::COUNT);

@@ -1,4 +1,4 @@
-//! Tests of tables from spreadsheets and drawings, and of errors in them.
+//! Tests with tables from spreadsheets and drawings, and with errors in them.
 
 use super::{CamTable, Column, TableNote, TableOptions, TableProblem, TableProblemKind, emit_table};
 use crate::analysis::capture::Delimiter;

@@ -21,7 +21,7 @@ fn parse(text: &str) -> Result<InterbusProfile, ProfileError> {
     ProfileDocument::parse(text, InterbusProfile::FORMATS)?.body.into_profile()
 }
 
-/// Minimal profile as written by a user.
+/// A minimal profile as a user might write it.
 const SHORT: &str = r#"(
     schema: 1,
     device: "interbus",
@@ -114,10 +114,10 @@ fn parse_document(text: &str) -> ProfileDocument {
     ProfileDocument::parse(text, InterbusProfile::FORMATS).unwrap()
 }
 
-/// Profile as written by a user, with comments.
+/// A profile with comments as a user might write it.
 const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/interbus.ron"));
 
-/// Changing a value edits the text only at that value (issue 22.26).
+/// When a value changes, the rest of the text stays unchanged (issue 22.26).
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut InterbusProfile| {
@@ -127,7 +127,7 @@ fn a_change_edits_only_its_value() {
     assert_edit_in_place(COMMENTED, edit, "start: 10,", "start: 15,");
 }
 
-/// Adding or removing an entry changes only its line (issue 22.26).
+/// When an entry is added or removed, no other line changes (issue 22.26).
 #[test]
 fn adding_or_removing_an_entry_changes_only_its_line() {
     let (_, carried) = edit_profile(COMMENTED, |note, own: &mut InterbusProfile| {
@@ -145,7 +145,7 @@ fn adding_or_removing_an_entry_changes_only_its_line() {
     assert_eq!(carried.lost, ["knife"]);
 }
 
-/// In a ready-made profile, the comment about a value changes together with the value (issue 22.26).
+/// In a ready-made profile, the comment about a value is updated with the value (issue 22.26).
 #[test]
 fn generated_comments_follow_their_values() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/interbus/packaging-machine.ron"));
@@ -157,7 +157,7 @@ fn generated_comments_follow_their_values() {
     assert!(carried.text.contains("mask: 0x03, // these cams work: 0, 1\n"));
 }
 
-/// The changes that two users have made to a common profile are listed by entry (issue 22.25).
+/// When two users have changed a common profile, the changes of both are listed by entry (issue 22.25).
 #[test]
 fn divergent_changes_are_listed_by_entry() {
     let base = parse_document(COMMENTED);

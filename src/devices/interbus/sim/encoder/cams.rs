@@ -1,4 +1,4 @@
-//! Cam words that change the selected program (reference 5).
+//! Words that change the selected cam program (reference 5).
 
 use super::{Activity, Encoder, INVALID, InWordContent, WordFault};
 use crate::devices::interbus::protocol::{CamNumber, Gear, Program, StartupMode, Value};
@@ -22,8 +22,8 @@ impl Setting<'_> {
         Ok(())
     }
 
-    /// Sets the mask that selects the active cams (reference 6.9). A mask with more than 8 bits is rejected as wrong
-    /// data (`U`: the manual does not document this case).
+    /// Sets the mask of active cams (reference 6.9). A mask of more than 8 bits is rejected as wrong data (`U`: not
+    /// documented).
     pub(super) fn set_active_cams(&mut self, mask: u16) -> Result<(), WordFault> {
         self.0.mask = u8::try_from(mask).map_err(|_| WordFault::WrongData)?;
         Ok(())
@@ -47,7 +47,7 @@ impl Encoder {
         self.complete_setting(now, taken);
     }
 
-    /// Ends a read-out. If values are set but not stored, the position and outputs remain invalid.
+    /// Ends a read-out. If values were set but not stored, the position and outputs remain invalid.
     pub(super) fn end_read_out(&mut self) {
         match self.unstored {
             None => self.enter_activity(Activity::Running, InWordContent::Live),

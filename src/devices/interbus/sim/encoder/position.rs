@@ -1,5 +1,5 @@
-//! The position that an encoder derives from its shaft, and the other IN words of a running encoder (reference 1, 3 and
-//! 5).
+//! The position that an encoder derives from its shaft, and the other IN words of a running encoder (references 1, 3
+//! and 5).
 
 use super::{Encoder, LOST};
 use crate::devices::interbus::protocol::{CamOutput, Class, SingleWord, StartupMode, Value};
@@ -7,8 +7,7 @@ use crate::devices::interbus::sim::memory::DISC_POSITIONS;
 use crate::units::Moment;
 
 impl Encoder {
-    /// Sets the position to the preset. After a change of the gear, the preset may be beyond the range, in which case
-    /// it wraps.
+    /// Sets the position to the preset. A preset that is beyond the range after a change of the gear wraps.
     pub(super) fn trigger_preset(&mut self, now: Moment) {
         let gear = self.memory.gear;
         let (steps, range) = (u64::from(gear.total_steps()), u64::from(gear.total_disc_steps()));

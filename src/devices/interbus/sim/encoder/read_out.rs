@@ -1,4 +1,4 @@
-//! Read-outs (reference 3 and 5).
+//! Replies to read-out requests (references 3 and 5).
 
 use super::{Activity, Encoder, InWordContent};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Command, ReadOutNumber, StartupMode, Value};
@@ -8,8 +8,7 @@ const VALUE: u32 = 0xA000_0000;
 const UNKNOWN: u32 = 0xA400_0000;
 /// Flag of an encoder that counts turns.
 const MULTITURN: u32 = 2;
-/// Upper part of the value of a chip register, an arbitrary choice of the simulation. The lower part is the number of
-/// the register.
+/// Upper part of a simulated chip register's value, chosen arbitrarily. The lower part is the register number.
 const CHIP: u32 = 0x40;
 
 impl Encoder {
@@ -19,7 +18,7 @@ impl Encoder {
         self.show(value);
     }
 
-    /// Handles a request that reads the selected program (2020xxxxh).
+    /// Handles a request that reads from the selected cam program (2020xxxxh).
     pub(super) fn read_cams(&mut self, command: Command) {
         let StartupMode::Cams(number) = self.mode else { return };
         let program = self.memory.program(number);
@@ -35,7 +34,7 @@ impl Encoder {
         self.show(value);
     }
 
-    /// Sends the value of a read-out. `None` sends the error of a cam, register or number that does not exist.
+    /// Sends the value of a read-out, or for `None` the error for a cam, register or number that does not exist.
     pub(super) fn show(&mut self, value: Option<u32>) {
         let word = value.map_or(UNKNOWN, |value| VALUE | Value::from_word(value).get());
         self.enter_activity(Activity::ReadingOut, InWordContent::Word(word));

@@ -7,7 +7,7 @@ use super::*;
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::sim::ByteDevice;
 
-/// Generates words that are valid more often than random ones.
+/// Generates words that are more often valid than purely random ones.
 fn word() -> impl Strategy<Value = u32> {
     let of_parameters = (0_u32..16, 0_u32..0x3000).prop_map(|(code, data)| code << 25 | data);
     let of_cams = (0x20_u32..0x70, any::<u32>()).prop_map(|(code, data)| code << 24 | data & 0xFF_FFFF);
@@ -46,7 +46,7 @@ proptest! {
         }
     }
 
-    /// Each request in a frame receives one reply with the same number, unit and function.
+    /// A complete request receives exactly one reply, with the same transaction number, unit and function.
     #[test]
     fn every_request_gets_one_matching_reply(number in any::<u16>(), unit in any::<u8>(), pdu in prop::collection::vec(any::<u8>(), 1..60), function in 0_u8..20) {
         let mut host = Host::with("encoders=3");

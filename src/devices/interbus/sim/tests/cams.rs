@@ -1,9 +1,9 @@
-//! Tests of cam programs (reference 5 and 7).
+//! Tests of cam programs (references 5 and 7).
 
 use super::*;
 use crate::devices::interbus::protocol::{Cam, StartupMode, Value};
 
-/// Settings with which a step has two disc positions.
+/// Settings with two disc steps per position step.
 const SETTINGS: &str = "steps=4096&revolutions=1&position=200";
 
 fn at(position: i32) -> i32 {
@@ -46,7 +46,8 @@ fn cams_are_on_as_in_the_reference() {
     assert_eq!(outputs(&mut master, 5), 0);
 }
 
-/// The position is 1ABCDEFh with cam 5 on, as in the reference. With the largest gear, a step is one disc position.
+/// As in the reference, the position is 1ABCDEFh with cam 5 on. With the largest gear, a position step is about one
+/// disc step.
 #[test]
 fn the_shift_selects_the_position_bits_of_the_window() {
     let cases = [(0, 0x01CD_EF20), (4, 0x00BC_DE20), (8, 0x01AB_CD20), (25, 0x0000_0020)];

@@ -13,7 +13,7 @@ impl Host {
         Host { gateway: Gateway::new(&config(&format!("stale=0&busy=0&{query}"))), now: Moment::START }
     }
 
-    /// Creates another client of the same gateway.
+    /// Connects another client to the same gateway.
     fn second_client(&self) -> Host {
         Host { gateway: self.gateway.new_connection(), now: self.now }
     }
@@ -70,7 +70,7 @@ fn word_order_registers_and_unit_are_configurable() {
     ]);
 }
 
-/// Function 6 writes half a word, which the encoder processes before the other half is written.
+/// The encoder processes half a word, written by function 6, before the other half is written.
 #[test]
 fn a_single_register_is_half_a_word() {
     let mut host = Host::with("position=0");
@@ -188,7 +188,7 @@ fn configured_faults_are_injected() {
     assert_ne!(some(lossy), some("position=0&fault=drop:0.5&seed=8"));
 }
 
-/// A request that is not executed has no effect. After the fault is removed, the encoder replies again.
+/// A request that the gateway rejects has no effect on the encoder. A request whose reply is lost does.
 #[test]
 fn a_gateway_exception_keeps_the_word_from_the_encoder() {
     let mut host = Host::with("exception=1");

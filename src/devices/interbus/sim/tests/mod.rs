@@ -1,5 +1,5 @@
-//! Tests of the virtual encoder from the perspective of a master, in virtual time. The expected words come from the
-//! reference and not from the code under test.
+//! Tests of the virtual encoder as seen by a master, in virtual time. The expected words come from the reference and
+//! not from the code under test.
 
 mod any;
 mod cams;
@@ -15,14 +15,15 @@ use super::*;
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::units::Moment;
 
-/// Master that writes OUT words and reads IN words, without a bus.
+/// A master that writes OUT words and reads IN words directly, without a bus.
 struct Master {
     encoder: Encoder,
     now: Moment,
 }
 
 impl Master {
-    /// Creates a master from the query of a `sim:` link, without stale and busy words unless the query configures them.
+    /// Creates a master from the query of a `sim:` link. Unless the query configures them, there are no stale or busy
+    /// words.
     fn with(query: &str) -> Self {
         let config = config(&format!("stale=0&busy=0&{query}"));
         Master { encoder: Encoder::new(&config, 0), now: Moment::START }
@@ -36,7 +37,7 @@ impl Master {
         self.encoder.read(self.now).unwrap()
     }
 
-    /// Writes words and compares the IN word after each of them.
+    /// Writes words and checks the IN word after each of them.
     #[track_caller]
     fn exchange(&mut self, words: &[(u32, u32)]) {
         for (out, expected) in words {
@@ -64,7 +65,7 @@ impl Master {
         self.encoder.set_shaft_position(self.now, place);
     }
 
-    /// Returns the position at a disc position.
+    /// Returns the IN word at a disc position.
     fn position(&mut self, place: i32) -> u32 {
         self.set_shaft_position(place);
         self.read()

@@ -1,4 +1,4 @@
-//! Tests of the handshake, the gear, preset, zero shift and speed (reference 3, 4 and 7).
+//! Tests of the handshake, gear, preset, zero shift and speed (references 3, 4 and 7).
 
 use super::*;
 

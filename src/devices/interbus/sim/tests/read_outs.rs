@@ -1,4 +1,4 @@
-//! Tests of read-outs (reference 3 and 7).
+//! Tests of read-outs (references 3 and 7).
 
 use super::*;
 

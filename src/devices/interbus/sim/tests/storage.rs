@@ -1,4 +1,4 @@
-//! Tests of the EEPROM: stored values, loss of power, and wear (reference 3, `U`).
+//! Tests of the EEPROM: stored values, power loss and wear (reference 3, `U`).
 
 use super::*;
 use crate::devices::interbus::protocol::StartupMode;
@@ -14,7 +14,7 @@ fn unstored_values_are_lost_without_power() {
     assert_eq!((master.read(), master.encoder.store_count()), (90, 4));
 }
 
-/// The gateway sends the same word as before. After power-on, the encoder processes it as a new word.
+/// The gateway still sends the same word after the power loss, and the encoder processes it as a new one.
 #[test]
 fn the_masters_word_is_processed_when_power_returns() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");

@@ -1,9 +1,9 @@
-//! Tests of the golden vectors of reference 7 at the gateway: every OUT word is written as in the reference, and the IN
-//! word is its exact echo or the value in the reference.
+//! Tests with the golden vectors of reference 7 through the gateway. Each OUT word is written as printed, and the IN
+//! word must be its exact echo or the printed value.
 
 use super::gateway::Host;
 
-/// Writes an OUT word and reads the IN word, both as eight digits.
+/// Writes an OUT word and returns the IN word, both as eight hexadecimal digits.
 fn exchange(host: &mut Host, out: &str) -> String {
     let [high, low] = [&out[..4], &out[4..]].map(|half| format!("{} {}", &half[..2], &half[2..]));
     assert_eq!(

@@ -8,11 +8,11 @@ use crate::devices::interbus::profile::{Scale, Unit};
 pub struct Tick {
     pub position: f64,
     pub value: f64,
-    /// Number of decimals in the label of the grid line.
+    /// Number of decimals in its label.
     pub decimals: usize,
 }
 
-/// Intervals of grid lines in degrees. Each of them divides a turn.
+/// Possible intervals between grid lines in degrees. Each divides a full turn.
 const DEGREES: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
 /// Maximum number of grid lines. No chart has space for more.
 const MAX_TICKS: usize = 400;
@@ -45,8 +45,7 @@ pub fn grid_ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) ->
     (0..MAX_TICKS).map(at).take_while(|tick| tick.position <= to + 1e-9).collect()
 }
 
-/// Returns the next grid line after a position, or the previous one before it, in steps. The result may be beyond the
-/// range.
+/// Returns the next grid line after a position, or the last one before it, in steps. It may be beyond the range.
 pub fn next_grid_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64 {
     let around = grid_lines_around(scale, apart, f64::from(position), 2);
     let position = i64::from(position);
@@ -58,7 +57,8 @@ pub fn next_grid_line(scale: &Scale, apart: f64, position: u32, forward: bool) -
     }
 }
 
-/// Returns the grid lines around a position, with `each` lines on either side. They are whole steps in ascending order.
+/// Returns the grid lines around a position in ascending order, with at least `each` lines on either side. They are
+/// rounded to whole steps.
 pub(super) fn grid_lines_around(scale: &Scale, apart: f64, position: f64, each: i32) -> Vec<f64> {
     let steps = scale.steps_per_unit() * round_interval(scale.unit(), apart / scale.steps_per_unit());
     let zero = f64::from(scale.zero());
@@ -66,7 +66,7 @@ pub(super) fn grid_lines_around(scale: &Scale, apart: f64, position: f64, each: 
     (-each..=each + 1).map(|line| (zero + (own + f64::from(line)) * steps).round()).collect()
 }
 
-/// Returns the smallest round number in a unit that is not below `at_least`.
+/// Returns the smallest round number, for the given unit, that is not below `at_least`.
 fn round_interval(unit: Unit, at_least: f64) -> f64 {
     match unit {
         Unit::Steps => round_up_1_2_5(at_least).max(1.0),

@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, Parameter, P
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::staged::{EditError, EditFinding};
 
-/// Returns the label of a cam, which consists of its number and its name, if it has a name.
+/// Returns the label of a cam: its number, and its name if it has one.
 pub fn cam(lane: &Lane) -> Text {
     match &lane.name {
         Some(name) => TEXTS.text("cams.named").with("cam", lane.cam.get()).with("name", name),
@@ -28,7 +28,7 @@ pub fn edge_name(lane: &Lane, edge: Edge) -> Text {
         .with_text("cam", cam_name(lane.cam))
 }
 
-/// Formats a position in steps. If the scale has another unit, the position is also given in this unit.
+/// Formats a position in steps, followed by the position in the unit of the scale if that is different.
 pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
     match scale.unit() {
         Unit::Steps if scale.zero() == 0 => TEXTS.text("cams.steps").with("step", step),
@@ -52,7 +52,7 @@ pub fn range_text(cam: Cam, scale: &Scale, range: u32) -> Text {
     text.with("count", (i64::from(stop) - i64::from(start)).rem_euclid(whole) + 1)
 }
 
-/// Describes the position of a cam and whether it is active.
+/// Describes where a cam is on and whether it is active.
 pub fn lane_text(own: &Lane, scale: &Scale, range: u32) -> Text {
     let Some(edges) = own.edges else { return TEXTS.text("cams.no_edges") };
     let id = if own.on { "cams.works" } else { "cams.works_not" };
@@ -65,7 +65,7 @@ pub fn lane_problems(chart: &Chart, lane: &Lane) -> Vec<Text> {
     beyond.into_iter().chain(clash).collect()
 }
 
-/// Describes whether an output is on and whether the encoder reports another state.
+/// Describes whether an output is on, and whether the encoder reports a different state.
 pub fn output_text(lamp: OutputState) -> Text {
     let state = |on| TEXTS.text(if on { "cams.lamp_on" } else { "cams.lamp_off" });
     match (lamp.own, lamp.simulated) {
@@ -78,7 +78,8 @@ pub fn output_text(lamp: OutputState) -> Text {
     }
 }
 
-/// Returns the messages of the given marks. Cams of one program share a message if they are beyond the measuring range.
+/// Returns the messages for the given findings. Cams of one program that are beyond the measuring range share a
+/// message.
 pub fn finding_texts(marks: &[EditFinding]) -> Vec<Text> {
     let beyond_in = |own: &EditFinding| matches!(own, EditFinding::Beyond { .. }).then(|| own.program()).flatten();
     let mut named = Vec::new();
@@ -123,7 +124,7 @@ fn finding_text(mark: &EditFinding) -> Text {
     }
 }
 
-/// Explains why an edit was rejected, and gives a remedy.
+/// Explains why an edit was rejected, and what to do about it.
 pub fn edit_error_text(error: &EditError) -> Text {
     let program = |id, program: ProgramNumber| TEXTS.text(id).with("program", program.get());
     match error {

@@ -1,5 +1,5 @@
-//! Changes of a cam while it or one of its edges is dragged. A part that is dragged beyond one end of the measuring
-//! range reappears at the other end.
+//! Moves a cam or one of its edges during a drag. What is dragged beyond one end of the measuring range reappears at
+//! the other end.
 
 use super::edge_value;
 use crate::devices::interbus::profile::Edge;
@@ -21,8 +21,8 @@ impl DragTarget {
     }
 }
 
-/// Returns the cam with one edge moved by `by` steps. The cam covers at least one position and at most all positions.
-/// Edges beyond the measuring range are moved into the range.
+/// Returns the cam with one edge moved by `by` steps. The cam covers at least one position, and at most all of them. An
+/// edge beyond the measuring range is moved into it.
 pub fn apply_drag(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     let (start, stop) = (i64::from(cam.start.get()), i64::from(cam.stop.get()));
@@ -38,7 +38,7 @@ pub fn apply_drag(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     with_edge_moved(cam, edge, i64::from(edge_value(cam, edge).get()) + by, whole)
 }
 
-/// Returns the cam with both edges moved by `by` steps. A cam with an edge beyond the range is not moved.
+/// Returns the cam with both edges moved by `by` steps. A cam with an edge beyond the range is left unchanged.
 pub fn move_cam(cam: Cam, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     if i64::from(cam.start.get()) >= whole || i64::from(cam.stop.get()) >= whole {
@@ -49,7 +49,7 @@ pub fn move_cam(cam: Cam, by: i64, range: u32) -> Cam {
     with_edge_moved(start, Edge::Stop, i64::from(cam.stop.get()) + by, whole)
 }
 
-/// Returns the cam between two positions of the pointer, in either order. The positions may be beyond the range.
+/// Returns the cam between two pointer positions, in either order. They may be beyond the range.
 pub fn cam_between(from: i64, to: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     let (first, last) = (from.min(to), from.max(to));

@@ -1,13 +1,13 @@
-//! Snapping a dragged edge to other cams and to grid lines.
+//! Snaps a dragged edge to other cams and to grid lines.
 
 use super::{Chart, DragTarget, edge_value, grid};
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber};
 
-/// Targets to which an edge snaps, and the maximum distance for this.
+/// What a dragged edge snaps to, and from how far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SnapSettings {
-    /// Maximum distance of a target in steps.
+    /// Maximum distance to a target in steps.
     pub reach: f64,
     /// Minimum distance between grid lines in steps, or `None` to ignore grid lines.
     pub apart: Option<f64>,
@@ -18,20 +18,20 @@ pub struct SnapSettings {
 impl SnapSettings {
     pub const DISABLED: SnapSettings = SnapSettings { reach: 0.0, apart: None, edges: false };
 
-    /// Creates settings with all targets. An edge snaps within six points, and grid lines are at least ten points
+    /// Creates settings in which an edge snaps to everything within six points. Grid lines are at least ten points
     /// apart.
     pub const fn enabled(steps_in_point: f64) -> Self {
         SnapSettings { reach: steps_in_point * SNAP_DISTANCE, apart: Some(steps_in_point * GRID), edges: true }
     }
 }
 
-/// Maximum distance of a target in points.
+/// Maximum distance to a target in points.
 const SNAP_DISTANCE: f64 = 6.0;
 /// Minimum distance between grid lines in points.
 const GRID: f64 = 10.0;
 
-/// Returns the number of steps by which a cam is moved instead of `by`. If a target is near, an edge of the cam snaps
-/// to the target. Otherwise, `by` is rounded to whole steps.
+/// Returns how far to move a cam so that its edge snaps to the nearest target. If no target is near, this is `by`
+/// rounded to whole steps.
 pub fn snap_distance(chart: &Chart, scale: &Scale, hold: DragTarget, cam: Cam, by: f64, snap: &SnapSettings) -> i64 {
     let whole = by.round() as i64;
     let edges: &[Edge] = match hold {
@@ -52,7 +52,7 @@ pub fn snap_distance(chart: &Chart, scale: &Scale, hold: DragTarget, cam: Cam, b
     best.map_or(whole, |(_, by)| by)
 }
 
-/// Returns the possible targets of an edge. Of equally near targets, the first one is used.
+/// Returns the possible targets for an edge. The first of several equally near ones is used.
 fn snap_targets(chart: &Chart, scale: &Scale, own: CamNumber, edge: Edge, at: f64, snap: &SnapSettings) -> Vec<f64> {
     let range = f64::from(chart.range.max(1));
     // The targets are in the turn that the pointer has reached.

@@ -10,7 +10,7 @@ use crate::devices::interbus::state::TEXTS;
 /// Maximum number of displayed decimals.
 const MAX_DECIMALS: usize = 6;
 
-/// Describes the delimiter of a table and whether its columns have names.
+/// Describes how a table was read: its delimiter, and whether its columns have names.
 pub fn layout_text(table: &CamTable) -> Text {
     let delimiter = match table.delimiter {
         Some(Delimiter::Tab) => "camtable.tab",
@@ -21,7 +21,7 @@ pub fn layout_text(table: &CamTable) -> Text {
     TEXTS.text(id).with("count", table.rows.len()).with_text("delimiter", TEXTS.text(delimiter))
 }
 
-/// Describes a table problem and its location.
+/// Describes a problem in a table and where it is.
 pub fn problem_text(problem: &TableProblem) -> Text {
     let text = TEXTS.text("camtable.problem").with("line", problem.line).with("column", problem.column);
     text.with_text("what", problem_kind_text(&problem.kind))
@@ -72,7 +72,7 @@ pub fn rounding_text(row: &TableRow, scale: &Scale) -> Text {
     text.with_text("start", edge_text(row.start, scale)).with_text("stop", edge_text(row.stop, scale))
 }
 
-/// Describes the requested position of an edge, its rounded position and the difference.
+/// Describes the given position of an edge, its rounded position and the difference.
 pub fn edge_text(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimal_places() + 1;
     let id = if edge.is_rounded() { "camtable.edge_off" } else { "camtable.edge" };
@@ -135,7 +135,8 @@ mod tests {
         assert!(german.contains("350,000° → Schritt 772 (0,0195° weniger)"), "{german}");
     }
 
-    /// The message about rounding repeats the value as typed: 10.05 steps are rounded to step 10, which is 0.05 lower.
+    /// The message about rounding repeats the value as typed. For example, 10.05 is rounded to step 10, which is 0.05
+    /// lower.
     #[test]
     fn rounding_shows_the_value_as_typed() {
         let scale = Scale::default();

@@ -1,4 +1,4 @@
-//! Tests of charts: active positions, snap targets, results of drags.
+//! Tests of charts: where cams are on, snap targets, and the results of drags.
 
 mod session;
 
@@ -27,7 +27,7 @@ fn program() -> ProgramNumber {
     ProgramNumber::new(1).unwrap()
 }
 
-/// Returns a profile of 1000 steps with the given cams in program 1.
+/// Returns the edits of a profile with 1000 steps and the given cams in program 1.
 fn staged(cams: &[(u8, u32, u32)]) -> StagedEdits {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };

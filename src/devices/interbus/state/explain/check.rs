@@ -1,4 +1,4 @@
-//! Texts of the device check.
+//! Messages of the device check.
 
 use super::{encoder_error_text, error_word_text, format_word, implausible_value_text, startup_mode_text};
 use crate::app::Text;

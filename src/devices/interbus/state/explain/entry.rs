@@ -1,4 +1,4 @@
-//! Messages about invalid entries of a profile.
+//! Messages about invalid profile entries.
 
 use crate::app::Text;
 use crate::devices::interbus::profile::{EntryError, ItemError};

@@ -1,4 +1,4 @@
-//! Messages about requests to a gateway, rejections and damaged replies.
+//! Messages about gateway requests, rejections and damaged replies.
 
 use crate::app::Text;
 use crate::devices::interbus::procedures::{Exception, ReplyDamage, RequestedItem};

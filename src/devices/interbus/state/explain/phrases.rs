@@ -1,4 +1,4 @@
-//! Tests of the texts for errors of the lower layers, in both languages.
+//! Tests that errors from profiles and gateways are explained in both languages.
 
 use crate::app::explain::{assert_in_both_languages, profile_error_text};
 use crate::app::{DeviceType, KindRegistry};

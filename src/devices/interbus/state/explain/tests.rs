@@ -100,7 +100,7 @@ fn encoder_errors_name_a_remedy() {
     }
 }
 
-/// The codes are from *Modbus application protocol* 1.1b3, chapter 7.
+/// The exception codes are from *Modbus application protocol* 1.1b3, chapter 7.
 #[test]
 fn gateway_exceptions_are_explained_with_their_code() {
     let requested = RequestedItem::Write { register: 2048, word: 0x4000_0000 };
@@ -213,7 +213,8 @@ fn completing_a_write_is_advised_after_the_return_to_operation() {
     }
 }
 
-/// If the number of earlier stores is unknown, the message names the option that permits the write (issue 22.4).
+/// If the number of earlier EEPROM write cycles is unknown, the message names the option that permits the write (issue
+/// 22.4).
 #[test]
 fn a_write_with_unknown_wear_names_the_override() {
     let refused = job_error_texts(&JobError::NotStarted(NotStarted::WearUnknown { cost: 2 }));

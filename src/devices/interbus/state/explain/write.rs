@@ -1,4 +1,4 @@
-//! Messages about the plan of a write, its operations, its result, and the state in which it leaves the encoder.
+//! Messages about a planned write: the plan, its operations, its result, and the state in which it leaves the encoder.
 
 use std::path::Path;
 
@@ -163,8 +163,7 @@ pub fn written_text(written: &WrittenChanges) -> Text {
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// Describes an interrupted write with its progress, its cause, the state of the encoder and the location of the
-/// backup.
+/// Describes an interrupted write: its progress, its cause, the state of the encoder and where the backup is.
 pub(super) fn interruption_text(
     interrupted: &InterruptedWrite,
     backup: &Path,

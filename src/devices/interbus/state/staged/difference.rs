@@ -1,4 +1,4 @@
-//! Differences between the edited values and the encoder or profile.
+//! Compares the edited values with the encoder or profile.
 
 use super::{EditedValues, StagedEdits};
 use crate::devices::interbus::profile::Edge;
@@ -9,7 +9,7 @@ pub enum ValueId {
     Parameter(Parameter),
     Shift,
     Edge(ProgramNumber, CamNumber, Edge),
-    /// Whether a cam is active, as 1 or 0.
+    /// Whether a cam is active: 1 or 0.
     On(ProgramNumber, CamNumber),
 }
 
@@ -18,7 +18,7 @@ pub struct ValueDifference {
     pub place: ValueId,
     /// Base value, or `None` if the profile does not contain it.
     pub from: Option<u32>,
-    /// Edited value, or `None` if it is removed from the profile.
+    /// Edited value, or `None` if the edit removes it from the profile.
     pub to: Option<u32>,
 }
 
@@ -27,7 +27,7 @@ const SETTINGS: [Parameter; 5] =
     [Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift];
 
 impl ValueId {
-    /// Returns all values. The parameters come first, followed by the window shift and the cams of each program.
+    /// Returns all values: the parameters, then the window shift, then the cams of each program.
     pub fn all() -> impl Iterator<Item = ValueId> {
         let cams = ProgramNumber::all().flat_map(|program| CamNumber::all().map(move |cam| (program, cam)));
         let cams = cams.flat_map(|(program, cam)| {
@@ -57,20 +57,20 @@ impl EditedValues {
 }
 
 impl StagedEdits {
-    /// Returns the difference of a value, or `None` if it was not edited.
+    /// Returns how an edited value differs from its base, or `None` if it was not edited.
     pub fn difference_of(&self, place: ValueId) -> Option<ValueDifference> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.value(place), wanted.value(place));
         (from != to).then_some(ValueDifference { place, from, to })
     }
 
-    /// Returns the differences of all edited values, except names.
+    /// Returns the differences of all edited values except names.
     pub fn differences(&self) -> Vec<ValueDifference> {
         ValueId::all().filter_map(|place| self.difference_of(place)).collect()
     }
 
-    /// Returns whether a cam was edited, apart from its name. An inactive cam that is added to a profile is not
-    /// considered edited.
+    /// Returns whether a cam was edited, not counting its name. Adding an inactive cam to a profile does not count as
+    /// an edit.
     pub fn is_edited(&self, program: ProgramNumber, cam: CamNumber) -> bool {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
         base.cam(program, cam) != wanted.cam(program, cam) || base.is_on(program, cam) != wanted.is_on(program, cam)

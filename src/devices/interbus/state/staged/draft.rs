@@ -1,4 +1,4 @@
-//! Conversion of edits to drafts and back.
+//! Converts edits to saved drafts and back.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,12 +6,12 @@ use super::{BaseSource, EditedValues, StagedEdits, edit};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, ProgramNumber, Value, WindowShift};
 
-/// An edit as it is stored. It contains only the resulting value, with numbers as in the manual.
+/// An edit as saved in a draft. It contains only the resulting value, with numbers as in the manual.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SavedEdit {
     /// A gear, given by its steps and turns.
     Gear(u32, u32),
-    /// Direction, 3 clockwise or 4 counterclockwise.
+    /// Direction: 3 clockwise, 4 counterclockwise.
     Direction(u32),
     /// Preset in steps.
     Preset(u32),
@@ -30,7 +30,7 @@ pub enum SavedEdit {
 }
 
 impl StagedEdits {
-    /// Returns the edits for a draft, including those that wait until their program is read.
+    /// Returns the edits for a draft, including those whose program has not been read yet.
     pub fn draft_edits(&self) -> Vec<SavedEdit> {
         let mut kept = Vec::new();
         if let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) {
@@ -44,7 +44,7 @@ impl StagedEdits {
     }
 
     /// Applies the edits of a draft as a single undo step. Edits of a program that has not been read are kept until it
-    /// is read. Invalid edits are dropped.
+    /// is. Invalid edits are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
             self.waiting.extend(draft);
@@ -111,7 +111,7 @@ fn collect_program_edits(
 }
 
 impl SavedEdit {
-    /// Applies the edit unless one of its numbers is invalid. Values beyond the measuring range are not adjusted.
+    /// Applies the edit if its numbers are valid. Values beyond the measuring range are not adjusted.
     fn apply_to(self, wanted: &mut EditedValues, ground: BaseSource) {
         let parameters = &mut wanted.image.parameters;
         match self {
@@ -176,7 +176,7 @@ impl SavedEdit {
         }
     }
 
-    /// Returns whether the edit concerns a value that was not read. Names do not have to be read.
+    /// Returns whether the edit changes a value that has not been read. Names need not be read.
     fn changes_unread_value(&self, wanted: &EditedValues, ground: BaseSource) -> bool {
         ground == BaseSource::Encoder
             && match self {

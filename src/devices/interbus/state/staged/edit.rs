@@ -1,4 +1,4 @@
-//! Edits, their effect on the edited values, and the reasons why an edit is rejected.
+//! Edits, how they change the values, and why an edit may be rejected.
 
 use super::{BaseSource, EditedValues};
 use crate::devices::interbus::profile::{Direction, Edge, ImportedProgram, Item, ItemValue, LONGEST_NAME};
@@ -6,13 +6,13 @@ use crate::devices::interbus::protocol::{
     Cam, CamNumber, Gear, GearError, OutOfRange, Parameter, Program, ProgramNumber, Value, WindowShift,
 };
 
-/// An edit of the values. Each edit is one undo step, even if it changes several values.
+/// A change to the values. Each edit is one undo step, even if it changes several of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Edit {
     Steps(u32),
     /// Sets the number of turns after which the position repeats.
     Revolutions(u32),
-    /// Sets steps and turns together, since a change of only one of them may not be valid.
+    /// Sets steps and turns together, because changing only one of them may give an invalid combination.
     Gear {
         steps: u32,
         revolutions: u32,
@@ -34,9 +34,9 @@ pub enum Edit {
         program: ProgramNumber,
         cam: CamNumber,
         start: u32,
-        /// Last position of the cam. It is before the start if the cam wraps around the end of the measuring range.
+        /// Last position of the cam. If it is before the start, the cam wraps around the end of the measuring range.
         stop: u32,
-        /// Whether an inactive cam becomes active.
+        /// Whether to activate the cam if it is inactive.
         on: bool,
     },
     Switch {
@@ -51,31 +51,31 @@ pub enum Edit {
         /// Mask with bit i for cam i.
         mask: u8,
     },
-    /// Sets the name of a cam. An empty name removes it.
+    /// Sets the name of a cam, or removes it if it is empty.
     Name {
         program: ProgramNumber,
         cam: CamNumber,
         /// Name with at most [`LONGEST_NAME`] characters.
         name: String,
     },
-    /// Sets the name of a program. An empty name removes it.
+    /// Sets the name of a program, or removes it if it is empty.
     ProgramName {
         program: ProgramNumber,
         /// Name with at most [`LONGEST_NAME`] characters.
         name: String,
     },
-    /// Copies a program to another one, including the names of its cams.
+    /// Copies a program over another one, including the names of its cams.
     Copy {
         from: ProgramNumber,
         to: ProgramNumber,
     },
-    /// Mirrors a program within the measuring range. Inactive cams are also mirrored unless they are beyond the range.
+    /// Mirrors a program within the measuring range, including inactive cams unless they are beyond the range.
     Mirror(ProgramNumber),
-    /// Shifts a program by a number of steps. Parts that leave the range at one end reappear at the other. Inactive
-    /// cams are also shifted unless they are beyond the range.
+    /// Shifts a program by a number of steps. What leaves the range at one end reappears at the other. Inactive cams
+    /// are also shifted, unless they are beyond the range.
     Rotate {
         program: ProgramNumber,
-        /// Number of steps. Positive numbers shift to later positions, and negative ones to earlier positions.
+        /// Number of steps. Positive numbers shift to later positions.
         by: i64,
     },
     /// Sets the programs of an imported table.
@@ -83,7 +83,7 @@ pub enum Edit {
 }
 
 impl Edit {
-    /// Returns the edit that sets an item, or `None` if the item cannot be edited or cannot have the value.
+    /// Returns the edit that sets an item to a value, or `None` if the item cannot be edited or cannot have this value.
     pub fn of_item(item: Item, value: ItemValue) -> Option<Self> {
         Some(match (item, value) {
             (Item::Steps, ItemValue::Number(steps)) => Edit::Steps(steps),
@@ -108,7 +108,7 @@ pub enum EditError {
     NothingRead,
     #[error("cam program {} has not been read", .0.get())]
     NotRead(ProgramNumber),
-    /// The window shift has not been read. It is read together with a program.
+    /// The window shift has not been read. It is only read together with a program.
     #[error("the window shift has not been read")]
     ShiftNotRead,
     /// The profile does not contain the cam.
@@ -120,7 +120,7 @@ pub enum EditError {
     Parameter(#[from] OutOfRange),
     #[error("{to} is outside the measuring range, which ends at {last}")]
     Edge { edge: Edge, to: u32, last: u32 },
-    /// An active cam is beyond the measuring range. Its program can be neither mirrored nor shifted.
+    /// An active cam is beyond the measuring range, so its program can be neither mirrored nor shifted.
     #[error("cam {} of program {} is outside the measuring range, which ends at {last}", cam.get(), program.get())]
     Beyond { program: ProgramNumber, cam: CamNumber, last: u32 },
     /// The name is too long or contains line breaks or other control characters.
@@ -229,7 +229,7 @@ fn position(edge: Edge, to: u32, wanted: &EditedValues) -> Result<Value, EditErr
     Value::new(to).filter(|_| to <= last).ok_or(EditError::Edge { edge, to, last })
 }
 
-/// Returns a program to be edited. If a profile does not contain the program, it is added.
+/// Returns a program for editing. If a profile does not contain the program, it is added.
 pub(super) fn program_mut(
     after: &mut EditedValues,
     number: ProgramNumber,
@@ -276,7 +276,7 @@ fn fill_program(after: &mut EditedValues, filled: &ImportedProgram, ground: Base
     Ok(())
 }
 
-/// Checks a name and removes blanks at its ends.
+/// Checks a name and removes blanks from both ends.
 pub(super) fn checked_name(name: &str) -> Result<String, EditError> {
     let name = name.trim();
     if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {

@@ -1,11 +1,11 @@
-//! Problems of the edited values.
+//! Problems with the edited values.
 
 use super::EditedValues;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, ProgramNumber};
 
-/// A problem of the edited values that the user should check. For example, cams may be beyond the range after the
-/// number of steps was reduced.
+/// A problem with the edited values that the user should check, such as cams beyond a measuring range that has become
+/// shorter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EditFinding {
     Gear(GearError),
@@ -16,11 +16,11 @@ pub enum EditFinding {
     Beyond {
         program: ProgramNumber,
         cam: CamNumber,
-        /// Edge beyond the range. If both are beyond it, this is the start.
+        /// The edge beyond the range, or the start if both are.
         edge: Edge,
         last: u32,
     },
-    /// Two active cams of the same name overlap, although the pulses of one track should not. The encoder allows this.
+    /// Two active cams with the same name overlap, which the pulses of one track should not do. The encoder allows it.
     Clash {
         program: ProgramNumber,
         first: CamNumber,
@@ -87,7 +87,7 @@ pub(super) fn is_same_track_name(one: &str, other: &str) -> bool {
     one.trim().to_lowercase() == other.trim().to_lowercase()
 }
 
-/// Returns the first position at which both cams are on. It is the start of one of them.
+/// Returns the first position at which both cams are on. This is always the start of one of the two.
 fn first_common_position(one: Cam, other: Cam) -> Option<u32> {
     let wrapped = one.wraps_around() && other.wraps_around();
     let begins = [one.start, other.start].into_iter().filter(|at| one.is_on(*at) && other.is_on(*at));

@@ -1,10 +1,10 @@
-//! Merging edits with new base values.
+//! Merges edits with new base values.
 
 use super::EditedValues;
 use crate::devices::interbus::profile::Image;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber};
 
-/// Returns the values just read. Values that were not read are taken from the known ones.
+/// Returns the values just read, completed with known values for those that were not read.
 pub(super) fn merge_known(known: &Image, read: Image) -> Image {
     let mut programs = read.programs;
     for (own, known) in programs.iter_mut().zip(&known.programs) {
@@ -13,7 +13,7 @@ pub(super) fn merge_known(known: &Image, read: Image) -> Image {
     Image { parameters: read.parameters, shift: read.shift.or(known.shift), programs }
 }
 
-/// Transfers edits from the previous base values to the new ones.
+/// Applies edits made to the previous base values to the new ones.
 pub(super) fn rebase_edits(own: &mut EditedValues, before: &EditedValues, now: &EditedValues) {
     let (parameters, was, is) = (&mut own.image.parameters, &before.image.parameters, &now.image.parameters);
     follow_base(&mut parameters.steps, &was.steps, &is.steps);
@@ -55,7 +55,7 @@ fn rebase_program(program: &mut Program, was: &Program, is: &Program) {
     program.mask = program.mask & edited | is.mask & !edited;
 }
 
-/// Sets an edited value to the new base value unless the user has changed it.
+/// Updates a value to the new base value, unless the user has edited it.
 fn follow_base<T: PartialEq + Clone>(own: &mut T, was: &T, is: &T) {
     if own == was {
         own.clone_from(is);

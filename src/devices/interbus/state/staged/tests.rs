@@ -23,13 +23,13 @@ fn edges(start: u32, stop: u32) -> Cam {
     Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() }
 }
 
-/// Returns a program in which cam i is on from 100·i to 100·i + 50, and only cams 0 and 3 are active.
+/// Returns a program in which cam i is on from 100·i to 100·i + 50. Only cams 0 and 3 are active.
 fn program() -> Program {
     let cams = [0, 1, 2, 3, 4, 5, 6, 7].map(|cam| Some(edges(100 * cam, 100 * cam + 50)));
     Program { cams, mask: 0b1001 }
 }
 
-/// Returns an encoder with 1000 steps and a known program 1.
+/// Returns the edits of an encoder with 1000 steps, of which program 1 has been read.
 fn staged() -> StagedEdits {
     let mut staged = StagedEdits::default();
     staged.refresh_parameters(parameters(1000, 1));

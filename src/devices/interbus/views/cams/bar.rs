@@ -1,4 +1,4 @@
-//! The program bar, which selects a program and changes it as a whole.
+//! The program bar, for selecting a cam program and for changing all of it at once.
 
 use egui::{RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! Chart of the selected program as lanes or as a ring.
+//! Chart of the selected cam program, as lanes or as a ring.
 
 use egui::{RichText, Ui};
 

@@ -12,7 +12,7 @@ use crate::ui::{Theme, icons};
 
 const MAX_LIST_HEIGHT: f32 = 200.0;
 
-/// Imports a pasted table. Text pasted into a text field is ignored.
+/// Imports a table from pasted text, unless it is pasted into a text field.
 pub(super) fn import_pasted_table(ui: &Ui, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     if ui.ctx().text_edit_focused() || encoder.staged.edited_values().is_none() {
         return;

@@ -1,4 +1,4 @@
-//! Selection of the machine's unit and its zero.
+//! Selection of the machine's unit and zero position.
 
 use egui::Ui;
 

@@ -21,7 +21,7 @@ pub(super) struct CamTableUiState {
     drafts: BTreeMap<(ProgramNumber, CamNumber, Column), Draft>,
 }
 
-/// Typed text, with the reason if it was rejected.
+/// Typed text, and the reason if it was rejected.
 type Draft = Option<(String, Option<Text>)>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,7 +34,7 @@ enum Column {
 const CAM_WIDTH: f32 = 48.0;
 const NAME_WIDTH: f32 = 160.0;
 const NUMBER_WIDTH: f32 = 104.0;
-/// Width that the frame of an entry adds to its text.
+/// Width added to the text of an entry by its frame.
 const ENTRY_MARGIN: f32 = 16.0;
 
 pub(super) fn card_ui(

@@ -1,4 +1,4 @@
-//! Layout of the cam output word according to the window shift.
+//! Shows how the window shift determines the layout of the cam output word.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! Common parts of the lanes and the ring, such as events and dragging with pointer, keyboard and screen reader.
+//! What the lanes and the ring have in common: events, and dragging with pointer, keyboard or screen reader.
 
 use egui::accesskit::{Action, ActionData, Role};
 use egui::{Color32, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect, Response, Ui, Vec2, WidgetInfo};
@@ -14,26 +14,26 @@ use crate::ui::widgets::series_colour;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CamChart<'a> {
     pub(crate) label: &'a str,
-    /// Edited program. A drag does not change it.
+    /// The edited program. It does not change during a drag.
     pub(crate) chart: &'a Chart,
-    /// Program with which the chart is compared. The lanes show its cams as outlines.
+    /// A program to compare with the edited one. The lanes show its cams as outlines.
     pub(crate) compared: Option<&'a Chart>,
     pub(crate) scale: &'a Scale,
     /// Encoder position in steps, or `None` if unknown.
     pub(crate) position: Option<u32>,
-    /// Outputs that the encoder reports, with bit i for cam i, or `None` if there are none.
+    /// Outputs reported by the encoder, with bit i for cam i, or `None` if there are none.
     pub(crate) own: Option<u8>,
     pub(crate) selected: Option<CamNumber>,
     pub(crate) movable: bool,
-    /// Whether edges snap to targets nearby. The Alt key disables snapping.
+    /// Whether edges snap to nearby targets. The Alt key disables snapping.
     pub(crate) snaps: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CamEvent {
-    /// Edges that the cam would have if the drag ended now. The event is sent in every frame of the drag.
+    /// The edges that the cam would have if the drag ended now. Sent in every frame of the drag.
     Preview(CamNumber, Cam),
-    /// The cam was moved, and its edges have changed.
+    /// The cam was moved or drawn, so its edges have changed.
     Moved {
         cam: CamNumber,
         to: Cam,
@@ -44,7 +44,7 @@ pub(crate) enum CamEvent {
     Viewed(VisibleRange),
 }
 
-/// Drag in progress, which is kept between frames.
+/// A drag in progress. It is kept between frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drag {
     pub(super) hold: DragTarget,
@@ -60,7 +60,7 @@ pub(super) fn display_colour(theme: &Theme, cam: CamNumber) -> Color32 {
 }
 
 impl CamChart<'_> {
-    /// Returns the cam after a drag from one position to another.
+    /// Returns the cam as it is after a drag from one position to another.
     pub(super) fn apply_drag(&self, hold: DragTarget, from: f64, at: f64, snap: &SnapSettings) -> Option<Cam> {
         let range = self.chart.range;
         let own = self.chart.lane_of(hold.cam())?.edges;
@@ -83,7 +83,7 @@ impl CamChart<'_> {
         }
     }
 
-    /// Returns the event of a drag. It is a preview while the pointer is down, and the result after its release.
+    /// Returns the event for a drag: a preview while the pointer is down, and the result when it is released.
     pub(super) fn drag_result(
         &self,
         ui: &Ui,
@@ -118,7 +118,7 @@ impl CamChart<'_> {
         Some(self.chart.with_cam(drag.hold.cam(), drag.to?))
     }
 
-    /// Handles the keyboard. The arrow keys move an edge or the cam by one step or to the next grid line. Other keys
+    /// Handles keyboard input. The arrow keys move an edge or the cam by one step or to the next grid line. Other keys
     /// switch the cam on and off.
     pub(super) fn handle_keys(&self, ui: &Ui, response: &Response, hold: DragTarget, apart: f64) -> Option<CamEvent> {
         if !response.has_focus() || !self.movable {
@@ -232,7 +232,7 @@ impl CamChart<'_> {
         });
     }
 
-    /// Draws a label with the result of a drag. The label never leaves the painting area.
+    /// Draws a label with the result of a drag. It always stays within the painting area.
     pub(super) fn draw_drag_ghost(&self, theme: &Theme, painter: &Painter, drag: &Drag, near: Pos2) {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;

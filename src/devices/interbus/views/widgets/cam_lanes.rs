@@ -1,4 +1,4 @@
-//! The cams of a program over the measuring range, with one lane for each cam.
+//! The cams of a program across the measuring range, with one lane per cam.
 //!
 //! * **Size**: The widget has the available width. It consists of a ruler line, eight lanes, and a line of machine
 //!   units if these differ from steps.
@@ -6,10 +6,10 @@
 //!   keys move the focused part by one step, or with Shift to the next grid line. Delete switches the cam off, and
 //!   Space switches it on and off.
 //! * **Pointer**: An edge or a whole cam can be dragged. A part that is dragged over one end of the range reappears at
-//!   the other end. In the lane of an inactive cam, a new cam is drawn. Escape cancels a drag. The wheel zooms with
-//!   Ctrl, and the horizontal wheel scrolls.
+//!   the other end. Dragging in the lane of an inactive cam draws a new one. Escape cancels a drag. The wheel zooms
+//!   with Ctrl, and the horizontal wheel scrolls.
 //! * **Accessible**: An edge is a slider with a value that can be set. A cam is a slider with its location. An
-//!   indicator has the state of its output and the source of this state.
+//!   indicator states whether its output is on and where this state comes from.
 //! * **Painting**: A cam is drawn in its colour, hollow if it is inactive, and hatched where it overlaps another cam of
 //!   the same name. If a cam is beyond the range, the end of its lane is hatched. A line through all lanes shows the
 //!   position of the encoder.
@@ -38,8 +38,8 @@ struct LanePainter<'a> {
     base: Id,
 }
 
-/// Draws the lanes for a part of the range and returns the action of the user. A `Ui` can contain only one chart,
-/// unless each further chart has a separate ID from `push_id`.
+/// Draws the lanes for the visible part of the range, and returns the user's action. A `Ui` can contain only one chart,
+/// unless each further one has a separate ID from `push_id`.
 pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: VisibleRange) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_lanes");
     let drag = cam_chart::current_drag(ui, base).filter(|_| model.movable);
@@ -68,7 +68,7 @@ impl LanePainter<'_> {
         SnapSettings::enabled(self.place.steps_per_point())
     }
 
-    /// Handles the mouse wheel, which zooms and scrolls the view.
+    /// Handles the mouse wheel, which zooms and scrolls.
     fn handle_wheel(&self, range: u32) -> Option<CamEvent> {
         let pointer = self.ui.input(|input| input.pointer.hover_pos())?;
         if !self.place.plot.contains(pointer) || !self.ui.rect_contains_pointer(self.place.plot) {

@@ -1,4 +1,4 @@
-//! The cams of a program around a ring. The measuring range starts at the top and proceeds clockwise.
+//! The cams of a program around a ring. The measuring range starts at the top and runs clockwise.
 //!
 //! * **Size**: The widget is a square with the given width.
 //! * **Keyboard**: Tab moves to the next edge. The arrow keys move an edge by one step, or with Shift to the next grid
@@ -28,11 +28,11 @@ use crate::ui::widgets::focus_ring;
 const MIN_SIDE: f32 = 160.0;
 /// Radius of the innermost circle as a fraction of the outer radius.
 const INNER_RADIUS: f32 = 0.34;
-/// Margin for the numbers around the ring.
+/// Margin for the labels around the ring.
 const NUMBER_MARGIN: f32 = 26.0;
 /// Width of the area in which an edge can be grabbed.
 const GRIP_WIDTH: f32 = 12.0;
-/// Maximum number of position labels around the ring.
+/// Maximum number of labels around the ring.
 const LINES: f64 = 12.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -43,13 +43,13 @@ struct Dial {
 }
 
 impl Dial {
-    /// Returns the point of a position on a circle. The range starts at the top.
+    /// Returns the screen point for a position on a circle. The range starts at the top.
     fn point_at(self, position: f64, radius: f32) -> Pos2 {
         let angle = (position / self.range * std::f64::consts::TAU) as f32;
         self.middle + Vec2::new(angle.sin(), -angle.cos()) * radius
     }
 
-    /// Returns the position in the direction of a screen point.
+    /// Returns the position that lies in the direction of a screen point.
     fn position(self, place: Pos2) -> f64 {
         let from = place - self.middle;
         let part = f64::from(from.x.atan2(-from.y)) / std::f64::consts::TAU;
@@ -65,7 +65,7 @@ impl Dial {
         self.radius - (f32::from(cam.get()) + 0.5) * self.circle_distance()
     }
 
-    /// Returns the cam whose circle contains a point.
+    /// Returns the cam whose circle contains a screen point.
     fn cam(self, place: Pos2) -> Option<CamNumber> {
         let from_outside = (self.radius - place.distance(self.middle)) / self.circle_distance();
         if (0.0..Program::CAMS as f32).contains(&from_outside) { CamNumber::new(from_outside as u8) } else { None }
@@ -91,7 +91,7 @@ struct Ring<'a> {
     base: Id,
 }
 
-/// Draws the ring and returns the action of the user. A `Ui` can contain only one ring, unless each further ring has a
+/// Draws the ring and returns the user's action. A `Ui` can contain only one ring, unless each further one has a
 /// separate ID from `push_id`.
 pub(crate) fn cam_ring(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, side: f32) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_ring");
@@ -122,7 +122,7 @@ impl Ring<'_> {
         SnapSettings::enabled(self.dial.steps_per_point())
     }
 
-    /// Draws the circles and handles dragging of whole cams.
+    /// Draws the circles and handles the dragging of whole cams.
     fn draw_disc(&self, rect: Rect, drag: Option<Drag>) -> Option<CamEvent> {
         let sense = if self.model.movable { Sense::CLICK | Sense::DRAG } else { Sense::CLICK };
         let response = self.ui.interact(rect, self.base.with("disc"), sense);
@@ -190,7 +190,7 @@ impl Ring<'_> {
         Some(self.dial.point_at(f64::from(at + beyond), self.dial.circle_radius(cam)))
     }
 
-    /// Handles a drag around the ring. In every frame, the position follows the pointer in the shorter direction.
+    /// Handles a drag around the ring. From frame to frame, the position moves to the pointer in the shorter direction.
     fn apply_drag(&self, response: &Response, hold: DragTarget, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;
@@ -291,7 +291,7 @@ impl Ring<'_> {
     }
 }
 
-/// Returns the position of a cam's number, which is at the start of the range.
+/// Returns where to draw a cam's number, which is at the start of the range.
 fn cam_number_pos(dial: Dial, cam: CamNumber) -> Pos2 {
     dial.middle - Vec2::new(0.0, dial.circle_radius(cam))
 }

@@ -1,4 +1,4 @@
-//! Widgets of the INTERBUS tab for cam programs and for the bits of a cam output word.
+//! Widgets of the INTERBUS tab: cam programs, and the bits of a cam output word.
 
 mod cam_chart;
 mod cam_lanes;

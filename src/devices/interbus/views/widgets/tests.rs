@@ -1,4 +1,4 @@
-//! Tests that operate the widgets like a user, through accessible labels, keys and pointer.
+//! Tests that use the widgets as a user does, through accessible labels, keys and the pointer.
 
 mod cams;
 mod word_layout;

@@ -1,5 +1,5 @@
-//! The 32 bits of the cam output word with the current window shift. Below them, the position bits show which of them
-//! the window contains.
+//! The 32 bits of the cam output word for the current window shift. A row below shows which position bits the window
+//! contains.
 //!
 //! * **Size**: The widget has the available width. If 32 cells do not fit, half of them are on a second line.
 //! * **Keyboard**: Tab skips the widget.
@@ -28,7 +28,7 @@ pub(crate) struct WordLayout<'a> {
     pub(crate) shift: WindowShift,
     /// Received cam output word, or `None` to show only the layout.
     pub(crate) word: Option<u32>,
-    /// Measuring range in steps. Position bits above it are always 0.
+    /// Measuring range in steps. Position bits that it does not need are always 0.
     pub(crate) range: u32,
 }
 
@@ -83,7 +83,7 @@ impl WordLayout<'_> {
         CamOutput::bit(bit, self.shift).unwrap_or(CamBit::Zero)
     }
 
-    /// Returns the groups in descending order of their bits.
+    /// Returns the groups of bits, from the highest to the lowest.
     fn bit_groups(&self) -> Vec<Group> {
         let mut groups: Vec<Group> = Vec::new();
         for bit in (0..BITS).rev() {
@@ -103,7 +103,7 @@ impl WordLayout<'_> {
         u8::try_from(high).ok().zip(u8::try_from(mask.trailing_zeros()).ok())
     }
 
-    /// Returns the name of a group with the numbers of its bits.
+    /// Returns the name of a group and the numbers of its bits.
     fn name(&self, group: Group) -> Text {
         match group.kind {
             Kind::Invalid => TEXTS.text("cams.word_invalid"),
@@ -154,7 +154,7 @@ impl CellGrid {
         Vec2::new(f32::from(self.columns) * self.cell, lines + CELL_HEIGHT * f32::from(self.position_lines()))
     }
 
-    /// Returns the number of lines for the position bits.
+    /// Returns how many lines the position bits take up.
     const fn position_lines(&self) -> u8 {
         POSITION.div_ceil(self.columns)
     }
@@ -181,7 +181,7 @@ impl CellGrid {
         Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL_HEIGHT - 1.0))
     }
 
-    /// Returns the rectangles of the bits from `high` down to `low`, with one rectangle for each line.
+    /// Returns the rectangles around the bits from `high` down to `low`, one per line.
     fn range_rects(&self, high: u8, low: u8) -> Vec<Rect> {
         let mut runs: Vec<Rect> = Vec::new();
         for bit in (low..=high).rev() {
@@ -227,7 +227,7 @@ pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
     ui.add(egui::Label::new(theme.caption(translate(theme, "cams.word_of_position"))).wrap());
 }
 
-/// Describes a group, its location in the word and, if there is a word, its bits.
+/// Describes a group and where it is in the word, with its bits if there is a word.
 fn describe_group(theme: &Theme, layout: &WordLayout<'_>, group: Group) -> String {
     let name = theme.format_text(&layout.name(group));
     let place = if group.high == group.low {
@@ -260,7 +260,7 @@ fn word_bit(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, bit: u8, rect: Rect
     painter.text(above, Align2::CENTER_CENTER, bit.to_string(), font, theme.palette.muted.into());
 }
 
-/// Draws a bracket below a group with as much of its name as fits.
+/// Draws a bracket below a group, with its name if that fits.
 fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid, group: Group) {
     let painter = ui.painter();
     let ink = group.kind.display_colour(theme);
@@ -278,7 +278,7 @@ fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid, group
     }
 }
 
-/// Draws the position bits, and marks those that are not sent or not used by the range.
+/// Draws the position bits, and marks those that are not sent or not needed for the range.
 fn paint_position(painter: &Painter, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid) {
     let mask = layout.shift.mask();
     let last = layout.range.saturating_sub(1);

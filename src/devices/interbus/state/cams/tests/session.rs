@@ -1,6 +1,5 @@
-//! Test of a long session of edits, in which chart and table must stay equal and agree with an independent model. The
-//! model stores a cam as its first position and its length around the range, and undoes by a list of all earlier
-//! states.
+//! Applies a long series of edits, after each of which chart and table must agree with an independent model. The model
+//! stores a cam as its first position and its length, and undoes by keeping a list of all earlier states.
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -11,7 +10,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber,
 use crate::devices::interbus::state::cams::{Chart, apply_drag};
 use crate::devices::interbus::state::staged::{Edit, StagedEdits};
 
-/// Number of edits in the session.
+/// Number of edits in the test.
 const STEPS: usize = 10_000;
 
 /// First position and length of a cam, and whether it is active.
@@ -30,7 +29,7 @@ struct Model {
 enum Step {
     /// Moves an edge of a cam: program, cam, whether the edge is the stop, and number of steps.
     Drag(usize, usize, bool, i64),
-    /// Enters the position of an edge: program, cam, whether the edge is the stop, and new position.
+    /// Enters a new position for an edge: program, cam, whether the edge is the stop, and new position.
     Type(usize, usize, bool, u32),
     /// Draws a cam: program, cam, start and length.
     Draw(usize, usize, u32, u32),
@@ -66,7 +65,7 @@ impl Model {
         &self.past[self.at]
     }
 
-    /// Applies a step, unless it is rejected or changes nothing.
+    /// Applies a step, unless it would be rejected or change nothing.
     fn play_event(&mut self, step: &Step) {
         let range = self.range;
         let wrap = |at: i64| at.rem_euclid(i64::from(range)) as u32;
@@ -188,7 +187,7 @@ fn play_event(staged: &mut StagedEdits, step: &Step, range: u32) {
     assert_eq!(staged.apply_edit(&edit).is_err(), outside, "{step:?}");
 }
 
-/// Checks that chart, table and model agree.
+/// Checks that the chart, the table and the model agree.
 fn compare(staged: &StagedEdits, model: &Model, program: usize) {
     let range = model.range;
     let chart = Chart::from_edits(staged, number(program)).unwrap();

@@ -1,4 +1,4 @@
-//! Handles in the lanes for edges, cams and new cams.
+//! Handles for dragging edges, cams and new cams in the lanes.
 
 use egui::accesskit::Role;
 use egui::{CursorIcon, Rect, Response, Sense, WidgetInfo};
@@ -11,8 +11,7 @@ use crate::devices::interbus::state::cams::{DragTarget, Lane, PositionRange, lab
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, Drag};
 
 impl LanePainter<'_> {
-    /// Draws all handles and returns the action of the user. During a drag, the handles stay at their original
-    /// positions.
+    /// Draws all handles and returns the user's action. During a drag, the handles stay where they were.
     pub(super) fn draw_handles(&self, drag: Option<Drag>) -> Option<CamEvent> {
         let mut event = None;
         for lane in &self.model.chart.lanes {
@@ -44,7 +43,7 @@ impl LanePainter<'_> {
         event.or(clicked)
     }
 
-    /// Handles a whole cam. If it has two sections, the wider one has the keyboard focus.
+    /// Handles input for a whole cam. If it has two sections, the wider one takes the keyboard focus.
     fn handle_cam(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
         let stretches = lane.on_ranges(self.model.chart.range);
         let widest = stretches.iter().max_by_key(|stretch| stretch.last - stretch.first).copied();
@@ -126,8 +125,8 @@ impl LanePainter<'_> {
         event
     }
 
-    /// Returns the area in which an edge can be grabbed, and its horizontal position. For an edge outside the view, the
-    /// area is at the end of the lane and only the keyboard uses it.
+    /// Returns the area in which an edge can be grabbed, and the edge's horizontal position. If the edge is out of
+    /// view, the area is at the end of the lane and only used by the keyboard.
     fn grip_area(&self, cam: Cam, lane: &Lane, edge: Edge) -> Option<(Rect, f32)> {
         let chart = self.model.chart;
         let at = self.model.chart.edge_position(lane.cam, edge)?.min(chart.range);
@@ -171,7 +170,7 @@ impl LanePainter<'_> {
         self.snap_settings().apart.unwrap_or(1.0)
     }
 
-    /// Handles a drag with the pointer and returns its preview or result.
+    /// Handles dragging with the pointer, and returns the preview or result.
     fn apply_drag(&self, response: &Response, hold: DragTarget, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;

@@ -1,4 +1,4 @@
-//! Header of a lane with the switch, the number, the name and the output indicator of its cam.
+//! The header of a lane, with the cam's switch, number, name and output indicator.
 
 use egui::accesskit::Role;
 use egui::text::{LayoutJob, TextWrapping};

@@ -15,7 +15,7 @@ const RIGHT_MARGIN: f32 = 16.0;
 /// Width of the area in which an edge can be grabbed.
 const GRIP_WIDTH: f32 = 9.0;
 
-/// Areas of the chart. The heads are on the left, and the visible part of the range is on the right.
+/// Areas of the chart: headers on the left, and the visible part of the range on the right.
 #[derive(Clone, Debug)]
 pub(super) struct PlotArea {
     pub(super) head: Rect,
@@ -57,7 +57,7 @@ impl PlotArea {
         self.plot.left() + part as f32 * self.plot.width()
     }
 
-    /// Returns the position at `x`. It may be outside the lanes.
+    /// Returns the position at `x`, which may be beyond the lanes.
     pub(super) fn position(&self, x: f32) -> f64 {
         self.view.position(f64::from((x - self.plot.left()) / self.plot.width().max(1.0)))
     }
@@ -72,7 +72,8 @@ impl PlotArea {
         Rect::from_x_y_ranges(self.head.x_range(), lane.y_range())
     }
 
-    /// Returns the rectangle of a cam section in its lane, or `None` if it is not visible. It has a minimum width.
+    /// Returns the rectangle of a cam section in its lane, or `None` if it is out of view. Narrow sections are widened
+    /// to a minimum.
     pub(super) fn bar_rect(&self, cam: CamNumber, stretch: PositionRange) -> Option<Rect> {
         let (left, right) = (self.x(f64::from(stretch.first)), self.x(f64::from(stretch.last) + 1.0));
         if right < self.plot.left() || left > self.plot.right() {
@@ -83,8 +84,8 @@ impl PlotArea {
         Some(bar.shrink2(Vec2::new(0.0, 5.0)).intersect(self.plot.expand2(Vec2::new(GRIP_WIDTH, 0.0))))
     }
 
-    /// Returns the area in which an edge can be grabbed. If the cam is wide enough, most of the area is inside the cam,
-    /// so that adjoining edges can be distinguished.
+    /// Returns the area in which an edge can be grabbed. If the cam is wide enough, most of the area is inside it, so
+    /// that adjoining edges can be told apart.
     pub(super) fn grip_rect(&self, cam: CamNumber, x: f32, is_start: bool, width: f32) -> Rect {
         let inside = (width / 2.0).clamp(1.0, GRIP_WIDTH - 2.0);
         let (left, right) =

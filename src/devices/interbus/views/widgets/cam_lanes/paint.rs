@@ -1,4 +1,4 @@
-//! Painting of the lanes.
+//! Paints the lanes.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect, Shape, Stroke, StrokeKind, Vec2, pos2};
 
@@ -9,7 +9,7 @@ use crate::devices::interbus::state::cams::{DragTarget, Lane, Tick, grid_ticks, 
 use crate::devices::interbus::views::widgets::cam_chart::{Drag, display_colour};
 use crate::ui::widgets::{draw_hatching, focus_ring};
 
-/// Minimum distance between two numbers of a ruler in points.
+/// Minimum distance between two ruler numbers in points.
 const MIN_NUMBER_DISTANCE: f64 = 64.0;
 /// Width of the hatching at the end of a lane.
 const HATCHING_WIDTH: f32 = 14.0;
@@ -46,7 +46,7 @@ impl LanePainter<'_> {
         }
     }
 
-    /// Draws the grid lines and their numbers, with steps above the lanes and machine units below.
+    /// Draws the grid lines and their numbers: steps above the lanes, machine units below.
     fn draw_rulers(&self) {
         let (model, place, theme) = (self.model, self.place, self.theme);
         let apart = MIN_NUMBER_DISTANCE * place.steps_per_point();
@@ -118,7 +118,7 @@ impl LanePainter<'_> {
         }
     }
 
-    /// Draws the outline of a cam of the program with which the chart is compared. It is dashed if the cam is inactive.
+    /// Draws the outline of a cam from the program used for comparison. It is dashed if that cam is inactive.
     fn draw_compared_cam(&self, painter: &Painter, cam: CamNumber) {
         let Some((chart, lane)) = self.model.compared.and_then(|chart| Some((chart, chart.lane_of(cam)?))) else {
             return;
@@ -152,7 +152,7 @@ impl LanePainter<'_> {
         }
     }
 
-    /// Draws the encoder position as a line through all lanes.
+    /// Draws a line through all lanes at the encoder position.
     fn position(&self) {
         let Some(position) = self.model.position.filter(|position| *position < self.model.chart.range) else { return };
         let place = self.place;

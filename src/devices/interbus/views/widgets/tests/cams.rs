@@ -1,4 +1,4 @@
-//! The lanes and the ring of a cam program with keys, pointer and a screen reader.
+//! Tests of the lanes and the ring with keys, pointer and screen reader.
 
 use egui::accesskit::{Action, ActionData, ActionRequest};
 use egui::{Event, Key, Modifiers, Vec2};
@@ -34,7 +34,8 @@ fn edges(start: u32, stop: u32) -> Cam {
     Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() }
 }
 
-/// Returns a page with 1000 steps: cam 0 from 100 to 299, cam 3 from 900 over the end to 49, cam 4 off.
+/// Returns a page with 1000 steps, on which cam 0 is on from 100 to 299 and cam 3 from 900 across the end to 49. Cam 4
+/// is off.
 fn page() -> Page {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
@@ -92,7 +93,7 @@ fn lanes() -> Harness<'static, Page> {
     draw(page(), false)
 }
 
-/// Returns the changes in order.
+/// Returns all changes to cams in order.
 fn changes(harness: &Harness<'_, Page>) -> Vec<CamEvent> {
     let events = harness.state().events.iter().copied();
     events.filter(|event| matches!(event, CamEvent::Moved { .. } | CamEvent::Switched(..))).collect()
@@ -106,7 +107,7 @@ fn value(harness: &Harness<'_, Page>, label: &str) -> String {
     harness.get_by_label(label).value().unwrap()
 }
 
-/// Returns the points between two positions, from the edges of a cam of 200 steps.
+/// Returns the distance on the screen for a number of steps, measured from the edges of a cam of 200 steps.
 fn steps(harness: &Harness<'_, Page>, count: f32) -> Vec2 {
     let x = |label| harness.get_by_label(label).rect().center().x;
     // The two handles are inside their cam, four and a half points from the middle of their grab areas.
@@ -263,7 +264,7 @@ fn the_wheel_zooms_and_keys_scroll_into_view() {
     assert!(view.first() <= 900.0 && 900.0 <= view.first() + view.length(), "{view:?}");
 }
 
-/// Cam 4 is drawn from a few steps beside the start of cam 0, which is at 100, to a few beside its end, which is 299.
+/// Cam 4 is drawn from a few steps next to the start of cam 0 (100) to a few next to its stop (299).
 #[test]
 fn both_edges_of_a_drawn_cam_snap() {
     let mut harness = draw_with_options(page(), false, true);
