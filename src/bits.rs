@@ -1,5 +1,5 @@
-//! Bytes as hexadecimal strings: upper case, separated by spaces as in the manuals, with secrets masked. Bytes can also
-//! be interpreted as numbers or text.
+//! Hexadecimal notation for bytes: upper case, separated by spaces as in the manuals, with secrets masked. Bytes can
+//! also be interpreted as numbers or text.
 
 use std::fmt;
 use std::str::FromStr;
@@ -22,7 +22,7 @@ pub enum ByteOrder {
     LowFirst,
 }
 
-/// A number with its width in bits, displayed with as many upper-case hexadecimal digits as the width requires.
+/// A number of a given width in bits, displayed with as many upper-case hexadecimal digits as the width requires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
     /// The bits, right-justified.
@@ -82,7 +82,7 @@ impl MaskedBytes {
         self.0.extend(more.0);
     }
 
-    /// Returns whether all bytes that are not masked equal those in `bytes`. The lengths must be equal too.
+    /// Returns whether `bytes` has the same length and matches all bytes that are not masked.
     pub fn matches_visible(&self, bytes: &[u8]) -> bool {
         self.0.len() == bytes.len() && self.0.iter().zip(bytes).all(|(own, byte)| own.is_none_or(|own| own == *byte))
     }
@@ -196,7 +196,8 @@ impl TypedKind {
     }
 }
 
-/// The first bytes of a sequence in one interpretation. Both values are equal if the byte order does not matter.
+/// The start of a byte sequence, interpreted as one kind of value. `little` and `big` are equal if the byte order does
+/// not matter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TypedRow {
     pub kind: TypedKind,
@@ -206,7 +207,7 @@ pub struct TypedRow {
     pub big: Option<String>,
 }
 
-/// Interprets the beginning of `bytes` as every kind, in the order of [`TypedKind::ALL`].
+/// Interprets the start of `bytes` as each kind of value, in the order of [`TypedKind::ALL`].
 pub fn interpret(bytes: &[u8]) -> Vec<TypedRow> {
     let row = |kind| TypedRow { kind, little: read_typed(kind, bytes, false), big: read_typed(kind, bytes, true) };
     TypedKind::ALL.into_iter().map(row).collect()

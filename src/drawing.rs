@@ -1,4 +1,4 @@
-//! A drawing made of shapes. The window, the SVG export and reports draw the same shapes.
+//! A vector drawing. The window, the SVG export and reports all draw it from the same shapes.
 
 pub mod plot;
 pub mod ticks;
@@ -102,7 +102,7 @@ pub enum LabelAlign {
     Right,
 }
 
-/// Colour of lines and labels that are not the content.
+/// Grey for secondary lines and labels.
 pub const FAINT_COLOUR: &str = "#555";
 
 const FONT: &str = "font-family=\"Inter, Arial, sans-serif\"";

@@ -1,15 +1,15 @@
-//! Allowed values of a parameter, a setting or an entry. The descriptions here are in English. The texts of the window
-//! are in `app::explain::expected`.
+//! Allowed values of a parameter or setting, described in English. The messages shown in the window are in
+//! `app::explain::expected`.
 
 use std::borrow::Cow;
 use std::fmt;
 
 use thiserror::Error;
 
-/// The set of allowed values. An error about an invalid value contains it.
+/// The set of allowed values, as stated in the error for an invalid value.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum AllowedValues {
-    /// One of a few keywords, which the message lists.
+    /// One of several keywords, all of which the error message lists.
     #[error("{}", join_alternatives(.0))]
     Words(Cow<'static, [&'static str]>),
     #[error("one of {}", .0.join(", "))]
@@ -64,7 +64,7 @@ pub enum AllowedValues {
     SerialNumber,
     #[error("up to {most} ASCII characters")]
     Ascii { most: u32 },
-    /// A position in steps. Its limits are not known yet.
+    /// A position in steps whose limits are not known yet.
     #[error("a position in steps")]
     Steps,
     #[error("NUMBER:HEX for the access codes 0 to 3, separated by commas, such as 0:55,2:66")]

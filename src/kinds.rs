@@ -1,4 +1,4 @@
-//! All kinds of device in the program, one line each. No other file lists them.
+//! The kinds of device that the program supports. No other file lists them.
 
 mod kind;
 

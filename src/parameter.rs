@@ -1,6 +1,6 @@
-//! Parameters of a link and settings of a virtual device as keys with values. The `parameters!` macro creates a struct
-//! with one line per parameter. The parameters are then parsed, validated, printed and offered in a form. The allowed
-//! values are a type that implements [`ParameterValues`].
+//! Link parameters and virtual device settings, given as keys with values. The `parameters!` macro declares one
+//! parameter per line and creates a struct that can be parsed, validated, printed and offered as a form. A type that
+//! implements [`ParameterValues`] defines the allowed values.
 
 mod values;
 
@@ -49,7 +49,7 @@ pub fn select_entries(entries: &[Entry], keys: &[&str]) -> Vec<Entry> {
     keys.iter().filter_map(|key| entries.iter().find(|own| own.key == *key).cloned()).collect()
 }
 
-/// A group of parameters, declared with `parameters!`. Parameters without a value have their defaults.
+/// A group of parameters, declared with `parameters!`. Parameters that are not given keep their defaults.
 pub trait ParameterGroup: Default {
     /// The error returned when a value is rejected.
     type Error;
@@ -65,7 +65,7 @@ pub trait ParameterGroup: Default {
     /// Returns an error if the key does not accept the value.
     fn set_value(&mut self, key: &str, value: &str) -> Result<bool, Self::Error>;
 
-    /// Returns the entries that a user can fill in, in order of declaration.
+    /// Returns the form entries that a user can fill in, in order of declaration.
     fn entries() -> Vec<Entry>;
 
     /// Parses the known keys and ignores all others. If a key is repeated, the last value is used.
@@ -94,9 +94,9 @@ pub trait ParameterGroup: Default {
 /// }
 /// ```
 ///
-/// Each line has a field, its type, its default, a key and [`ParameterValues`]. If the parameter has a form entry, the
-/// label of the entry follows, with an example after `like` if the default is not helpful. A line without a key
-/// declares a field that is not a parameter. The value of a key preceded by `secret` is neither displayed nor stored.
+/// Each line has a field, its type, its default, a key and its [`ParameterValues`]. If the parameter has a form entry,
+/// its label follows, with an example after `like` if the default is not helpful. A line without a key declares a field
+/// that is not a parameter. The value of a key preceded by `secret` is neither displayed nor stored.
 #[macro_export]
 macro_rules! parameters {
     (@hint $values:expr, $default:expr) => {

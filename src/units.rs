@@ -1,5 +1,5 @@
-//! Quantities as newtypes. A newtype is used if two integers could be confused, a range is limited, or arithmetic has a
-//! meaning. This module does not read a clock: the owner of a [`Moment`] supplies it.
+//! Newtypes for quantities that could be confused, have a limited range, or support arithmetic. This module never reads
+//! a clock: the caller supplies each [`Moment`].
 
 use std::fmt;
 use std::ops::{Add, Sub};
@@ -60,7 +60,7 @@ impl Baud {
         self.0
     }
 
-    /// Returns the time that a number of bits takes on the line.
+    /// Returns the time it takes to send the given number of bits.
     pub fn duration_of_bits(self, bits: u64) -> Duration {
         Duration::from_nanos(bits.saturating_mul(1_000_000_000) / u64::from(self.0))
     }

@@ -1,6 +1,6 @@
-//! Speed of decoding BiSS frames with their checksum (goal: 20 million per second on one core), compared with a
-//! checksum calculated bit by bit. Also how many times faster than 20 000 frames per second the stream of an adapter is
-//! parsed and recorded.
+//! Measures the speed of decoding BiSS frames with their checksum (goal: 20 million per second on one core), compared
+//! with a checksum calculated bit by bit. Also measures how much faster than real time, 20 000 frames per second, an
+//! adapter's stream is parsed and recorded.
 //!
 //! `cargo bench -- biss`
 
@@ -83,7 +83,7 @@ fn decoding() {
     println!("{:<32} {:>7.1}", "20 + 26 bits, CRC16", rate(&frames, |raw| wide.parse(raw)));
 }
 
-/// Returns the data that an adapter sends in ten seconds while the shaft turns at 3000 rpm, with 56 frames per packet.
+/// Returns the bytes that an adapter sends in ten seconds while the shaft turns at 3000 rpm, with 56 frames per packet.
 fn sent(layout: &Layout) -> Vec<u8> {
     let frame = |index: u32| {
         let steps = u64::from(index) * 131_072 * u64::from(PERIOD_US) / 20_000;

@@ -1,7 +1,6 @@
-//! How the cost of an operation grows with what a session accumulates: samples, registers, trace frames, logbook
-//! entries and connected devices, each at three sizes. The slope is the exponent with which the time grows from the
-//! smallest to the largest size: 0 if it does not depend on the size, 1 if it is proportional. Prints figures without a
-//! verdict.
+//! Measures how the cost of an operation grows with the number of samples, registers, trace frames, logbook entries and
+//! connected devices, each at three sizes. The slope is the exponent with which the time grows from the smallest to the
+//! largest size: 0 if it does not depend on the size, 1 if it is proportional. Prints figures without a verdict.
 //!
 //! `cargo bench -- growth`
 

@@ -1,9 +1,9 @@
-//! Time from the release of a jog to the stop word at the drive's socket (at most an interval and 5 ms), and jitter of
-//! a cyclic connection while a window is drawn. Each is compared with a naive solution, a thread that sleeps for an
-//! interval and then checks.
+//! Measures how long after the release of a jog button the stop command reaches the drive's socket (at most one
+//! interval plus 5 ms), and the jitter of a cyclic connection while a window is drawn. Each is compared with a naive
+//! solution, a thread that sleeps for one interval and then checks.
 //!
-//! `cargo bench -- hiperdrive`; `HIPERDRIVE_RELEASES` (200) and `HIPERDRIVE_SECONDS` (20) set the number and duration.
-//! A minute is enough for the naive solution.
+//! `cargo bench -- hiperdrive`; `HIPERDRIVE_RELEASES` (200) and `HIPERDRIVE_SECONDS` (20) set the number of releases
+//! and the duration. A minute is enough for the naive solution.
 
 use std::net::UdpSocket;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -46,7 +46,7 @@ fn opened(port: u16) -> OpenedConnection {
     }
 }
 
-/// A virtual drive with its own socket and clock, which records the arrival of each word.
+/// A virtual drive with its own socket and clock. It records when each control word arrives.
 struct Target {
     port: u16,
     words: Receiver<(Instant, ControlWord)>,
@@ -223,7 +223,8 @@ fn naive() -> (Box<dyn DeviceConnection>, Target) {
     (Box::new(Naive { shared, clock, end, thread: Some(thread) }), target)
 }
 
-/// Returns the sorted times from a release to the stop word at the socket, in milliseconds.
+/// Returns the times from the release of a jog button to the arrival of the stop command, in milliseconds and in
+/// ascending order.
 fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f64> {
     let mut random = fastrand::Rng::with_seed(7);
     let mut took = Vec::with_capacity(count);
@@ -252,8 +253,7 @@ fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f6
     took
 }
 
-/// Measures the intervals between the packets that arrive at the target's socket and between those that the host
-/// receives.
+/// Measures the intervals between packets, both on arrival at the target's socket and on arrival at the host.
 fn evenness(way: &dyn DeviceConnection, target: &Target, time: Duration) -> [Histogram; 2] {
     sleep(INTERVAL * 5);
     target.words.try_iter().for_each(drop);
@@ -269,7 +269,7 @@ fn evenness(way: &dyn DeviceConnection, target: &Target, time: Duration) -> [His
     [sent, way.arrivals()]
 }
 
-/// Starts a thread that imitates a window: it draws 60 times per second and takes half of the time.
+/// Starts a thread that imitates the load of a window: 60 frames per second, with the processor busy half of the time.
 fn window() -> (Arc<AtomicBool>, JoinHandle<()>) {
     let end = Arc::new(AtomicBool::new(false));
     let ends = end.clone();
@@ -285,7 +285,7 @@ fn window() -> (Arc<AtomicBool>, JoinHandle<()>) {
     (end, thread)
 }
 
-/// Returns the processor time of this process in seconds, if the system reports it.
+/// Returns the CPU time used by this process in seconds, or 0 if the system does not report it.
 fn processor_seconds() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields: Vec<f64> =

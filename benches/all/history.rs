@@ -1,5 +1,5 @@
-//! Cost of keeping samples for hours and of drawing them: appending is compared with a pyramid of plain vectors,
-//! drawing a frame with a scan of all samples. Also measures memory, and runs a soak test in virtual time. Prints
+//! Measures the cost of storing hours of samples and of drawing them. Appending is compared with a pyramid of plain
+//! vectors, and drawing with a scan of all samples. Also measures memory, and runs a soak test in virtual time. Prints
 //! figures without a verdict.
 //!
 //! `cargo bench -- history`
@@ -88,9 +88,9 @@ impl Naive {
     }
 }
 
-/// Measures both alternatives in turn. Then copies the same bytes into memory that the system must provide first, which
-/// is the least possible cost of keeping them. The worst stall is the longest batch that is long in every round, which
-/// excludes other activity of the computer.
+/// Measures how fast both alternatives append samples, and how fast the same bytes are copied to new memory, which is
+/// the lower limit. The worst stall is that of the batch that is slow in every round, so other activity of the computer
+/// does not count.
 fn append(batch: usize) {
     let samples = 4_000_000;
     let batches = samples / batch;
@@ -150,7 +150,7 @@ fn copies(times: &[SampleTime], columns: &[Vec<f64>], batches: usize) -> (Durati
     (median(&mut totals), least.into_iter().max().unwrap())
 }
 
-/// Measures the time of frames while the view moves by a tenth of a pixel column per frame.
+/// Measures the frame times while the view moves by a tenth of a pixel column per frame.
 fn pictures(history: &History) {
     let all = history.indices();
     let (first, last) = (history.time(all.start).unwrap(), history.time(all.end - 1).unwrap());
@@ -180,7 +180,7 @@ fn pictures(history: &History) {
     println!("  {:>14}: {:8.1} µs", "all, full scan", micros(median(&mut took)));
 }
 
-/// Computes the first, minimum, maximum and last value from the raw samples, as a plot without a pyramid has to.
+/// Computes the first, minimum, maximum and last value from the raw samples, as a plot without a pyramid must do.
 fn scan(history: &History) -> Vec<Duration> {
     let columns: Vec<Vec<f64>> = (0..SIGNALS)
         .map(|column| history.indices().map(|index| history.sample(column, index).unwrap().value.to_f64()).collect())
@@ -218,7 +218,7 @@ fn memory(history: &History, columns: usize) {
     println!("  memory {:.1} MB, {ratio:.3} × the raw columns", history.memory() as f64 / 1e6);
 }
 
-/// Appends the samples of a day or an hour with pauses in between. At most ten million samples are kept.
+/// Appends the samples of a day or an hour with pauses in between. The history keeps at most ten million samples.
 fn soak_of(label: &str, samples: usize, period: i64, columns: usize, kind: Kind) {
     const BATCH: usize = 10_000;
     const RANGE: i64 = 4096 * 32_768;

@@ -1,4 +1,5 @@
-//! Speed of evaluating 64 cams (goal: 10 million positions per second), compared with a loop over all of them.
+//! Measures the speed of evaluating 64 cams (goal: 10 million positions per second), compared with a loop over all
+//! cams.
 //!
 //! `cargo bench -- interbus`
 

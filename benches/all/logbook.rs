@@ -1,7 +1,7 @@
-//! Time to open the view of a logbook with 100,000 entries (goal: 200 ms) and to search it (goal: 50 ms). If
-//! `ENCODER_STUDIO_LOGBOOK` names the database of a server, which is filled with entries, also measures the time to
-//! send all entries, to copy them to a new bench, and to open and search the view when the server is asked for new
-//! entries first. The naive alternative searches on the server.
+//! Measures the time to open the view of a logbook with 100,000 entries (goal: 200 ms) and to search it (goal: 50 ms).
+//! If `ENCODER_STUDIO_LOGBOOK` names the database of a logbook server, the benchmark fills it with entries and also
+//! measures the time to send all entries, to copy them to a new bench, and to open and search the view if new entries
+//! are fetched from the server first. The naive alternative searches on the server.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -12,7 +12,7 @@ use rusqlite::Connection;
 use crate::median;
 
 const ENTRIES: u32 = 100_000;
-/// Number of entries to query, which is one more than the view shows.
+/// Number of entries to query: one more than the view shows.
 const SHOWN: u32 = 2_001;
 const ROUNDS: usize = 7;
 const TIMEOUT: Duration = Duration::from_secs(30);

@@ -1,6 +1,7 @@
 //! Benchmarks, each compared with a naive solution or a physical limit. They print figures without a verdict.
 //!
-//! `cargo bench` runs all of them, `cargo bench -- NAME` a single one. Further words select parts of it.
+//! `cargo bench` runs all of them, `cargo bench -- NAME` a single one. Further arguments select parts of that
+//! benchmark.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod analyse;
@@ -32,7 +33,7 @@ fn median<T>(rounds: usize, mut work: impl FnMut() -> T) -> f64 {
     times[rounds / 2]
 }
 
-/// A benchmark with its name. The words passed to the function select the parts to run.
+/// A benchmark and its name. The function's arguments select the parts to run.
 type Benchmark = (&'static str, fn(&[String]));
 
 const ALL: &[Benchmark] = &[

@@ -1,6 +1,6 @@
-//! Cost of a frame of the plot panel: layout, reduction and tessellation of four lines of ten million samples, all
-//! visible, zoomed out and in, paused and following. Compared with egui_plot on the same samples. Prints figures
-//! without a verdict.
+//! Measures the time for one frame of the plot panel, with four lines of ten million samples: all visible, zoomed out
+//! and in, paused and following. A frame consists of layout, reduction and tessellation. Compared with egui_plot on the
+//! same samples. Prints figures without a verdict.
 //!
 //! `cargo bench -- plot`
 

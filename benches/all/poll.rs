@@ -1,5 +1,5 @@
-//! Rate of polling the position, compared with the minimum time that the protocol allows, and with two naive solutions:
-//! waiting for the longest time in the manual, and waiting for a fixed 250 ms after each request.
+//! Measures how fast the position can be polled, compared with the minimum time that the protocol allows and with two
+//! naive solutions: waiting for the longest time in the manual, and waiting for a fixed 250 ms after each request.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -12,15 +12,15 @@ use encoder_studio::link::{ByteLink, Clock, RealClock, SimLink, VirtualClock};
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
 
-/// Time in milliseconds that the virtual encoder needs for 42h.
+/// Time in milliseconds that the virtual encoder needs to process command 42h.
 const PROCESSING: f64 = 3.7;
-/// Longest time for 42h in the manual's table, in milliseconds.
+/// Longest processing time for command 42h in the manual's table, in milliseconds.
 const LONGEST: f64 = 10.0;
 /// The interface settings with which the encoder is polled: 9600 and 38400 baud, even parity, time-out of 44 bits.
 const SETTINGS: [u8; 2] = [0xE4, 0xE6];
 
-/// Returns the minimum time for 42h in milliseconds: a request of three characters, silence, processing, a reply of
-/// seven characters, and silence. A character has 11 bits.
+/// Returns the minimum time for command 42h in milliseconds: a request of three characters, silence, processing, a
+/// reply of seven characters, and silence. A character has 11 bits.
 fn least_ms(baud: f64) -> f64 {
     (3.0 * 11.0 + 44.0 + 7.0 * 11.0 + 44.0) * 1000.0 / baud + PROCESSING
 }
@@ -34,7 +34,7 @@ fn median(mut cycles: Vec<f64>) -> f64 {
     cycles[cycles.len() / 2]
 }
 
-/// Polls as the program does, and returns the median time from one position to the next in milliseconds.
+/// Polls like the program, and returns the median time between two positions in milliseconds.
 fn studio(settings: u8, clock: Arc<dyn Clock>, count: usize) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     let mut station = Station::new(Duration::from_millis(20));

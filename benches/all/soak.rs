@@ -1,6 +1,7 @@
-//! A long run. The five virtual devices are polled as fast as their links allow, a virtual encoder supplies sine and
-//! cosine, and the window is laid out and tessellated 60 times per second. Prints the time of a frame on each page and
-//! the resource usage of the process at ten points in time, with the slope from the second point on.
+//! Runs the program for a long time. The five virtual devices are polled as fast as their links allow, a virtual
+//! encoder supplies sine and cosine, and the window is laid out and tessellated 60 times per second. Prints the frame
+//! time for each page and the resource usage of the process at ten points in time, with the slope from the second point
+//! on.
 //!
 //! `cargo bench -- soak 600` runs for ten minutes, `cargo bench` for one minute.
 
@@ -97,7 +98,7 @@ fn connected(folder: &Path) -> Screen {
     screen
 }
 
-/// Returns the window as it is after the program has started, with its files in a folder.
+/// Returns the window in its state after the program has started. `folder` holds its files.
 pub(crate) fn open_window(folder: &Path) -> Screen {
     let environment = StudioEnvironment::production(Store::at_root(folder), program().studio);
     let mut studio = Studio::new(environment, Arc::new(|| {}));

@@ -1,6 +1,6 @@
-//! Speed of decoding SSI frames (goal: 100 million per second on one core for 25 bits in Gray code), compared with a
-//! decoder that reads them bit by bit. Also the time to find the layout of 2000 frames, and how often the result is
-//! correct for a thousand recordings of many kinds of encoders.
+//! Measures the speed of decoding SSI frames (goal: 100 million per second on one core for 25 bits in Gray code),
+//! compared with a decoder that reads them bit by bit. Also measures the time to find the layout of 2000 frames, and
+//! how often the result is correct for a thousand recordings of many kinds of encoders.
 //!
 //! `cargo bench -- ssi`
 
@@ -33,7 +33,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
     (0..FRAMES).map(frame).collect()
 }
 
-/// Decodes a frame of 25 bits in Gray code with 12 bits for turns. It uses the method of the manual, bit by bit from
+/// Decodes a Gray-coded frame of 25 bits, 12 of which count turns. It uses the method of the manual, bit by bit from
 /// the first clock.
 fn bit_by_bit(frame: u64) -> (u32, u32) {
     let (mut turns, mut steps, mut before) = (0_u32, 0_u32, 0_u64);
@@ -84,8 +84,8 @@ pub(crate) fn run() {
     thousand_recordings(&families);
 }
 
-/// Measures how often the first class contains the correct layout, and how often a result reported as certain is wrong,
-/// for recordings that were generated independently.
+/// Measures, for independently generated recordings, how often the top class of layouts contains the correct one, and
+/// how often a result reported as certain is wrong.
 fn thousand_recordings(families: &Families) {
     let begun = Instant::now();
     let (mut first, mut ticks, mut wrong) = (0, 0, 0);

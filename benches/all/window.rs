@@ -1,6 +1,7 @@
-//! Start-up time of the window and its cost while open: the program compared with an empty window, both drawn in
-//! software. Also the time of a frame with forty million samples in the plot, and whether an adapter's stream of 20 000
-//! frames per second is displayed without loss. Needs a display or Xvfb, and prints a message if neither is available.
+//! Measures the start-up time of the window and its load while open, compared with an empty window. Both are drawn in
+//! software. Also measures the frame time with forty million samples in the plot, and whether an adapter's stream of 20
+//! 000 frames per second is displayed without loss. Needs a display or Xvfb, and prints a message if neither is
+//! available.
 //!
 //! `cargo bench -- window`
 
@@ -162,7 +163,8 @@ fn write_capture(path: &std::path::Path) {
     }
 }
 
-/// Runs the complete window with the capture in its scope. Every frame shows another part, as fast as possible.
+/// Runs the complete window with the capture in its scope. Each frame shows a different part, and frames follow each
+/// other without a pause.
 fn plot() {
     use encoder_studio::analysis::SampleTime;
     use encoder_studio::app::{Action, Studio, StudioEnvironment, ThemeData, recorder};
@@ -251,7 +253,7 @@ fn plot() {
     .unwrap();
 }
 
-/// Runs the empty window, which is the least cost of eframe, the driver and the X server.
+/// Runs an empty window as a baseline. It shows the minimum cost of eframe, the driver and the X server.
 fn minimal() {
     struct Nothing(Option<Instant>);
     impl eframe::App for Nothing {
@@ -297,7 +299,7 @@ fn resident_mb(process: u32) -> f64 {
     kilobytes.trim().trim_end_matches(" kB").parse::<f64>().unwrap() * 1.024e-3
 }
 
-/// Returns the usage of one processor by a child process over some seconds, in percent.
+/// Returns the CPU usage of a child process over ten seconds, in percent of one core.
 fn busy(child: &Child) -> f64 {
     let ticks = || -> f64 {
         let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).unwrap();
@@ -320,7 +322,7 @@ fn end(child: &mut Child) {
     let _ = child.wait();
 }
 
-/// The display of this session or a virtual one.
+/// The display of the desktop session, or a virtual one.
 struct Display {
     name: String,
     server: Option<Child>,

@@ -1,10 +1,10 @@
-//! Phase inside one signal period from a pair of sine and cosine values, computed exactly or with a one-octant table as
-//! in a drive's interrupt routine. Follows SICK 8010701, interpolation of the process data channel; the formulae are in
-//! section 3 of the project's sine/cosine reference.
+//! Phase within one signal period, calculated from a sine and a cosine value. The calculation is exact or uses a
+//! one-octant table, like the interrupt routine of a drive. Follows SICK 8010701, interpolation of the process data
+//! channel; the formulae are in section 3 of the project's sine/cosine reference.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-/// Electrical degrees in one signal period.
+/// Electrical degrees per signal period.
 pub const DEGREES: f64 = 360.0;
 
 /// A position inside one signal period, from 0 up to but not including 1.
@@ -28,7 +28,7 @@ impl Phase {
         self.0 * DEGREES
     }
 
-    /// Returns the step that contains the phase if a period is divided into 2^`bits` steps, like an interpolating
+    /// Returns the step that contains the phase if a period is divided into 2^`bits` steps, as in an interpolating
     /// counter. A lower resolution yields the upper bits of the same step. `bits` is limited to 32.
     pub fn step(self, bits: u32) -> u32 {
         let bits = bits.min(32);
@@ -45,7 +45,7 @@ impl Phase {
     }
 }
 
-/// Returns the exact phase of a pair of offset-free voltages. Returns `None` if both voltages are zero or one is not a
+/// Returns the exact phase of two offset-free voltages. Returns `None` if both voltages are zero or one is not a
 /// number.
 pub fn from_voltages(sine: f64, cosine: f64) -> Option<Phase> {
     if sine == 0.0 && cosine == 0.0 { None } else { Phase::from_periods(sine.atan2(cosine) / TAU) }
@@ -111,8 +111,8 @@ impl Default for OctantTable {
 mod tests {
     use super::*;
 
-    /// Values of section 3: sine, cosine, exact degrees, table degrees, phase, the phase's five upper bits, nearest of
-    /// 65 536 steps.
+    /// Reference values from section 3: sine, cosine, exact degrees, table degrees, phase, the phase's five upper bits,
+    /// nearest of 65 536 steps.
     const GOLDEN: [(f64, f64, f64, f64, f64, u32, u32); 9] = [
         (0.0, 0.5, 0.0, 0.0, 0.0, 0, 0x0000),
         (0.5, 0.0, 90.0, 90.0, 0.25, 8, 0x4000),

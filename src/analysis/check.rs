@@ -1,5 +1,4 @@
-//! Result of a device check: a list of steps, each with a verdict. Each kind of device defines its own steps and
-//! findings.
+//! Result of a device check: a list of steps, each with a verdict. The steps and findings depend on the kind of device.
 
 /// Outcome of a check step. A worse verdict compares as greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,19 +19,18 @@ pub struct StepResult<S, F> {
 }
 
 impl<S, F> StepResult<S, F> {
-    /// Creates the result of a step. The verdict is the worst verdict among the findings, or good if the step has no
-    /// findings.
+    /// Creates the result of a step. The verdict is that of the worst finding, or good if there are no findings.
     pub(crate) fn new(step: S, findings: Vec<(Verdict, F)>) -> Self {
         let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
         StepResult { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
     }
 }
 
-/// Number of a device's write cycles that the logbook contains. Writes by other programs are never included.
+/// Number of a device's write cycles recorded in the logbook. Writes by other programs are not recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CycleCount {
     pub seen: u64,
-    /// Whether no entries are missing. Entries can be missing if the logbook server is not available or the file was
+    /// Whether the logbook is complete. Entries may be missing if the logbook server is unavailable or the file was
     /// damaged.
     pub is_complete: bool,
 }

@@ -1,5 +1,5 @@
-//! Offset between a shaft position and a motor's electrical angle, determined by the two methods of the manual. See
-//! SICK 8010701, commutation, and section 5 of the project's sine/cosine reference.
+//! Offset between the shaft position and the electrical angle of a motor, determined by the two methods of the manual.
+//! See SICK 8010701, commutation, and section 5 of the project's sine/cosine reference.
 
 use super::arctan::Phase;
 
@@ -13,7 +13,7 @@ pub struct Motor {
     pole_pairs: u32,
 }
 
-/// Evaluation of the movement after a second vector was energised.
+/// Result of moving the shaft from one static vector to a second one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondVectorResult {
     /// Number of pole pairs derived from the movement, rounded. 0 if the shaft has moved by more than an electrical
@@ -54,13 +54,13 @@ impl Motor {
         if periods == 0 || pole_pairs == 0 { None } else { Some(Motor { periods, pole_pairs }) }
     }
 
-    /// Returns the offset to store (method 1). The argument is the fine position in periods at which the shaft rests in
-    /// a static vector. Returns `None` if the position is not finite.
+    /// Returns the offset to store (method 1). `fine_periods` is the fine position, in periods, at which a static
+    /// vector holds the shaft. Returns `None` if the position is not finite.
     pub fn offset(&self, fine_periods: f64) -> Option<ElectricalAngle> {
         ElectricalAngle::from_turns(f64::from(self.pole_pairs) * self.revolutions_from_periods(fine_periods))
     }
 
-    /// Returns the electrical angle at a fine position in periods, using the stored offset.
+    /// Returns the electrical angle for a fine position in periods and the stored offset.
     pub fn electrical_angle(&self, fine_periods: f64, offset: ElectricalAngle) -> Option<ElectricalAngle> {
         self.offset(fine_periods).map(|angle| ElectricalAngle(angle.0.wrapping_sub(offset.0)))
     }
@@ -86,7 +86,7 @@ impl Motor {
         sensible.then_some(SecondVectorResult { pole_pairs: pole_pairs as u32, ratio })
     }
 
-    /// Converts periods to the position within one revolution. Whole revolutions are removed first, because they would
+    /// Converts periods to revolutions and drops the whole revolutions. They are dropped first, because they would
     /// reduce the precision of the fraction.
     fn revolutions_from_periods(&self, periods: f64) -> f64 {
         periods.rem_euclid(f64::from(self.periods)) / f64::from(self.periods)

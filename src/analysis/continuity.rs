@@ -1,27 +1,28 @@
-//! Continuity of a capture's time stamps: missing samples, and times that go backwards. Quantities counted from sample
-//! to sample, such as the periods of a frequency, are counted within a continuous section only.
+//! Detects missing samples and times that go backwards in a capture. Quantities that depend on consecutive samples,
+//! such as the number of periods for a frequency, are counted within continuous sections only.
 //!
-//! A step of more than one and a half usual steps is a gap (U). The times in a table have few digits, so rounding can
-//! turn equal steps into steps of two lengths. Steps that differ by one digit are therefore not gaps.
+//! A time step longer than one and a half usual steps is a gap (U). The times in a table have few digits, so rounding
+//! can turn equal steps into steps of two lengths. Steps that differ by one digit are therefore not gaps.
 
 /// Factor by which a time step must exceed the usual step to be a gap.
 const GAP: f64 = 1.5;
-/// Approximate number of time steps whose median is the usual step.
+/// Approximate number of time steps from which the usual step is determined as the median.
 const SAMPLED_STEPS: usize = 1 << 14;
 /// Relative tolerance within which a time step is equal to the usual step.
 const STEP_TOLERANCE: f64 = 0.01;
-/// Minimum fraction of equal time steps. Below it, differences are attributed to the limited number of digits.
+/// Minimum fraction of equal time steps in evenly spaced samples. If fewer steps are equal, the times are assumed to be
+/// rounded.
 const EVEN_STEP_SHARE: f64 = 0.9;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Continuity {
     /// Missing samples, or `None` if the capture has no gap or no times.
     pub missing: Option<MissingSamples>,
-    /// Index of the first sample with a time earlier than that of the previous sample, counted from 0.
+    /// Index of the first sample that is earlier than its predecessor, counted from 0.
     pub back: Option<usize>,
     /// Total duration of the continuous sections in seconds, or `None` without times.
     pub stretches_s: Option<f64>,
-    /// Indices of the samples that begin a section, except the first sample.
+    /// Index of the first sample of each continuous section, except the first section.
     pub(super) breaks: Vec<usize>,
 }
 
@@ -59,7 +60,7 @@ impl Continuity {
     }
 }
 
-/// Returns the longest time step in seconds that is not a gap. Returns `None` if no time passes.
+/// Returns the longest time step in seconds that does not count as a gap. Returns `None` if the times do not advance.
 fn longest_even_step(times_s: &[f64]) -> Option<f64> {
     // An odd stride does not fall in step with a pattern of length 2ⁿ.
     let stride = (times_s.len() / SAMPLED_STEPS) | 1;

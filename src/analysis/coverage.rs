@@ -1,5 +1,5 @@
-//! Signal coverage of a capture: octants, periods, and the distance of the samples from the ellipse. A fit is valid if
-//! the points lie in at least 6 of 8 octants. See section 7 of the project's sine/cosine reference.
+//! How much of the ellipse a capture covers: octants, periods, and the distance of the samples from the ellipse. A fit
+//! is valid if the points lie in at least 6 of 8 octants. See section 7 of the project's sine/cosine reference.
 
 use std::ops::Range;
 
@@ -9,13 +9,13 @@ use super::outliers::remaining_ranges;
 /// Path of the samples along an ellipse and their distance from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coverage {
-    /// Number of octants of the corrected angle that contain at least one sample, 0 to 8.
+    /// Number of octants, 0 to 8, in which the corrected angle has at least one sample.
     pub octants: u32,
-    /// Number of periods from the lowest to the highest angle, including fractions.
+    /// Number of periods between the lowest and the highest angle, including fractions.
     pub periods: f64,
-    /// Number of periods from the first to the last sample, without gaps. It is negative if the angle decreases.
+    /// Number of periods from the first to the last sample, not counting gaps. It is negative if the angle decreases.
     pub travel_periods: f64,
-    /// Total path in both directions in periods, without gaps.
+    /// Total path in both directions in periods, not counting gaps.
     pub path_periods: f64,
     /// Number of reversals by more than half a period.
     pub reversals: usize,
@@ -25,8 +25,8 @@ pub struct Coverage {
     pub vector_v: (f64, f64),
 }
 
-/// Angle that grows over several periods. It is stored as the number of whole quarters and the vector within the
-/// current quarter.
+/// Continuous angle over several periods, stored as the number of whole quarters and the vector within the current
+/// quarter.
 #[derive(Clone, Copy)]
 pub(super) struct UnwrappedAngle {
     quarters: i64,
@@ -39,7 +39,7 @@ impl UnwrappedAngle {
         UnwrappedAngle { quarters: i64::from(quadrant_of(sine, cosine)), sine, cosine }
     }
 
-    /// Returns the angle after a movement by less than half a period to the given voltages.
+    /// Returns the angle after the signals have moved to the given voltages, by less than half a period.
     fn advanced_to(self, sine: f64, cosine: f64) -> Self {
         let step = (quadrant_of(sine, cosine) - quadrant_of(self.sine, self.cosine)).rem_euclid(4);
         let step = match step {
@@ -120,7 +120,7 @@ impl AnglePath {
         }
     }
 
-    /// Records that the angle has a new direction since the angle `at`.
+    /// Records a change of direction at the angle `at`.
     fn turn_at(&mut self, at: UnwrappedAngle, direction: Direction) {
         self.update_extremes();
         if self.direction != Direction::Unknown {
@@ -131,7 +131,7 @@ impl AnglePath {
         self.direction = direction;
     }
 
-    /// Starts a new section at an angle that was reached by an unknown path.
+    /// Starts a new section at the given angle, which follows a gap.
     fn begin_at(&mut self, here: UnwrappedAngle) {
         self.end_section();
         (self.high, self.low, self.begun, self.turned, self.here) = (here, here, here, here, here);
@@ -163,8 +163,7 @@ fn split_at_breaks(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item =
     starts.zip(inside.iter().copied().chain(std::iter::once(part.end))).map(|(start, end)| start..end)
 }
 
-/// Returns the quarter, 0 to 3, counted in the direction of increasing angle. Comparisons without branches make it
-/// fast.
+/// Returns the quadrant, 0 to 3, counted in the direction of increasing angle. It avoids branches for speed.
 fn quadrant_of(sine: f64, cosine: f64) -> i32 {
     let upper = sine > 0.0 || (sine == 0.0 && cosine >= 0.0);
     let right = cosine > 0.0 || (cosine == 0.0 && sine <= 0.0);
@@ -184,7 +183,7 @@ impl Coverage {
     }
 
     /// Follows the samples in order, except the ranges in `left_out`, which are ordered and do not overlap. Each index
-    /// in `breaks` is a sample that the angle reached by an unknown path.
+    /// in `breaks` is the first sample after a gap, across which the angle is not followed.
     pub(super) fn measure_without(
         sine: &[f64],
         cosine: &[f64],

@@ -42,7 +42,7 @@ pub enum FitError {
     /// Both channels carry the same signal, or one channel carries the inverse of the other.
     #[error("the points lie on a line")]
     Line,
-    /// The input has fewer than six distinct points, or more than one ellipse passes through them.
+    /// There are fewer than six distinct points, or more than one ellipse passes through them.
     #[error("the points do not determine a single ellipse")]
     Ambiguous,
     /// The best-fitting curve is a parabola or a hyperbola, or the points are too close to the centre.
@@ -58,14 +58,14 @@ pub enum SignalChannel {
 
 pub const MIN_POINTS: usize = 6;
 
-/// A channel is dead if its range is below this fraction of the other channel's range. Noise may reach this range.
+/// A channel whose range is below this fraction of the other channel's range is dead. Its noise may reach this range.
 const DEAD_CHANNEL_FRACTION: f64 = 0.05;
-/// Points lie on a line if the ratio of the variance across it to that along it is below this value.
+/// Points lie on a line if the ratio of the variance across the line to that along the line is below this value.
 const LINE_VARIANCE_RATIO: f64 = 1e-4;
 /// Minimum ratio of the smallest to the largest eigenvalue of the normal equations. Below it, the solution is not
 /// unique.
 const MIN_EIGENVALUE_RATIO: f64 = 1e-13;
-/// Number of times that the origin is moved to the centre of the previous ellipse.
+/// Number of times that the origin is moved to the centre of the latest ellipse.
 const CENTRING_PASSES: usize = 4;
 
 impl SignalChannel {
@@ -113,8 +113,8 @@ impl ConicCoefficients {
 }
 
 impl Ellipse {
-    /// Fits an ellipse to points given as sine and cosine in volts, in two passes over the samples. If one slice is
-    /// longer, its surplus values are ignored.
+    /// Fits an ellipse to points given as sine and cosine in volts, in two passes over the samples. If the slices
+    /// differ in length, surplus values are ignored.
     ///
     /// # Errors
     /// Returns a [`FitError`] if the points do not determine an ellipse. The caller must check that they cover the
@@ -152,7 +152,7 @@ impl Ellipse {
         )
     }
 
-    /// Returns the circle described by the corrected signals.
+    /// Returns the circle on which the corrected signals lie.
     pub fn corrected_ellipse(&self) -> Ellipse {
         let Ellipse { amplitude_v, .. } = *self;
         Ellipse { amplitude_v, offset_cosine_v: 0.0, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 }
@@ -202,8 +202,8 @@ impl EllipseCorrection {
         (x * self.tan + self.scale * (sine - self.q), x)
     }
 
-    /// Returns the factors by which changes in the cosine and the sine affect the corrected sine. The corrected cosine
-    /// changes exactly as the cosine does.
+    /// Returns how much the corrected sine changes with the cosine and with the sine. The corrected cosine changes
+    /// exactly as the cosine does.
     pub(super) fn correction_factors(&self) -> (f64, f64) {
         (self.tan, self.scale)
     }
@@ -232,7 +232,7 @@ fn ensure_nonzero_area(around_mean: &Moments) -> Result<(), FitError> {
     if 1.0 - correlation < LINE_VARIANCE_RATIO { Err(FitError::Line) } else { Ok(()) }
 }
 
-/// Builds and solves the 5 × 5 normal equations, in the scale of the moments.
+/// Builds and solves the 5 × 5 normal equations, in the moments' scaled unit.
 fn solve_normal_equations(moments: &Moments) -> Result<Ellipse, FitError> {
     /// Powers of x and y for the coefficients A to E.
     const POWERS: [(usize, usize); 5] = [(2, 0), (0, 2), (1, 1), (1, 0), (0, 1)];

@@ -1,7 +1,7 @@
-//! Effect of a drive's input circuit on the signals: signal frequency at a given speed, phase and gain of the input
-//! filter. See SICK 8010701, process data channel, and section 1 of the project's sine/cosine reference. The manual
-//! names the input resistor in the text, but the feedback resistor in the formula. The relevant resistor is the one in
-//! parallel with the capacitor.
+//! Effect of a drive's input circuit on the signals: the signal frequency at a given speed, and the phase and gain of
+//! the input filter. See SICK 8010701, process data channel, and section 1 of the project's sine/cosine reference. The
+//! manual names the input resistor in the text, but the feedback resistor in the formula. The relevant resistor is the
+//! one in parallel with the capacitor.
 
 use std::f64::consts::TAU;
 
@@ -30,7 +30,7 @@ impl InputFilter {
 }
 
 impl FilterResponse {
-    /// Returns the lag in steps of the absolute position, which are 1/32 of a period.
+    /// Returns the lag in steps of the absolute position, each of which is 1/32 of a period.
     pub fn lag_in_steps(&self) -> f64 {
         self.phase_deg / 360.0 * 32.0
     }

@@ -1,10 +1,10 @@
-//! Lissajous figure of sine over cosine as a density, as displayed by the phosphor of an oscilloscope. It holds the
-//! number of samples in each cell of a square, and the shortest and longest vector in each direction. Every sample is
-//! counted: in a cell, as outside, or as not a number. The module is independent of colours.
+//! Lissajous figure of sine over cosine as a density, like the phosphor display of an oscilloscope. It holds the number
+//! of samples in each cell of a square, and the shortest and longest vector in each direction. Samples outside the
+//! square and samples that are not numbers are counted separately. The module is independent of colours.
 
 use std::f64::consts::TAU;
 
-/// Square in the plane of the cosine (horizontal) and the sine (vertical).
+/// Square section of the plane with the cosine as the horizontal and the sine as the vertical axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlotSquare {
     pub cosine_v: f64,
@@ -26,7 +26,7 @@ pub struct SampleDensity {
     bad: u64,
 }
 
-/// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts. Without samples, it is (∞, 0).
+/// Shortest and longest amplitude vector √(sin² + cos²) in one direction, in volts, or (∞, 0) without samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VectorLengths {
     pub least_v: f64,
@@ -59,7 +59,7 @@ impl PlotSquare {
 }
 
 impl SampleDensity {
-    /// Creates an empty picture of `side` × `side` cells. `side` is limited to the range 1 to [`MAX_CELLS`]. Returns
+    /// Creates an empty density of `side` × `side` cells. `side` is limited to the range 1 to [`MAX_CELLS`]. Returns
     /// `None` for an empty square.
     pub fn new(square: PlotSquare, side: usize) -> Option<Self> {
         let PlotSquare { cosine_v, sine_v, half_v } = square;
@@ -255,7 +255,7 @@ mod tests {
     }
 
     proptest! {
-        /// Every sample is counted regardless of how the samples are split, and none is outside a square around them.
+        /// All samples are counted however they are split into calls, and none is outside a square around them.
         #[test]
         fn every_sample_is_counted(samples in proptest::collection::vec((any::<f32>(), any::<f32>()), 1..300), cut in 0_usize..300) {
             let (sine, cosine): (Vec<f64>, Vec<f64>) =

@@ -1,7 +1,7 @@
 //! Analysis of samples: times, unwrapped positions, speed and acceleration, long histories, and pictures of any range.
-//! For sine and cosine: the angle within a period, the ellipse and its correction, the quality, and the synchronisation
-//! with the absolute position. Also contains the verdicts of a device check. All functions are pure: samples and their
-//! times are arguments, and nothing waits, reads a clock or a file, or draws.
+//! For sine and cosine, it covers the angle within a period, the ellipse and its correction, the quality, and the
+//! synchronisation with the absolute position. The verdicts of a device check are also defined here. All functions are
+//! pure: samples and their times are arguments, and nothing waits, reads a clock or a file, or draws.
 //!
 //! Follows SICK 8010701 (HIPERFACE, process data channel) and Heydemann, Applied Optics 20, 3382 (1981).
 

@@ -1,6 +1,6 @@
-//! Sums of powers of two signals up to the fourth. They suffice for fitting an ellipse to any number of samples
-//! (Heydemann 1981). The sums are accumulated at a scale near one, which preserves precision in any unit, and can be
-//! moved to another origin afterwards.
+//! Sums of powers of two signals up to the fourth, which are all that is needed to fit an ellipse to any number of
+//! samples (Heydemann 1981). The sums are accumulated at a scale near one, which preserves precision in any unit, and
+//! can be moved to another origin afterwards.
 
 use super::ellipse::{Ellipse, FitError};
 
@@ -11,7 +11,7 @@ const ROW: usize = ORDER + 1;
 /// Number of samples in a partial sum. With partial sums, rounding errors grow with the square root of the number of
 /// blocks instead of the number of samples.
 const BLOCK: usize = 4096;
-/// Number of parallel sums. The processor performs their additions at the same time.
+/// Number of sums that the processor accumulates in parallel.
 const LANES: usize = 2;
 /// Powers of x and y for each sum.
 const POWERS: [(usize, usize); 14] =
@@ -41,8 +41,8 @@ struct Extremes {
 }
 
 impl Scale {
-    /// Creates a scale for samples around the given mean levels, with approximately the given amplitude, all in volts.
-    /// Signals that arrive in pieces keep the scale of the first piece.
+    /// Creates a scale for samples with approximately the given mean levels and amplitude, in volts. If signals arrive
+    /// in pieces, the scale of the first piece applies to all.
     pub fn new(sine: f64, cosine: f64, amplitude: f64) -> Self {
         let unit = if amplitude.is_finite() && amplitude > 0.0 { amplitude } else { 1.0 };
         Scale { x: cosine, y: sine, unit }

@@ -1,5 +1,5 @@
-//! Speed and acceleration from unwrapped positions. The differences cover a time range and not a number of samples, so
-//! a faster poll does not make them noisier. A difference never crosses a break.
+//! Speed and acceleration from unwrapped positions. Differences are taken over a period of time instead of a number of
+//! samples, so faster polling does not make them noisier. A difference never spans a break.
 
 use std::collections::VecDeque;
 
@@ -23,17 +23,17 @@ pub struct MotionRates {
 }
 
 impl Motion {
-    /// Divisor of the window. Positions closer together than the resulting time are thinned out, which limits memory at
-    /// any sample rate.
+    /// Divisor of the window that yields the minimum time between stored positions. Positions closer together are
+    /// thinned out, which limits memory at any sample rate.
     const RESOLUTION: i64 = 1024;
 
-    /// Creates averages over `window` nanoseconds (at least 1). If samples arrive more slowly, an average covers one
-    /// sample.
+    /// Creates averages over `window` nanoseconds, at least 1. If samples arrive more slowly than that, an average
+    /// covers one sample interval.
     pub fn with_window(window: i64) -> Self {
         Motion { window: window.max(1), recent: VecDeque::with_capacity(4 * Self::RESOLUTION as usize + 16) }
     }
 
-    /// Resets the averages, so that the next position is not related to the previous one.
+    /// Resets the averages. The next position is then treated as the first one.
     pub fn reset(&mut self) {
         self.recent.clear();
     }

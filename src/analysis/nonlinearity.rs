@@ -1,8 +1,8 @@
-//! Differential and integral non-linearity against a reference. The deviation inside one signal period is caused by
-//! offset, gain, phase and harmonics. The deviation over the revolution is caused by eccentricity, coupling and scale.
-//! The mean over one period around each sample is the integral part, and the rest is the differential part. Both are
-//! given as ± values, which are half of the peak-to-peak range. See SICK 8010701, definitions of errors, and section 6
-//! of the project's sine/cosine reference.
+//! Differential and integral non-linearity against a reference. The deviation within one signal period is caused by
+//! offset, gain, phase and harmonics, and the deviation over the revolution by eccentricity, coupling and scale. The
+//! mean over one period around each sample is the integral part, and the rest is the differential part. Both are given
+//! as ± values, which are half of the peak-to-peak range. See SICK 8010701, definitions of errors, and section 6 of the
+//! project's sine/cosine reference.
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nonlinearity {
@@ -10,7 +10,7 @@ pub struct Nonlinearity {
     pub differential_deg: f64,
     /// INL: ± deviation of the mean over one period, in mechanical degrees.
     pub integral_deg: f64,
-    /// Reference angle and both parts of the deviation with the mean removed, in mechanical degrees. Only samples
+    /// Both parts of the deviation over the reference angle, with the mean removed, in mechanical degrees. Only samples
     /// surrounded by a whole period are included.
     pub curve: Vec<Deviation>,
     /// Number of revolutions covered by the curve. The INL applies to a whole revolution only if this is at least 1.
@@ -89,8 +89,8 @@ pub fn compute_nonlinearity(
     })
 }
 
-/// Splits the error at each sample that has half a period on either side. The mean over the period integrates the
-/// straight lines between samples. The mean is therefore independent of where the samples are in the period.
+/// Splits the error into its two parts at each sample with half a period on either side. The mean over the period is
+/// that of the straight lines between samples, so it does not depend on where the samples are in the period.
 fn split(errors: &[f64], reference: &[f64], period_deg: f64, direction: f64) -> Vec<Deviation> {
     let start = reference.first().copied().unwrap_or(0.0);
     // Angles from the start, increasing in either direction of rotation.

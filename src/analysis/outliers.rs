@@ -1,6 +1,6 @@
-//! Detection of samples far from the ellipse, as caused by a relay's spark or a loose contact. A few such outliers
-//! would distort an ellipse fitted by least squares. They are found by a robust measure, the median of the distances,
-//! and are reported and left out of a second fit.
+//! Detection of samples far from the ellipse, such as those caused by a relay spark or a loose contact. Even a few such
+//! outliers would distort an ellipse fitted by least squares. They are found by a robust measure, the median of the
+//! distances, then reported and left out of a second fit.
 
 use std::ops::Range;
 
@@ -17,21 +17,21 @@ pub struct Outliers {
     pub longest: usize,
     /// Largest distance of an outlier from the ellipse, in volts.
     pub farthest_v: f64,
-    /// Ellipse through all samples and their coverage, or `None` if the samples do not determine an ellipse.
+    /// Ellipse fitted to all samples, and its coverage, or `None` if the samples do not determine an ellipse.
     pub all: Option<(Ellipse, Coverage)>,
 }
 
 /// A sample is left out if its distance exceeds this number of robust deviations. Normally distributed noise exceeds it
 /// in one of 10¹⁵ samples.
 pub const DEVIATIONS: f64 = 8.0;
-/// Fraction of the amplitude within which a sample is never an outlier, regardless of how low the noise is.
+/// Distance, as a fraction of the amplitude, within which a sample is never an outlier, however low the noise is.
 pub const MIN_SHARE: f64 = 0.02;
-/// Maximum fraction of outliers. If more samples deviate, the cause is the signal itself, and they are not outliers.
+/// Maximum fraction of outliers. If more samples deviate, they are considered part of the signal.
 pub const MAX_OUTLIER_SHARE: f64 = 0.05;
 /// Minimum number of samples required to recognise outliers.
 pub const MIN_SAMPLES: usize = 50;
 
-/// Approximate number of evenly spread samples from which medians are taken.
+/// Approximate number of evenly spread samples used to determine a median.
 const MEDIAN_SAMPLES: usize = 1 << 15;
 /// Maximum number of fits without outliers. The search ends earlier if the outliers no longer change.
 const MAX_FITS: usize = 4;
@@ -49,7 +49,7 @@ pub(super) enum OutlierResult {
     Outliers(Ellipse, Outliers),
 }
 
-/// Searches for outliers. `all` is the ellipse through all samples, if known.
+/// Searches for outliers. `all` is the ellipse fitted to all samples, if known.
 pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> OutlierResult {
     let count = sine.len().min(cosine.len());
     if count < MIN_SAMPLES {
@@ -106,7 +106,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
     OutlierResult::Outliers(ellipse, outliers)
 }
 
-/// Returns the channel that is constant apart from single samples. Returns `None` if both channels move.
+/// Returns the channel that is constant except for single samples, or `None` if both channels move.
 pub(super) fn dead_channel(sine: &[f64], cosine: &[f64]) -> Option<SignalChannel> {
     let few = sine.len().min(cosine.len()) < MIN_SAMPLES;
     ellipse_from_quantiles(sine, cosine).err().flatten().filter(|_| !few)
@@ -127,7 +127,7 @@ fn fit_excluding(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale:
     Ellipse::from_moments(&moments)
 }
 
-/// Returns an upright ellipse derived from quantiles. A few samples do not affect them.
+/// Returns an upright ellipse derived from quantiles, which a few outliers do not affect.
 ///
 /// # Errors
 /// Returns the constant channel, or `None` if both channels are constant.
@@ -177,7 +177,7 @@ fn value_at_rank(values: &mut [f64], rank: usize) -> f64 {
 
 /// Returns the ranges of samples farther from the ellipse than `limit` volts.
 fn find_outliers(sine: &[f64], cosine: &[f64], ellipse: &Ellipse, limit: f64) -> Vec<Range<usize>> {
-    /// Number of samples that are checked at a time. Usually, none of them is an outlier.
+    /// Number of samples that are checked at a time, because usually none of them is an outlier.
     const BLOCK: usize = 256;
     let correction = ellipse.correction();
     let squared = |volts: f64| volts * volts;

@@ -1,12 +1,12 @@
-//! Position error over one signal period, in electrical degrees, before and after the correction, and its harmonics.
+//! Position error over one signal period, before and after the correction, with its harmonics, in electrical degrees.
 //! See SICK 8010701, definitions of errors (the effects of offset, gain, phase and harmonics inside a period), and
 //! section 6 of the project's sine/cosine reference.
 //!
-//! Without a reference encoder, the motion is the reference. Over a few periods a shaft follows a straight line or a
-//! parabola in time, so deviations that repeat with the period are errors. Both are fitted at once: a motion for each
-//! segment of the capture, and eight harmonics of the corrected angle for all segments. If the motion does not fit such
-//! a curve, or is too short, the distance from the ellipse serves as the error. A disturbance changes both by the same
-//! amount.
+//! Without a reference encoder, the motion itself is the reference. Over a few periods a shaft follows a straight line
+//! or a parabola in time, so deviations that repeat with the period are errors. Both are fitted at once: a motion for
+//! each segment of the capture, and eight harmonics of the corrected angle for all segments. If the motion does not fit
+//! such a curve, or is too short, the distance from the ellipse serves as the error. A disturbance changes both by the
+//! same amount.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -31,11 +31,11 @@ pub struct PositionError {
     pub corrected_pp_deg: f64,
 }
 
-/// Basis on which the remaining error was measured.
+/// How the remaining error was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ErrorBasis {
-    /// The motion was steady. The error is the deviation of the samples, and the noise is the part that the harmonics
-    /// do not explain.
+    /// The motion was steady. The error is the deviation of the samples from it, and the noise is the part that the
+    /// harmonics do not explain.
     Motion { noise_deg: f64 },
     /// The distance from the ellipse was used, because the motion was not steady or the capture was too short.
     Ellipse,
@@ -55,8 +55,8 @@ const SEGMENT_SAMPLES: usize = 4096;
 const MIN_SAMPLES: usize = 3 * TERMS;
 /// Minimum number of periods. With fewer, harmonics and motion cannot be separated.
 const MIN_PERIODS: f64 = 0.95;
-/// Ratio of the noise to the value expected from the distance to the ellipse. Above this ratio, the motion was not
-/// steady.
+/// Ratio of the noise to the value expected from the distance to the ellipse, above which the motion counts as
+/// unsteady.
 const UNSTEADY_NOISE_RATIO: f64 = 3.0;
 
 type Normal = SMatrix<f64, TERMS, TERMS>;
@@ -174,7 +174,7 @@ fn fit_harmonics(
     sums.solve()
 }
 
-/// A range of samples that is fitted with its own motion.
+/// A range of consecutive samples to which a separate motion is fitted.
 struct Segment {
     times: Vec<f64>,
     sine: Vec<f64>,
@@ -203,7 +203,7 @@ impl Segment {
     }
 }
 
-/// Normal equations of the harmonics. The motions are already removed.
+/// Normal equations for the harmonics, from which the motions have been eliminated.
 struct NormalEquations {
     normal: Normal,
     right: Terms,
@@ -254,8 +254,8 @@ impl NormalEquations {
     }
 
     fn solve(self) -> Option<(Terms, f64)> {
-        /// Smallest significant eigenvalue, as a fraction of the largest one. Few samples per period cannot separate
-        /// high harmonics from low ones.
+        /// Smallest significant eigenvalue, as a fraction of the largest one. If there are few samples per period, high
+        /// harmonics cannot be distinguished from low ones.
         const MIN_EIGENVALUE_SHARE: f64 = 1e-4;
         let parts = self.normal.symmetric_eigen();
         let largest = parts.eigenvalues.max();

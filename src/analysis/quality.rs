@@ -19,20 +19,20 @@ pub enum Verdict {
 pub struct Limits {
     /// Minimum and maximum good amplitude (peak, differential) in volts.
     pub ok_v: (f64, f64),
-    /// Minimum and maximum amplitudes in volts outside which the signal is faulty.
+    /// Amplitude limits in volts outside which the signal is faulty.
     pub fault_v: (f64, f64),
     /// Largest offset as a fraction of the amplitude.
     pub offset: f64,
     /// Minimum and maximum gain ratio.
     pub gain_ratio: (f64, f64),
     pub phase_deg: f64,
-    /// Largest rms deviation from the ellipse as a fraction of the amplitude.
+    /// Largest RMS deviation from the ellipse as a fraction of the amplitude.
     pub residual: f64,
     /// Minimum and maximum mean level of REFSIN and REFCOS in volts.
     pub level_v: (f64, f64),
 }
 
-/// Family of encoders with known limits.
+/// Encoder family with known signal limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Family {
     #[default]
@@ -74,8 +74,7 @@ impl Family {
 /// A quantity that is outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QualityFinding {
-    /// The amplitude of a channel is outside its limits. The value is from the channel with the smaller or the larger
-    /// amplitude.
+    /// The amplitude of a channel is outside its limits. If both are, the worse one is reported.
     Amplitude {
         /// Peak amplitude found, in volts.
         volts: f64,
@@ -87,12 +86,12 @@ pub enum QualityFinding {
     OffsetCosine(f64),
     GainRatio(f64),
     PhaseError(f64),
-    /// Rms distance of the samples from the ellipse, relative to the amplitude. Noise, interference and harmonics cause
-    /// this distance.
+    /// RMS distance of the samples from the ellipse, relative to the amplitude. It is caused by noise, interference and
+    /// harmonics.
     Residual(f64),
 }
 
-/// Tolerance of the limits. Without it, rounding could move a value at the limit beyond it.
+/// Tolerance of the limits, so that rounding does not move a value at a limit beyond it.
 const ROUNDING_TOLERANCE: f64 = 1e-9;
 
 impl Limits {
@@ -113,8 +112,8 @@ impl Limits {
     /// Limits for TTK70: 0.9 V to 1.1 V peak to peak, mean level 2.5 V ± 5 %.
     pub const TTK70: Limits = Limits { level_v: (2.375, 2.625), ..Limits::HIPERFACE };
 
-    /// Returns the verdict on the length of a single amplitude vector. Such a vector also contains offset and gain
-    /// errors, so use the minimum and maximum over a period. Returns `None` without a signal.
+    /// Returns the verdict on the length of one amplitude vector. A single vector also contains offset and gain errors,
+    /// so use the minimum and maximum over a period. Returns `None` without a signal.
     pub fn vector_verdict(&self, sine: f64, cosine: f64) -> Option<Verdict> {
         let length = sine.hypot(cosine);
         if length.is_nan() || length == 0.0 { None } else { Some(self.amplitude_verdict(length)) }

@@ -1,6 +1,6 @@
-//! Comparison of a capture with a reference encoder: the non-linearity over one revolution, as measured and after
-//! correction. The measured angle is interpolated from sine and cosine, as a drive does. See section 6 of the project's
-//! sine/cosine reference.
+//! Comparison of a capture with a reference encoder. The result is the non-linearity over one revolution, as measured
+//! and after correction. The measured angle is interpolated from sine and cosine, as in a drive. See section 6 of the
+//! project's sine/cosine reference.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -22,10 +22,10 @@ pub enum RevolutionError {
     /// The samples or the reference are unsuitable.
     #[error(transparent)]
     Nonlinearity(#[from] NonlinearityError),
-    /// The signals do not match the reference for this number of periods per revolution.
+    /// The signals do not match the reference for the given number of periods per revolution.
     #[error("the capture has {found:.1} periods in a revolution of the reference, not {given}")]
     Periods {
-        /// Number of periods counted in a revolution of the reference.
+        /// Number of periods counted over one revolution of the reference.
         found: f64,
         given: u32,
     },
@@ -36,7 +36,7 @@ const MAX_PERIOD_DEVIATION: f64 = 0.02;
 
 impl Revolution {
     /// Compares sine and cosine in volts with the reference angle in mechanical degrees. The reference may be wrapped
-    /// or not, and turn in either direction. Samples in `left_out` are ignored, as are samples taken while the
+    /// or unwrapped and may turn in either direction. Samples in `left_out` are ignored, as are samples taken while the
     /// reference is at rest.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Complete analysis of a sine/cosine capture: the ellipse (Heydemann 1981), the quality of its fit, its coverage of
-//! the period, and the resulting position error. Single outliers are excluded throughout and reported. See sections 2,
-//! 6 and 7 of the project's sine/cosine reference.
+//! the period, and the resulting position error. Isolated outliers are reported and excluded from all results. See
+//! sections 2, 6 and 7 of the project's sine/cosine reference.
 
 use super::continuity::Continuity;
 use super::coverage::Coverage;
@@ -14,8 +14,8 @@ pub const MIN_OCTANTS: u32 = 6;
 /// cloud of noise around one point has 0.4 or more, while a residual of 0.02 already indicates a poor signal.
 pub const LARGEST_RESIDUAL: f64 = 0.25;
 
-/// Maximum median angle between samples in degrees. Above this angle, the direction is uncertain: with fewer than four
-/// samples per period, noise or a varying speed can easily increase the angle to half a period (U).
+/// Maximum median angle between samples in degrees. Beyond it, the direction is uncertain: with fewer than four samples
+/// per period, noise or a varying speed can easily increase the angle to half a period (U).
 const LARGEST_STEP_DEG: f64 = 90.0;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Analysis {
     pub samples: usize,
     /// Time between the first and last sample in seconds, or `None` if the times do not increase.
     pub duration_s: Option<f64>,
-    /// Excluded outliers and the ellipse that would include them, or `None` without outliers.
+    /// Excluded outliers with the ellipse that includes them, or `None` without outliers.
     pub outliers: Option<Outliers>,
 }
 
@@ -42,7 +42,7 @@ pub enum AnalysisError {
     /// The capture covers too little of a period for a reliable ellipse.
     #[error("the samples cover {octants} of 8 octants, but at least {least} are required", least = MIN_OCTANTS)]
     Coverage { octants: u32 },
-    /// All samples lie around one point away from zero. The signal is present, and the shaft is at rest.
+    /// All samples lie around one point away from zero, so there is a signal and the shaft is at rest.
     #[error("all samples are close to a single point")]
     AtRest,
     /// The samples are too far from the ellipse to be a sine and a cosine.
@@ -106,15 +106,15 @@ impl Analysis {
         })
     }
 
-    /// Returns the average number of periods per second over continuous sections. The frequency is negative if the
-    /// angle falls. After a reversal, the result is the positive mean of both directions. Returns `None` without times.
+    /// Returns the average number of periods per second over continuous sections. It is negative if the angle
+    /// decreases. If the direction has changed, the result is the positive mean of both directions. Returns `None`
+    /// without times.
     pub fn frequency_hz(&self) -> Option<f64> {
         let Coverage { path_periods, travel_periods, reversals, .. } = self.coverage;
         self.continuity.stretches_s.map(|seconds| if reversals > 0 { path_periods } else { travel_periods } / seconds)
     }
 
-    /// Returns whether there are enough samples per period to track the angle. The frequency is known only if this is
-    /// the case.
+    /// Returns whether there are enough samples per period to track the angle. Otherwise, the frequency is unknown.
     pub fn is_angle_tracked(&self) -> bool {
         self.step_deg <= LARGEST_STEP_DEG
     }
@@ -122,8 +122,8 @@ impl Analysis {
 
 /// Returns whether the samples scatter only slightly around a point other than zero.
 fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
-    /// Maximum RMS scatter of one channel at rest, relative to the distance of the point from zero. The value
-    /// corresponds to 6° of a signal (U).
+    /// Maximum RMS scatter of one channel at rest, relative to the distance of the point from zero. It corresponds to
+    /// 6° (U).
     const SCATTER: f64 = 0.1;
     /// Minimum distance from zero in volts. Below it, there may be no signal (U).
     const MIN_V: f64 = 0.1;

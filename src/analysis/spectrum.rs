@@ -1,4 +1,4 @@
-//! Amplitude spectrum of a sine/cosine channel, computed with realfft and a Hann window. It shows interference,
+//! Amplitude spectrum of a sine or cosine channel, computed with realfft and a Hann window. It shows interference,
 //! harmonics and noise. The gain of the window is compensated, so a sine appears with its peak amplitude.
 
 use std::f64::consts::TAU;
@@ -73,8 +73,8 @@ impl Spectrum {
         &self.amplitudes_v
     }
 
-    /// Returns the `most` highest peaks in descending order, with interpolated frequency and amplitude. Lines that
-    /// belong to a higher peak are skipped, as are those around 0 Hz, which belong to the mean.
+    /// Returns up to `most` of the highest peaks in descending order, with interpolated frequency and amplitude. Lines
+    /// that belong to a higher peak are skipped, as are those around 0 Hz, which belong to the mean.
     pub fn highest_peaks(&self, most: usize) -> Vec<SpectralLine> {
         let lines = &self.amplitudes_v;
         let mut order: Vec<usize> = (PEAK_REACH..lines.len())
@@ -99,8 +99,8 @@ impl Spectrum {
         taken.into_iter().map(|at| self.interpolate_peak(at)).collect()
     }
 
-    /// Interpolates a sine between two lines of a Hann window from the ratio of the highest line to its higher
-    /// neighbour.
+    /// Interpolates frequency and amplitude of a sine between two lines of a Hann window, from the ratio of the highest
+    /// line to its higher neighbour.
     pub(super) fn interpolate_peak(&self, at: usize) -> SpectralLine {
         let height = |at: usize| self.amplitudes_v.get(at).copied().unwrap_or(0.0);
         let (before, top, after) = (height(at.saturating_sub(1)), height(at), height(at + 1));
@@ -112,8 +112,8 @@ impl Spectrum {
     }
 }
 
-/// Returns the sample rate in hertz of equidistant times in seconds. Steps may differ by a tenth, as in times printed
-/// with few digits.
+/// Returns the sample rate in hertz of equidistant times in seconds. Steps may differ by a tenth, as in times with few
+/// digits.
 ///
 /// # Errors
 /// Returns a [`SpectrumError`] if there are fewer than eight times, or if they do not increase evenly.

@@ -17,7 +17,7 @@ pub const STEPS: u64 = 32;
 pub struct Synchroniser {
     /// Number of periods in the whole range, at least 1: the periods per revolution times the number of revolutions.
     pub periods: u64,
-    /// Lead of a correct absolute position over the analogue position, in steps of 1/32 period, or 0 if the lead is
+    /// Amount by which a correct absolute position leads the analogue position, in steps of 1/32 period, or 0 if
     /// unknown.
     pub offset_steps: f64,
     /// Whether the absolute position refers to the middle of its step instead of the beginning.
@@ -26,25 +26,24 @@ pub struct Synchroniser {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SynchronisedPosition {
-    /// Number of whole periods, below the range.
+    /// Number of whole periods, which is below the number in the range.
     pub period: u64,
     pub phase: Phase,
     /// Correction of the absolute position in periods: −1, 0 or 1.
     pub correction: i8,
     pub residual_periods: f64,
-    /// Verdict on the difference between the positions. A difference above 8/32 is a warning (the encoder's own drift
+    /// Verdict on the difference between the positions. Above 8/32 of a period it is a warning (the encoder's own drift
     /// is up to 4/32), and above 14/32 a fault (U).
     pub verdict: Verdict,
 }
 
-/// The positions differ by exactly half a period, so the period is ambiguous. Either neighbouring period could be
-/// correct.
+/// The positions differ by exactly half a period, so either neighbouring period could be the correct one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("absolute and analogue position are half a period apart")]
 pub struct AmbiguousPeriodError;
 
 impl Synchroniser {
-    /// Greatest difference of the positions in steps of 1/32 period that is not a fault (U).
+    /// Largest difference between the positions, in steps of 1/32 period, that is not a fault (U).
     pub const MAX_STEPS: f64 = 14.0;
 
     pub fn new(periods: u64) -> Self {
@@ -54,7 +53,7 @@ impl Synchroniser {
     /// Combines an absolute position in steps of 1/32 period with an analogue phase.
     ///
     /// # Errors
-    /// Returns an [`AmbiguousPeriodError`] at exactly half a period.
+    /// Returns an [`AmbiguousPeriodError`] if the positions differ by exactly half a period.
     pub fn combine(&self, absolute: u64, phase: Phase) -> Result<SynchronisedPosition, AmbiguousPeriodError> {
         /// Tolerance in steps for rounding at half a period.
         const ROUNDING_TOLERANCE: f64 = 1e-9;
@@ -80,7 +79,7 @@ impl Synchroniser {
         Ok(SynchronisedPosition { period, phase, correction: nearest as i8, residual_periods: residual, verdict })
     }
 
-    /// Returns the fine position from a quadrature counter, which counts quarters of a period.
+    /// Returns the fine position from a phase and a quadrature counter, which counts quarters of a period.
     pub fn with_quadrature(&self, quarters: u64, phase: Phase) -> (u64, Phase) {
         let nearest = (((quarters % 4) as f64 + 0.5) / 4.0 - phase.to_periods()).round();
         let range = u128::from(self.periods.max(1));
@@ -101,9 +100,9 @@ impl SynchronisedPosition {
     }
 }
 
-/// Returns the average lead of the absolute position in steps of 1/32 period over at least one turn. Differences are
-/// averaged as angles, for which 31 steps equal −1. Returns `None` without samples, or if the differences cancel each
-/// other out.
+/// Returns the average lead of the absolute position in steps of 1/32 period, from samples over at least one turn.
+/// Differences are averaged as angles, where 31 steps equal −1. Returns `None` without samples, or if the differences
+/// cancel each other out.
 pub fn measure_offset(samples: impl IntoIterator<Item = (u64, Phase)>) -> Option<f64> {
     let (mut sine, mut cosine, mut count) = (0.0, 0.0, 0_usize);
     for (absolute, phase) in samples {
@@ -124,7 +123,7 @@ mod tests {
         Phase::from_periods(periods).unwrap()
     }
 
-    /// The results match the table of section 4: periods in the range, A, φ, k, fine position, residual, verdict.
+    /// Results match the table of section 4: periods in the range, A, φ, k, fine position, residual, verdict.
     #[test]
     fn cases_match_section_4() {
         use Verdict::{Fault, Ok, Warn};
@@ -168,7 +167,7 @@ mod tests {
         }
     }
 
-    /// A true position is reconstructed anywhere if every delay is below half a period.
+    /// The true position is reconstructed throughout the range if every delay is below half a period.
     #[test]
     fn drift_below_half_a_period_is_corrected() {
         let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(64) };

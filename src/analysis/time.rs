@@ -1,9 +1,9 @@
-//! Time stamps of samples in whole nanoseconds. Differences therefore stay exact after days. The module is independent
+//! Sample time stamps in whole nanoseconds, so that differences stay exact even after days. The module is independent
 //! of any clock.
 
 use crate::units::Moment;
 
-/// Point in time in whole nanoseconds from an origin, which all samples of a history share. The origin is, for example,
+/// Point in time in whole nanoseconds from an origin that all samples of a history share. The origin is, for example,
 /// the start of a session's clock or the trigger of a capture. Earlier times are negative. The range is 292 years in
 /// both directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]

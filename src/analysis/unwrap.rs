@@ -1,5 +1,5 @@
-//! Unwrapping positions. A rotary encoder wraps from the end of its range to 0, which a plot would show as a spike of
-//! thousands of turns. Unwrapped positions serve display and speed only and are never written to a device.
+//! Unwrapping of positions. A rotary encoder wraps from the end of its range to 0, which a plot would show as a jump of
+//! thousands of turns. Unwrapped positions are only for display and speed and are never written to a device.
 
 #[derive(Clone, Copy, Debug)]
 pub struct PositionUnwrapper {
@@ -11,7 +11,7 @@ pub struct PositionUnwrapper {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnwrappedPosition {
-    /// Unwrapped position in steps. It exceeds the range after a wrap, and is negative below zero.
+    /// Unwrapped position in steps. It may exceed the range or be negative.
     pub steps: i64,
     /// Whether the path from the previous sample is unknown, because of a gap or an ambiguous step of half the range.
     /// False for the first position.
@@ -24,7 +24,7 @@ impl PositionUnwrapper {
         (range >= 2).then_some(PositionUnwrapper { range: Some(range), last: None, gap: false })
     }
 
-    /// Creates the state for an encoder that does not wrap. Its positions stay unchanged.
+    /// Creates the state for an encoder that does not wrap. Positions are returned unchanged.
     pub fn without_wrap() -> Self {
         PositionUnwrapper { range: None, last: None, gap: false }
     }
@@ -34,8 +34,8 @@ impl PositionUnwrapper {
         self.gap = true;
     }
 
-    /// Unwraps the next position word along the shortest path from the previous word. A wrap is thus an ordinary step.
-    /// Returns `None` for a word outside the range, which is treated as a gap.
+    /// Unwraps the next position word along the shortest path from the previous one, so that a wrap becomes an ordinary
+    /// step. Returns `None` for a word outside the range, which is treated as a gap.
     pub fn next(&mut self, word: i64) -> Option<UnwrappedPosition> {
         if self.range.is_some_and(|range| !(0..range).contains(&word)) {
             self.mark_gap();
@@ -117,7 +117,7 @@ mod tests {
     }
 
     proptest! {
-        /// Any walk whose steps are below half the range is reproduced.
+        /// A random walk whose steps are all below half the range is reproduced.
         #[test]
         fn a_random_walk_is_followed(range in 3_i64..1 << 40, start in 0_i64..1 << 40, walk in proptest::collection::vec(-1.0..1.0, 1..200)) {
             let mut truth = start % range;

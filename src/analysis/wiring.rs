@@ -1,5 +1,5 @@
-//! The voltages of the four wires of a sine/cosine signal against ground, named as in SICK 8010701: SIN, REFSIN, COS
-//! and REFCOS. The sample times are stored elsewhere.
+//! Voltages of the four wires of a sine/cosine signal against ground, named as in SICK 8010701: SIN, REFSIN, COS and
+//! REFCOS. The sample times are stored elsewhere.
 
 /// Voltages of the four wires. All columns have the same length.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -8,7 +8,7 @@ pub struct Wires {
     pub refsin_v: Vec<f64>,
     pub cos_v: Vec<f64>,
     pub refcos_v: Vec<f64>,
-    /// Shaft angle measured by a reference encoder, in mechanical degrees from 0 up to 360. Empty without a reference.
+    /// Shaft angle from a reference encoder, in mechanical degrees from 0 to below 360. Empty without a reference.
     pub reference_deg: Vec<f64>,
 }
 

@@ -57,10 +57,10 @@ pub struct CommonArgs {
     pub(super) trace: Option<PathBuf>,
     #[command(flatten)]
     pub(super) own: KindOptions,
-    /// Kinds of device that add options to every command. Set by parsing.
+    /// Commands of all kinds of device. Set by the argument parser.
     #[arg(skip = Commands::NONE)]
     pub(super) commands: Commands,
-    /// Log to which the command adds logbook entries. The session of the command shares this log.
+    /// Log to which the command adds its logbook entries. The command's session shares this log.
     #[arg(skip)]
     pub(super) log: SessionLog,
     /// Server through which the logbook is shared.
@@ -69,7 +69,7 @@ pub struct CommonArgs {
 }
 
 impl CommonArgs {
-    /// Returns the values of the options that the kinds of device add.
+    /// Returns the values given for the options that the kinds of device add.
     pub(super) fn given_values(&self) -> Result<TypeMap, Failure> {
         self.commands.devices().iter().try_fold(TypeMap::default(), |given, device| device.add_given(&self.own, given))
     }
@@ -292,7 +292,7 @@ pub struct Restore {
 }
 
 impl Restore {
-    /// Creates a restore of a backup that undoes a write. Restoring to a different device is never allowed.
+    /// Creates a restore that undoes a write by means of its backup. It never accepts a different device.
     pub(super) fn of_backup(file: PathBuf, undo: &UndoArgs, undone: UndoneEntry) -> Self {
         Restore {
             file,

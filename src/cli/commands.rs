@@ -1,5 +1,5 @@
-//! Commands that devices, buses and Signals add to the command line. The commands are listed in `kinds.rs`, so this
-//! module does not depend on any device.
+//! Interface through which devices, buses and the `signals` module add commands. The commands are listed in `kinds.rs`,
+//! so this module does not depend on any device.
 
 #![warn(missing_docs)]
 
@@ -86,7 +86,7 @@ impl CommandId {
     }
 }
 
-/// A kind of device on the command line. A command that the kind does not support is reported as incorrect usage.
+/// A kind of device on the command line. Unsupported commands are reported as incorrect usage.
 pub trait DeviceCommands: ProfileCommands {
     /// Returns the name of this kind of device on the command line and in profiles.
     fn name(&self) -> &'static str;
@@ -99,7 +99,7 @@ pub trait DeviceCommands: ProfileCommands {
         None
     }
 
-    /// Returns the help text of a command for this kind, with items, values and formats.
+    /// Returns the help text that this kind adds to a command: its items, values and formats.
     fn command_help(&self, _command: CommandId) -> Option<String> {
         None
     }
@@ -115,7 +115,7 @@ pub trait DeviceCommands: ProfileCommands {
         Vec::new()
     }
 
-    /// Adds the values of the common options, including those from environment variables, to `given`.
+    /// Adds the values of this kind's common options to `given`, including those from environment variables.
     ///
     /// # Errors
     /// Returns an error if a value is invalid.
@@ -138,8 +138,8 @@ pub trait DeviceCommands: ProfileCommands {
         Vec::new()
     }
 
-    /// Returns the reason why another kind does not accept an option of this kind, or `None` if there is no specific
-    /// reason.
+    /// Returns the reason why other kinds of device reject an option of this kind. Returns `None` if no specific reason
+    /// can be given.
     fn refused_option(&self, _option: &str) -> Option<String> {
         None
     }
@@ -171,24 +171,24 @@ pub trait ProfileCommands: Sync {
     /// the items that it contains are read.
     fn read_for_comparison(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body>;
 
-    /// Reads a device for a report. This reads the same values as saving a profile, and also the status of the device.
+    /// Reads a device for a report: the same values as for a profile, and the status of the device.
     fn read_for_report(&self, common: &CommonArgs, output: &Output) -> Result<DeviceReading> {
         let body = self.read_for_comparison(common, output, None)?;
         Ok(DeviceReading { body, status: None })
     }
 
-    /// Returns an instruction that names the command with which the user can write back an item that an undo leaves
-    /// unchanged, or `None` if this kind has no such command.
+    /// Returns an instruction with the command that writes back an item that an undo leaves unchanged. Returns `None`
+    /// if this kind has no such command.
     fn redo_command(&self, _kept: &KeptItem) -> Option<String> {
         None
     }
 
-    /// Returns a note that applies to every use of a profile.
+    /// Returns a note to print whenever the profile is used.
     fn profile_note(&self, _profile: &Body) -> Option<Text> {
         None
     }
 
-    /// Returns a message if the two profiles belong to different devices, or `None` if they do not.
+    /// Returns a message if the two profiles are from different devices, or `None` if they are not.
     fn device_mismatch(&self, _profile: &Body, _device: &Body) -> Option<String> {
         None
     }
@@ -207,7 +207,7 @@ pub trait CliCommand: Sync {
         Vec::new()
     }
 
-    /// Returns the report of a file that this part of the program reads. Returns `None` for any other file.
+    /// Returns the report of a file if this part of the program can read it, or `None` otherwise.
     fn report(&self, _output: &Output, _report: &ReportArgs, _context: &ReportContext<'_>) -> Option<Result<Report>> {
         None
     }
@@ -228,7 +228,7 @@ pub trait ProtocolDecoder: Sync {
     fn decode(&self, output: &Output, decode: &DecodeArgs) -> Result;
 }
 
-/// All commands of the command line, from kinds of device, protocols and other parts of the program.
+/// All commands that kinds of device, protocols and other parts of the program provide.
 #[derive(Clone, Copy)]
 pub struct Commands {
     devices: &'static [&'static dyn DeviceCommands],
@@ -268,13 +268,13 @@ impl Commands {
         self.devices.iter().flat_map(|device| device.common_options())
     }
 
-    /// Returns an explanation for an option that the chosen kind of device does not have.
+    /// Returns an explanation why the chosen kind of device does not accept an option.
     pub(super) fn option_rejection(self, option: &str, chosen: &str) -> String {
         let own = self.devices.iter().find_map(|device| device.refused_option(option));
         own.unwrap_or_else(|| format!("{option} is not for {chosen} devices"))
     }
 
-    /// Returns an error message if a common option does not exist for the chosen kind of device.
+    /// Returns an error message if a given common option does not exist for the chosen kind of device.
     pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &KindOptions) -> Option<String> {
         let own = chosen.common_options();
         let foreign = self.common_options().find(|option| {
@@ -302,7 +302,7 @@ impl Commands {
         named.ok_or_else(|| Failure::Failed(vec![format!("There are no commands for {name} devices.")]))
     }
 
-    /// Returns an error if an option does not exist for the chosen kind of device or protocol.
+    /// Returns an error message if a given option does not exist for the chosen kind of device or protocol.
     pub(super) fn foreign_option(self, command: CommandId, chosen: &str, given: &KindOptions) -> Option<String> {
         let has = |device: &&&dyn DeviceCommands, id: &clap::Id| {
             device.options(command).iter().any(|option| option.get_id() == id)
@@ -327,12 +327,12 @@ impl Commands {
 pub struct KindOptions(ArgMatches);
 
 impl KindOptions {
-    /// Reads the options that a kind of device has added.
+    /// Parses the options that a kind of device has added into its own type.
     pub(crate) fn read<O: FromArgMatches>(&self) -> Result<O> {
         parse(&self.0)
     }
 
-    /// Returns whether an option was given on the command line. A default value is not an option that was given.
+    /// Returns whether an option was given on the command line. Default values do not count.
     pub(super) fn is_given(&self, id: &str) -> bool {
         self.0.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
     }
@@ -354,7 +354,7 @@ pub(crate) fn enum_values<V: ValueEnum>() -> Vec<PossibleValue> {
     V::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect()
 }
 
-/// The options are added later, when the list of kinds is known.
+/// Adds no options here, because the list of kinds is only known later.
 impl clap::Args for KindOptions {
     fn augment_args(command: clap::Command) -> clap::Command {
         command

@@ -1,4 +1,4 @@
-//! Consent to a write, by `--yes` or by an answer on a terminal after the plan was shown.
+//! Consent to a write, given by `--yes` or at the terminal after the plan has been shown.
 
 use std::io::{IsTerminal, stderr, stdin};
 use std::path::Path;
@@ -13,8 +13,8 @@ use crate::profile::Consent;
 use crate::worker::commit::{ApprovedPlan, PlannedWrite};
 use crate::worker::{self, NotStarted};
 
-/// Returns an error if consent is impossible. Without a terminal, the user cannot be asked, and the command is rejected
-/// before anything is opened.
+/// Returns an error if consent cannot be obtained. Without a terminal, there is no way to ask the user, so the command
+/// is rejected before anything is opened.
 pub fn require_consent(consent: &ConsentArgs) -> Result<()> {
     if consent.yes || can_prompt() {
         return Ok(());
@@ -27,8 +27,8 @@ pub(crate) fn can_prompt() -> bool {
     stdin().is_terminal() && stderr().is_terminal()
 }
 
-/// Shows the plan and all other points that require consent. Asks about each of them unless the command line has
-/// already consented. Returns the approved plan.
+/// Shows the plan and all other points that require consent, and asks about each of them unless the command line has
+/// given consent. Returns the approved plan.
 pub fn confirm_plan<D: CliDevice, P: PlannedWrite>(
     runner: &Runner<D>,
     output: &Output,
@@ -54,8 +54,8 @@ pub fn confirm_plan<D: CliDevice, P: PlannedWrite>(
     Ok(ApprovedPlan { prepared, consent: granted, force_wear: consent.force_wear, undoes: consent.undoes.clone() })
 }
 
-/// Rejects a write if the device has reached its limit of write cycles, or if its write cycles are unknown. This
-/// happens before consent is requested.
+/// Rejects a write if the device has reached its limit of write cycles, or if their number is unknown. This check
+/// precedes the request for consent.
 pub fn check_wear<D>(consent: &ConsentArgs, prepared: &impl PlannedWrite) -> Result<()>
 where
     D: CliDevice,

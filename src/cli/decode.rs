@@ -1,5 +1,4 @@
-//! The part of the `decode` command shared by all kinds of devices: parsing of captured bytes, and printing of their
-//! meaning.
+//! Common part of the `decode` command for all kinds of devices: parses captured bytes and prints their meaning.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -53,8 +52,8 @@ pub(crate) fn show(output: &Output, frames: &[FrameExplanation]) -> Result {
     Err(Failure::Failed(broken))
 }
 
-/// Parses hexadecimal bytes. An argument of three or more bytes is a separate frame. Shorter arguments are joined
-/// into one frame.
+/// Parses hexadecimal bytes. If every argument has at least three bytes, each is a frame. Otherwise, all of them form
+/// one frame.
 pub(crate) fn parse_frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     let parts: Vec<Vec<u8>> = words.iter().map(|word| bytes(word)).collect::<Result<_>>()?;
     if parts.iter().all(Vec::is_empty) {

@@ -15,7 +15,7 @@ use super::{Failure, Result, Success};
 use crate::app::{Text, explain};
 use crate::store::{Entry, EntryFilter, EntryId, EntryKind, LinkedEntry, Logbook, Outcome};
 
-/// Parses a time with its offset, or a date, which begins at midnight of the system's time zone.
+/// Parses a time with its UTC offset, or a date, which means midnight in the system's time zone.
 pub(super) fn parse_date(text: &str) -> std::result::Result<Timestamp, String> {
     let midnight = |date: Date| Some(date.to_zoned(TimeZone::system()).ok()?.timestamp());
     let date = || text.parse().ok().and_then(midnight);
@@ -35,15 +35,15 @@ pub(super) fn entry_with_number(common: &CommonArgs, id: EntryId) -> Result<Entr
     entry.ok_or_else(|| Failure::Failed(vec![format!("The logbook has no entry {id}. log prints the numbers.")]))
 }
 
-/// Returns the path of the profile with the values before a write, or of the profile that was saved.
+/// Returns the path of the profile that belongs to an entry: the backup before a write, or the saved profile.
 pub(super) fn profile_of(entry: &Entry) -> Result<PathBuf> {
     let path = entry.backup.as_deref().ok_or_else(|| no_backup(entry))?;
     check_bench(entry, path)?;
     Ok(path.to_owned())
 }
 
-/// Returns an error if the backup of an entry is on another computer. A file with the same path on this computer is not
-/// the backup.
+/// Returns an error if the backup of an entry is on another computer. A local file with the same path is not that
+/// backup.
 pub(super) fn check_bench(entry: &Entry, backup: &Path) -> Result<()> {
     let Some(bench) = entry.origin.other_bench() else { return Ok(()) };
     Err(Failure::Failed(vec![
@@ -57,7 +57,7 @@ pub(super) fn no_backup(entry: &Entry) -> Failure {
     Failure::Failed(vec![format!("Entry {id} ({what}) has no backup. Only writes and saved profiles have one.")])
 }
 
-/// Returns the path of a profile. `log:ENTRY` means the backup of an entry.
+/// Resolves the path of a profile, where `log:ENTRY` means the backup of an entry.
 pub(super) fn profile_path(common: &CommonArgs, argument: &Path) -> Result<PathBuf> {
     let Some(number) = argument.to_str().and_then(|text| text.strip_prefix("log:")) else {
         return Ok(argument.to_owned());

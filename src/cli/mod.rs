@@ -1,5 +1,5 @@
-//! The command line, which provides the same functions as the window. This module parses arguments, asks for consent
-//! and prints results. The worker executes the jobs.
+//! The command line, which offers the same functions as the window. This module parses arguments, asks for consent and
+//! prints results. The worker executes the jobs.
 
 pub(crate) mod args;
 pub(crate) mod check;
@@ -54,9 +54,9 @@ pub enum Success {
 pub enum Failure {
     /// The command line was used incorrectly. The exit status is 2.
     Usage(String),
-    /// The device or the operation has failed, described in one to four lines. The exit status is 1.
+    /// The device or the operation has failed. The message has one to four lines, and the exit status is 1.
     Failed(Vec<String>),
-    /// The reader has closed the output, so nothing more can be printed.
+    /// The program that reads the output has closed the pipe, so nothing more can be printed.
     NobodyReads,
 }
 

@@ -14,7 +14,7 @@ pub struct Output {
     commands: Commands,
 }
 
-/// Aligned lines with a label and a value each.
+/// Lines that each have a label and a value, printed in aligned columns.
 #[derive(Default)]
 pub struct Lines(Vec<(String, String)>);
 
@@ -73,7 +73,7 @@ impl Output {
     }
 
     /// Prints the result of a write like [`show`](Self::show). If printing fails, the error also reports the write,
-    /// because the write has already taken place.
+    /// because it has already taken place.
     pub(super) fn show_write_result(&self, json: &Value, text: &str) -> Result<(), Failure> {
         self.show(json, text).map_err(|failure| match failure {
             Failure::Failed(lines) => {
@@ -90,8 +90,8 @@ impl Output {
     }
 }
 
-/// Returns whether an error means that the reader of a pipe has closed it. Windows has several codes for this. The
-/// standard library recognises all of them except 233, "no process is on the other end of the pipe".
+/// Returns whether an error means that the reader of the output has closed the pipe. Windows has several codes for
+/// this. The standard library recognises all of them except 233, "no process is on the other end of the pipe".
 fn is_closed_pipe(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::BrokenPipe || cfg!(windows) && error.raw_os_error() == Some(233)
 }
@@ -102,8 +102,7 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{ending}")
 }
 
-/// Prints help text unchanged. The message of an argument error is joined into one line, followed by a line with the
-/// usage.
+/// Prints help text unchanged, or the message of an argument error joined into one line and followed by the usage.
 pub(super) fn print_usage_error(error: &clap::Error) {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
     if matches!(error.kind(), DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion) {
@@ -136,7 +135,7 @@ fn show_control_characters(text: &str) -> String {
     shown
 }
 
-/// Prints the program's own warnings to stderr. Only the window writes details to a log file.
+/// Prints the program's warnings to stderr. Only the window also writes details to a log file.
 pub(super) fn log_to_stderr() {
     let subscriber = tracing_subscriber::fmt()
         .with_writer(io::stderr)

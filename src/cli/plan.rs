@@ -1,5 +1,5 @@
-//! Output of plans on the command line, for every kind of device. Each line shows an old and a new value, followed by
-//! the cost and the result.
+//! Output of write plans on the command line, for all kinds of device. Each line shows an old and a new value, followed
+//! by the cost and the result.
 
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ pub struct PlanReport {
 }
 
 impl PlanReport {
-    /// Creates the report of a plan whose steps have the same texts in plain text and JSON.
+    /// Creates the report of a plan whose steps have the same strings in plain text and JSON.
     pub fn from_plan<Base, Op: Operation>(
         plan: &Plan<Base, Op>,
         steps: Vec<PlanStep>,
@@ -36,7 +36,7 @@ impl PlanReport {
     }
 }
 
-/// Prints how the operations of a plan can be undone after the write.
+/// Prints how each operation of a plan can be undone after the write.
 pub(super) fn print_undo<P: PlannedWrite>(output: &Output, prepared: &P) {
     let texts = undo_texts(undos(prepared).map(|(item, undo)| (explain::literal_text(item), undo)));
     for text in texts {
@@ -68,7 +68,7 @@ pub struct PlanStep {
     pub item: String,
     pub old: Option<String>,
     pub new: Option<String>,
-    /// Number of write cycles of the operation. It is zero if the operation is saved together with others.
+    /// Number of write cycles that the operation takes. It is zero if the operation is saved together with others.
     pub write_cycles: u64,
 }
 
@@ -90,8 +90,8 @@ pub fn step_lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
     lines
 }
 
-/// Formats a plan with its lines and its cost. The cost line also states the write cycles recorded on this computer and
-/// the limit, if any.
+/// Formats a plan: its lines, and its cost in write cycles with the number recorded on this computer and the limit, if
+/// any.
 pub fn text<Base, Op: Operation>(
     plan: &Plan<Base, Op>,
     mut lines: Lines,

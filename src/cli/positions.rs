@@ -1,4 +1,4 @@
-//! Repeated readings of the `position` command, for every kind of device, with a count, an interval and an end.
+//! Repeated readings for the `position` command of all kinds of device, with a count and an interval.
 
 use std::time::{Duration, Instant};
 
@@ -19,7 +19,8 @@ pub fn print_readings<D: CliDevice>(
     })
 }
 
-/// Runs `job` repeatedly and passes each result or error to `show`, which returns whether it has printed a line.
+/// Runs `job` repeatedly and passes each result or error to `show`, which returns whether it has printed a line. Only
+/// printed lines count.
 pub fn try_readings<D: CliDevice>(
     runner: &mut Runner<D>,
     position: &Position,

@@ -1,4 +1,4 @@
-//! Profile commands for every kind of device: `diff`, `verify`, and the common parts of `save` and `restore`. The
+//! Profile commands for all kinds of device: `diff`, `verify`, and the common parts of `save` and `restore`. The
 //! content of the file determines the kind.
 
 use std::fmt::Display;
@@ -20,7 +20,7 @@ use crate::profile::{Body, Comparison, Profile, ProfileDocument, RestoreOptions}
 use crate::store::{Event, read_text, write_atomically};
 use crate::worker::commit::PlannedWrite;
 
-/// Reads a profile of any kind, for viewing or comparison.
+/// Reads a profile of any kind of device for display or comparison.
 pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?;
     print_profile_note(output, path, &document)?;
@@ -102,7 +102,7 @@ pub(super) fn restore(common: &CommonArgs, output: &Output, restore: &Restore) -
     output.commands().device(profile.kind())?.restore(common, output, restore, profile)
 }
 
-/// Returns the profile to restore. Returns an error before anything is opened if consent is impossible.
+/// Returns the profile to restore. Returns an error before anything is opened if consent cannot be obtained.
 pub fn profile_to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
     if !restore.dry_run {
         require_consent(&restore.consent)?;
@@ -118,7 +118,7 @@ pub(crate) fn print_missing(output: &Output, items: &[impl Display]) {
     }
 }
 
-/// Reports the mounting values of another device that are not restored.
+/// Reports the mounting-dependent values of another device, which are not restored.
 pub(crate) fn print_skipped_mounting(output: &Output, items: &[impl Display]) {
     for item in items {
         output.print_message(&format!(
@@ -127,8 +127,8 @@ pub(crate) fn print_skipped_mounting(output: &Output, items: &[impl Display]) {
     }
 }
 
-/// Writes the plan that restores a profile, or only prints it if this is a dry run. If the restore undoes a write, the
-/// plan is rejected if values have changed since that write.
+/// Writes the plan that restores a profile, or only prints it in a dry run. An undo is rejected if values have changed
+/// since the write that it undoes.
 pub fn write_restore<P: PlannedWrite>(
     common: &CommonArgs,
     output: &Output,
@@ -148,7 +148,7 @@ pub fn write_restore<P: PlannedWrite>(
     }
 }
 
-/// Returns the options of a restore, for devices without data fields.
+/// Returns the restore options for devices without data fields.
 pub fn restore_options(restore: &Restore) -> Result<RestoreOptions> {
     if !restore.copy.is_empty() || !restore.leave.is_empty() {
         return Err(Failure::Usage(
@@ -270,7 +270,8 @@ fn show_restored(
     Ok(Success::Well)
 }
 
-/// Prints the result of writing an item. `operations` were executed, and `changes` has the old and new values.
+/// Prints the result of writing an item. `operations` are the executed operations, and `changes` contains the old and
+/// new values.
 pub(crate) fn show_changes(
     output: &Output,
     item: &str,

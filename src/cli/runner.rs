@@ -1,4 +1,5 @@
-//! Opening of links and execution of jobs. Progress and codes go to stderr, and Ctrl-C goes to the worker.
+//! Opening of links and execution of jobs. Progress messages and status codes are printed to stderr, and Ctrl-C is
+//! passed on to the worker.
 
 use std::fs::File;
 use std::io::{BufWriter, IsTerminal, Write, stderr};
@@ -25,21 +26,21 @@ use crate::worker::{Device, Event, OpenError, Session, Worker};
 
 /// A device on which the command line can run jobs.
 pub trait CliDevice: Kind {
-    /// Part of a session that stays outside its thread.
+    /// Device-specific state that stays outside the worker thread.
     type Context;
-    /// Whether the line allows only one master. A connected drive may also be a master. `--only-master` confirms that
-    /// no drive is connected.
+    /// Whether the line allows only one master. A connected drive may be a second one. `--only-master` confirms that no
+    /// drive is connected.
     const HAS_ONE_MASTER: bool = false;
     /// Commands of this kind of device.
     const COMMANDS: &'static dyn DeviceCommands;
 
-    /// Returns whether the line of a link may have another master. If so, the user is asked before the first byte is
-    /// sent.
+    /// Returns whether there may be another master on the line of a link. If so, the user is asked before the first
+    /// byte is sent.
     fn may_have_other_master(_url: &LinkUrl) -> bool {
         false
     }
 
-    /// Prepares a session with the options that every command has.
+    /// Prepares a session according to the options that every command has.
     fn prepare_context(session: &mut Session<Self>, given: &TypeMap) -> Self::Context;
 
     /// Prints a message from the device immediately. The default prints nothing.
@@ -48,12 +49,12 @@ pub trait CliDevice: Kind {
     /// Describes a step for the progress bar on a terminal.
     fn describe_step(doing: &Self::JobStep) -> String;
 
-    /// Returns a message about a step for the user at the terminal. The message is printed when it changes.
+    /// Returns a message to print on the terminal during a step. It is printed each time it changes.
     fn step_message(_doing: &Self::JobStep) -> Option<String> {
         None
     }
 
-    /// Returns the reply times. Returns `None` if reply times are not measured or the link has no time-out.
+    /// Returns the measured reply times. Returns `None` if they are not measured or the link has no time-out.
     fn reply_times(_session: &Session<Self>) -> Option<ReplyTiming> {
         None
     }
@@ -67,14 +68,13 @@ pub trait CliDevice: Kind {
 
 pub struct Runner<D: CliDevice> {
     worker: Worker<D>,
-    /// Files of the user.
+    /// The user's files.
     pub(super) store: Store,
-    /// Whether Ctrl-C was pressed. This is independent of the worker's cancellation flag, which applies to a single
-    /// job.
+    /// Whether Ctrl-C was pressed. Unlike the worker's cancellation flag, it does not apply to a single job only.
     interrupted: Arc<AtomicBool>,
     patience: SlowReplyNotice,
     pub remarks: Vec<D::DeviceMessage>,
-    /// Part of the session that stays outside its thread.
+    /// Device-specific state that stays outside the worker thread.
     pub kept: D::Context,
 }
 
@@ -144,7 +144,7 @@ impl<D: CliDevice> Runner<D> {
         self.try_run(job).map_err(JobFailure::into_failure)
     }
 
-    /// Runs a job to its end. The caller handles its error.
+    /// Runs a job until it ends, and returns its error to the caller.
     pub(super) fn try_run(&mut self, job: D::Job) -> std::result::Result<D::Output, JobFailure<D>> {
         self.remarks.clear();
         let id = self.worker.submit(job).map_err(|_| JobFailure::Worker)?;
@@ -183,7 +183,7 @@ impl<D: CliDevice> Runner<D> {
         }
     }
 
-    /// Returns the next event. Returns `None` when a check is due.
+    /// Returns the next event, or `None` if a check for slow replies is due.
     fn next_event(&self) -> std::result::Result<Option<Event<D>>, JobFailure<D>> {
         let events = self.worker.events();
         let Some(left) = self.patience.time_until_check() else {
@@ -235,8 +235,7 @@ impl<D: CliDevice> JobFailure<D> {
     }
 }
 
-/// Limits the number of lines to four. If there are more sentences, those between the first and the last share one
-/// line.
+/// Limits the number of lines to four, by joining all sentences between the first and the last into one line.
 fn combine_lines(mut sentences: Vec<String>) -> Vec<String> {
     if sentences.len() > 4 {
         let last = sentences.split_off(sentences.len() - 1);
@@ -251,8 +250,8 @@ pub fn to_failure(text: &Text) -> Failure {
     Failure::Failed(vec![text.terminal_text()])
 }
 
-/// Extracts the result of a job: `result_of!(runner.run(job)?, Output::Saved(profile) => *profile)`. If the result has
-/// another type, the calling function returns an error.
+/// Extracts the result of a job: `result_of!(runner.run(job)?, Output::Saved(profile) => *profile)`. If the job has
+/// returned another result, the calling function returns an error.
 #[macro_export]
 macro_rules! result_of {
     ($result:expr, $wanted:pat => $value:expr) => {
@@ -268,7 +267,8 @@ pub fn unexpected_output(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
 }
 
-/// Asks whether a drive is on the line. Has no effect without a terminal or if the user has already confirmed.
+/// Asks whether a drive is on the line. Does not ask without a terminal or if the user has already confirmed that there
+/// is none.
 fn ask_for_other_master(common: &CommonArgs) -> Result<()> {
     if common.only_master || !can_prompt() {
         return Ok(());
@@ -321,7 +321,7 @@ impl TerminalProgressBar {
 }
 
 impl TerminalProgressBar {
-    /// Prints a line above the bar, or where the bar will be.
+    /// Prints a line above the bar, or directly if the bar is not shown yet.
     fn print_line(&self, words: &str) {
         match self.0.length() {
             Some(_) => self.0.println(words),

@@ -16,20 +16,20 @@ use crate::link::{Clock, RealClock};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{Baud, CharacterFormat, Moment};
 
-/// Time to wait for bytes while the device is idle. This is also the maximum delay of an interruption.
+/// Time to wait for bytes while the device is idle. A Ctrl-C is delayed by at most this time.
 const IDLE_WAIT: Duration = Duration::from_millis(20);
 /// Waiting time below which the thread sleeps, because socket time-outs only have the resolution of the system tick.
 const SLEEP_THRESHOLD: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
 pub trait ServableDevice: ByteDevice {
-    /// Returns the line format at `now`, or `None` if there is no serial line or the device is not receiving.
+    /// Returns the line format at `now`. Returns `None` if the device has no serial line or is not receiving.
     fn line_format(&self, _now: Moment) -> Option<CharacterFormat> {
         None
     }
 
-    /// Returns a device for another simultaneous client at the given address, or `None` if the device has a single
-    /// line. In that case, clients are served one after another.
+    /// Returns a device for another simultaneous client at the given address. Returns `None` if the device has a single
+    /// line, so that clients are served one after another.
     fn clone_for_peer(&self, _peer: Ipv4Addr) -> Option<Box<dyn ServableDevice>> {
         None
     }
@@ -101,7 +101,7 @@ impl Device {
     }
 
     /// Serves a client until it disconnects or the program is interrupted. The device adopts the client's baud rate if
-    /// it can be read.
+    /// this can be read.
     fn serve_client(&mut self, client: &mut impl SimulatorClient, ended: &AtomicBool) -> std::io::Result<()> {
         self.simulated.connect(self.clock.now());
         let mut buffer = [0; 512];
@@ -127,8 +127,8 @@ impl Device {
         Ok(())
     }
 
-    /// Adopts the baud rate of the client. The parity cannot be read at this end, and over TCP not even the baud rate
-    /// can. Properties that cannot be read are assumed to be correct.
+    /// Adopts the baud rate of the client. Over TCP, neither baud rate nor parity can be read, and on a pseudo-terminal
+    /// the parity cannot. Properties that cannot be read are assumed to match.
     fn apply_client_baud(&mut self, baud: Option<Baud>) {
         let now = self.clock.now();
         if let Some(own) = self.simulated.line_format(now) {

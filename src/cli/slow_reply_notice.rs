@@ -8,7 +8,7 @@ use crate::link::ReplyTimes;
 const FIRST_NOTICE_DELAY: Duration = Duration::from_secs(3);
 /// Interval between checks after the first notice.
 const CHECK_INTERVAL: Duration = Duration::from_millis(500);
-/// Reply time from which a device counts as slow.
+/// Reply time above which a device counts as slow.
 const SLOW_REPLY_TIME: Duration = Duration::from_millis(100);
 
 pub struct ReplyTiming {
@@ -19,7 +19,7 @@ pub struct ReplyTiming {
     pub(crate) longest: Duration,
 }
 
-/// A monitor for long commands, which reports once if slow replies delay the command.
+/// A monitor for long commands, which prints one notice if slow replies delay the command.
 pub(super) struct SlowReplyNotice {
     pace: Option<ReplyTiming>,
     look: Instant,
@@ -31,7 +31,7 @@ impl SlowReplyNotice {
         SlowReplyNotice { pace, look: Instant::now() + FIRST_NOTICE_DELAY }
     }
 
-    /// Returns the time until the next check, or `None` if there is no limit.
+    /// Returns the time until the next check, or `None` if no further check is needed.
     pub(super) fn time_until_check(&self) -> Option<Duration> {
         self.pace.as_ref().map(|_| self.look.saturating_duration_since(Instant::now()))
     }
@@ -50,8 +50,8 @@ impl SlowReplyNotice {
 }
 
 impl ReplyTiming {
-    /// Returns a message if the device has not replied yet or replies slowly. If replies may exceed the time limit, the
-    /// message recommends a longer time limit or a check of the network.
+    /// Returns a notice if the device has not replied yet or replies slowly. If replies may exceed the time limit, it
+    /// recommends a longer limit or a check of the network.
     fn message(&self) -> Option<String> {
         let (timeout, longest) = (self.timeout, self.replies.longest_reply_time());
         let more = if timeout < self.longest {

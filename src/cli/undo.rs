@@ -1,5 +1,5 @@
-//! `undo`: plans a write of the logbook back. The backup of the write is restored in the usual way, after a check that
-//! the device is the same and its values are those that the write has left.
+//! `undo`: reverts a write recorded in the logbook. Its backup is restored in the usual way, after a check that the
+//! device is the same one and still has the values that were written.
 
 use serde_json::{Value as Json, json};
 
@@ -13,17 +13,17 @@ use crate::profile::{ChangedSince, KeptItem, Redo, UndoneWrite};
 use crate::store::{DeviceKey, Entry, EntryId, EntryUid, UndoObstacle};
 use crate::worker::commit::PlannedWrite;
 
-/// Number of changed values that a refusal names.
+/// Maximum number of items that an error lists.
 const NAMED: usize = 3;
 
-/// An entry of the logbook that a restore undoes.
+/// A logbook entry that a restore undoes.
 #[derive(Clone)]
 pub(crate) struct UndoneEntry {
     entry: EntryId,
     uid: EntryUid,
     device: DeviceKey,
     write: UndoneWrite,
-    /// Items that cannot be undone, with an instruction for the user.
+    /// Items that cannot be undone, each with an instruction for the user.
     kept: Vec<(String, String)>,
 }
 
@@ -54,7 +54,7 @@ pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Res
     kind.restore(common, output, &restore, profile)
 }
 
-/// Returns what to do instead of the undo of an item, with the command of the kind if there is one.
+/// Returns an instruction for an item that cannot be undone, with a command if this kind of device has one.
 fn instruction(kind: &dyn DeviceCommands, kept: &KeptItem) -> String {
     let general = match &kept.redo {
         Redo::Write(value) => format!("write {value} again"),
@@ -100,7 +100,7 @@ impl UndoneEntry {
         &self.uid
     }
 
-    /// Rejects the undo on a different device, or if values have changed since the write.
+    /// Returns an error if the device is a different one or its values have changed since the write.
     fn check<P: PlannedWrite>(&self, common: &CommonArgs, prepared: &P) -> Result<()> {
         let (id, of) = (self.entry, &self.device);
         if let Some(found) = common.log.device().filter(|found| found != of) {
@@ -122,7 +122,7 @@ impl UndoneEntry {
         Err(Failure::Failed(lines))
     }
 
-    /// Adds the keys of an undo to the result of a restore.
+    /// Adds the details of the undo to the JSON result of a restore.
     pub(super) fn add_keys(&self, json: &mut Json, operations: &[Json]) {
         let kept: Vec<Json> =
             self.kept.iter().map(|(item, instead)| json!({"item": item, "instead": instead})).collect();
@@ -140,16 +140,16 @@ fn describe(changed: &ChangedSince) -> String {
 }
 
 impl Restore {
-    /// Rejects the undo of a write on a different device, or if values have changed since the write. Does nothing for a
-    /// restore of a profile.
+    /// Checks that an undo restores the device that was written, and that its values have not changed since. Does
+    /// nothing if a profile is restored.
     ///
     /// # Errors
-    /// Returns a failure that names the changed values.
+    /// Returns a failure with the changed values or with both devices.
     pub(super) fn check_undo<P: PlannedWrite>(&self, common: &CommonArgs, prepared: &P) -> Result<()> {
         self.undone.as_ref().map_or(Ok(()), |undone| undone.check(common, prepared))
     }
 
-    /// Returns whether an item that is left unchanged has to be reported. An undo reports only items of the write.
+    /// Returns whether to report an item that is left unchanged. An undo reports only the items of its write.
     pub(crate) fn concerns(&self, item: &str) -> bool {
         self.undone.as_ref().is_none_or(|undone| undone.write.concerns(item))
     }

@@ -1,4 +1,4 @@
-//! The files of the user, and the server of the logbook that the settings or the environment name.
+//! The user's files, and the logbook server from the settings or the environment.
 
 use std::sync::Once;
 use std::time::Duration;
@@ -10,16 +10,15 @@ use super::runner::to_failure;
 use crate::app::{CommandSettings, Text, explain};
 use crate::store::{Logbook, LogbookServer, ServerAddressError, ServerErrorKind, Store};
 
-/// Maximum time for an exchange with the server of the logbook.
+/// Maximum time for an exchange with the logbook server.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// A command may read its settings several times.
+/// Ensures that a settings problem is reported once, although a command may read the settings several times.
 static SETTINGS_REPORTED: Once = Once::new();
-/// A command names other holders before its question or at its end.
+/// Ensures that other users of the device are reported once, before the command asks for consent or at its end.
 static HOLDERS_REPORTED: Once = Once::new();
 
-/// Returns the files of the user. Entries carry the user's name as the settings demand, and are shared over the server
-/// that they name.
+/// Opens the user's files. The settings determine the user name in new logbook entries and the server that shares them.
 pub(super) fn user_store(common: &CommonArgs) -> Result<Store> {
     let store = Store::for_user().map_err(|error| to_failure(&explain::store_error_text(&error)))?;
     let CommandSettings { settings, server, problem } = CommandSettings::read(&store.settings_path());
@@ -31,13 +30,12 @@ pub(super) fn user_store(common: &CommonArgs) -> Result<Store> {
     Ok(store.with_server(common.server.clone()))
 }
 
-/// Exchanges entries with the server of the logbook, if there is one. A server that is away is reported at the end of
-/// the command.
+/// Exchanges entries with the logbook server, if any. An unavailable server is reported at the end of the command.
 pub(super) fn exchange_entries(store: &Store) {
     store.logbook_server().transfer_unless_away(&store.logbook_path(), SERVER_TIMEOUT);
 }
 
-/// Names the other programs that hold the device of this command, the first time that there are any.
+/// Reports the other programs that have the device of this command open. Only the first such report is printed.
 pub(super) fn report_other_holders(server: &LogbookServer, output: &Output) {
     let others = server.contact().others;
     if others.is_empty() {
@@ -50,7 +48,8 @@ pub(super) fn report_other_holders(server: &LogbookServer, output: &Output) {
     });
 }
 
-/// Sends the entries that the command has recorded, and reports a server that is away. The command does not fail.
+/// Sends the new entries of this command to the logbook server. If the server is unavailable, this is reported, but the
+/// command does not fail.
 pub(super) fn finish_entries(common: &CommonArgs, output: &Output) {
     common.log.complete();
     if !common.server.is_set() {

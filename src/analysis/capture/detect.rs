@@ -1,4 +1,4 @@
-//! Detection of a table's format from its first lines: delimiter, decimal separator, first row of numbers, names, units
+//! Detects the format of a table from its first lines: delimiter, decimal separator, first row of numbers, names, units
 //! and columns. The columns are named as in SICK 8010701.
 
 use super::CaptureError;
@@ -23,7 +23,7 @@ pub struct TableHints {
     pub decimal_comma: Option<bool>,
     pub columns: Option<Columns>,
     pub time_unit: Option<TimeUnit>,
-    /// Volts per unit of the sine and cosine columns, in place of the header's unit. Must be finite and not zero.
+    /// Volts per unit of the sine and cosine columns, which overrides the header's unit. Must be finite and not zero.
     pub volts_per_unit: Option<f64>,
 }
 
@@ -52,7 +52,7 @@ pub struct SampleClock {
 }
 
 impl Delimiter {
-    /// All delimiters, the least ambiguous first. The comma is last, because it may also be a decimal separator.
+    /// All delimiters, least ambiguous first. The comma is last, because it may also be a decimal separator.
     pub const ALL: [Delimiter; 3] = [Delimiter::Semicolon, Delimiter::Tab, Delimiter::Comma];
 
     pub const fn byte(self) -> u8 {
@@ -127,8 +127,8 @@ impl Layout {
     }
 }
 
-/// Removes columns whose first value does not fit. A reference angle must be a number, and an absolute position must be
-/// a whole number.
+/// Drops the reference angle column if its first value is not a number, and the absolute position column if its first
+/// value is not a whole number.
 fn drop_unsuitable_columns(columns: Columns, first: Option<&HeaderLine>, decimal_comma: bool) -> Columns {
     let read = |column: usize| {
         let field = first.and_then(|line| line.fields.get(column.checked_sub(1)?));
@@ -141,7 +141,7 @@ fn drop_unsuitable_columns(columns: Columns, first: Option<&HeaderLine>, decimal
     Columns { reference_angle: angle, absolute, ..columns }
 }
 
-/// Returns the head without a truncated last line. `read` is the number of bytes read.
+/// Returns the first bytes of the table without a truncated last line. `read` is the number of bytes read.
 fn complete_lines(head: &[u8], read: usize) -> &[u8] {
     match head.iter().rposition(|byte| *byte == b'\n') {
         Some(end) if read + 3 >= HEAD_BYTES => head.get(..=end).unwrap_or(head),
@@ -219,7 +219,7 @@ fn is_data(line: &HeaderLine, usual: usize, decimal_comma: bool) -> bool {
     (numbers == width && width > 1) || (numbers > 0 && 2 * numbers >= width && width == usual)
 }
 
-/// Returns whether a row contains at least one number and all its other fields are empty or have no value.
+/// Returns whether a row has at least one number, and all its other fields are empty or mark a missing value.
 fn is_gap(line: &HeaderLine, width: usize, decimal_comma: bool) -> bool {
     let is_text = |field: &Vec<u8>| matches!(parse_number(field, decimal_comma), CellNumber::Text);
     line.fields.len() >= width

@@ -1,4 +1,4 @@
-//! Conversion of a table to UTF-8, piece by piece. Windows programs export UTF-16 as "Unicode text".
+//! Conversion of a table to UTF-8 in pieces. Windows programs export UTF-16 as "Unicode text".
 
 use std::borrow::Cow;
 
@@ -12,7 +12,7 @@ enum Encoding {
     Utf16Be,
 }
 
-/// Decoder that converts a table to UTF-8 piece by piece and drops the byte order mark.
+/// Decoder that converts a table to UTF-8 in pieces and drops the byte order mark.
 #[derive(Debug)]
 pub(super) struct Utf8Decoder {
     encoding: Encoding,

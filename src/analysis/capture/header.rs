@@ -1,5 +1,5 @@
-//! Names and units of a table's columns. They show which columns hold time, sine and cosine. Names follow SICK 8010701:
-//! SIN, REFSIN, COS, REFCOS.
+//! Names and units of a table's columns, which determine the columns with time, sine and cosine. The names follow SICK
+//! 8010701: SIN, REFSIN, COS, REFCOS.
 
 /// Column numbers of a table, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -8,7 +8,7 @@ pub struct Columns {
     pub time: Option<usize>,
     pub sine: usize,
     pub cosine: usize,
-    /// Columns of REFSIN and REFCOS against ground. If `None`, sine and cosine are already differences.
+    /// Columns with REFSIN and REFCOS against ground. If `None`, sine and cosine are already differential.
     pub references: Option<(usize, usize)>,
     /// Column with the shaft angle of a reference encoder in degrees, if any.
     pub reference_angle: Option<usize>,
@@ -45,7 +45,7 @@ impl Columns {
         [self.sine, self.cosine, refsin, refcos].into_iter().chain(others).max().unwrap_or_default()
     }
 
-    /// Returns the same columns, but with the first column as the time, because that column counts samples.
+    /// Returns the same columns with the first one as the time column, because it contains sample numbers.
     pub(super) fn with_sample_counter(self) -> Columns {
         let others = [Some(self.sine), Some(self.cosine), self.reference_angle, self.absolute];
         let (refsin, refcos) = self.references.unzip();
@@ -141,7 +141,7 @@ fn name_without_unit(name: &str) -> String {
 }
 
 /// Returns the unit in a lower-case column name, such as `ms` in `time_ms`. The unit is in brackets or follows a space,
-/// a slash or an underscore. A name entirely in brackets is a unit as a whole, as in a line of units.
+/// a slash or an underscore. A name entirely in brackets is itself a unit, as in a line of units.
 pub(super) fn column_unit(name: &str) -> Option<&str> {
     let name = name.trim();
     let inside = name.strip_suffix([']', ')']).unwrap_or(name);

@@ -1,4 +1,4 @@
-//! Conversion of a table's bytes to samples. The text of the fields is not stored: csv-core splits the fields and
+//! Conversion of a table's bytes to samples without storing the text of the fields: csv-core splits the fields, and
 //! fast-float2 parses the numbers. The channels are those of SICK 8010701.
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
@@ -19,7 +19,7 @@ pub struct TableImport {
     ended: usize,
     last: Option<u8>,
     decoder: Utf8Decoder,
-    /// Line number of the first skipped row, with the error for its missing value.
+    /// Line number of the first skipped row, and the error for its missing value.
     first_left_out: Option<(u64, CaptureError)>,
     taken: ColumnChoice,
     capture: Capture,
@@ -44,13 +44,13 @@ pub(super) enum CellNumber {
 
 /// Maximum length of a row in bytes. Input with a longer row is not a table.
 const LONGEST_ROW: usize = 1 << 20;
-/// Minimum number of rows in a measurement. A shorter table is rejected at its first missing value.
+/// Minimum number of rows in a capture. A shorter table is rejected at its first missing value.
 const MIN_ROWS: u64 = 6;
 /// Maximum number of characters of an invalid field shown in a message.
 const MAX_EXCERPT_CHARS: usize = 24;
 
 impl TableImport {
-    /// Begins an import with the first [`HEAD_BYTES`] bytes of a table, or with all bytes of a shorter table. The bytes
+    /// Begins an import with the first [`HEAD_BYTES`] bytes of a table, or with the whole of a shorter table. The bytes
     /// are only examined, and must also be passed to [`process`](Self::process).
     ///
     /// # Errors
@@ -257,7 +257,7 @@ impl ColumnChoice {
         }
     }
 
-    /// Parses a value. The inner error means that the instrument recorded no value.
+    /// Parses a value. The inner error means that the instrument has recorded no value.
     fn value(
         &self,
         row: &[u8],
@@ -285,8 +285,8 @@ impl ColumnChoice {
     }
 }
 
-/// Returns whether a field means "no value" in an instrument's notation. Such a field is empty, has only dashes, or
-/// reports an overload.
+/// Returns whether a field marks a missing value in the notation of an instrument. Such a field is empty, has only
+/// dashes, or reports an overload.
 pub(super) fn is_missing_value(field: &[u8]) -> bool {
     const KNOWN_WORDS: [&str; 10] =
         ["overload", "overrange", "overflow", "ovld", "ol", "over", "clipped", "\u{221e}", "-\u{221e}", "n/a"];
@@ -318,7 +318,7 @@ pub(super) fn parse_number(field: &[u8], comma: bool) -> CellNumber {
 }
 
 fn parse_with_decimal_comma(field: &[u8], comma: usize) -> Option<f64> {
-    /// Maximum length of a number. No double with sign and exponent needs as many digits.
+    /// Maximum length of a number in bytes. No `f64` needs as many digits, including its sign and exponent.
     const MAX_NUMBER_LEN: usize = 64;
     let mut copy = [0; MAX_NUMBER_LEN];
     let copy = copy.get_mut(..field.len())?;

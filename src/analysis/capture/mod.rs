@@ -31,8 +31,7 @@ pub struct Capture {
     pub reference_deg: Option<Vec<f64>>,
     /// Absolute positions in steps of 1/32 period, if the table contains them.
     pub absolute: Option<Vec<i64>>,
-    /// Number of skipped rows. They have a time but no measured value (empty, NaN or overload), or are a truncated last
-    /// line.
+    /// Number of skipped rows: those without a measured value (empty, NaN or overload), and a truncated last line.
     pub left_out: u64,
 }
 
@@ -52,7 +51,7 @@ pub enum CaptureError {
     NoNumbers,
     #[error("it has one column")]
     OneColumn,
-    /// The table has too few columns, and their names do not show which one is missing.
+    /// The table has too few columns, and their names do not show which ones are missing.
     #[error("it has {columns} columns")]
     TooFewColumns { columns: usize },
     /// A row ends before a required column.
@@ -80,7 +79,7 @@ pub enum CaptureError {
         column: usize,
         text: String,
     },
-    /// A time is NaN or infinite. In a table with too few rows, this is also the error for such a value.
+    /// A time is NaN or infinite. In a very short table, the cause may also be a measured value.
     #[error("row {row}, column {column}: {text} is not finite")]
     NotFinite {
         /// Line number in the file, counted from 1.
@@ -98,13 +97,14 @@ pub enum CaptureError {
         /// Line number in the file of the first row without a measured value, counted from 1.
         row: u64,
     },
-    /// The header names a start time and an increment, but the line below does not contain their values.
+    /// The header has columns for a start time and an increment, but the line below does not contain their values.
     #[error("the header contains Start and Increment, but row {row} has no numbers for them")]
     NoSampleClock {
         /// Line number in the file, counted from 1.
         row: u64,
     },
-    /// The header gives a start time and an increment, but a field in the sample number column is not a sample number.
+    /// The header has a start time and an increment, but the first column contains something other than a sample
+    /// number.
     #[error(
         "row {row}, column {column}: {text} is not a sample number, although the header contains Start and Increment"
     )]
@@ -115,7 +115,7 @@ pub enum CaptureError {
         column: usize,
         text: String,
     },
-    /// A quotation mark is not closed, so everything after it belongs to one field.
+    /// A quotation mark is not closed, so the rest of the file would be a single field.
     #[error("row {row} has no closing quotation mark")]
     OpenQuote {
         /// Line number in the file, counted from 1.

@@ -157,7 +157,7 @@ fn reference_and_absolute_position_columns_are_recognized() {
     assert_eq!(error, CaptureError::ShortRow { row: 3, columns: 3, needed: 4 });
 }
 
-/// The first column of an oscilloscope that writes Start and Increment counts samples (issue 22.13).
+/// If an oscilloscope writes Start and Increment, the first column contains sample numbers (issue 22.13).
 #[test]
 fn start_and_increment_define_the_times() {
     let text =
@@ -242,7 +242,7 @@ fn encodings_and_rows_of_units_do_not_reject_a_table() {
     }
 }
 
-/// Rows without a value before the first complete one do not hide the names and units of the columns (issue 22.13).
+/// Rows with missing values before the first complete row do not hide the names and units of the columns (issue 22.13).
 #[test]
 fn leading_rows_without_a_value_do_not_hide_the_header() {
     let rows = "2,3,4\n3,4,5\n4,5,6\n5,6,7\n6,7,8\n7,8,9\n";
@@ -255,7 +255,8 @@ fn leading_rows_without_a_value_do_not_hide_the_header() {
     assert_eq!((layout.names, capture.left_out, capture.sine_v.len()), (Vec::new(), 2, 6), "without names");
 }
 
-/// A truncated last line is skipped, but not the text of several lines after an open quotation mark (issue 22.13).
+/// A truncated last line is skipped. After an open quotation mark, however, several lines would be lost, which is an
+/// error (issue 22.13).
 #[test]
 fn an_unclosed_quotation_mark_swallows_no_rows() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";

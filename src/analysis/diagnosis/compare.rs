@@ -1,5 +1,6 @@
-//! Comparison of two captures of one signal, for example with the drive off and on. The result lists what became worse,
-//! what only changed, and what cannot be compared. Both captures must be diagnosed with the same limits.
+//! Comparison of two captures of the same signal, for example with the drive off and on. The result lists what has
+//! become worse, what has merely changed, and what cannot be compared. Both captures must be diagnosed with the same
+//! limits.
 
 use std::mem::discriminant;
 
@@ -20,7 +21,7 @@ pub struct DiagnosisChanges {
 pub enum ComparisonObstacle {
     NoEllipseBefore,
     NoEllipseAfter,
-    /// One of the captures has no spectrum. Hum, interference and noise cannot be compared without it.
+    /// One of the captures has no spectrum, so hum, interference and noise cannot be compared.
     NoSpectrum,
 }
 
@@ -30,7 +31,7 @@ const DISTURBANCE_INCREASE: f64 = 1.5;
 const LIMIT_EXCESS_INCREASE: f64 = 1.1;
 /// Minimum noise increase that is reported, as a fraction of the amplitude.
 const MIN_NOISE: f64 = 0.001;
-/// Minimum relative difference of an amplitude that is reported as a change.
+/// Minimum relative change of an amplitude that is reported.
 const AMPLITUDE: f64 = 0.02;
 
 pub fn compare(before: &Diagnosis, after: &Diagnosis) -> DiagnosisChanges {
@@ -105,7 +106,7 @@ fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -
         || comparable && finding_magnitude(&finding.kind) >= factor * finding_magnitude(&earlier.kind)
 }
 
-/// Returns whether the earlier finding is of the same kind as the later one, or a worse form of it.
+/// Returns whether the earlier finding is of the same kind as the later one, or of a worse kind.
 fn is_same_or_worse(earlier: &FindingKind, later: &FindingKind) -> bool {
     match (earlier, later) {
         (FindingKind::Limit(earlier), FindingKind::Limit(later)) => discriminant(earlier) == discriminant(later),

@@ -51,8 +51,8 @@ pub enum FindingKind {
         /// Combined peak of all mains lines, in volts.
         volts: f64,
         share: f64,
-        /// Whether the hum is in phase and about equally strong in both channels, as when the screen or the ground
-        /// couples it in.
+        /// Whether the hum is in phase and about equally strong in both channels, as if coupled in through the cable
+        /// screen or the ground.
         common: bool,
     },
     /// The spectrum contains a line that is not a harmonic of the signal.
@@ -69,8 +69,8 @@ pub enum FindingKind {
         volts: f64,
         share: f64,
     },
-    /// The signal deviates from the ellipse `order` times per period. The cause is harmonics of the orders one below
-    /// and one above.
+    /// The signal deviates from the ellipse `order` times per period, because of harmonics of the orders one below and
+    /// one above.
     Harmonics {
         /// Repetitions per period, 3 to 8.
         order: usize,
@@ -85,7 +85,7 @@ pub enum FindingKind {
         samples: f64,
     },
     Modulation {
-        /// Half the difference between the largest and smallest amplitudes, divided by the mean amplitude.
+        /// Half the difference between the maximum and minimum amplitude, as a fraction of the mean amplitude.
         share: f64,
     },
     /// The capture contains isolated outliers, which were left out of the fit.
@@ -96,7 +96,7 @@ pub enum FindingKind {
     },
     LetsGo {
         count: usize,
-        /// Length of the longest run in samples.
+        /// Length of the longest interruption in samples.
         longest: usize,
     },
     Missing {
@@ -127,7 +127,7 @@ pub enum FindingKind {
         /// Peak-to-peak position error after the correction, in electrical degrees.
         corrected_deg: f64,
     },
-    /// Both channels have the mean level of a single wire. No reference was subtracted.
+    /// Both channels have the mean level of a single wire, so no reference was subtracted.
     SingleEnded {
         /// Mean of the sine channel in volts.
         sine_v: f64,
@@ -136,10 +136,10 @@ pub enum FindingKind {
     NoiseRose {
         /// RMS noise of the first capture in volts.
         from_v: f64,
-        /// Peak amplitude in the second capture, in volts.
+        /// RMS noise of the second capture in volts.
         to_v: f64,
     },
-    /// The second of two captures contains an interference line that is weaker or missing in the first one.
+    /// The interference at this frequency is stronger in the second capture, or is new.
     InterferenceRose {
         frequency_hz: f64,
         /// Peak in the first capture, in volts, or 0 if no interference was visible.
@@ -152,7 +152,7 @@ pub enum FindingKind {
     AmplitudeChanged {
         /// Peak amplitude in the first capture, in volts.
         from_v: f64,
-        /// RMS noise of the second capture in volts.
+        /// Peak amplitude in the second capture, in volts.
         to_v: f64,
     },
 }
@@ -164,6 +164,6 @@ pub enum StuckLevel {
     Together,
     Ground(Wire),
     Supply(Wire),
-    /// The wires differ by this voltage. One is shorted, or it is open and no resistor joins the two.
+    /// The wires differ by this voltage. Either one is shorted, or one is open and no resistor joins the two.
     Apart(f64),
 }

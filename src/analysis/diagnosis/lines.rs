@@ -1,10 +1,10 @@
 //! Detection of spectral lines that are not harmonics of the signal: interference from a drive, the mains or a
 //! switching supply.
 //!
-//! An uneven motion also adds lines beside those of the signal, and so does an amplitude that varies over the
-//! revolution. The direction distinguishes such lines from interference. External interference moves the vector of both
-//! channels in any direction, and on average half of it is along the radius. An uneven motion moves the vector only
-//! along the circle, and an uneven amplitude only along the radius.
+//! An uneven motion also adds lines next to those of the signal, and so does an amplitude that varies over the
+//! revolution. They can be distinguished from interference by their direction. External interference moves the vector
+//! of both channels in any direction, and on average half of it is along the radius. An uneven motion moves the vector
+//! only along the circle, and an uneven amplitude only along the radius.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -18,21 +18,21 @@ use crate::analysis::spectrum::{Spectrum, sample_rate_hz};
 pub(super) const MAINS_HZ: [f64; 2] = [50.0, 60.0];
 /// Highest multiple of the mains frequency that is attributed to the mains.
 const MULTIPLES: f64 = 10.0;
-/// Line spacing of the spectrum above which no line is attributed to the mains.
+/// Largest line spacing of the spectrum at which lines are attributed to the mains.
 const MAINS_SPACING_HZ: f64 = 10.0;
 
 /// Preferred minimum length of the examined record in seconds, equal to ten periods of 50 Hz mains.
 const PREFERRED_SECONDS: f64 = 0.2;
 /// Minimum and maximum number of samples in the spectrum.
 const SAMPLES: (usize, usize) = (1 << 16, 1 << 20);
-/// Minimum number of periods. With fewer, the signal's own line covers the whole spectrum.
+/// Minimum number of signal periods. With fewer, the signal's own line would cover the whole spectrum.
 const MIN_PERIODS: f64 = 8.0;
 /// Number of signal harmonics that are skipped at a steady speed and at a varying speed. At a varying speed, the wide
 /// harmonics cover much of the spectrum and do not stand out as lines, so fewer are skipped.
 const HARMONICS: (usize, usize) = (25, 5);
 /// Number of lines on each side of a harmonic that belong to it in a Hann window.
 const HARMONIC_HALF_WIDTH: usize = 3;
-/// Lines above this fraction of the peak belong to the signal's line.
+/// Lines next to the signal's peak and above this fraction of it belong to the signal.
 const WIDTH: f64 = 0.01;
 /// Number of neighbouring lines on each side from which the noise is determined.
 const NEIGHBOURS: usize = 50;
@@ -40,7 +40,7 @@ const NEIGHBOURS: usize = 50;
 const LINE_TO_NOISE_RATIO: f64 = 6.0;
 /// Maximum number of lines reported.
 const MAX_LINES: usize = 8;
-/// Permitted radial fraction of an interference line. The radius is the direction of the signal vector.
+/// Range of the radial fraction of an interference line, where radial means in the direction of the signal vector.
 const RADIAL_SHARE: Range<f64> = 0.25..0.75;
 /// Maximum phase difference between channels that are in phase, in radians.
 const IN_PHASE_RAD: f64 = TAU / 12.0;
@@ -57,7 +57,7 @@ pub struct Interference {
     pub mains_hz: Option<f64>,
 }
 
-/// Spectral line with its contribution to the distance from the ellipse.
+/// Spectral line, and its contribution to the distance from the ellipse.
 struct StrongLine {
     line: Interference,
     radial_v2: f64,
@@ -126,7 +126,7 @@ pub(super) fn find_interference(samples: &Samples<'_>, analysis: &Analysis) -> O
     Some(SpectrumContent { lines, noise_v, spacing_hz, radial_v2 })
 }
 
-/// Replaces each outlier with the preceding value. A spike would raise every line.
+/// Replaces each outlier with the preceding value, because a spike would raise all spectral lines.
 fn replace_outliers(values: &mut [f64], start: usize, analysis: &Analysis) {
     let end = start + values.len();
     let stretches = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
@@ -143,8 +143,8 @@ fn magnitude_at(lines: &[f64], at: usize) -> f64 {
     lines.get(at).copied().unwrap_or(0.0)
 }
 
-/// Returns a mask of the lines that belong to the signal. These are the fundamental and its harmonics, including
-/// harmonics aliased at half the sample rate.
+/// Returns a mask of the lines that belong to the signal: the fundamental and its harmonics, including those aliased at
+/// half the sample rate.
 fn signal(both: &[f64]) -> Vec<bool> {
     let mut belongs = vec![false; both.len()];
     let first = HARMONIC_HALF_WIDTH.min(both.len());
@@ -205,8 +205,8 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     (middle < values.len()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Assigns lines to a mains frequency. 300 Hz and 600 Hz are multiples of both mains frequencies, so the other lines
-/// decide.
+/// Assigns lines to a mains frequency. The multiples 300 Hz and 600 Hz are shared by both mains frequencies, so the
+/// other lines decide.
 fn assign_mains_frequencies(lines: &mut [Interference], spacing_hz: f64) {
     if spacing_hz > MAINS_SPACING_HZ {
         return;
@@ -247,7 +247,7 @@ impl Complex {
     }
 }
 
-/// Examination of a single frequency in both channels and in the radial component.
+/// Measures a single frequency in both channels and in the radial component.
 struct FrequencyProbe<'a> {
     sine: &'a [f64],
     cosine: &'a [f64],

@@ -1,7 +1,7 @@
-//! Diagnosis of a recorded signal: the faults and their likely causes, such as a broken wire, the screen, a drive or
-//! the scale. The parameter limits are those of the encoder family (`quality`). Wiring faults are recognised by the
-//! distribution of the samples, by spectral lines, and by effects that repeat with the period or the revolution. See
-//! sections 1 and 2 of the project's sine/cosine reference.
+//! Diagnosis of a recorded signal: its faults and their likely causes, such as a broken wire, the cable screen, a drive
+//! or the encoder's scale. The parameter limits are those of the encoder family (`quality`). Wiring faults are
+//! recognised by the distribution of the samples, by spectral lines, and by effects that repeat with the period or the
+//! revolution. See sections 1 and 2 of the project's sine/cosine reference.
 //!
 //! Thresholds without a source are assumptions (U) and are collected below.
 
@@ -26,20 +26,20 @@ pub const MIN_LINE: f64 = 0.002;
 /// A disturbance of at least this fraction of the amplitude is a warning instead of a notice. It corresponds to an
 /// error of 0.6 electrical degrees.
 pub const WARNING_SHARE: f64 = 0.01;
-/// Range of the amplitude ratio that indicates that the weaker channel has lost one of its two wires.
+/// Range of the amplitude ratio for which the weaker channel has probably lost one of its two wires.
 const HALF_AMPLITUDE_RATIO: (f64, f64) = (0.4, 0.6);
 /// Maximum voltage difference between two wires at the same level.
 const SAME_LEVEL_V: f64 = 0.1;
-/// Levels in volts below and above which a wire is shorted to ground or to a supply.
+/// Levels in volts: a wire below the first is shorted to ground, and a wire above the second to a supply.
 const RAILS_V: (f64, f64) = (0.5, 4.5);
-/// Spikes are a warning if more than this fraction of the samples is excluded from the fit.
+/// Fraction of samples excluded from the fit above which spikes are reported as a warning.
 const MANY_SPIKES: f64 = 1e-3;
 /// Minimum number of consecutive outliers that indicate an intermittent contact. Fewer outliers are a spike.
 const INTERMITTENT_SAMPLES: usize = 16;
-/// Amplitude modulation over a revolution from which it is reported as a notice and as a warning.
+/// Amplitude modulation over a revolution at which a notice and a warning are reported.
 const MODULATION: (f64, f64) = (0.03, 0.1);
 
-/// Fraction of the residual's mean square that other findings must explain.
+/// Fraction of the residual's mean square that other findings must account for.
 const EXPLAINED_FRACTION: f64 = 0.7;
 
 #[derive(Clone, Copy, Debug)]
@@ -110,8 +110,8 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
 }
 
 impl Diagnosis {
-    /// Returns the diagnosis under other limits. The samples are not needed: findings that depend on limits are derived
-    /// again from the analysis and from the mean levels of REFSIN and REFCOS in volts.
+    /// Returns the diagnosis with different limits. The samples are not needed: the findings that depend on limits are
+    /// derived from the analysis and from the mean levels of REFSIN and REFCOS in volts.
     #[must_use]
     pub fn with_new_limits(
         &self,
@@ -151,7 +151,7 @@ fn severity(share: f64) -> Severity {
     if share >= WARNING_SHARE { Severity::Warning } else { Severity::Notice }
 }
 
-/// Reports mean levels of REFSIN and REFCOS, in volts, that are outside their limits.
+/// Reports REFSIN and REFCOS if their mean levels, in volts, are outside their limits.
 fn check_mean_levels(
     levels_v: Option<(Option<f64>, Option<f64>)>,
     limits: &Limits,
@@ -200,8 +200,8 @@ fn stuck_level(record: &Record<'_>, channel: SignalChannel) -> StuckLevel {
     }
 }
 
-/// Checks the ellipse against its limits. Deviations in amplitude and gain are attributed to a lost wire if a channel
-/// has one.
+/// Checks the ellipse against its limits. If a channel has lost a wire, deviations in amplitude and gain are attributed
+/// to that.
 fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ratio = analysis.ellipse.gain_ratio;
     let half = if is_within(1.0 / ratio, HALF_AMPLITUDE_RATIO) {

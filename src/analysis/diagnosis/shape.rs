@@ -1,5 +1,4 @@
-//! Detection of effects that repeat with the period or the revolution, or occur at an end of the range. These are
-//! harmonics of the scale, clipped channels, and an amplitude that varies over the revolution. None of the methods
+//! Detection of harmonics, clipped channels, and an amplitude that varies over the revolution. None of the methods
 //! needs evenly spaced samples.
 
 use std::f64::consts::TAU;
@@ -16,20 +15,22 @@ const SAMPLES: usize = 1 << 18;
 /// Orders examined in the averaged distance from the ellipse. The fit absorbs the first two.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=8;
 const REVOLUTION_SECTORS: usize = 36;
-/// Number of samples per period that suffices to follow the angle.
+/// Number of samples per period sufficient to follow the angle.
 const SAMPLES_PER_PERIOD: f64 = 16.0;
 
-/// Maximum distance of a sample from the end of the range to be at that end, as a fraction of the amplitude.
+/// Distance from the end of the range, as a fraction of the amplitude, within which a sample counts as being at that
+/// end.
 const END_DISTANCE: f64 = 0.002;
-/// A channel is clipped if at least this fraction of its samples is at the end of the range. An unclipped sine has a
-/// third of this fraction at that end: √(2·0.002)/π = 2 %.
+/// Minimum fraction of samples at the end of the range in a clipped channel. An unclipped sine has a third of this
+/// fraction there: √(2·0.002)/π = 2 %.
 const CLIPPED_FRACTION: f64 = 3.0 * 0.0201;
-/// Minimum number of periods. All samples of a shaft at rest are at one level, which looks like clipping.
+/// Minimum number of periods for the detection of clipping. If the shaft is at rest, all samples are at one level,
+/// which looks like clipping.
 const MIN_PERIODS: f64 = 2.0;
 /// Minimum RMS distance of a clipped sine from its ellipse, as a fraction of the amplitude.
 const MIN_RESIDUAL: f64 = 0.002;
 
-/// Returns the strongest order of the distance from the ellipse over the period, and its peak as a fraction of the
+/// Returns the strongest order in the distance from the ellipse over the period, and its peak as a fraction of the
 /// amplitude. Returns `None` if part of the period has no samples.
 pub(super) fn strongest_harmonic(samples: &Samples<'_>, analysis: &Analysis) -> Option<(usize, f64)> {
     let correction = analysis.ellipse.correction();

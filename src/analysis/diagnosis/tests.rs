@@ -1,4 +1,4 @@
-//! Tests with calculated signals that have one fault each, and with good signals.
+//! Tests with synthetic signals that are good or have a single fault.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ mod trust;
 const RATE: f64 = 100_000.0;
 const COUNT: usize = 40_000;
 
-/// A calculated capture of sine and cosine with an amplitude of 0.5 V.
+/// A synthetic capture of sine and cosine with an amplitude of 0.5 V.
 struct Made {
     time: Vec<f64>,
     sine: Vec<f64>,
@@ -18,8 +18,8 @@ struct Made {
     periods: Option<u32>,
 }
 
-/// Returns 40 000 samples over 0.4 s with 0.5 mV of noise. `motion` converts seconds to periods, and `disturbed`
-/// changes sine and cosine.
+/// Returns a synthetic capture of 40 000 samples over 0.4 s, with 0.5 mV of noise. `motion` converts seconds to
+/// periods, and `disturbed` changes sine and cosine.
 fn made(motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64, f64, (f64, f64)) -> (f64, f64)) -> Made {
     let mut random = fastrand::Rng::with_seed(3);
     // The sum of four uniformly distributed numbers has a variance of a third.
@@ -62,7 +62,7 @@ impl Made {
         diagnose(&record, Analysis::from_samples(record.samples).as_ref(), &Limits::HIPERFACE)
     }
 
-    /// Returns the only finding. If it is a disturbance, uncertain parameters are also permitted.
+    /// Returns the only finding, apart from a warning about uncertain parameters.
     #[track_caller]
     fn finding_text(&self) -> DiagnosisFinding {
         let mut found = self.diagnosed().findings;

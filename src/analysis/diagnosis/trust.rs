@@ -1,16 +1,17 @@
-//! Reasons why the results of an analysis may be wrong: gaps in the times, a reversal, few samples per period,
-//! disturbances in the samples of the ellipse, and columns that are not differences.
+//! Detection of unreliable results: gaps in the times, a reversal, few samples per period, disturbed samples, and
+//! columns recorded against ground.
 
 use super::{DiagnosisFinding, FindingKind, OutOfLimits, Severity, WARNING_SHARE};
 use crate::analysis::ellipse::Ellipse;
 use crate::analysis::position_error::ErrorBasis;
 use crate::analysis::signal_analysis::Analysis;
 
-/// Range of the mean level, in volts, that identifies a single wire. A single wire has 2.0 V to 3.0 V and 0.5 Vpp. The
-/// range has a margin for signals outside their limits. See section 1 of the project's sine/cosine reference.
+/// Range of the mean level, in volts, that identifies a single wire. The manual states 2.0 V to 3.0 V and 0.5 Vpp, and
+/// the range adds a margin for signals outside their limits. See section 1 of the project's sine/cosine reference.
 const WIRE_LEVEL_V: (f64, f64) = (1.5, 3.5);
 const WIRE_AMPLITUDE_V: (f64, f64) = (0.1, 0.6);
-/// Factor by which a harmful correction increases the error. The increase must also exceed `HARMFUL_EXCESS_DEG`.
+/// Factor by which a correction must increase the error to be harmful. The increase must also exceed
+/// `HARMFUL_EXCESS_DEG`.
 const HARMFUL_FACTOR: f64 = 1.1;
 const HARMFUL_EXCESS_DEG: f64 = 0.2;
 
@@ -29,8 +30,9 @@ pub(super) fn check_times(analysis: &Analysis, say: &mut dyn FnMut(Severity, Fin
     }
 }
 
-/// Checks whether the ellipse mistakes harmonics for gain or phase errors. Such a correction doubles the harmonics.
-/// Only an error measured from the motion reveals this, because the distance from the ellipse contains noise.
+/// Checks whether the fit has mistaken harmonics for gain or phase errors, in which case the correction doubles the
+/// harmonics. Only an error measured from the motion reveals this, because the distance from the ellipse contains
+/// noise.
 pub(super) fn check_correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ErrorBasis::Motion { noise_deg } = analysis.error.basis else { return };
     let (raw_deg, corrected_deg) = (analysis.error.raw_peak_to_peak_deg(), analysis.error.corrected_pp_deg);
@@ -39,7 +41,7 @@ pub(super) fn check_correction(analysis: &Analysis, say: &mut dyn FnMut(Severity
     }
 }
 
-/// Returns the uncertainty of the ellipse. This is approximately the combined magnitude of the disturbances found, as a
+/// Returns the uncertainty of the ellipse, which is approximately the combined magnitude of all disturbances as a
 /// fraction of the amplitude.
 pub(super) fn uncertainty_finding(findings: &[DiagnosisFinding]) -> Option<FindingKind> {
     let share = |finding: &DiagnosisFinding| match finding.kind {
@@ -63,8 +65,8 @@ pub(super) fn detect_single_ended(ellipse: &Ellipse) -> Option<FindingKind> {
     (levels && amplitudes).then_some(FindingKind::SingleEnded { sine_v, cosine_v })
 }
 
-/// Returns whether a finding results from single-ended columns. Such columns have the wire's level as their offset and
-/// half the amplitude.
+/// Returns whether a finding is explained by single-ended columns, which have half the amplitude and the wire's level
+/// as their offset.
 pub(super) fn is_caused_by_single_ended(found: &OutOfLimits) -> bool {
     matches!(found, OutOfLimits::Amplitude { .. } | OutOfLimits::OffsetSine(_) | OutOfLimits::OffsetCosine(_))
 }

@@ -25,7 +25,7 @@ fn assert_close(found: &Ellipse, expected: &Ellipse, tolerance: f64) {
     }
 }
 
-/// Section 7, `Test`: the coefficients were computed with Python.
+/// The coefficients of `Test` in section 7 were computed with Python.
 #[test]
 fn the_reference_coefficients_yield_the_reference_ellipse() {
     let conic =
@@ -64,7 +64,7 @@ fn fits_of_360_and_6_points_recover_the_parameters() {
     }
 }
 
-/// With 1 mV rms of noise on 360 points, section 7 states deviations of 1e-5 V, 4e-5 V, 6e-4, 0.0083° and 1e-4 V. A
+/// For 1 mV rms of noise on 360 points, section 7 states deviations of 1e-5 V, 4e-5 V, 6e-4, 0.0083° and 1e-4 V. A
 /// parameter fitted to n points scatters by about σ·√(2/n) = 7.5e-5 V. The limits are five times this value, and twice
 /// as much for α and r.
 #[test]

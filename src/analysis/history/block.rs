@@ -1,6 +1,6 @@
-//! A block of one column's samples with its pyramid. The pyramid holds the minimum and maximum of every 8 samples, of
-//! every 8 such buckets, and so on up to the whole block. A block is independent of time and of its position in the
-//! history.
+//! A block of samples from one column, with a pyramid of extremes. The pyramid holds the minimum and maximum of every 8
+//! samples, of every 8 such buckets, and so on up to the whole block. A block is independent of time and of its
+//! position in the history.
 
 use std::ops::Range;
 
@@ -12,11 +12,11 @@ use super::{BLOCK, PYRAMID_FACTOR};
 #[derive(Clone, Copy)]
 struct BucketLevel {
     size: usize,
-    /// Index within the block of the first bucket of a level.
+    /// Index of the level's first bucket within the block.
     start: usize,
 }
 
-/// Levels between the samples and the whole block, coarsest first, in the order of storage.
+/// Pyramid levels between the samples and the whole block, coarsest first, in storage order.
 const LEVELS: [BucketLevel; 3] = [
     BucketLevel { size: PYRAMID_FACTOR * PYRAMID_FACTOR * PYRAMID_FACTOR, start: 0 },
     BucketLevel { size: PYRAMID_FACTOR * PYRAMID_FACTOR, start: PYRAMID_FACTOR },
@@ -67,7 +67,7 @@ impl Bucket {
     }
 }
 
-/// Range that contains the values of all its sources. An empty range is (∞, −∞).
+/// Range that contains the values of all merged samples and buckets. An empty range is (∞, −∞).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ValueRange {
     pub(super) min: f64,
@@ -94,11 +94,11 @@ pub(super) struct SampleBlock<T> {
     buckets: Box<[Bucket]>,
     /// Bucket for the whole block, valid once the block is full.
     top: Bucket,
-    /// Base of the buckets, or `None` until a bucket contains a value. The base is the median of the first few values.
-    /// If an outlier were the base, all other distances would be coarse.
+    /// Value to which the buckets are relative, or `None` until a bucket contains a value. It is the median of the
+    /// first few values, because an outlier would make all other distances coarse.
     base: Option<T>,
     flags: FlagBlock,
-    /// Spread of the whole block, present if the block is full and contains a value.
+    /// Statistics of the whole block, present if the block is full and contains a value.
     spread: Option<Box<RunningStatistics<T>>>,
 }
 
@@ -139,7 +139,7 @@ impl<T: Number> SampleBlock<T> {
         self.fill_complete_buckets(start);
     }
 
-    /// Breaks the line before the sample `at`.
+    /// Marks the line as broken before the sample `at`.
     pub(super) fn break_before(&mut self, at: usize) {
         self.flags.add_flags(at, Flags::BREAK);
     }
@@ -152,8 +152,8 @@ impl<T: Number> SampleBlock<T> {
         &self.flags
     }
 
-    /// Returns `known`, widened to include the values in `range`. Values from samples are exact, and values from
-    /// buckets are rounded outward. Only parts that can widen the result are examined.
+    /// Returns `known`, widened to include the values in `range`. Values from samples are exact, and those from buckets
+    /// are rounded outward. Parts that cannot widen the result are skipped.
     pub(super) fn widen_range(&self, known: ValueRange, range: Range<usize>) -> ValueRange {
         let Some(base) = self.base else { return known.union(self.scan_range(range)) };
         let mut search = BucketSearch {
@@ -176,7 +176,7 @@ impl<T: Number> SampleBlock<T> {
         known.union(ValueRange { min: base.at_most(search.found.low), max: base.at_least(search.found.high) })
     }
 
-    /// Returns the count, mean and deviation of the samples in `range`, calculated from the samples themselves.
+    /// Returns the statistics of the samples in `range`, calculated from the samples themselves.
     pub(super) fn spread(&self, range: Range<usize>) -> Option<RunningStatistics<T>> {
         if range == (0..BLOCK) {
             return self.spread.as_deref().copied();
@@ -224,7 +224,7 @@ impl<T: Number> SampleBlock<T> {
         self.values.capacity() * size_of::<T>() + buckets + self.flags.memory() + spread
     }
 
-    /// Fills the buckets that have become complete since the block held `before` samples.
+    /// Fills the buckets completed since the block held `before` samples.
     fn fill_complete_buckets(&mut self, before: usize) {
         let first = before / PYRAMID_FACTOR;
         let (groups, _) = self.values.get(first * PYRAMID_FACTOR..).unwrap_or_default().as_chunks::<PYRAMID_FACTOR>();
@@ -276,8 +276,8 @@ impl<T: Number> SampleBlock<T> {
         self.buckets.get(level.start + number).copied().filter(|_| complete)
     }
 
-    /// Searches `range` for values that widen the result. Buckets of the coarsest level inside the range are searched
-    /// first. The remainder on each side follows, which a single bucket may rule out.
+    /// Searches `range` for values that widen the result. The coarsest buckets inside the range are searched first,
+    /// then the remainder on each side unless a single bucket rules it out.
     fn search(&self, levels: &[BucketLevel], range: Range<usize>, search: &mut BucketSearch) {
         let Some((level, finer)) = levels.split_first() else {
             search.samples = search.samples.union(self.scan_range(range));
@@ -308,8 +308,8 @@ impl<T: Number> SampleBlock<T> {
         extremes.map_or(ValueRange::EMPTY, |(min, max)| ValueRange { min: min.to_f64_floor(), max: max.to_f64_ceil() })
     }
 
-    /// Returns the length of a run of samples without a value that begins at `at` and ends by `end`. Only one check is
-    /// made, so the run may be longer.
+    /// Returns the length of a run of samples without a value that starts at `at` and does not go beyond `end`. Only
+    /// one check is made, so the actual run may be longer.
     fn gap_length(&self, at: usize, end: usize) -> usize {
         let empty = |level: &&BucketLevel| {
             let inside = at.is_multiple_of(level.size) && at + level.size <= end;
@@ -318,8 +318,8 @@ impl<T: Number> SampleBlock<T> {
         LEVELS.iter().find(empty).map_or(usize::from(self.flags.get(at).contains(Flags::BAD)), |level| level.size)
     }
 
-    /// Returns the length of a run of samples without a value that ends before `end` and begins at or after `start`.
-    /// Only one check is made, so the run may be longer.
+    /// Returns the length of a run of samples without a value that ends just before `end` and does not start before
+    /// `start`. Only one check is made, so the actual run may be longer.
     fn previous_gap(&self, end: usize, start: usize) -> usize {
         let empty = |level: &&BucketLevel| {
             let inside = end.is_multiple_of(level.size) && start + level.size <= end;

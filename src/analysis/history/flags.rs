@@ -1,4 +1,5 @@
-//! Flags of single samples, and the flags of a block with a summary per group. Flags are independent of the values.
+//! Flags of single samples, and the flags of a block with a summary for each group of samples. Flags are independent of
+//! the values.
 
 use std::ops::{BitOr, BitOrAssign, Range};
 
@@ -13,7 +14,7 @@ impl Flags {
     pub const NONE: Flags = Flags(0);
     /// Samples are missing before the flagged sample, so no line may join it to the previous sample.
     pub const BREAK: Flags = Flags(1);
-    /// The value is invalid. It is excluded everywhere, and the line is broken. Implies [`BREAK`](Flags::BREAK).
+    /// The value is invalid and ignored everywhere, and the line is broken. Implies [`BREAK`](Flags::BREAK).
     pub const BAD: Flags = Flags(2);
     /// The device has issued a warning, but the value is valid.
     pub const WARNING: Flags = Flags(4);
@@ -46,8 +47,8 @@ const GROUP: usize = BLOCK / u64::BITS as usize;
 
 const KINDS: [Flags; 3] = [Flags::BREAK, Flags::BAD, Flags::WARNING];
 
-/// Flags of a block. The flags of single samples are elsewhere in memory, allocated with the first flag. Those flags
-/// are read only if the combined flags of their group, which are stored inline, are set.
+/// Flags of a block. The flags of single samples are allocated separately when the first one is set. They are read only
+/// if the summary of their group, which is stored inline, contains a flag.
 #[derive(Debug, Default)]
 pub(super) struct FlagBlock {
     any: Flags,
@@ -109,12 +110,12 @@ impl FlagBlock {
         found
     }
 
-    /// Returns whether the group summary alone proves that sample `at` has a valid value.
+    /// Returns whether the group summary is enough to prove that sample `at` has a valid value.
     pub(super) fn is_known_valid(&self, at: usize) -> bool {
         !self.flags_in_groups(at / GROUP..at / GROUP + 1).contains(Flags::BAD)
     }
 
-    /// Returns the ranges within `range` whose samples have a valid value.
+    /// Returns the parts of `range` in which all samples have a valid value.
     pub(super) fn valid_ranges(&self, range: Range<usize>) -> ValidRanges<'_> {
         let bad = self.flags_in_groups(range.start / GROUP..range.end.div_ceil(GROUP)).contains(Flags::BAD);
         let samples = self.kept.as_ref().filter(|_| bad).map_or(&[][..], |kept| kept.as_slice());

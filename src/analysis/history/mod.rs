@@ -1,9 +1,9 @@
-//! Samples as received over several hours: columns of values over one column of times, in blocks of fixed size. A
-//! pyramid of minimum and maximum values quickly yields a picture of any range. Appended samples stay unchanged until
-//! they are evicted. Nothing is interpolated, smoothed or thinned out.
+//! History of the samples received over several hours. Columns of values share one column of times and are stored in
+//! blocks of fixed size. A pyramid of minimum and maximum values allows any range to be drawn quickly. Appended samples
+//! stay unchanged until they are evicted. Nothing is interpolated, smoothed or thinned out.
 //!
-//! Samples are counted from the very first and keep their index. Blocks and buckets begin at multiples of their size,
-//! so a sample is drawn in the same way while others are added or evicted.
+//! Each sample has an index counted from the very first one, which it keeps. Blocks and buckets begin at multiples of
+//! their size, so a sample is drawn in the same way while others are added or evicted.
 
 mod block;
 mod flags;
@@ -33,7 +33,7 @@ use super::SampleTime;
 /// Number of samples in a block. Blocks are allocated and evicted as a whole.
 const BLOCK: usize = 4096;
 
-/// Number of samples in a bucket of the lowest pyramid level, and number of such buckets in a bucket of the next level.
+/// Number of samples in a bucket of the lowest pyramid level, and of buckets that form one bucket of the next level.
 const PYRAMID_FACTOR: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +67,7 @@ impl<'a> ColumnPart<'a> {
         ColumnPart { values: Values::Whole(values), flags: &[] }
     }
 
-    /// Adds flags, one entry per value.
+    /// Sets the flags, one entry per value.
     #[must_use]
     pub fn with_flags(self, flags: &'a [Flags]) -> Self {
         ColumnPart { flags, ..self }
@@ -112,7 +112,7 @@ pub struct Sample {
     pub flags: Flags,
 }
 
-/// Columns of simultaneous samples. A column is identified by its index in the list given to [`new`](History::new).
+/// Columns of simultaneous samples. Each column is identified by its index in the list passed to [`new`](History::new).
 #[derive(Debug)]
 pub struct History {
     times: Times,
@@ -142,8 +142,7 @@ impl History {
         History { times: Times::new(keep), columns, keep, longest_pause: None, broken: false }
     }
 
-    /// Sets the longest pause in nanoseconds. After a longer pause, samples are considered missing and the line is
-    /// broken.
+    /// Sets the longest pause in nanoseconds. A longer one counts as missing samples and breaks the line.
     #[must_use]
     pub fn with_longest_pause(self, nanoseconds: i64) -> Self {
         History { longest_pause: Some(nanoseconds), ..self }
@@ -153,7 +152,8 @@ impl History {
         self.broken = true;
     }
 
-    /// Appends samples. Times must not decrease, and each column has one part with as many values as there are times.
+    /// Appends samples. Times must not decrease, and each column requires one part with as many values as there are
+    /// times.
     pub fn append(&mut self, times: &[SampleTime], parts: &[ColumnPart<'_>]) -> Result<(), BatchError> {
         let fits = |(column, part): (&Column, &ColumnPart<'_>)| {
             column.kind() == part.kind() && part.matches_length(times.len())
@@ -189,8 +189,8 @@ impl History {
         self.times.first()..self.times.end()
     }
 
-    /// Returns the time of the oldest sample that remains after `more` further samples are appended. Returns `None` if
-    /// no current sample remains.
+    /// Returns the time of the oldest stored sample that remains after `more` further samples are appended. Returns
+    /// `None` if none remains.
     pub fn oldest_remaining_time(&self, more: usize) -> Option<SampleTime> {
         let blocks = self.times.end().saturating_add(more as u64).div_ceil(BLOCK as u64);
         let first = blocks.saturating_sub(self.keep as u64) * BLOCK as u64;
@@ -238,7 +238,7 @@ impl History {
         self.times.memory() + columns + self.columns.capacity() * size_of::<Column>()
     }
 
-    /// Breaks the line in every column where samples in `range` follow a pause or known missing samples.
+    /// Marks the line in every column as broken at samples in `range` that follow a pause or missing samples.
     fn mark_breaks(&mut self, times: &[SampleTime], range: Range<usize>, last: Option<SampleTime>, index: u64) {
         let pause = self.longest_pause.unwrap_or(i64::MAX);
         let mut before = range.start.checked_sub(1).and_then(|at| times.get(at).copied()).or(last);
@@ -264,8 +264,8 @@ impl Column {
         }
     }
 
-    /// Appends the values of `part` in `range`. Values of the wrong kind are ignored, because `History::append` has
-    /// rejected them before.
+    /// Appends the values of `part` in `range`. Values of the wrong kind have already been rejected by
+    /// `History::append` and are ignored here.
     fn append(&mut self, part: &ColumnPart<'_>, range: Range<usize>, keep: usize) {
         let flags = part.flags.get(range.clone()).unwrap_or_default();
         match (self, part.values) {

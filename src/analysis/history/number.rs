@@ -1,6 +1,7 @@
-//! The two kinds of stored numbers, and their outward rounding. A range rounded outward never becomes too small.
+//! The two kinds of numbers in a history, and their outward rounding, which ensures that a range never becomes too
+//! small.
 
-/// Sample value exactly as appended.
+/// Value of a sample, exactly as appended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     Real(f64),
@@ -9,7 +10,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns the nearest `f64`; exact for counts below 2⁵³.
+    /// Returns the nearest `f64`, which is exact for counts below 2⁵³.
     pub fn to_f64(self) -> f64 {
         match self {
             Value::Real(real) => real,
@@ -21,12 +22,12 @@ impl Value {
 pub(super) trait Number: Copy + PartialOrd {
     fn is_number(self) -> bool;
 
-    /// Returns a distance from `base` that is rounded down. [`at_most`](Number::at_most) turns it into a value at or
+    /// Returns the distance from `base`, rounded down. [`at_most`](Number::at_most) turns it into a value at or
     /// slightly below the number. Returns −∞ if the distance exceeds the range of `f32`.
     fn distance_down(self, base: Self) -> f32;
 
-    /// Returns a distance from `base` that is rounded up. [`at_least`](Number::at_least) turns it into a value not
-    /// below the number. Returns +∞ if the distance exceeds the range of `f32`.
+    /// Returns the distance from `base`, rounded up. [`at_least`](Number::at_least) turns it into a value at or
+    /// slightly above the number. Returns +∞ if the distance exceeds the range of `f32`.
     fn distance_up(self, base: Self) -> f32;
 
     /// Returns `self + distance`, rounded down if rounding is necessary.
@@ -35,8 +36,8 @@ pub(super) trait Number: Copy + PartialOrd {
     /// Returns `self + distance`, rounded up if rounding is necessary.
     fn at_least(self, distance: f32) -> f64;
 
-    /// Returns a distance from `self` at or above which no value is below `known`. Returns +∞ if no such distance is
-    /// found.
+    /// Returns the distance from `self` to `known`, rounded up so that [`at_most`](Number::at_most) yields at least
+    /// `known`. Returns +∞ if no such distance is found.
     fn distance_rounded_up(self, known: f64) -> f32 {
         let distance = (known - self.value().to_f64()) as f32;
         let candidates = [distance, distance.next_up(), distance.next_up().next_up()];
@@ -44,8 +45,8 @@ pub(super) trait Number: Copy + PartialOrd {
         candidates.into_iter().find(holds).unwrap_or(f32::INFINITY)
     }
 
-    /// Returns a distance from `self` at or below which no value is above `known`. Returns −∞ if no such distance is
-    /// found.
+    /// Returns the distance from `self` to `known`, rounded down so that [`at_least`](Number::at_least) yields at most
+    /// `known`. Returns −∞ if no such distance is found.
     fn distance_rounded_down(self, known: f64) -> f32 {
         let distance = (known - self.value().to_f64()) as f32;
         let candidates = [distance, distance.next_down(), distance.next_down().next_down()];
@@ -129,10 +130,10 @@ fn step_f32(distance: f32, steps: i32) -> f32 {
     f32::from_bits(ordered(place).cast_unsigned())
 }
 
-/// Largest magnitude up to which `f32` represents every count exactly.
+/// Largest magnitude up to which `f32` represents every whole number exactly.
 const EXACT_F32: u64 = 1 << 24;
 
-/// Largest magnitude up to which `f64` represents the sum of two numbers exactly.
+/// Largest magnitude of two numbers up to which an `f64` represents their sum exactly.
 const EXACT_SUM_LIMIT: f64 = (1_i64 << 52) as f64;
 
 impl Number for i64 {

@@ -1,5 +1,5 @@
-//! Division of a time range into pixel columns, and the content to draw in each of them. A picture contains every
-//! extreme, break and flag of the raw samples at any zoom. It is independent of screens.
+//! Division of a time range into pixel columns, each with the content to draw. A picture contains every extreme, break
+//! and flag of the raw samples at any zoom. It does not depend on a screen.
 
 use std::ops::Range;
 
@@ -10,8 +10,8 @@ use super::series::Series;
 use super::{Column, History, PYRAMID_FACTOR};
 use crate::analysis::SampleTime;
 
-/// Grid of equal time steps, one per pixel column. Edges are multiples of the step. A picture that scrolls at constant
-/// zoom therefore keeps its pixel columns.
+/// Grid of equal time steps, one per pixel column. Its edges are multiples of the step, so a picture keeps its pixel
+/// columns when it scrolls at constant zoom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
     start: SampleTime,
@@ -50,8 +50,8 @@ impl Grid {
     }
 }
 
-/// Intersection of a [`Grid`] with the samples of a history. The same intersection is valid for all columns of the
-/// history. Samples appended later are not included, and evicted samples are not drawn.
+/// The samples of a history in each pixel column of a [`Grid`]. They are the same for all columns of the history.
+/// Samples appended later are not included, and evicted samples are not drawn.
 #[derive(Clone, Debug)]
 pub struct GridColumns {
     /// Starts of all pixel columns, followed by the end of the last one.
@@ -98,8 +98,9 @@ pub struct ReducedSamples {
     pub last: f64,
 }
 
-/// Picture of a history column: its pixel columns with samples, in chronological order. Each is drawn through first,
-/// min, max and last. The nearest samples to the left and right are included, so the line extends beyond both edges.
+/// Picture of a history column: the pixel columns that contain samples, in chronological order. Each is drawn through
+/// first, min, max and last. The nearest samples to the left and right are included, so the line extends beyond both
+/// edges.
 #[derive(Clone, Debug, Default)]
 pub struct HistoryPicture {
     /// Pixel columns that contain samples, or single samples if `raw` is set.
@@ -108,12 +109,12 @@ pub struct HistoryPicture {
     pub raw: bool,
 }
 
-/// Maximum number of samples per pixel column that are included unchanged. Drawing them takes no longer than drawing
-/// first, min, max and last.
+/// Maximum average number of samples per pixel column up to which every sample is drawn. This takes no longer than
+/// drawing first, min, max and last.
 const UNREDUCED_SAMPLES: u64 = 4;
 
-/// Divisor of a pixel column's width. A column may begin earlier than its edge by the resulting time, to start at a
-/// pyramid bucket.
+/// A pixel column may begin before its edge, at the start of a pyramid bucket, by at most its width divided by this
+/// number.
 const EDGE_SHIFT_DIVISOR: i64 = 16;
 /// Bucket sizes in samples, largest first.
 const BUCKETS: [u64; 3] = [
@@ -140,15 +141,14 @@ impl History {
         GridColumns { edges: (0..=grid.pixel_count()).map(edge).collect() }
     }
 
-    /// Returns the start of a bucket if the bucket starts only slightly before the first sample after an edge.
-    /// Otherwise, returns that sample.
+    /// Returns the first sample of a bucket if the bucket starts only slightly before an edge, or `exact` otherwise.
     fn round_to_bucket(&self, exact: u64, grid: &Grid, pixel: usize) -> u64 {
         let earliest = grid.pixel_start(pixel).saturating_add_ns(-(grid.width() / EDGE_SHIFT_DIVISOR));
         let is_near = |start: &u64| *start == exact || self.times.get(*start).is_some_and(|time| time >= earliest);
         BUCKETS.iter().map(|size| exact - exact % size).find(is_near).unwrap_or(exact)
     }
 
-    /// Draws a column into `picture`, reusing its memory.
+    /// Draws a column of the history into `picture`, reusing its memory.
     pub fn render_column(&self, column: usize, cut: &GridColumns, picture: &mut HistoryPicture) {
         picture.pixels.clear();
         match self.columns.get(column) {
@@ -206,7 +206,7 @@ impl<T: Number> HistoryPainter<'_, T> {
         self.picture.pixels.push(Pixel { from: time, to: time, values, flags, joined });
     }
 
-    /// Adds the samples between two edges as one pixel column. `ends` holds the first and last values.
+    /// Adds the samples between two edges as one pixel column. `ends` contains the first and last values.
     fn paint_pixel(&mut self, from: &ColumnEdge, to: &ColumnEdge, ends: (T, T)) {
         let range = from.index..to.index;
         let (Some(start), Some(end)) = (from.after, to.before) else { return };

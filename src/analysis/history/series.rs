@@ -1,4 +1,5 @@
-//! Blocks of one column. A sample is found by its absolute index. The oldest block is reused when the limit is reached.
+//! The blocks of one column, in which samples are found by their absolute index. The oldest block is reused when the
+//! limit is reached.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -58,8 +59,8 @@ impl<T: Number> Series<T> {
         Some((value(range.start)?, value(range.end - 1)?))
     }
 
-    /// Returns `known`, widened by the values of the samples in `range`, which must all be stored. Whole blocks are
-    /// processed first, because they save most of the work on the rest. See [`SampleBlock::widen_range`].
+    /// Returns `known`, widened by the samples in `range`, which must all be stored. Whole blocks come first, because
+    /// they save most of the work on the rest. See [`SampleBlock::widen_range`].
     pub(super) fn widen_range(&self, known: ValueRange, range: Range<u64>) -> ValueRange {
         let ((first, from), (last, to)) = (self.locate(range.start), self.locate(range.end - 1));
         let widen = |known: ValueRange, block: usize, range: Range<usize>| {
@@ -72,8 +73,8 @@ impl<T: Number> Series<T> {
         widen(widen(known, first, from..BLOCK), last, 0..to + 1)
     }
 
-    /// Returns whether no sample near `range` has a flag. This is a quick check: false does not prove that a sample in
-    /// `range` has a flag.
+    /// Returns whether no sample in or near `range` has a flag. As a quick check on whole blocks, it may return false
+    /// although no sample in `range` has a flag.
     pub(super) fn is_plain(&self, range: Range<u64>) -> bool {
         let ((first, _), (last, _)) = (self.locate(range.start), self.locate(range.end.saturating_sub(1)));
         let flagged =
@@ -110,8 +111,8 @@ impl<T: Number> Series<T> {
         self.blocks_in(range).rev().find_map(|(start, block, range)| Some(start + block.last_valid(range)? as u64))
     }
 
-    /// Returns whether sample `index` is stored and has a valid value. This is a quick check: false does not prove that
-    /// the value is invalid.
+    /// Returns whether sample `index` is stored and known to have a valid value. As a quick check, it may return false
+    /// although the value is valid.
     fn is_known_valid(&self, index: u64) -> bool {
         let (block, at) = self.locate(index);
         let has_it = |block: &&SampleBlock<T>| index >= self.first && at < block.len();
@@ -142,8 +143,8 @@ impl<T: Number> Series<T> {
         (at / BLOCK, at % BLOCK)
     }
 
-    /// Returns the blocks that overlap the stored part of `range`. Each block is returned with the index of its first
-    /// sample and the range within the block.
+    /// Returns the blocks that overlap the stored part of `range`, each with the index of its first sample and the
+    /// overlapping range within the block.
     fn blocks_in(&self, range: Range<u64>) -> impl DoubleEndedIterator<Item = (u64, &SampleBlock<T>, Range<usize>)> {
         let from = range.start.saturating_sub(self.first) as usize;
         let to = range.end.saturating_sub(self.first) as usize;

@@ -1,5 +1,5 @@
-//! Mean and deviation that can be combined from parts and are accurate for small noise on a large value. They are
-//! computed from raw samples only, by Welford's recurrence in the form for groups (Chan, Golub, LeVeque 1979).
+//! Mean and deviation that can be combined from parts, and stay accurate for small noise on a large value. They are
+//! computed from raw samples only, with Welford's recurrence for groups (Chan, Golub, LeVeque 1979).
 
 use super::number::Number;
 
@@ -75,7 +75,7 @@ pub(super) fn extremes_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
     (reduce_eight(*values, min_of), reduce_eight(*values, max_of))
 }
 
-/// Reduces eight values pairwise, so that no operation has to wait for the previous one.
+/// Reduces eight values pairwise, so that fewer operations have to wait for a previous result.
 fn reduce_eight<T: Number>([a, b, c, d, e, f, g, h]: [T; 8], choose: impl Fn(T, T) -> T) -> T {
     choose(choose(choose(a, e), choose(b, f)), choose(choose(c, g), choose(d, h)))
 }

@@ -1,5 +1,5 @@
-//! Statistics of a range of a column, computed from the raw samples. Each sample counts once. Samples reduced for a
-//! picture are not used.
+//! Statistics of a range of samples in one column. They are computed from the raw samples, never from the reduced ones
+//! in a picture, and each sample counts once.
 
 use std::ops::Range;
 

@@ -30,7 +30,7 @@ impl Times {
         self.first + (self.blocks.len().saturating_sub(1) * BLOCK + last) as u64
     }
 
-    /// Returns the number of samples that fit before a new block is needed.
+    /// Returns the number of samples that fit into the newest block.
     pub(super) fn remaining_capacity(&self) -> usize {
         self.blocks.back().map_or(0, |block| BLOCK - block.len())
     }
@@ -81,8 +81,7 @@ impl Times {
     }
 }
 
-/// Returns the index of the first time at or after `time`. The expected index is tried first, because samples are
-/// usually evenly spaced.
+/// Returns the index of the first time at or after `time`. The index expected for evenly spaced samples is tried first.
 fn search_times(times: &[SampleTime], time: SampleTime) -> usize {
     const NEARBY_SAMPLES: usize = 4;
     let before = |other: &SampleTime| *other < time;

@@ -1,11 +1,10 @@
-//! Display of continuous counts within a range, such as the positions of a rotary encoder.
+//! Wrapping of continuous counts to a range for display, such as the positions of a rotary encoder.
 
 use super::picture::{HistoryPicture, Pixel, ReducedSamples};
 
 impl HistoryPicture {
-    /// Maps counts to the range from 0 to below `range`. At the end of the range, counts start again from 0, and the
-    /// line is interrupted. A pixel column in which the counts cross the end once has two parts, one at each end of the
-    /// range.
+    /// Wraps counts to the range from 0 to below `range`. Where they wrap, the line is interrupted. A pixel column in
+    /// which the counts wrap once has two parts, one at each end of the range.
     pub fn wrap(&mut self, range: i64) {
         let range = range.max(1) as f64;
         let mut wrapped = Vec::with_capacity(self.pixels.len());
@@ -102,8 +101,8 @@ mod tests {
         assert_eq!(shown, expected);
     }
 
-    /// With one cycle of the range in 2000 samples and 100 samples per column, each column spans 50 counts, and no bar
-    /// reaches from one end of the range to the other.
+    /// With one wrap in 2000 samples and 100 samples per column, each column spans 50 counts. No bar may therefore
+    /// reach from one end of the range to the other.
     #[test]
     fn no_column_crosses_the_picture_at_the_end_of_the_range() {
         let counts: Vec<i64> = (0..10_000).map(|at| 25 + at / 2).collect();

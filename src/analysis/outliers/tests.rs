@@ -60,8 +60,8 @@ fn a_single_spike_is_excluded_and_reported() {
     assert!((raw.amplitude_v - 0.5).abs() > 0.01, "{raw:?}");
 }
 
-/// With 1 mV of noise on 100 000 samples, a parameter scatters by 1 mV·√(2/100 000) = 4.5 µV, and r and α scatter by
-/// twice this value relative to 0.5 V. The limits are six times the scatter.
+/// With 1 mV of noise on 100 000 samples, a parameter scatters by 1 mV·√(2/100 000) = 4.5 µV. Relative to 0.5 V, r and
+/// α scatter by twice this value. The limits are six times the scatter.
 #[test]
 fn spikes_in_a_long_capture_do_not_change_the_fit() {
     let mut capture = made(100_000, 100.0, 1e-3);

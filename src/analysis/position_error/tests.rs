@@ -1,4 +1,4 @@
-//! Tests that added errors are found, and that other deviations are not mistaken for errors.
+//! Tests that injected errors are found, and that other deviations are not mistaken for errors.
 
 use super::*;
 use crate::analysis::ellipse::{FitError, SignalChannel};
@@ -21,7 +21,7 @@ struct Made {
     cosine: Vec<f64>,
 }
 
-/// Returns samples of a motion with a disturbance of the angle in radians. `motion` converts a fraction of the time to
+/// Returns samples of a motion whose angle is disturbed, in radians. `motion` converts a fraction of the time to
 /// periods.
 fn made(ellipse: &Ellipse, count: usize, motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64) -> f64) -> Made {
     let time: Vec<f64> = (0..count).map(|at| at as f64 / count as f64).collect();

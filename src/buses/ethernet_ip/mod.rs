@@ -1,4 +1,4 @@
-//! EtherNet/IP.
+//! The EtherNet/IP protocol and its offline decoder.
 
 pub mod commands;
 pub mod protocol;

@@ -1,4 +1,5 @@
-//! Assembly of the clap command line from the common part and the options and commands of all kinds of devices.
+//! Construction of the clap command line from the common part and from the options and commands of all kinds of
+//! devices.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -73,7 +74,7 @@ pub fn command(commands: Commands) -> clap::Command {
     extended.subcommands(commands.kind_commands().map(|own| own.command()))
 }
 
-/// Adds the options of the kinds of devices to a shared command.
+/// Adds the options of all kinds of devices to a shared command.
 fn add_kind_options(command: clap::Command, id: CommandId, commands: Commands) -> clap::Command {
     let mut command = command;
     // Change the argument in place, because `mut_arg` would move it after the other arguments.
@@ -100,7 +101,7 @@ fn add_kind_options(command: clap::Command, id: CommandId, commands: Commands) -
     if help.is_empty() { command } else { command.after_long_help(help.join("\n\n")) }
 }
 
-/// Returns the parser for the kinds of devices that a command accepts, including protocols if the command accepts them.
+/// Returns the parser for the kinds of devices that a command accepts. `decode` also accepts protocols.
 fn kind_name_parser(id: CommandId, commands: Commands) -> PossibleValuesParser {
     let devices = commands.devices().iter().filter(|device| id != CommandId::Find || device.is_searchable());
     let devices = devices.map(|device| PossibleValue::new(device.name()).help(device.description()));
@@ -109,8 +110,8 @@ fn kind_name_parser(id: CommandId, commands: Commands) -> PossibleValuesParser {
     PossibleValuesParser::new(devices.chain(protocols).collect::<Vec<_>>())
 }
 
-/// Returns the parser for the actions of all kinds of devices. Each action has its meanings for the kinds that support
-/// it.
+/// Returns the parser for the actions of all kinds of devices. The help of an action states its meaning for each kind
+/// that supports it.
 fn action_parser(commands: Commands) -> PossibleValuesParser {
     let single = commands.devices().iter().map(|device| (device.name(), device.action_values()));
     let combined = commands.devices().iter().map(|device| (device.name(), device.combined_actions()));

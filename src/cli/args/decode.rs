@@ -15,7 +15,7 @@ pub struct DecodeArgs {
     pub(crate) own: KindOptions,
 }
 
-/// Option for the direction of a word, for devices whose words have a different meaning in each direction.
+/// Option for the direction of captured words, whose meaning may depend on it.
 #[derive(Args)]
 pub(crate) struct DirectionOption {
     /// Direction of the words: from the device (in) or to it (out). Default: explain each direction that is possible.

@@ -1,4 +1,4 @@
-//! Tests of the findings for captures with unreliable numbers.
+//! Tests of captures with unreliable results.
 
 use super::*;
 

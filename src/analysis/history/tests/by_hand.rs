@@ -1,4 +1,4 @@
-//! Tests of cases that are small enough to be worked out by hand.
+//! Tests of cases small enough to be worked out by hand.
 
 use super::super::{BLOCK, BatchError, ColumnPart, Flags, Grid, History, HistoryPicture, Kind, Value};
 use crate::analysis::SampleTime;

@@ -1,5 +1,5 @@
-//! Tests of long runs in virtual time and their memory use. The runs are shorter than a day, so that they also finish
-//! in unoptimised builds; `benches/history.rs` runs a whole day.
+//! Tests of long runs in virtual time and of their memory use. The runs are shorter than a day to keep unoptimised
+//! builds fast; `benches/history.rs` runs a whole day.
 
 use super::super::{BLOCK, ColumnPart, Flags, Grid, History, HistoryPicture, Kind};
 use crate::analysis::{Motion, PositionUnwrapper, SampleTime};

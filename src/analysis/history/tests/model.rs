@@ -14,7 +14,8 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// Adds a sample as `History` would store it. NaN is a bad sample, and the line breaks at a bad sample or a pause.
+    /// Adds a sample in the way that `History` stores it. NaN is a bad sample, and the line breaks at a bad sample or a
+    /// pause.
     pub(super) fn push(&mut self, time: i64, value: Value, mut flags: Flags, broken: bool, pause: i64) {
         if !value.to_f64().is_finite() {
             flags |= Flags::BAD;
@@ -45,7 +46,7 @@ impl Model {
         self.flags[range].iter().fold(Flags::NONE, |all, flags| all | *flags)
     }
 
-    /// Returns the exact picture without rounding, and whether it consists of single samples.
+    /// Returns the picture without any rounding, and whether it consists of single samples.
     pub(super) fn picture(&self, first: usize, grid: &Grid) -> (Vec<Pixel>, bool) {
         let mut edges: Vec<usize> = (0..=grid.pixel_count()).map(|pixel| self.edge(first, grid, pixel)).collect();
         let (from, to) = (edges[0], edges[grid.pixel_count()]);

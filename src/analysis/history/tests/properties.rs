@@ -140,7 +140,7 @@ fn append(history: &mut History, kind: Kind, given: &Model, run: &Run) {
     }
 }
 
-/// Checks that the extremes enclose the true extremes closely, and that everything else is equal.
+/// Checks that the extremes of a picture closely enclose the true extremes, and that everything else is equal.
 fn check(found: &[Pixel], wanted: &[Pixel], around: impl Fn(&Pixel) -> f64) -> Result<(), TestCaseError> {
     prop_assert_eq!(found.len(), wanted.len());
     for (found, wanted) in found.iter().zip(wanted) {

@@ -1,5 +1,5 @@
-//! An adapter as a source of samples. It is opened, identified, configured and finally stopped on the thread of the
-//! stream, so no other thread waits for it. Damaged or lost samples are reported as missing before the next batch.
+//! An adapter as a source of samples. It is opened, identified, configured and stopped on the streaming thread, so no
+//! other thread has to wait for it. Damaged or lost samples are reported as missing before the next batch.
 
 mod open;
 
@@ -17,7 +17,7 @@ use crate::worker::stream::{Batch, Producer, SampleCount};
 pub(crate) use open::FORMAT;
 pub use open::open_adapter;
 
-/// The configuration of a stream and the interpretation of its packets.
+/// Configuration of a stream, and conversion of its packets to samples.
 pub trait StreamFormat: Send + 'static {
     type Samples: SampleCount;
 
@@ -67,7 +67,7 @@ impl<S: StreamFormat> Bridge<S> {
         Bridge { stretch, supply, open: Some(open), wire: None, tap: StreamTap::new(margin), streaming: Arc::default() }
     }
 
-    /// Returns the adapter and its actual settings. They are available while or after it has streamed.
+    /// Returns the adapter and its actual settings, which are set once the adapter streams and are kept afterwards.
     pub fn streaming_adapter(&self) -> Arc<OnceLock<StreamingAdapter>> {
         self.streaming.clone()
     }

@@ -1,4 +1,4 @@
-//! Opening an adapter that streams. A `bridge:` link refers to a real one and a `sim:` link to a virtual one.
+//! Opening of streaming adapters. A `bridge:` link refers to a real adapter and a `sim:` link to a virtual one.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -16,7 +16,7 @@ use crate::worker::open::{connect_simulated, open_byte_stream, reply_margin, sim
 /// Link parameter that selects the virtual adapter. Streams do not need the parameter but accept it, because sessions
 /// require it.
 const BRIDGE: &str = "bridge";
-/// Character format of the adapter's serial port. It only has an effect behind a converter.
+/// Character format of the adapter's serial port. It matters only if a serial converter is in between.
 pub(crate) const FORMAT: CharacterFormat = CharacterFormat { baud: Baud::B115200, parity: Parity::None };
 
 parameters! {
@@ -26,7 +26,7 @@ parameters! {
     }
 }
 
-/// Returns the margin for late replies and the function that opens the connection, which may be called on any thread.
+/// Returns the margin for late replies, and a function that opens the connection and may be called on any thread.
 /// `devices` can be attached to a virtual adapter.
 ///
 /// # Errors

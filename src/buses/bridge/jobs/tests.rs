@@ -1,4 +1,4 @@
-//! Tests of streams from the virtual adapter and a scripted one in virtual time, in which every loss must be reported.
+//! Tests of streams in virtual time, from the virtual adapter and from a scripted one. Every loss must be reported.
 
 use std::sync::Mutex;
 
@@ -81,8 +81,8 @@ impl<S: StreamFormat> Bench<S> {
         panic!("it goes on")
     }
 
-    /// Returns the number of bytes that the adapter sends in a second without a request, in addition to those in
-    /// transit.
+    /// Returns the number of bytes that the adapter sends unprompted within a second. Bytes already in transit do not
+    /// count.
     pub(crate) fn unsolicited_byte_count(&self) -> usize {
         let mut device = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {
@@ -94,7 +94,7 @@ impl<S: StreamFormat> Bench<S> {
     }
 }
 
-/// Checks that every number is either present or counted as lost before the next batch. Returns both counts.
+/// Checks that every sample number is either present or counted as lost before the next batch. Returns both counts.
 pub(crate) fn count<T>(batches: &[Batch<Vec<T>>]) -> (u64, u64) {
     let (mut next, mut there, mut lost) = (0, 0, 0);
     for batch in batches {
@@ -147,13 +147,13 @@ fn samples_lost_by_a_stalled_consumer_are_counted() {
     assert!(stream.take_error().is_none());
 }
 
-/// Adapter with scripted replies, and scripted data when a stream begins.
+/// Adapter with scripted replies. It also sends scripted data when a stream begins.
 struct Puppet {
     capabilities: Capabilities,
-    /// Voltage in millivolts by which the supply exceeds the requested one when it is switched on.
+    /// Amount in millivolts by which the supply exceeds the requested voltage.
     too_high: u16,
     refused: Vec<(Operation, ErrorCode)>,
-    /// Operations whose reply is lost. Each entry applies once.
+    /// Operations whose next reply is lost, one entry per lost reply.
     swallowed: Vec<Operation>,
     /// Data sent when a stream begins.
     data: Vec<Message>,

@@ -4,30 +4,30 @@
 
 use crate::analysis::SampleTime;
 
-/// Offset between the clock of a streaming adapter and the local clock, which follows the drift.
+/// Offset between the clock of a streaming adapter and the local clock. It follows the drift.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ClockDrift {
-    /// Offset in nanoseconds that is added to the time of the adapter. It is `None` before the first packet.
+    /// Offset in nanoseconds to add to the adapter's time, or `None` before the first packet.
     ahead_ns: Option<i128>,
-    /// Minimum offset of the current section and of the previous one, in nanoseconds.
+    /// Minimum offset in the current and the previous section of the stream, in nanoseconds.
     least: Option<(i128, Option<i128>)>,
     since_ns: i128,
     /// Time of the previous packet in nanoseconds of the adapter's clock.
     before_ns: i128,
 }
 
-/// Length of a section in nanoseconds. It is long enough for at least one packet to arrive without delay.
+/// Length of a section of the stream in nanoseconds, long enough for at least one packet to arrive without delay.
 const STRETCH_NS: i128 = 10_000_000_000;
 /// Variation of transit times over USB, in nanoseconds.
 const SLACK_NS: i128 = 2_000_000;
-/// Reciprocal of the maximum rate of correction. The rate exceeds the difference between oscillators but is too slow to
-/// affect a speed. During a packet, the correction is less than one of its 255 samples.
+/// Reciprocal of the maximum correction rate. The rate exceeds the mismatch between two oscillators but is too low to
+/// affect measured speeds. During a packet, the correction is less than one of its 255 samples.
 const CORRECTION_DIVISOR: i128 = 4000;
-/// Change in the offset, in nanoseconds, above which a clock was stopped or set instead of drifting.
+/// Change in the offset, in nanoseconds, that is too large for drift: a clock was stopped or set.
 const JUMP_NS: i128 = 1_000_000_000;
 
 impl ClockDrift {
-    /// Returns the local time at `own_ns` of the adapter's clock. It is at most `latest`.
+    /// Converts the adapter time `own_ns` to local time, which is at most `latest`.
     pub(super) fn time(&mut self, own_ns: i128, latest: SampleTime) -> SampleTime {
         let most = i128::from(latest.as_nanoseconds()) - own_ns;
         let lead = self.minimum_offset_ns(own_ns, most);
@@ -45,7 +45,7 @@ impl ClockDrift {
         SampleTime::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
     }
 
-    /// Returns the smaller of the minimum offsets of the current and the previous section, in nanoseconds.
+    /// Returns the minimum offset over the current and the previous section of the stream, in nanoseconds.
     fn minimum_offset_ns(&mut self, own_ns: i128, most: i128) -> i128 {
         let fits = (0..=STRETCH_NS).contains(&(own_ns - self.since_ns));
         let (least, before) = match self.least {

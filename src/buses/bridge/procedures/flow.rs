@@ -1,5 +1,5 @@
-//! The samples of one stream of an adapter in order and in local time. Each batch is preceded by the number of missing
-//! samples. See reference "bridge" 3, and `drift` for the time.
+//! The samples of one adapter stream, in order and in local time. Each batch starts with the number of samples missing
+//! before it. See reference "bridge" 3, and `drift` for the time.
 
 use std::time::Duration;
 
@@ -50,7 +50,7 @@ pub(crate) struct SampleStream {
     drift: ClockDrift,
 }
 
-/// Silence after which the stream is considered to have ended. A slow stream is given more time.
+/// Silence after which a stream is considered to have ended. Slow streams are given more time.
 const SILENCE_TIMEOUT: Duration = Duration::from_secs(2);
 const SILENT_SAMPLES: u32 = 256;
 
@@ -165,7 +165,7 @@ impl SampleStream {
         }
     }
 
-    /// Ends the stream. Samples that are still in transit are dropped.
+    /// Ends the stream. Samples still in transit are dropped.
     ///
     /// # Errors
     /// Returns an error if the adapter does not confirm the end of the stream.
@@ -214,8 +214,8 @@ impl SampleStream {
         Ok(Some(Chunk { first, time, period_ns: self.period_ns, lost, data }))
     }
 
-    /// Returns the time of the first sample. It is not earlier than the start of the stream, and the last sample is not
-    /// later than its arrival.
+    /// Returns the local time of the first sample. All samples lie between the start of the stream and the arrival of
+    /// the packet.
     fn time(&mut self, data: &StreamData, count: usize, now: Moment) -> SampleTime {
         let t0_us = match data {
             StreamData::Ssi(data) => data.t0_us,

@@ -1,5 +1,5 @@
-//! Host side of the open adapter for any bus (reference "bridge"). A request is repeated once if no reply with its
-//! sequence number arrives. Stream data are dropped until the reply has arrived. Otherwise, `flow` handles them.
+//! Host side of the open adapter for all buses (reference "bridge"). A request is repeated once if no reply with its
+//! sequence number arrives. Stream data that arrive before the reply are dropped. `flow` handles all other stream data.
 
 mod drift;
 pub(crate) mod flow;
@@ -33,8 +33,7 @@ pub(crate) const BISS_TIME_OUT_US: u16 = 20;
 /// Clock frequencies that may be requested. An adapter uses the nearest one that it supports.
 pub(crate) const CLOCK: WholeNumbers<u32> = WholeNumbers(Quantity::Hertz, 80_000..=10_000_000);
 
-/// Time after the deadline of a reply during which an adapter may still send other data, before the reply is considered
-/// missing.
+/// Extra time to wait for an overdue reply while the adapter keeps sending other data.
 const OTHER_DATA_TIME: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default)]
@@ -115,7 +114,7 @@ impl From<LineError> for Failure {
     }
 }
 
-/// A reply and the time interval in which the adapter created it.
+/// A reply, with the local times between which the adapter created it.
 pub(crate) struct TimedReply {
     pub(crate) reply: Reply,
     sent_at: Moment,
@@ -128,13 +127,13 @@ impl AdapterState {
         self.hello.as_ref()
     }
 
-    /// Sets the state of the encoder supply after the session.
+    /// Sets whether the encoder supply stays on after the session.
     pub fn set_supply_after_session(&mut self, after: SupplyAfterSession) {
         self.power.after = after;
     }
 
-    /// Discards the identity, which is read again before the next use. The state of the encoder supply is kept, since
-    /// HELLO does not change it.
+    /// Discards the identity, so that it is read again before the next use. The state of the encoder supply is kept,
+    /// since HELLO does not change it.
     pub(crate) fn forget_identity(&mut self) {
         *self = AdapterState { power: self.power, ..AdapterState::default() };
     }
@@ -149,7 +148,7 @@ impl AdapterState {
         self.power.found = Some(is_supplied);
     }
 
-    /// Returns whether the end of the session must switch the supply off.
+    /// Returns whether the supply must be switched off at the end of the session.
     pub(crate) fn must_switch_supply_off(&self) -> bool {
         self.power.must_switch_off()
     }
@@ -159,7 +158,7 @@ impl AdapterState {
         self.has_spoken
     }
 
-    /// Returns the local time at time `t_us` of the adapter's clock. The reply `answered` must contain this time.
+    /// Converts the adapter time `t_us`, in microseconds, to local time. `answered` is the reply that contains `t_us`.
     pub(crate) fn local_time_of(&mut self, t_us: u64, answered: &TimedReply) -> Moment {
         self.clocks.local_time_of(t_us, answered.sent_at, answered.received_at)
     }
@@ -336,8 +335,8 @@ impl Adapter<'_, '_> {
     }
 }
 
-/// Limits of the offset between the adapter's clock and the local clock in nanoseconds. They result from the time at
-/// which an adapter samples, which is between a request and the reply.
+/// Limits of the offset between the adapter's clock and the local clock in nanoseconds. They result from the fact that
+/// the adapter reads its clock between a request and the reply.
 #[derive(Clone, Copy, Debug, Default)]
 struct ClockOffsetBounds {
     bounds: Option<(i128, i128)>,

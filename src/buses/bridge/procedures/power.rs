@@ -1,4 +1,4 @@
-//! Encoder supply of an adapter that can switch it, at the start and at the end of a session.
+//! Control of the encoder supply by an adapter that can switch it, at the start and end of a session.
 
 use crate::parameter::Keywords;
 
@@ -31,7 +31,7 @@ pub(super) struct SupplyState {
 }
 
 impl SupplyState {
-    /// Returns whether the end of the session must switch the supply off.
+    /// Returns whether the supply must be switched off at the end of the session.
     pub(super) fn must_switch_off(self) -> bool {
         let found = self.found == Some(true);
         match self.after {

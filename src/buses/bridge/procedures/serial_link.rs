@@ -15,15 +15,15 @@ use crate::units::{CharacterFormat, Moment, Parity, SupplyVoltage};
 const IDLE_BITS: u64 = 55;
 /// Longest time for which the firmware waits for a reply, in milliseconds.
 pub const MAX_TIMEOUT_MS: u64 = 2_000;
-/// Time after the last transfer before the supply is switched off. An encoder may still be storing values. The manual
-/// does not state how long this takes (`U`).
+/// Time from the last transfer until the supply is switched off, because an encoder may still be storing values. The
+/// manual does not state how long this takes (`U`).
 const STORE_TIME: Duration = Duration::from_secs(1);
 
 /// Properties of the line between an adapter and a device.
 #[derive(Clone, Copy, Debug)]
 pub struct DeviceLine {
     pub format: CharacterFormat,
-    /// Time by which the replies of the adapter may be late.
+    /// Additional time allowed for late replies from the adapter.
     pub margin: Duration,
     /// Length of the longest reply of the device in characters.
     pub max_reply: usize,
@@ -88,7 +88,7 @@ impl AdapterSerialLink {
         }
     }
 
-    /// Runs an exchange with the adapter. A cancellation takes effect between two exchanges, not within one.
+    /// Runs one exchange with the adapter. Cancellation takes effect between exchanges, never within one.
     fn with_adapter<T>(
         &mut self,
         work: impl FnOnce(&mut Adapter<'_, '_>) -> Result<T, Failure>,

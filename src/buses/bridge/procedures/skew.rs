@@ -17,14 +17,14 @@ pub(super) struct SkewCorrection {
 const POINTS: usize = 4;
 
 impl SkewCorrection {
-    /// Creates the correction for a delay and an interval in nanoseconds. Returns `None` if both signals are sampled at the
-    /// same time, or if the delay is not below the interval.
+    /// Creates the correction from a delay and a sampling interval in nanoseconds. Returns `None` if both signals are
+    /// sampled at the same time, or if the delay is not below the interval.
     pub(super) fn new(skew_ns: u16, period_ns: i64) -> Option<Self> {
         let share = f64::from(skew_ns) / period_ns.max(1) as f64;
         (share > 0.0 && share < 1.0).then(|| SkewCorrection { share, before: VecDeque::new() })
     }
 
-    /// Discards the previous samples, because samples are missing after them.
+    /// Discards the previous samples. Call this when samples are missing.
     pub(super) fn reset(&mut self) {
         self.before.clear();
     }
@@ -85,7 +85,7 @@ mod tests {
         samples.iter().enumerate().skip(1).map(error).fold(0.0, f64::max)
     }
 
-    /// Without the correction, a delay of 2 µs is an error of 0.72° at 1 kHz and of 3.6° at 5 kHz.
+    /// Without the correction, a delay of 2 µs causes an angle error of 0.72° at 1 kHz and of 3.6° at 5 kHz.
     #[test]
     fn the_cosine_moves_to_the_time_of_the_sine() {
         for (hz, limit) in [(50.0, 0.01), (1_000.0, 0.01), (5_000.0, 0.05), (10_000.0, 0.5)] {

@@ -1,4 +1,4 @@
-//! An adapter that is only used for a stream.
+//! Use of an adapter for a single stream, without register access.
 
 use std::time::Duration;
 
@@ -38,8 +38,7 @@ pub struct StreamingAdapter {
     /// Full scale of sine and cosine: the voltage in microvolts that a sample of 32767 represents. The value is 0 for
     /// other streams.
     pub full_scale_microvolt: u32,
-    /// Time in nanoseconds by which the adapter samples the cosine after the sine. The samples are corrected for this
-    /// delay.
+    /// Delay in nanoseconds between sampling the sine and the cosine. The samples are corrected for this delay.
     pub skew_ns: u16,
     /// Measured supply in millivolts and milliamperes, or `None` if the adapter does not supply the encoder.
     pub supplied: Option<(u16, u16)>,
@@ -77,7 +76,7 @@ impl From<Failure> for AdapterStreamError {
 }
 
 impl StreamTap {
-    /// Creates a tap for an adapter that was not identified yet. Its replies may be late by `margin`.
+    /// Creates a tap for an adapter that has not been identified. Its replies may be late by `margin`.
     pub fn new(margin: Duration) -> Self {
         StreamTap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None, skew: None }
     }
@@ -173,8 +172,8 @@ impl StreamTap {
 }
 
 impl Adapter<'_, '_> {
-    /// Reads the time in nanoseconds by which the cosine is sampled after the sine. It is 0 for adapters that sample
-    /// both signals at the same time.
+    /// Reads how much later than the sine the adapter samples the cosine, in nanoseconds. Returns 0 for adapters that
+    /// sample both signals at the same time.
     fn skew_ns(&mut self, hello: &Hello) -> Result<u16, Failure> {
         if !hello.capabilities.contains(Capabilities::ANALOG_SKEW) {
             return Ok(0);

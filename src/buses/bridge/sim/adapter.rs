@@ -1,4 +1,4 @@
-//! The virtual adapter with its requests, replies and streams, byte by byte and with simulated faults. Where the
+//! The virtual adapter, which handles requests, replies and streams byte by byte and simulates faults. Where the
 //! reference leaves the behaviour open, this adapter replies a quarter of a millisecond after a request, or after the
 //! 47 cycles of a control frame if the request needs one. HELLO ends all streams and leaves the supply unchanged. SSI
 //! and BiSS share their wires, so only one of them can stream at a time.
@@ -39,9 +39,9 @@ pub struct Adapter {
     requests: u32,
     pushed: u8,
     now: Moment,
-    /// Time at which the last reply has been transmitted completely.
+    /// Time at which the transmission of the last reply ends.
     replied: Moment,
-    /// Bytes for the host in the order of their arrival.
+    /// Bytes on the way to the host, in order of arrival.
     to_host: TransitQueue<Vec<u8>>,
     inbox: Vec<u8>,
 }
@@ -142,7 +142,7 @@ impl Adapter {
         }
     }
 
-    /// Replaces the simulated faults. The counts of requests and stores are kept.
+    /// Replaces the simulated faults. The counters of requests and stores are not reset.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.faults = faults.clone();
         if let Some(device) = &mut self.bus.biss {
@@ -210,7 +210,7 @@ impl Adapter {
         self.send(self.replied, &reply);
     }
 
-    /// Returns the time for which the adapter processes a request. Transmission is not included.
+    /// Returns how long the adapter processes a request, excluding transmission.
     fn time(&self, request: &Request) -> Duration {
         let frame = self.biss.map_or(Duration::ZERO, |setting| setting.frame_duration());
         match request.operation() {
@@ -390,7 +390,7 @@ impl Adapter {
     }
 }
 
-/// Returns a time in microseconds of the adapter's clock.
+/// Converts a moment to microseconds of the adapter's clock.
 fn adapter_microseconds(at: Moment) -> u64 {
     u64::try_from(at.since_start().as_micros()).unwrap_or(u64::MAX)
 }

@@ -1,5 +1,5 @@
-//! Devices on the clocked buses and the serial line of the adapter. The adapter does not depend on any of them. Each
-//! device parses its settings in a `sim:` link.
+//! Devices on the clocked buses and the serial line of the adapter. The adapter does not depend on any specific device.
+//! Each device parses its own settings in a `sim:` link.
 
 use std::any::Any;
 
@@ -27,7 +27,7 @@ pub trait BissDevice: Any + Send {
 
     fn disconnect(&mut self);
 
-    /// Switches the power of the device on again.
+    /// Switches the device back on after [`disconnect`](Self::disconnect).
     fn connect(&mut self, now: Moment);
 
     /// Returns whether the power is on. The device may still be starting.

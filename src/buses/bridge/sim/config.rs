@@ -20,7 +20,7 @@ parameters! {
 }
 
 parameters! {
-    /// Settings that attached devices may share: the seed of the noise, and the faults.
+    /// Settings that attached devices may share: the seed for the noise, and the faults.
     pub(super) struct Shared: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
@@ -28,7 +28,7 @@ parameters! {
 }
 
 parameters! {
-    /// Settings of the shaft. They apply if no attached device has a shaft.
+    /// Settings of the shaft, used if no attached device has a shaft.
     pub(super) struct Shaft: ConfigError {
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
     }

@@ -1,5 +1,5 @@
-//! A virtual adapter for the bridge protocol, with a sine/cosine encoder on the shaft of the attached devices. Without
-//! a device on the serial line, requests for the line are rejected as not supported. See the project's reference
+//! A virtual adapter for the bridge protocol. It has a sine/cosine encoder on the shaft of the attached devices, and
+//! rejects requests to the serial line as not supported if no device is connected there. See the project's reference
 //! `protocol/bridge.md`.
 //!
 //! | file | content |

@@ -6,7 +6,7 @@ use super::config::{Config, Shaft, Shared};
 use crate::parameter::{Entry, ParameterGroup};
 use crate::sim::{ConfigError, VirtualDevice};
 
-/// Returns the names of all settings. The settings of the adapter and of the small devices come first, in alphabetical
+/// Returns the names of all settings. Those of the adapter and of all devices but the last come first, in alphabetical
 /// order, followed by those of the last device.
 pub fn all_setting_names(devices: &[&dyn AttachableKind]) -> Vec<&'static str> {
     let (last, others) = devices.split_last().map_or((None, devices), |(last, others)| (Some(last), others));

@@ -10,7 +10,7 @@ use crate::units::Moment;
 
 /// Maximum time to wait for a packet to fill.
 const FLUSH: Duration = Duration::from_millis(5);
-/// Length of the recording that the adapter buffers until the host fetches the samples.
+/// How long the adapter buffers samples until the host fetches them.
 const BACKLOG: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,8 +99,8 @@ impl ClockedStream {
         self.pace.next_packet_time()
     }
 
-    /// Takes the samples up to `to` and returns the completed packets with their times. Call this function before a
-    /// change that takes effect at `to`.
+    /// Takes the samples up to `to` and returns the completed packets with their times. Must be called before a change
+    /// that takes effect at `to`.
     pub(super) fn run(
         &mut self,
         to: Moment,

@@ -1,4 +1,4 @@
-//! The serial line of the adapter and its device. The time-out is assumed to start when all bytes have been sent.
+//! The serial line between the adapter and its device. The time-out is assumed to start when all bytes have been sent.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ pub(super) struct Uart {
 }
 
 pub(super) struct UartTransfer {
-    /// Time of the first start bit. Without a reply, this is the end of the wait.
+    /// Time of the first start bit, or the end of the wait if there is no reply.
     pub(super) start: Moment,
     pub(super) rx: Vec<u8>,
     /// Time at which the adapter stopped waiting.

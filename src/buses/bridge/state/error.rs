@@ -1,4 +1,4 @@
-//! Error messages of an adapter for any bus.
+//! Error messages about adapters that apply to all buses.
 
 use crate::app::Text;
 use crate::buses::bridge::procedures::AdapterError;

@@ -1,4 +1,4 @@
-//! Messages of an adapter for any bus.
+//! Messages about adapters that apply to all buses.
 
 mod error;
 mod texts;

@@ -1,17 +1,17 @@
-//! Descriptions of the packets to and from an adapter for any bus.
+//! Descriptions of the packets exchanged with an adapter, for all buses.
 
 use crate::app::explain::literal_text;
 use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::buses::bridge::protocol::{Message, Packet, Reply, Request};
 use crate::buses::bridge::state::TEXTS;
 
-/// Parses the first packet in transmitted bytes, or returns `None` if they contain no packet.
+/// Parses the first packet in the transmitted bytes, or returns `None` if they contain no packet.
 pub fn parse_packet(bytes: &[u8]) -> Option<Packet> {
     let stuffed = bytes.split(|byte| *byte == 0).find(|stuffed| !stuffed.is_empty())?;
     Packet::parse(stuffed).ok()
 }
 
-/// Explains a received packet if it is damaged or a rejection. For other packets, the result is `None`.
+/// Explains a received packet that is damaged or rejects a request. Returns `None` for any other packet.
 pub fn explain_received(bytes: &[u8]) -> Option<FrameExplanation> {
     let Some(packet) = parse_packet(bytes) else {
         return Some(FrameExplanation::from_error(TEXTS.text("trace.no_packet")));

@@ -20,8 +20,8 @@ pub(super) fn message(bytes: &[u8], device: Device) -> Option<(&'static str, Vec
     known.then(|| ("reply", reply_lines(&reply)))
 }
 
-/// Returns whether the bytes look like a request. Almost any data can be parsed as a request, so the request must also
-/// address an object. For a known device, the service must be known as well.
+/// Returns whether the bytes look like a request. Almost any data can be parsed as one, so the request must also
+/// address an object and, for a known device, use a known service.
 fn is_request(request: &Request, device: Device) -> bool {
     let class_first = matches!(request.path.0.first(), Some(Segment::Logical { kind: LogicalKind::Class, .. }));
     let whole = !request.path.0.iter().any(|segment| matches!(segment, Segment::Unknown(_)));

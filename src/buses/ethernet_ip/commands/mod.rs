@@ -17,7 +17,7 @@ use crate::cli::output::{Output, count};
 pub(crate) struct DecodedBytes {
     pub(crate) lines: Vec<String>,
     pub(crate) more: Map<String, Json>,
-    /// Process data of a cyclic packet, and whether the packet goes to the target.
+    /// Process data of a cyclic packet, and whether the packet is sent to the target.
     pub(crate) data: Option<(Vec<u8>, bool)>,
 }
 
@@ -28,7 +28,7 @@ pub(crate) type AttributeDecoder = fn(u16, u16, &[u8]) -> Option<(String, std::r
 #[derive(Clone, Copy)]
 pub(crate) enum Device {
     Any,
-    /// A known device, which supports standard services only and whose attributes have known meanings.
+    /// A known device. It supports only standard services, and the meaning of its attributes is known.
     Known(AttributeDecoder),
 }
 
@@ -67,7 +67,7 @@ fn decode(output: &Output, words: &[String]) -> Result {
     show(output, &explained)
 }
 
-/// Decodes a packet. Returns `None` if the bytes do not begin like a packet.
+/// Decodes a packet. Returns `None` if the bytes do not start like one.
 pub(crate) fn explain_packet(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
     if let Some(explained) = explain_cyclic(bytes) {
         return Some(Ok(explained));

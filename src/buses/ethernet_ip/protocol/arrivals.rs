@@ -1,4 +1,4 @@
-//! Filtering cyclic packets. Duplicates are dropped, and so are packets that a newer one has overtaken.
+//! Filter for cyclic packets. It drops duplicates and packets that arrive after a newer one.
 
 /// Tracks the packets received on one connection.
 #[derive(Clone, Copy, Debug, Default)]
@@ -13,7 +13,7 @@ pub struct PacketTracker {
 pub enum PacketVerdict {
     /// The packet is new.
     New {
-        /// Number of preceding packets that have not arrived. Such packets are stale if they arrive later.
+        /// Number of preceding packets that have not arrived. They are stale if they arrive later.
         missing: u32,
     },
     /// This packet, or a newer one, has already been received.
@@ -21,8 +21,8 @@ pub enum PacketVerdict {
 }
 
 impl PacketTracker {
-    /// Classifies a packet by its sequence number. Numbers wrap around: a newer packet is ahead by less than half their
-    /// range.
+    /// Classifies a packet by its sequence number. Numbers wrap around, so a packet is newer if it is ahead by less
+    /// than half their range.
     pub fn classify(&mut self, sequence: u32) -> PacketVerdict {
         let ahead = match self.newest {
             None => 1,

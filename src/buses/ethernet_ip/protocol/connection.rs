@@ -172,7 +172,7 @@ impl Transport {
 }
 
 impl ConnectionTimeout {
-    /// Maximum exponent, for 512 intervals.
+    /// Largest exponent, which means 512 intervals.
     const MAX_EXPONENT: u8 = 7;
 
     /// Creates the multiplier with the given exponent. Returns `None` for an exponent above 7.

@@ -15,7 +15,7 @@ pub struct Frame {
     pub command: Command,
     /// Session handle, assigned by the target in the RegisterSession reply. Before this reply, the handle is 0.
     pub session: u32,
-    /// Status. It is 0 in a request.
+    /// Status, always 0 in a request.
     pub status: EncapsulationStatus,
     /// Sender context, chosen by the originator and repeated in the reply.
     pub context: [u8; 8],
@@ -28,7 +28,7 @@ pub struct Frame {
 /// The content of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// No data. List requests, the end of a session and rejections have none.
+    /// No data, as in list requests, UnregisterSession and rejections.
     Empty,
     /// Data of a RegisterSession request or reply.
     Register {
@@ -70,7 +70,7 @@ impl Command {
     pub const LIST_SERVICES: Command = Command(0x04);
     /// Command that requests the identity. It may be broadcast.
     pub const LIST_IDENTITY: Command = Command(0x63);
-    /// Command that requests the list of interfaces other than CIP.
+    /// Command that requests the list of non-CIP interfaces.
     pub const LIST_INTERFACES: Command = Command(0x64);
     /// Command that opens a session.
     pub const REGISTER_SESSION: Command = Command(0x65);

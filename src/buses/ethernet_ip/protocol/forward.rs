@@ -24,7 +24,7 @@ pub struct ConnectionOwner {
 pub struct ForwardOpen {
     /// Time-out of the request.
     pub timeout: RequestTimeout,
-    /// Requested connection ID of packets to the target. If the ID is 0, the target chooses an ID.
+    /// Requested connection ID for packets to the target, or 0 to let the target choose one.
     pub to_target_id: u32,
     /// Connection ID of packets to the originator.
     pub to_originator_id: u32,

@@ -10,7 +10,7 @@ pub struct IoPacket {
     pub connection: u32,
     /// Sequence number, incremented with every packet.
     pub sequence: u32,
-    /// Data sequence count, incremented with new data (`U`: with every packet).
+    /// Data sequence count, incremented with new data. Incrementing it with every packet is an assumption (`U`).
     pub count: u16,
     /// Run/idle header, if the format has one.
     pub header: Option<RunIdleHeader>,
@@ -18,8 +18,8 @@ pub struct IoPacket {
     pub data: Vec<u8>,
 }
 
-/// Format of the header before the data, as defined by the EDS of the device (`U`: only packets to the target have a
-/// header).
+/// Format of the header before the data, as defined by the EDS of the device. Only packets to the target are assumed to
+/// have a header (`U`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RealTimeFormat {
     /// The 32-bit run/idle header.

@@ -5,7 +5,7 @@ use core::net::Ipv4Addr;
 use super::fields::{FieldReader, PacketError, Structure};
 use super::identity::IdentityItem;
 
-/// A list of items. Each address precedes its data.
+/// A list of items. Each address item precedes its data item.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ItemList(pub Vec<Item>);
 

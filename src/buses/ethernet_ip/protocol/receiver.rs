@@ -8,7 +8,7 @@ use super::fields::PacketError;
 pub struct Receiver {
     bytes: Vec<u8>,
     broken: Option<PacketError>,
-    /// The bytes from an invalid header on, until the caller takes them.
+    /// Bytes from the first invalid header onwards, kept until the caller takes them.
     rest: Vec<u8>,
 }
 
@@ -40,8 +40,8 @@ impl Receiver {
         std::mem::take(if self.rest.is_empty() { &mut self.bytes } else { &mut self.rest })
     }
 
-    /// Returns the number of bytes that do not yet form a complete frame. If the connection ends while there are any,
-    /// the last frame was truncated.
+    /// Returns the number of bytes that do not yet form a complete frame. If any remain when the connection ends, the
+    /// last frame was truncated.
     pub const fn pending_len(&self) -> usize {
         self.bytes.len()
     }

@@ -1,5 +1,5 @@
 //! Status codes: encapsulation status, CIP general status, and the extended status of a connection that was not opened.
-//! See reference 7 (names by ODVA, `P`; remedies `U`).
+//! See reference 7. The names are from ODVA (`P`), and the remedies are assumptions (`U`).
 
 use std::fmt;
 

@@ -139,8 +139,8 @@ impl InterfaceConfiguration {
         fields.finish(InterfaceConfiguration { address: own, mask, gateway, name_servers, domain })
     }
 
-    /// Checks that a device would be reachable. The address must be valid in a network with this mask, and the gateway
-    /// must be unset or in the same network.
+    /// Checks that a device with this configuration would be reachable. The address must be valid in a network with
+    /// this mask, and the gateway must be unset or in the same network.
     ///
     /// Returns an [`AddressError`] if an address, the mask or the domain name is not usable.
     pub fn check_reachable(&self) -> Result<(), AddressError> {

@@ -47,7 +47,7 @@ fn published_frames_match() {
     );
 }
 
-/// A reply to an earlier request, in another session or to another command does not match.
+/// A reply to an earlier request, from another session or to another command does not match.
 #[test]
 fn a_reply_matches_only_its_own_request() {
     let request = Frame::unconnected_message(SESSION, [7; 8], vec![0x0E]);
@@ -97,8 +97,8 @@ fn published_requests_match() {
     assert!(matches!(Reply::parse(&[0x0E, 0, 0, 0]), Err(PacketError::Value { got: 0x0E, .. })));
 }
 
-/// A number may be encoded wider than necessary, and its width is preserved. Unknown segments are preserved as
-/// received.
+/// A number may be encoded in a wider form than necessary, and its width is preserved. Unknown segments are preserved
+/// as received.
 #[test]
 fn every_path_round_trips() {
     for (label, text, segments) in [

@@ -46,8 +46,8 @@ impl<'a> Frame<'a> {
     /// Number of bytes in addition to the payload. Five precede the payload and one follows.
     pub const OVERHEAD: usize = 6;
 
-    /// Parses a frame that occupies the whole slice. The header gives the length, even where examples in the manual
-    /// differ.
+    /// Parses a frame that occupies the whole slice. The length is taken from the header, although some examples in the
+    /// manual differ.
     ///
     /// # Errors
     /// Returns a [`FrameError`] if the bytes are not a valid frame.

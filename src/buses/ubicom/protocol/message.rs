@@ -1,5 +1,5 @@
-//! Requests of the host and replies of the encoder (manual 5.2). Registers are identified by the global numbers that
-//! `RegisterAddress::global` of BiSS returns.
+//! Requests from the host and replies from the encoder (manual 5.2). Registers are identified by global numbers, as
+//! returned by `RegisterAddress::global` of BiSS.
 
 use super::frame::{Frame, NODE};
 use super::position::PositionWord;
@@ -95,7 +95,7 @@ pub enum ReplyError {
         /// Received command.
         got: u8,
     },
-    /// The payload length is wrong. If it equals the payload length of the request, the frame may be an echo.
+    /// The payload length is wrong. The frame may be an echo if its payload is as long as that of the request.
     #[error("the payload has {got} bytes instead of {expected}")]
     Length {
         /// Expected payload length in bytes.
@@ -144,8 +144,8 @@ impl Command {
 impl Request {
     /// Position request with the argument that the manual defines.
     pub const POSITION: Request = Request::Position { argument: 0x01 };
-    /// Read request whose reply reveals the byte order of register numbers. Its own register number is sent low byte
-    /// first. See [`byte_order_from_reply`].
+    /// Read request whose reply reveals the byte order of register numbers. The request itself sends its register
+    /// number low byte first. See [`byte_order_from_reply`].
     pub const PROBE: Request = Request::Read { register: Request::PROBE_REGISTER };
     /// Register that [`PROBE`](Self::PROBE) reads.
     pub const PROBE_REGISTER: u16 = 0x0001;
@@ -197,8 +197,9 @@ impl Request {
     }
 }
 
-/// Returns the byte order of register numbers, derived from the reply to [`Request::PROBE`]. The value 02h is the data
-/// sheet bank in register 0001h, and 01h is the profile version in register 0100h. Any other value yields `None`.
+/// Returns the byte order of register numbers according to the reply to [`Request::PROBE`]. 02h is the content of
+/// register 0001h (the data sheet bank), and 01h that of register 0100h (the profile version). Any other value yields
+/// `None`.
 pub const fn byte_order_from_reply(answer: u8) -> Option<ByteOrder> {
     match answer {
         0x02 => Some(ByteOrder::LowFirst),

@@ -26,8 +26,8 @@ const BAUD: Baud = Baud::B115200;
 
 /// Character format of the line: 115200 8N1.
 pub const FORMAT: CharacterFormat = CharacterFormat { baud: BAUD, parity: Parity::None };
-/// Returns the number of bits in a character. It consists of the start bit, eight data bits, the parity bit if enabled,
-/// and the stop bit.
+/// Returns the number of bits in a character: the start bit, eight data bits, the parity bit if enabled, and the stop
+/// bit.
 pub const fn character_bits(format: CharacterFormat) -> u64 {
     match format.parity {
         Parity::None => 10,
@@ -35,7 +35,7 @@ pub const fn character_bits(format: CharacterFormat) -> u64 {
     }
 }
 
-/// Time-out for a reply (`U`: not documented).
+/// Time-out for a reply. The manual does not specify it (`U`).
 pub const REPLY_TIME_OUT: Duration = Duration::from_millis(100);
-/// Duration of silence after which an incomplete frame is abandoned (`U`: not documented).
+/// Duration of silence after which an incomplete frame is abandoned. The manual does not specify it (`U`).
 pub const BYTE_TIME_OUT: Duration = Duration::from_millis(20);

@@ -1,6 +1,6 @@
-//! Frame reassembly from a byte stream. The byte 80h may also occur within a payload, so it starts a frame only if none
-//! is in progress. This is the case after a complete frame, a damaged one, or silence. The caller measures the silence
-//! with [`BYTE_TIME_OUT`](super::BYTE_TIME_OUT). See reference 2.
+//! Frame reassembly from a byte stream. The byte 80h may also occur within a payload, so it starts a frame only between
+//! frames: after a complete frame, a damaged frame or silence. The caller measures the silence with
+//! [`BYTE_TIME_OUT`](super::BYTE_TIME_OUT). See reference 2.
 
 use super::frame::{Frame, MAX_PAYLOAD, SYNC};
 
@@ -12,7 +12,7 @@ pub struct Receiver {
     skipped: u64,
 }
 
-/// The interpretation of the first bytes in the buffer.
+/// What the first bytes in the buffer are.
 enum FrameHead {
     /// More bytes are required.
     Partial,
@@ -44,7 +44,7 @@ impl Receiver {
         }
     }
 
-    /// Handles silence on the line, which means that an incomplete frame will not be completed. Returns a frame if the
+    /// Handles silence on the line, after which an incomplete frame will not be completed. Returns a frame if the
     /// remaining bytes contain one.
     pub fn handle_silence(&mut self) -> Option<Vec<u8>> {
         loop {

@@ -1,4 +1,4 @@
-//! A host for the virtual adapter in virtual time, and devices for tests.
+//! A host for the virtual adapter in virtual time, and devices to attach in tests.
 
 use std::time::Duration;
 
@@ -23,12 +23,12 @@ pub(crate) const SSI: Request =
     Request::SsiConfig { clocks: 25, clock_hz: 500_000, pause_us: 30, flags: SsiFlags::FALLING_EDGE };
 
 impl Host {
-    /// Creates a host with an adapter for the test devices.
+    /// Creates a host with an adapter to which the test devices are attached.
     pub(crate) fn with(query: &str) -> Self {
         Self::to(query, &[&SsiTestEncoder, &Dial::SETTINGS])
     }
 
-    /// Creates a host with an adapter for the given devices.
+    /// Creates a host with an adapter to which the given devices are attached.
     pub(crate) fn to(query: &str, devices: &[&dyn AttachableKind]) -> Self {
         let adapter = Adapter::from_pairs(&query_pairs(query), devices).unwrap();
         Host { adapter, receiver: Receiver::default(), seq: 0, now: Moment::START }
@@ -39,7 +39,7 @@ impl Host {
         self.adapter.on_bytes(self.now, &request.emit(self.seq).emit());
     }
 
-    /// Returns the messages received until a moment.
+    /// Returns the messages received up to the given time.
     pub(crate) fn receive(&mut self, until: Moment) -> Vec<(u8, Message)> {
         while let Some(at) = self.adapter.poll_at().filter(|at| *at <= until) {
             self.now = self.now.max(at);

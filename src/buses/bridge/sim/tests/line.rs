@@ -1,4 +1,4 @@
-//! Tests of faults on the line of the adapter.
+//! Tests of simulated faults: lost replies, late replies and inverted bits.
 
 use super::*;
 use crate::sim::SimulatedFaults;
