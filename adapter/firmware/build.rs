@@ -1,4 +1,4 @@
-//! Passes the memory map of the Pico to the linker.
+//! Makes the linker use the memory map of the Raspberry Pi Pico.
 
 use std::path::PathBuf;
 use std::{env, fs, io};

@@ -1,5 +1,5 @@
-//! Consistent overhead byte stuffing (COBS). The encoded bytes contain no 00, so a 00 can end each packet. See Cheshire
-//! & Baker, IEEE/ACM Transactions on Networking 7, 1999.
+//! Consistent overhead byte stuffing (COBS). Encoded bytes contain no 00, so a 00 can mark the end of each packet. See
+//! Cheshire & Baker, IEEE/ACM Transactions on Networking 7, 1999.
 
 use alloc::vec::Vec;
 
@@ -9,15 +9,15 @@ const BLOCK: usize = 254;
 /// The reason why bytes are not valid COBS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CobsError {
-    /// A byte within the packet is 00, which is only allowed at its end. The value is the index of the byte.
+    /// The byte at this index is 00, which is only allowed at the end of a packet.
     #[error("byte {0} of the packet is 00")]
     Zero(usize),
-    /// The packet ends before the block of its last code byte. The value is the number of missing bytes.
+    /// The packet ends before the last block is complete. The value is the number of missing bytes.
     #[error("the packet ends {0} bytes too early")]
     Short(usize),
 }
 
-/// Encodes bytes. The result does not contain the 00 at the end of a packet.
+/// Encodes bytes. The result does not include the 00 at the end of a packet.
 pub fn encode(bytes: &[u8]) -> Vec<u8> {
     let mut stuffed = Vec::with_capacity(bytes.len() + bytes.len() / BLOCK + 1);
     // A full block at the end is not followed by an empty one.
@@ -73,7 +73,7 @@ mod tests {
 
     use proptest::prelude::*;
 
-    /// The well-known published examples of COBS, without the terminating 00, are encoded and decoded correctly.
+    /// The expected bytes are published examples of COBS, without the terminating 00.
     #[test]
     fn published_examples_encode_and_decode() {
         let counting = |first: u8, count: u8| (0..count).map(|at| first.wrapping_add(at)).collect::<Vec<u8>>();

@@ -1,7 +1,7 @@
-//! Codes and bit sets in the messages of an adapter (reference, section 2). Unknown codes and bits survive a round
-//! trip.
+//! Codes and bit sets in messages of an adapter (`protocol/bridge.md`, section 2). Unknown codes and bits are
+//! preserved.
 
-/// The capabilities of an adapter as a set of bits. Unknown bits are preserved.
+/// The capabilities of an adapter, as a set of bits. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities(u32);
 
@@ -9,7 +9,7 @@ pub struct Capabilities(u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BissStatus(u8);
 
-/// The reason for a rejection as a code. Unknown codes are preserved.
+/// The reason for a rejection, as a code. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorCode(u8);
 
@@ -17,7 +17,7 @@ pub struct ErrorCode(u8);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RestartReason(u8);
 
-/// Faults of the encoder supply as a set of bits. Unknown bits are preserved.
+/// Faults of the encoder supply, as a set of bits. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SupplyFaults(u8);
 
@@ -34,15 +34,14 @@ impl Capabilities {
     pub const UART: Capabilities = Capabilities(1 << 4);
     /// The adapter can switch the encoder supply.
     pub const SUPPLY: Capabilities = Capabilities(1 << 5);
-    /// The encoder supply is on. This bit is a state and not a capability. Adapters that do not report the state leave
-    /// it clear.
+    /// The encoder supply is on. This bit is a state rather than a capability, and some adapters never set it.
     pub const SUPPLY_ON: Capabilities = Capabilities(1 << 6);
     /// The adapter samples the cosine after the sine and reports the delay.
     pub const ANALOG_SKEW: Capabilities = Capabilities(1 << 7);
-    /// The adapter reports its condition.
+    /// The adapter can report its status.
     pub const STATUS: Capabilities = Capabilities(1 << 8);
 
-    /// Creates capabilities from their bits. Every value is valid.
+    /// Creates a set of capabilities from its bits. Every value is valid.
     pub const fn new(word: u32) -> Self {
         Capabilities(word)
     }
@@ -74,12 +73,12 @@ impl RestartReason {
     /// The firmware stopped responding, and the watchdog restarted the adapter.
     pub const WATCHDOG: RestartReason = RestartReason(3);
 
-    /// Creates a reason from its byte. Every value is valid.
+    /// Creates a reason from a byte. Every value is valid.
     pub const fn new(byte: u8) -> Self {
         RestartReason(byte)
     }
 
-    /// Returns the byte of the reason.
+    /// Returns the reason as a byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -91,7 +90,7 @@ impl SupplyFaults {
     /// The supply switch reported an overload, and the supply was switched off.
     pub const OVERLOAD: SupplyFaults = SupplyFaults(1);
 
-    /// Creates faults from their bits. Every value is valid.
+    /// Creates a set of faults from its bits. Every value is valid.
     pub const fn new(bits: u8) -> Self {
         SupplyFaults(bits)
     }
@@ -112,12 +111,12 @@ impl BissStatus {
     /// The data line is stuck at 1.
     pub const STUCK_HIGH: BissStatus = BissStatus(3);
 
-    /// Creates a status from its byte. Every value is valid.
+    /// Creates a status from a byte. Every value is valid.
     pub const fn new(byte: u8) -> Self {
         BissStatus(byte)
     }
 
-    /// Returns the byte of the status.
+    /// Returns the status as a byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -126,7 +125,7 @@ impl BissStatus {
 impl ErrorCode {
     /// The adapter does not support the operation.
     pub const NOT_SUPPORTED: ErrorCode = ErrorCode(1);
-    /// The adapter does not accept a value of the request.
+    /// A value in the request is not acceptable to the adapter.
     pub const BAD_ARGUMENT: ErrorCode = ErrorCode(2);
     /// The adapter is busy with a stream.
     pub const BUSY: ErrorCode = ErrorCode(3);
@@ -137,12 +136,12 @@ impl ErrorCode {
     /// The adapter was too slow to keep up.
     pub const OVERRUN: ErrorCode = ErrorCode(6);
 
-    /// Creates an error code from its byte. Every value is valid.
+    /// Creates an error code from a byte. Every value is valid.
     pub const fn new(byte: u8) -> Self {
         ErrorCode(byte)
     }
 
-    /// Returns the byte of the error code.
+    /// Returns the error code as a byte.
     pub const fn byte(self) -> u8 {
         self.0
     }

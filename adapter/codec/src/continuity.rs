@@ -1,31 +1,31 @@
-//! Check of stream packets for gaps. Every gap is reported (reference, section 3).
+//! Detects gaps between stream packets (`protocol/bridge.md`, section 3).
 
 use super::data::StreamData;
 
-/// Position in a stream at which the next packet should start.
+/// A detector of gaps between stream packets, which holds the sample number expected next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Continuity {
     next: u32,
 }
 
-/// The gap before a packet.
+/// The gap between a packet and the previous one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PacketGap {
-    /// The packet follows the previous one without a gap.
+    /// There is no gap.
     None,
-    /// The given number of samples is missing.
+    /// This number of samples is missing.
     Missing(u32),
-    /// The packet starts before the end of the previous one. The stream was restarted, or the packet is late.
+    /// The packet starts before the end of the previous one. Either the stream was restarted, or the packet is late.
     Backwards,
 }
 
 impl Continuity {
-    /// Creates the state at the start of a stream, where sample 0 is expected.
+    /// Creates a detector for the start of a stream, where sample 0 is expected.
     pub const fn at_start() -> Self {
         Continuity { next: 0 }
     }
 
-    /// Returns the gap before a packet. The end of the packet becomes the next expected position.
+    /// Returns the gap before a packet, and expects the next packet to follow this one.
     pub fn gap_before(&mut self, data: &StreamData) -> PacketGap {
         let (first, count, lost) = data.sample_range();
         let ahead = first.wrapping_sub(self.next);

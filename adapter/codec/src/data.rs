@@ -1,4 +1,4 @@
-//! Stream packets, which an adapter sends without being asked (reference, section 3).
+//! Stream packets, which an adapter sends without individual requests (`protocol/bridge.md`, section 3).
 
 use alloc::vec::Vec;
 
@@ -22,13 +22,13 @@ pub enum StreamData {
 pub struct SsiData {
     /// Number of the first word, counted from the start of the stream, modulo 2³².
     pub first_index: u32,
-    /// Time of the first word, in microseconds of the adapter's clock.
+    /// Time of the first word in microseconds, on the adapter's clock.
     pub t0_us: u64,
     /// Interval between two words in microseconds.
     pub period_us: u32,
     /// Number of samples that the adapter has lost since the previous packet.
     pub lost: u16,
-    /// Width of a value in the packet in bytes, 1 to 8.
+    /// Number of bytes per value in the packet, 1 to 8.
     pub width: u8,
     /// Right-justified words, at most 255.
     pub values: Vec<u64>,
@@ -39,15 +39,15 @@ pub struct SsiData {
 pub struct BissData {
     /// Number of the first frame, counted from the start of the stream, modulo 2³².
     pub first_index: u32,
-    /// Time of the first frame, in microseconds of the adapter's clock.
+    /// Time of the first frame in microseconds, on the adapter's clock.
     pub t0_us: u64,
     /// Interval between two frames in microseconds.
     pub period_us: u32,
     /// Number of samples that the adapter has lost since the previous packet.
     pub lost: u16,
-    /// Width of the data and CRC of a frame in the packet in bytes, 1 to 8.
+    /// Number of bytes per frame in the packet for data and CRC, 1 to 8.
     pub width: u8,
-    /// Status of each frame with its right-justified data and CRC, at most 255 frames.
+    /// Status of each frame, and its right-justified data and CRC. There are at most 255 frames.
     pub values: Vec<(BissStatus, u64)>,
 }
 
@@ -56,7 +56,7 @@ pub struct BissData {
 pub struct AnalogData {
     /// Number of the first sample, counted from the start of the stream, modulo 2³².
     pub first_index: u32,
-    /// Time of the first sample, in microseconds of the adapter's clock.
+    /// Time of the first sample in microseconds, on the adapter's clock.
     pub t0_us: u64,
     /// Number of samples that the adapter has lost since the previous packet.
     pub lost: u16,
@@ -69,7 +69,7 @@ impl StreamData {
     const BISS: u8 = 0xA5;
     const ANALOG: u8 = 0xB2;
 
-    /// Returns the number of the first sample, the number of samples, and the number of lost samples before the first.
+    /// Returns the number of the first sample, the number of samples, and the number of samples lost before them.
     pub const fn sample_range(&self) -> (u32, usize, u16) {
         match self {
             StreamData::Ssi(data) => (data.first_index, data.values.len(), data.lost),
@@ -78,7 +78,7 @@ impl StreamData {
         }
     }
 
-    /// Parses a packet, or returns `None` if it is not part of a stream.
+    /// Parses a packet, or returns `None` if it is not a stream packet.
     pub(super) fn parse(packet: &Packet) -> Result<Option<Self>, BodyError> {
         let mut fields = FieldReader::new(packet.op, &packet.body);
         let data = match packet.op {

@@ -1,10 +1,11 @@
-//! Encoding the fields in a packet body. Integers are little-endian, and strings are preceded by their length.
+//! Encodes and decodes the fields of a packet body. Integers are little-endian, and strings are preceded by their
+//! length.
 
 use alloc::borrow::ToOwned;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// The reason why a body is not valid for its operation.
+/// The reason why a packet body is not valid for its operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BodyError {
     /// The length of the body does not match the operation.
@@ -44,7 +45,7 @@ pub enum BodyError {
     },
 }
 
-/// The bytes of a body that have not been parsed yet.
+/// Parser for a packet body, which holds the bytes that have not been parsed yet.
 pub(super) struct FieldReader<'a> {
     op: u8,
     whole: usize,
@@ -76,7 +77,7 @@ impl<'a> FieldReader<'a> {
         self.take_array().map(u64::from_le_bytes)
     }
 
-    /// Parses a switch byte, which must be 0 or 1.
+    /// Parses a byte that must be 0 (off) or 1 (on).
     pub(super) fn take_switch(&mut self, field: &'static str) -> Result<bool, BodyError> {
         match self.u8()? {
             0 => Ok(false),
@@ -85,7 +86,7 @@ impl<'a> FieldReader<'a> {
         }
     }
 
-    /// Parses an unsigned integer of `width` bytes, at most 8.
+    /// Parses an unsigned integer of `width` bytes (at most 8).
     pub(super) fn take_uint(&mut self, width: u8) -> Result<u64, BodyError> {
         let bytes = self.bytes(width.into())?;
         Ok(bytes.iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte)))
@@ -102,7 +103,7 @@ impl<'a> FieldReader<'a> {
         core::mem::take(&mut self.rest)
     }
 
-    /// Returns `value` if all bytes have been parsed.
+    /// Returns `value` if no bytes are left.
     pub(super) fn finish<T>(self, value: T) -> Result<T, BodyError> {
         if self.rest.is_empty() { Ok(value) } else { Err(self.length_error()) }
     }
@@ -124,7 +125,7 @@ impl<'a> FieldReader<'a> {
     }
 }
 
-/// Appends the length of a string and the string. Strings of more than 255 bytes are truncated at a character boundary.
+/// Appends a string with its length. Strings of more than 255 bytes are truncated at a character boundary.
 pub(super) fn push_text(body: &mut Vec<u8>, text: &str) {
     let end = (0..=text.len().min(255)).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);
     // The length is at most 255.

@@ -1,6 +1,6 @@
 //! The bridge protocol, version 1. It connects a PC to a small open adapter for the clocked buses SSI and BiSS,
-//! analogue signals and a serial line. Integers are little-endian. See the project's reference `protocol/bridge.md`.
-//! Host and adapter share this crate, which needs an allocator and no operating system.
+//! analogue signals and a serial line. Integers are little-endian. See `protocol/bridge.md` in the project's reference.
+//! The host and the adapter share this crate, which needs an allocator but no operating system.
 //!
 //! ```text
 //! COBS( seq  op  body…  crc16 ) 00
@@ -38,8 +38,8 @@ pub use receiver::Receiver;
 pub use reply::{AdapterStatus, Hello, Message, Reply};
 pub use request::{Operation, Request, SsiFlags};
 
-/// Version of the protocol that this program uses.
+/// Version of the protocol that this program supports.
 pub const VERSION: u8 = 1;
-/// Time without a reply after which a request is repeated once. If there is still no reply after the same time again,
-/// the request has failed.
+/// Time without a reply after which a request is sent a second time. If there is again no reply for this time, the
+/// request has failed.
 pub const REPEAT_AFTER: Duration = Duration::from_millis(200);

@@ -1,4 +1,4 @@
-//! Packets, which consist of a sequence number, an operation, a body and a checksum (reference, section 1).
+//! Packets, which consist of a sequence number, an operation, a body and a checksum (`protocol/bridge.md`, section 1).
 
 use alloc::vec::Vec;
 
@@ -10,8 +10,7 @@ pub const MAX_BODY: usize = 512;
 /// A packet with a valid checksum.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packet {
-    /// Sequence number. The host chooses it, and the reply contains the same number. Unsolicited packets are counted
-    /// separately.
+    /// Sequence number. The host chooses it, and the reply repeats it. Unsolicited packets have their own numbers.
     pub seq: u8,
     /// Operation code. Bit 7 is set in replies.
     pub op: u8,
@@ -25,7 +24,7 @@ pub enum PacketError {
     /// The byte stuffing is invalid.
     #[error(transparent)]
     Cobs(#[from] CobsError),
-    /// The length is below four bytes or above the maximum. The value is the length.
+    /// The packet has this length in bytes, which is less than four or greater than the maximum.
     #[error("{0} bytes is not a valid packet length")]
     Length(usize),
     /// The checksum does not match.
@@ -39,12 +38,12 @@ pub enum PacketError {
 }
 
 impl Packet {
-    /// Number of bytes in addition to the body.
+    /// Number of bytes in a packet in addition to its body.
     const OVERHEAD: usize = 4;
     /// Maximum length of a stuffed packet in bytes.
     pub(super) const MAX_STUFFED: usize = MAX_BODY + Self::OVERHEAD + (MAX_BODY + Self::OVERHEAD) / 254 + 1;
 
-    /// Parses the bytes between two 00.
+    /// Parses the bytes between two 00 bytes.
     ///
     /// # Errors
     /// Returns a [`PacketError`] if the bytes are not a valid packet.
@@ -68,7 +67,7 @@ impl Packet {
         Ok(Packet { seq, op, body: bytes })
     }
 
-    /// Returns the stuffed bytes and the 00 at the end.
+    /// Returns the packet with byte stuffing, followed by 00.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.body.len() + Self::OVERHEAD);
         bytes.extend([self.seq, self.op]);
@@ -80,8 +79,8 @@ impl Packet {
     }
 }
 
-/// Calculates the CRC-16/IBM-3740 checksum of bytes: polynomial x¹⁶ + x¹² + x⁵ + 1, initial value FFFFh, most
-/// significant bit first.
+/// Calculates the CRC-16/IBM-3740 checksum: polynomial x¹⁶ + x¹² + x⁵ + 1, initial value FFFFh, most significant bit
+/// first.
 pub fn crc16(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |crc: u16, byte| {
         let [high, _] = crc.to_be_bytes();

@@ -1,19 +1,19 @@
-//! Assembly of packets from received bytes. Damaged packets are dropped and counted (reference, section 1).
+//! Assembles packets from received bytes. Damaged packets are dropped and counted (`protocol/bridge.md`, section 1).
 
 use alloc::vec::Vec;
 
 use super::packet::{Packet, PacketError};
 
-/// Received bytes that do not form a complete packet yet.
+/// Buffer for received bytes that do not form a complete packet yet.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     bytes: Vec<u8>,
-    /// Index at which the search for the next 00 continues.
+    /// Index at which to continue searching for the next 00.
     searched: usize,
-    /// Whether the packet in progress is too long. Its bytes are then dropped until the next 00.
+    /// Whether the current packet is too long. If so, its bytes are dropped until the next 00.
     overlong: bool,
     dropped: u64,
-    /// Latest damaged packet, or `None` if it has already been taken.
+    /// Most recent damaged packet, or `None` if it has already been taken.
     broken: Option<Vec<u8>>,
 }
 
@@ -23,7 +23,7 @@ impl Receiver {
         self.bytes.extend(bytes);
     }
 
-    /// Returns the next valid packet, or `None` if more bytes are required.
+    /// Returns the next valid packet, or `None` if more bytes are needed.
     pub fn next_packet(&mut self) -> Option<Packet> {
         loop {
             let behind = self.bytes.get(self.searched..).unwrap_or_default();
@@ -55,7 +55,7 @@ impl Receiver {
         }
     }
 
-    /// Returns the bytes of the latest damaged packet. Later calls return `None` until another packet is damaged.
+    /// Takes the bytes of the most recent damaged packet, or returns `None` if there are none.
     pub const fn take_damaged_bytes(&mut self) -> Option<Vec<u8>> {
         self.broken.take()
     }

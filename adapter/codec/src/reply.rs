@@ -1,4 +1,4 @@
-//! Messages of an adapter: replies and unsolicited packets (reference, sections 2 and 3).
+//! Messages of an adapter: replies and unsolicited packets (`protocol/bridge.md`, sections 2 and 3).
 
 use alloc::string::String;
 use alloc::vec;
@@ -43,33 +43,33 @@ pub enum Reply {
         /// Measured current in milliamperes.
         milliampere: u16,
     },
-    /// Condition of the adapter.
+    /// Status of the adapter.
     Status(AdapterStatus),
     /// The SSI clock has been configured.
     SsiConfig {
-        /// Actual clock in hertz.
+        /// Actual clock frequency in hertz.
         clock_hz: u32,
     },
     /// An SSI word.
     SsiRead {
-        /// Time of the word in microseconds of the adapter's clock.
+        /// Time of the word in microseconds, on the adapter's clock.
         t_us: u64,
-        /// Right-justified word. Bit 0 is the bit that was received last.
+        /// Right-justified word, in which bit 0 was received last.
         raw: u64,
     },
-    /// The stream of SSI words has started.
+    /// The stream of SSI words has started or ended.
     SsiStream {
         /// Actual interval in microseconds.
         period_us: u32,
     },
     /// The BiSS clock has been configured.
     BissConfig {
-        /// Actual clock in hertz.
+        /// Actual clock frequency in hertz.
         clock_hz: u32,
     },
     /// A BiSS frame.
     BissRead {
-        /// Time of the frame in microseconds of the adapter's clock.
+        /// Time of the frame in microseconds, on the adapter's clock.
         t_us: u64,
         /// Status of the frame.
         status: BissStatus,
@@ -86,7 +86,7 @@ pub enum Reply {
         /// Value returned by the encoder.
         value: u8,
     },
-    /// The stream of BiSS frames has started.
+    /// The stream of BiSS frames has started or ended.
     BissStream {
         /// Actual interval in microseconds.
         period_us: u32,
@@ -105,9 +105,9 @@ pub enum Reply {
         /// Whether the stream is running.
         on: bool,
     },
-    /// Time between the samples of sine and cosine.
+    /// Time between the sine and the cosine of a sample.
     AnalogSkew {
-        /// Time in nanoseconds by which the cosine is sampled after the sine of the same sample.
+        /// Delay of the cosine after the sine of the same sample, in nanoseconds.
         skew_ns: u16,
     },
     /// The serial line has been configured.
@@ -117,7 +117,7 @@ pub enum Reply {
     },
     /// Bytes have been received on the serial line.
     UartTransfer {
-        /// Time of the first start bit in microseconds of the adapter's clock, which also times the analogue samples.
+        /// Time of the first start bit in microseconds, on the same adapter clock as the analogue samples.
         t_us: u64,
         /// Received bytes.
         rx: Vec<u8>,
@@ -141,7 +141,7 @@ pub struct Hello {
     pub firmware: String,
 }
 
-/// Condition of an adapter.
+/// Status of an adapter since its last start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AdapterStatus {
     /// Time since the start of the adapter in microseconds.
@@ -150,7 +150,7 @@ pub struct AdapterStatus {
     pub restart: RestartReason,
     /// Faults that are present.
     pub faults: SupplyFaults,
-    /// Voltage at the input of the supply switch in millivolts, 0 for adapters without a supply.
+    /// Voltage at the input of the supply switch in millivolts, or 0 for an adapter without a supply.
     pub input_millivolt: u16,
     /// Number of damaged packets that the adapter has received.
     pub damaged: u32,
@@ -161,7 +161,7 @@ pub struct AdapterStatus {
 }
 
 impl Message {
-    /// Operation code of a rejection.
+    /// Operation code of a rejected request.
     const ERROR: u8 = 0xFF;
 
     /// Parses a packet from an adapter.
@@ -196,7 +196,7 @@ impl Message {
 }
 
 impl Reply {
-    /// Returns the operation to which this reply belongs.
+    /// Returns the operation to which the reply belongs.
     pub const fn operation(&self) -> Operation {
         match self {
             Reply::Hello(_) => Operation::Hello,

@@ -1,11 +1,11 @@
-//! Requests from a host to an adapter (reference, section 2).
+//! Requests from a host to an adapter (`protocol/bridge.md`, section 2).
 
 use alloc::vec::Vec;
 
 use super::fields::{BodyError, FieldReader};
 use super::packet::Packet;
 
-/// An operation of the protocol. Its value is the code in a request.
+/// An operation of the protocol. Its value is the operation code of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Operation {
@@ -13,15 +13,15 @@ pub enum Operation {
     Hello = 0x01,
     /// Switches the encoder supply and reads its state.
     Supply = 0x02,
-    /// Reads the condition of the adapter.
+    /// Reads the status of the adapter.
     Status = 0x03,
-    /// Configures the SSI clock.
+    /// Configures the reading of SSI words.
     SsiConfig = 0x10,
     /// Reads an SSI word.
     SsiRead = 0x11,
     /// Starts or ends a stream of SSI words.
     SsiStream = 0x12,
-    /// Configures the BiSS clock.
+    /// Configures the reading of BiSS frames.
     BissConfig = 0x20,
     /// Reads a BiSS frame.
     BissRead = 0x21,
@@ -35,7 +35,7 @@ pub enum Operation {
     AnalogConfig = 0x30,
     /// Starts or ends a stream of analogue samples.
     AnalogStream = 0x31,
-    /// Reads the time between the samples of sine and cosine.
+    /// Reads the time between the sine and the cosine of a sample.
     AnalogSkew = 0x33,
     /// Configures the serial line.
     UartConfig = 0x40,
@@ -52,22 +52,22 @@ pub enum Request {
     Supply {
         /// Whether to switch the supply on.
         on: bool,
-        /// Voltage in millivolts, which must be permitted by the encoder's data sheet.
+        /// Voltage in millivolts, which the encoder's data sheet must permit.
         millivolt: u16,
     },
-    /// Reads the condition of the adapter. Adapters with [`STATUS`] support it.
+    /// Reads the status of the adapter. Only adapters with the capability [`STATUS`] support it.
     ///
     /// [`STATUS`]: crate::Capabilities::STATUS
     Status,
-    /// Configures the SSI clock.
+    /// Configures the reading of SSI words.
     SsiConfig {
         /// Number of bits in a word, 1 to 64.
         clocks: u8,
-        /// Clock in hertz.
+        /// Clock frequency in hertz.
         clock_hz: u32,
         /// Pause between two words in microseconds.
         pause_us: u16,
-        /// Clock edge at which the data line is sampled.
+        /// Flags that select the clock edge for sampling the data line.
         flags: SsiFlags,
     },
     /// Reads an SSI word.
@@ -77,15 +77,15 @@ pub enum Request {
         /// Interval in microseconds. 0 ends the stream.
         period_us: u32,
     },
-    /// Configures the BiSS clock.
+    /// Configures the reading of BiSS frames.
     BissConfig {
-        /// Clock in hertz.
+        /// Clock frequency in hertz.
         clock_hz: u32,
         /// Number of bits for position, error and warning. The CRC is not included.
         data_bits: u8,
         /// Width of the CRC in bits.
         crc_bits: u8,
-        /// BiSS time-out in microseconds, which ends the frame.
+        /// BiSS time-out in microseconds, after which the frame has ended.
         timeout_us: u16,
     },
     /// Reads a BiSS frame.
@@ -121,7 +121,8 @@ pub enum Request {
         /// Whether to start the stream.
         on: bool,
     },
-    /// Reads the time between the samples of sine and cosine. Adapters with [`ANALOG_SKEW`] support it.
+    /// Reads the time between the sine and the cosine of a sample. Only adapters with the capability [`ANALOG_SKEW`]
+    /// support it.
     ///
     /// [`ANALOG_SKEW`]: crate::Capabilities::ANALOG_SKEW
     AnalogSkew,
@@ -129,16 +130,16 @@ pub enum Request {
     UartConfig {
         /// Baud rate.
         baud: u32,
-        /// Parity: 0 is none, 1 is odd and 2 is even. Other values are preserved.
+        /// Parity: 0 for none, 1 for odd, 2 for even. Other values are preserved.
         parity: u8,
-        /// Minimum time in microseconds before the direction of the line changes.
+        /// Minimum time in microseconds before the line changes direction.
         turnaround_us: u16,
     },
     /// Sends and receives bytes on the serial line.
     UartTransfer {
-        /// Maximum time in microseconds until the first byte of the reply.
+        /// Maximum time in microseconds to wait for the first byte of the reply.
         timeout_us: u32,
-        /// Duration of silence that ends the reply, in microseconds.
+        /// Duration of the silence that ends the reply, in microseconds.
         idle_us: u32,
         /// Bytes to send.
         tx: Vec<u8>,
@@ -150,15 +151,15 @@ pub enum Request {
 pub struct SsiFlags(u8);
 
 impl SsiFlags {
-    /// Bit 0: the data line is sampled at the falling clock edge, which is usual.
+    /// Bit 0: the data line is sampled at the falling clock edge, as usual.
     pub const FALLING_EDGE: SsiFlags = SsiFlags(0x01);
 
-    /// Creates flags from their byte. Every value is valid.
+    /// Creates flags from a byte. Every value is valid.
     pub const fn new(byte: u8) -> Self {
         SsiFlags(byte)
     }
 
-    /// Returns the byte of the flags.
+    /// Returns the flags as a byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -190,15 +191,15 @@ impl Operation {
         Operation::UartTransfer,
     ];
 
-    /// Bit that is set in the operation code of a reply.
+    /// Bit that is set in a reply's operation code.
     pub const REPLY_BIT: u8 = 0x80;
 
-    /// Returns the code of the operation in a request.
+    /// Returns the operation code of a request.
     pub const fn byte(self) -> u8 {
         self as u8
     }
 
-    /// Returns the operation with this code, or `None` if the code is unknown.
+    /// Returns the operation with this operation code, or `None` if the code is unknown.
     pub fn from_byte(byte: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|operation| operation.byte() == byte)
     }
@@ -227,7 +228,7 @@ impl Request {
         }
     }
 
-    /// Encodes the request as a packet with the sequence number `seq`.
+    /// Encodes the request as a packet with this sequence number.
     pub fn emit(&self, seq: u8) -> Packet {
         let mut body = Vec::new();
         match self {

@@ -1,5 +1,5 @@
-//! Tests of every operation and stream with literal bytes. The reference contains no examples. The bytes were composed
-//! by a short Python script with `struct.pack` for the bodies, a bitwise CRC, and COBS block by block.
+//! Tests of every operation and stream with literal bytes. A short Python script composed the bytes with `struct.pack`,
+//! a bitwise CRC and its own COBS encoder.
 
 use alloc::borrow::ToOwned;
 use alloc::string::{String, ToString};
@@ -161,7 +161,7 @@ fn parse_hex(text: &str) -> Vec<u8> {
     text.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
 }
 
-/// Parses the only packet in the bytes, which end with 00.
+/// Parses the single packet in the bytes, which end with 00.
 fn parse_packet(bytes: &[u8]) -> Result<Packet, PacketError> {
     assert_eq!(bytes.last(), Some(&0));
     Packet::parse(&bytes[..bytes.len() - 1])
@@ -207,7 +207,7 @@ fn every_flipped_bit_is_detected() {
     }
 }
 
-/// A truncated body and a body with an extra byte are rejected, unless the body ends with data of variable length.
+/// A body that is truncated or has an extra byte is rejected, unless it ends with data of variable length.
 #[test]
 fn every_truncated_body_is_refused() {
     for (seq, request, _) in request_vectors() {

@@ -19,7 +19,7 @@ use crate::{
     SsiSetting, UartSetting, access_register,
 };
 
-/// Identity that an adapter reports, and the corrections of its inputs.
+/// Identity that an adapter reports, and the corrections for its analogue inputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// Name of the adapter.
@@ -32,7 +32,7 @@ pub struct Identity {
     pub capabilities: Capabilities,
     /// Reason for the last start.
     pub restart: RestartReason,
-    /// Corrections of sine and cosine.
+    /// Corrections for sine and cosine.
     pub corrections: [Correction; 2],
 }
 
@@ -45,7 +45,7 @@ pub struct Adapter<B> {
     outbox: Outbox,
     ssi: Option<SsiSetting>,
     biss: Option<BissSetting>,
-    /// Bus for which the hardware is currently set up.
+    /// Bus and settings that the hardware currently uses.
     selected: Option<Clocking>,
     stream: Option<ClockedStream>,
     analog: Option<AnalogSetting>,
@@ -53,9 +53,9 @@ pub struct Adapter<B> {
     supply: Supply,
     uart: Option<UartSetting>,
     transfer: Option<Transfer>,
-    /// Time in microseconds until which the serial line must not be driven.
+    /// Time in microseconds before which the serial line must not be driven.
     line_free_us: u64,
-    /// Earliest time of the next frame, in microseconds.
+    /// Earliest time for the next frame, in microseconds.
     free_us: u64,
     /// Sequence number of the next stream packet.
     pushed: u8,
@@ -96,22 +96,22 @@ impl<B: Bus> Adapter<B> {
         }
     }
 
-    /// Returns the bus hardware.
+    /// Returns a reference to the hardware.
     pub const fn bus(&self) -> &B {
         &self.bus
     }
 
-    /// Returns the bus hardware.
+    /// Returns a mutable reference to the hardware.
     pub const fn bus_mut(&mut self) -> &mut B {
         &mut self.bus
     }
 
-    /// Returns the outbox with the bytes for the host.
+    /// Returns the bytes to be sent to the host.
     pub const fn outbox(&mut self) -> &mut Outbox {
         &mut self.outbox
     }
 
-    /// Returns whether [`receive`](Self::receive) may be called. Otherwise, the host must wait.
+    /// Returns whether [`receive`](Self::receive) may be called. If not, the host must wait.
     pub fn accepts_bytes(&self) -> bool {
         self.outbox.has_room()
     }
@@ -126,12 +126,12 @@ impl<B: Bus> Adapter<B> {
         self.stream.is_some() || self.sampled.is_some()
     }
 
-    /// Returns the number of damaged packets and of packets with invalid content.
+    /// Returns two counts: damaged packets, and packets with invalid content.
     pub const fn faulty_packets(&self) -> (u64, u32) {
         (self.receiver.dropped_count(), self.malformed)
     }
 
-    /// Appends bytes from the host and executes all complete requests.
+    /// Takes bytes from the host, and executes all requests that are complete.
     pub fn receive(&mut self, bytes: &[u8]) {
         self.receiver.push(bytes);
         while let Some(packet) = self.receiver.next_packet() {
@@ -141,7 +141,7 @@ impl<B: Bus> Adapter<B> {
         }
     }
 
-    /// Sends the available samples. If the host no longer fetches data, ends the streams.
+    /// Sends the available samples. If the host has stopped fetching data, ends the streams.
     pub fn poll(&mut self) {
         if self.outbox.is_stuck(self.bus.now_us()) {
             self.host_left();
@@ -186,7 +186,7 @@ impl<B: Bus> Adapter<B> {
         }
     }
 
-    /// Returns the reply to a request, or `None` if the reply follows later.
+    /// Returns the reply to a request, or `None` if the reply will follow later.
     fn answer(&mut self, packet: &Packet) -> Option<Message> {
         let answer = match Request::parse(packet) {
             Ok(Request::UartTransfer { timeout_us, idle_us, tx }) => {
@@ -340,12 +340,12 @@ impl<B: Bus> Adapter<B> {
         }
     }
 
-    /// Returns an error if this build lacks the capability.
+    /// Returns an error if this build does not have the capability.
     fn requires(&self, capability: Capabilities) -> Result<(), Refusal> {
         if self.identity.capabilities.contains(capability) { Ok(()) } else { Err(NOT_SUPPORTED) }
     }
 
-    /// Clocks one frame after the pause required by the previous frame.
+    /// Waits for the pause after the previous frame, and then clocks one frame.
     fn frame(&mut self, clocking: Clocking, cdm: bool) -> Frame {
         self.select(clocking);
         let frame = self.bus.frame(cdm);
@@ -408,7 +408,7 @@ impl<B: Bus> Adapter<B> {
     }
 }
 
-/// Returns whether an operation uses the clock and data lines.
+/// Returns whether the operation uses the clock and data lines.
 fn is_clocked(operation: Operation) -> bool {
     (Operation::SsiConfig.byte()..=Operation::BissStream.byte()).contains(&operation.byte())
 }

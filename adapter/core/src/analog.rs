@@ -1,5 +1,5 @@
-//! Sampling of sine and cosine. The converter samples all inputs in turn without a pause. The sine and cosine of a pair
-//! therefore follow each other directly, with the same delay in every pair. Slower rates use every nth pair.
+//! Sampling of sine and cosine. The converter samples all inputs in turn without a pause, so the cosine follows its
+//! sine with the same delay in every pair. At lower rates, only every nth pair is used.
 
 use alloc::vec::Vec;
 
@@ -7,14 +7,14 @@ use bridge_codec::{AnalogData, ErrorCode, MAX_BODY, StreamData};
 
 use crate::{Bus, Refusal};
 
-/// Sample rate of the analogue inputs.
+/// Sample rate of the analogue inputs, as a divisor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AnalogSetting {
-    /// Divisor of [`MAX_HZ`](Self::MAX_HZ) that leaves no remainder.
+    /// Divisor of [`MAX_HZ`](Self::MAX_HZ) without a remainder.
     divisor: u32,
 }
 
-/// Correction of the amplifier at an input of the converter: offset and gain.
+/// Offset and gain that correct the amplifier at a converter input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Correction {
     /// Value without a signal, in sixteenths of a converter step.
@@ -28,9 +28,9 @@ pub struct Correction {
 pub(crate) struct AnalogStream {
     divisor: u32,
     corrections: [Correction; 2],
-    /// Start time of the current conversions, and the number of their first pair.
+    /// Start time of the current conversions, and the number of the first pair sampled by them.
     start: (u64, u64),
-    /// Number of conversions since that start.
+    /// Number of conversions since this start.
     converted: u64,
     /// Number of the next pair, counted from the start of the stream.
     next: u64,
@@ -38,7 +38,7 @@ pub(crate) struct AnalogStream {
 }
 
 impl AnalogSetting {
-    /// Number of inputs, which are converted in turn: sine, cosine, the supply voltage, and two of the board itself.
+    /// Number of inputs that are converted in turn: sine, cosine, supply voltage, board voltage and temperature.
     pub const INPUTS: u32 = 5;
     /// Duration of a conversion in microseconds.
     const CONVERSION_US: u32 = 2;
@@ -49,11 +49,11 @@ impl AnalogSetting {
     const MIN_HZ: u32 = 10;
     /// Resolution of the converter in bits.
     pub(crate) const BITS: u8 = 12;
-    /// Differential voltage of the encoder in microvolts at the value 32 767. The amplifier has a gain of 2.2, and the
-    /// converter has a range of ±1.65 V.
+    /// Differential voltage of the encoder, in microvolts, that is converted to 32 767. The amplifier has a gain of
+    /// 2.2, and the converter has a range of ±1.65 V.
     pub(crate) const FULL_SCALE_MICROVOLT: u32 = 749_977;
 
-    /// Checks the requested rate. The actual rate is at most the requested one.
+    /// Creates the setting for a requested sample rate. The actual rate does not exceed it.
     pub(crate) fn new(sample_hz: u32) -> Result<Self, Refusal> {
         if sample_hz < Self::MIN_HZ {
             return Err((ErrorCode::BAD_ARGUMENT, "a rate of at least 10 Hz"));
@@ -73,7 +73,7 @@ impl Correction {
     /// No correction: the offset is in the middle of the range, and the gain is 1.
     pub const NONE: Correction = Correction { offset: 2048 * 16, gain: 1 << 14 };
 
-    /// Returns a converted value as a fraction of full scale.
+    /// Converts a converter value to a fraction of full scale.
     fn apply(self, value: u16) -> i16 {
         let steps = i32::from(value) * 16 - i32::from(self.offset);
         let corrected = steps.saturating_mul(self.gain.into()) >> 14;
@@ -83,11 +83,11 @@ impl Correction {
 }
 
 impl AnalogStream {
-    /// Time in microseconds after which a packet is sent even if it is not full.
+    /// Maximum time in microseconds before a packet is sent, even if it is not full.
     const FLUSH_US: u64 = 5_000;
-    /// Number of bytes that precede the samples in a packet.
+    /// Number of bytes before the samples in a packet.
     const HEAD: usize = 15;
-    /// Number of samples that fit in a packet.
+    /// Maximum number of samples in a packet.
     const FIT: u64 = ((MAX_BODY - Self::HEAD) / 4) as u64;
 
     /// Starts the conversions.
@@ -101,7 +101,7 @@ impl AnalogStream {
         u64::from(self.divisor * AnalogSetting::INPUTS * AnalogSetting::CONVERSION_US)
     }
 
-    /// Returns the conversion number of a pair's sine.
+    /// Returns the number of the conversion that samples the sine of a pair.
     fn conversion(&self, pair: u64) -> u64 {
         (pair - self.start.1) * u64::from(self.divisor * AnalogSetting::INPUTS)
     }
@@ -146,7 +146,7 @@ impl AnalogStream {
         Some(StreamData::Analog(AnalogData { first_index, t0_us, lost, samples }))
     }
 
-    /// Restarts the conversions after one was missed, because the inputs are then no longer in order.
+    /// Restarts the conversions after a missed conversion, which changes the order of the inputs.
     fn restart<B: Bus>(&mut self, bus: &mut B) {
         bus.stop_conversions();
         let start_us = bus.start_conversions();
@@ -179,7 +179,7 @@ mod tests {
         assert!(AnalogSetting::new(9).is_err());
     }
 
-    /// A converter step equals 16 units, and ±1.65 V with a gain of 2.2 correspond to ±0.75 V at 32 768.
+    /// A converter step is 16 units, and 32 768 units correspond to 0.75 V: a range of ±1.65 V with a gain of 2.2.
     #[test]
     fn values_are_fractions_of_full_scale() {
         let values = [0, 2047, 2048, 2049, 4095].map(|value| Correction::NONE.apply(value));

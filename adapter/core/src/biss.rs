@@ -1,5 +1,4 @@
-//! Settings of BiSS C, the resulting times, and the content of a frame. See the reference, `protocol/biss.md`, sections
-//! 1 and 2.
+//! BiSS C settings, the resulting times, and the content of a frame (`protocol/biss.md`, sections 1 and 2).
 //!
 //! The state machines sample four levels before the data: the line before the frame, the acknowledgement, the start bit
 //! and the control bit. Without an encoder, the search for an edge ends after a fixed number of clocks, so that every
@@ -12,11 +11,11 @@ use crate::{FrameWords, Refusal};
 /// Settings for reading BiSS frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BissSetting {
-    /// Number of data and CRC bits, which follow the control bit, 1 to 64.
+    /// Number of data and CRC bits after the control bit, 1 to 64.
     pub bits: u8,
     /// Divisor of [`MAX_HZ`](Self::MAX_HZ).
     pub divisor: u16,
-    /// Time in microseconds after which the encoder recognises the end of a frame.
+    /// Time in microseconds after which the encoder detects the end of a frame.
     pub timeout_us: u16,
 }
 
@@ -31,18 +30,19 @@ pub(crate) struct BissFrame {
 }
 
 impl BissSetting {
-    /// Maximum clock in hertz. Every clock is this frequency divided by an integer.
+    /// Maximum clock frequency in hertz. Every clock frequency is this value divided by an integer.
     pub const MAX_HZ: u32 = 10_000_000;
     const MIN_HZ: u32 = 80_000;
     const MAX_TIMEOUT_US: u16 = 500;
-    /// Number of levels that are sampled before the data.
+    /// Number of levels sampled before the data.
     const HEAD: u8 = 4;
-    /// Maximum delay of the line in both directions together, in tenths of a microsecond.
+    /// Maximum round-trip delay of the line, in tenths of a microsecond.
     const LINE_DELAY: u32 = 10;
-    /// Maximum time that an encoder needs to prepare its data, in tenths of a microsecond. The reference states 7 µs.
+    /// Maximum time that an encoder needs to prepare its data, in tenths of a microsecond, with a margin over the
+    /// specified 7 µs.
     const BUSY: u32 = 80;
 
-    /// Checks the requested settings. The actual clock is at most the requested one.
+    /// Checks the settings. The actual clock frequency does not exceed the requested one.
     pub(crate) fn new(clock_hz: u32, data_bits: u8, crc_bits: u8, timeout_us: u16) -> Result<Self, Refusal> {
         let bits = data_bits.saturating_add(crc_bits);
         if data_bits == 0 || bits > 64 {
@@ -60,12 +60,12 @@ impl BissSetting {
         Ok(BissSetting { bits, divisor, timeout_us })
     }
 
-    /// Returns the actual clock in hertz, rounded down.
+    /// Returns the actual clock frequency in hertz, rounded down.
     pub fn clock_hz(self) -> u32 {
         Self::MAX_HZ / u32::from(self.divisor.max(1))
     }
 
-    /// Returns the number of bits that the state machine samples.
+    /// Returns the number of bits sampled by the state machine.
     pub const fn sampled_bits(self) -> u8 {
         self.bits + Self::HEAD
     }
@@ -77,7 +77,7 @@ impl BissSetting {
         (6 * (2 + clocks(Self::LINE_DELAY))).max(2 + clocks(Self::BUSY))
     }
 
-    /// Returns the maximum duration of a frame in microseconds, without the time-out.
+    /// Returns the maximum duration of a frame without the time-out, in microseconds.
     pub fn frame_us(self) -> u32 {
         let steps = self.search_steps();
         // Search for the acknowledgement, search for the start bit, start bit, control bit, data, and two final clocks.
@@ -95,7 +95,7 @@ impl BissSetting {
         good.max(self.frame_us() + 1)
     }
 
-    /// Decodes the words of a frame.
+    /// Decodes a frame from its words.
     pub(crate) fn decode(self, words: FrameWords) -> BissFrame {
         let frame = words.join(self.sampled_bits());
         let mask = u64::MAX >> (64 - u32::from(self.bits.clamp(1, 64)));
@@ -140,8 +140,8 @@ mod tests {
         assert!(BissSetting::new(1_000_000, 35, 6, 500).is_ok() && BissSetting::new(1_000_000, 35, 6, 501).is_err());
     }
 
-    /// Longest frame times of the reference, section 2, for a busy time of 7 µs and a time-out of 18 µs, in tenths of a
-    /// microsecond. The adapter also allows for a line delay of 1 µs and two more clocks.
+    /// The longest frame times are from `protocol/biss.md`, section 2, for 7 µs busy time and 18 µs time-out, in tenths
+    /// of a microsecond. The adapter also allows for a line delay of 1 µs and two more clocks.
     #[test]
     fn an_interval_holds_the_longest_frame_of_the_reference() {
         for (hz, worst) in [(1_000_000, 700), (2_000_000, 475), (5_000_000, 340), (10_000_000, 295), (80_000, 5875)] {
@@ -150,7 +150,7 @@ mod tests {
         }
     }
 
-    /// The search lasts long enough for the slowest encoder (7 µs busy) on the longest line (1 µs).
+    /// The search lasts long enough for the slowest encoder (7 µs busy time) on the longest line (1 µs delay).
     #[test]
     fn the_search_covers_a_long_line_and_a_slow_encoder() {
         for hz in [80_000, 1_000_000, 2_000_000, 5_000_000, 10_000_000] {

@@ -1,8 +1,8 @@
-//! The hardware interface of the adapter.
+//! Interface to the adapter's hardware.
 
 use crate::{BissSetting, FrameWords, SsiSetting, UartSetting};
 
-/// The selected clocked bus with its settings.
+/// The selected bus, SSI or BiSS, with its settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clocking {
     /// SSI.
@@ -11,10 +11,10 @@ pub enum Clocking {
     Biss(BissSetting),
 }
 
-/// A frame and the time at which it was latched.
+/// A frame, and the time at which the encoder latched its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// Time of the first falling clock edge in microseconds of the adapter's clock.
+    /// Time of the first falling clock edge in microseconds, on the adapter's clock.
     pub t_us: u64,
     /// Bits of the frame.
     pub words: FrameWords,
@@ -31,17 +31,17 @@ pub trait Bus {
     /// Returns the time in microseconds since the adapter was started.
     fn now_us(&self) -> u64;
 
-    /// Waits until a time in microseconds of the adapter's clock.
+    /// Waits until the adapter's clock reaches a time, given in microseconds.
     fn wait_until(&mut self, t_us: u64);
 
-    /// Selects the bus for the following frames. Must not be called during a stream.
+    /// Selects the bus and settings for the following frames. Must not be called during a stream.
     fn select(&mut self, clocking: Clocking);
 
     /// Clocks one frame without waiting for the pause or time-out after it. If `cdm` is set, the clock line stays low
     /// during the time-out of BiSS, which transmits a control bit of 1.
     fn frame(&mut self, cdm: bool) -> Frame;
 
-    /// Starts clocking frames at an interval in microseconds. Returns the time of the first frame.
+    /// Starts a stream that clocks one frame per interval, given in microseconds. Returns the time of the first frame.
     fn start(&mut self, period_us: u32) -> u64;
 
     /// Ends the stream.
@@ -50,7 +50,7 @@ pub trait Bus {
     /// Returns the number of words received since the start of the stream, modulo 2³².
     fn received(&self) -> u32;
 
-    /// Returns a word of the stream by its number, which must be among the last [`CAPACITY`](Self::CAPACITY) words.
+    /// Returns a word of the stream by its number. Only the last [`CAPACITY`](Self::CAPACITY) words are available.
     fn word(&self, number: u32) -> u32;
 
     /// Number of conversions that the hardware keeps.
@@ -66,10 +66,10 @@ pub trait Bus {
     /// Returns the number of conversions since their start, modulo 2³².
     fn converted(&self) -> u32;
 
-    /// Returns a converted value by its number, which must be among the last [`CONVERSIONS`](Self::CONVERSIONS).
+    /// Returns a converted value by its number. Only the last [`CONVERSIONS`](Self::CONVERSIONS) values are available.
     fn conversion(&self, number: u32) -> u16;
 
-    /// Returns whether a conversion was missed since the start of the conversions.
+    /// Returns whether a conversion was missed since the conversions were started.
     fn has_overrun(&self) -> bool;
 
     /// Measures the voltage at the input of the supply switch, in millivolts.
@@ -81,23 +81,23 @@ pub trait Bus {
     /// Returns whether the supply switch reports an overload.
     fn has_supply_fault(&mut self) -> bool;
 
-    /// Sets up the serial line.
+    /// Configures the serial line.
     fn configure_uart(&mut self, setting: UartSetting);
 
-    /// Starts sending characters and then receiving, both by hardware. Each character is given as its bits, with the
-    /// start bit lowest.
+    /// Starts sending characters, after which the hardware receives without further calls. Each character is given as
+    /// its bits, with the start bit lowest.
     fn begin_transfer(&mut self, characters: &[u32]);
 
     /// Returns whether all characters have been sent and the driver is off.
     fn has_sent(&mut self) -> bool;
 
-    /// Returns the time of the reply's first start edge, or `None` before that edge.
+    /// Returns the time at which the reply's first start bit began, or `None` if it has not begun yet.
     fn first_edge_us(&mut self) -> Option<u64>;
 
     /// Returns the number of received characters.
     fn received_characters(&mut self) -> usize;
 
-    /// Returns the bits of a received character without the start bit. The last bit is the highest.
+    /// Returns the bits of a received character without the start bit. The bit received last is the highest.
     fn received_character(&mut self, at: usize) -> u32;
 
     /// Ends the reception.

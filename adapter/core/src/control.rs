@@ -1,5 +1,4 @@
-//! Control frames of BiSS C, which read and write registers with one bit per frame. See the reference,
-//! `protocol/biss.md`, section 3.
+//! Control frames of BiSS C, which read and write registers using one bit per frame (`protocol/biss.md`, section 3).
 //!
 //! The control bit of the host (CDM) is the inverted level of the clock line during the time-out. The control bit of
 //! the encoder (CDS) follows one frame later: in frame k, the encoder responds to the bit that the host sent in frame
@@ -33,13 +32,13 @@ pub enum ControlError {
     Checksum,
 }
 
-/// Number of 0 bits that end an earlier control frame.
+/// Number of 0 bits that terminate an earlier control frame.
 const PAUSE: usize = 14;
-/// Number of frames by which an encoder may delay the value of a register (`U`).
+/// Maximum number of frames by which an encoder may delay a register value. The maximum is not documented (`U`).
 const PROCESSING: usize = 50;
 
 impl ControlError {
-    /// Returns the error code and the message for the host.
+    /// Returns the error code and message to send to the host.
     pub const fn refusal(self) -> (ErrorCode, &'static str) {
         match self {
             ControlError::NoFrame => (ErrorCode::NO_ANSWER, "the encoder does not answer"),
@@ -127,7 +126,7 @@ mod tests {
     use std::string::{String, ToString};
     use std::vec::Vec;
 
-    /// Values of the reference, section 3.
+    /// The expected checksums are from `protocol/biss.md`, section 3.
     #[test]
     fn checksums_match_the_reference() {
         let header = [(0x00, 0x6), (0x05, 0x9), (0x40, 0x1), (0x42, 0x7), (0x66, 0x1), (0x68, 0x0), (0x69, 0x3)];
@@ -140,8 +139,8 @@ mod tests {
         }
     }
 
-    /// Simulates an encoder with the given control bits, starting at bit 0. Returns the result and the bits of the
-    /// host.
+    /// Simulates an encoder that sends the given control bits, starting at bit 0. Returns the result and the host's
+    /// bits.
     fn play(access: RegisterAccess, answer: &str) -> (Result<u8, ControlError>, String) {
         let mut answer = answer.chars().filter(|bit| *bit != ' ').map(|bit| bit == '1');
         let mut sent = Vec::new();
@@ -160,7 +159,7 @@ mod tests {
         RegisterAccess { slave: 0, address, value: None }
     }
 
-    /// The host sends the bits of the reference, section 3. A read takes one more frame for the stop bit.
+    /// The expected bits are from `protocol/biss.md`, section 3. A read takes one more frame for the stop bit.
     #[test]
     fn bits_of_the_host_match_the_reference() {
         for (address, bits) in [
@@ -223,7 +222,7 @@ mod tests {
         assert_eq!((broken, frames), (Err(ControlError::NoFrame), 20));
     }
 
-    /// Each slave has its own bit: bits 1 to 8 belong to slaves 0 to 7.
+    /// Bits 1 to 8 of a control frame select slaves 0 to 7.
     #[test]
     fn another_slave_has_its_own_bit() {
         let access = RegisterAccess { slave: 2, address: 0x66, value: None };

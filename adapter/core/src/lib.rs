@@ -1,6 +1,6 @@
-//! The hardware-independent part of the adapter. It replies to the requests of a host, runs BiSS control frames and
-//! packs the samples of streams. Clocks, pins and time belong to a [`Bus`]. The firmware implements it for the RP2040,
-//! and the tests implement it with a model.
+//! The hardware-independent part of the adapter. It replies to a host's requests, runs BiSS control frames and packs
+//! stream samples. Clocks, pins and time are behind the [`Bus`] trait. The firmware implements it for the RP2040, and
+//! the tests implement it with a model.
 
 #![no_std]
 #![forbid(unsafe_code)]
@@ -31,5 +31,5 @@ pub use ssi::SsiSetting;
 pub use stream::ClockedStream;
 pub use uart::UartSetting;
 
-/// Error code and message of a refused request.
+/// Error code and message for a rejected request.
 pub(crate) type Refusal = (bridge_codec::ErrorCode, &'static str);

@@ -1,20 +1,20 @@
-//! Bits of a frame as delivered by the state machines: words of 32 bits with the first bit highest, and the remaining
-//! bits right-justified in a last word. A frame whose length is a multiple of 32 ends with an empty word.
+//! Frames as received from the PIO state machines: words of 32 bits with the first bit highest, followed by a last word
+//! with the remaining bits right-justified. If the length is a multiple of 32, the last word is empty.
 
 /// Maximum number of words in a frame.
 pub const MAX_WORDS: usize = 3;
 
-/// The words of a frame.
+/// The words of a received frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameWords(pub [u32; MAX_WORDS]);
 
 impl FrameWords {
-    /// Returns the number of words in a frame with this number of bits.
+    /// Returns the number of words in a frame of `bits` bits.
     pub const fn count(bits: u8) -> u8 {
         bits / 32 + 1
     }
 
-    /// Joins the words of a frame with this number of bits. The result is right-justified.
+    /// Joins the words of a frame of `bits` bits. The result is right-justified.
     pub fn join(self, bits: u8) -> u128 {
         let last = usize::from(bits / 32);
         self.0.iter().take(last + 1).enumerate().fold(0, |frame, (at, word)| {

@@ -1,21 +1,21 @@
-//! Bytes that wait for the host. Samples are added, and requests are accepted, only while there is enough room. A host
-//! that does not read can therefore not exhaust the memory.
+//! Buffer for bytes to the host. Samples are added and requests are accepted only while there is enough room, so a host
+//! that does not read cannot exhaust the memory.
 
 use alloc::collections::VecDeque;
 
-/// Bytes for the host in the order in which they are sent.
+/// Bytes for the host, in sending order.
 #[derive(Clone, Debug)]
 pub struct Outbox {
     bytes: VecDeque<u8>,
-    /// Time of the last progress in microseconds.
+    /// Time in microseconds since which the host has fetched nothing.
     progress_us: u64,
 }
 
 /// Number of waiting bytes above which no samples are added.
 const ROOM: usize = 24 * 1024;
-/// Additional number of bytes for the replies to the requests in one USB packet.
+/// Additional space in bytes for the replies to all requests in a USB packet.
 const REPLIES: usize = 8 * 1024;
-/// Time in microseconds without progress after which the host is considered lost.
+/// Time in microseconds after which a host that fetches nothing is considered lost.
 const LOST_US: u64 = 2_000_000;
 
 impl Default for Outbox {
@@ -26,12 +26,12 @@ impl Default for Outbox {
 }
 
 impl Outbox {
-    /// Returns the next unsent bytes. More bytes may follow after these are consumed.
+    /// Returns unsent bytes, starting with the next one. More bytes may follow after these are consumed.
     pub fn pending(&self) -> &[u8] {
         self.bytes.as_slices().0
     }
 
-    /// Removes the first `count` pending bytes, which have been sent. `now_us` is the current time in microseconds.
+    /// Removes the first `count` pending bytes after they have been sent. `now_us` is the current time in microseconds.
     pub fn consume(&mut self, count: usize, now_us: u64) {
         if count > 0 {
             self.progress_us = now_us;

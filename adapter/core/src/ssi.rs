@@ -1,4 +1,4 @@
-//! Settings of SSI and the resulting times. See the reference, `protocol/ssi.md`, section 1.
+//! SSI settings and the resulting times (`protocol/ssi.md`, section 1).
 
 use bridge_codec::{ErrorCode, SsiFlags};
 
@@ -7,7 +7,7 @@ use crate::Refusal;
 /// Settings for reading SSI words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SsiSetting {
-    /// Number of clocks per word, 1 to 64.
+    /// Number of clock pulses per word, 1 to 64.
     pub clocks: u8,
     /// Divisor of [`BASE_HZ`](Self::BASE_HZ).
     pub divisor: u16,
@@ -16,14 +16,14 @@ pub struct SsiSetting {
 }
 
 impl SsiSetting {
-    /// Base frequency in hertz. Every SSI clock is this frequency divided by an integer, so all edges are evenly
+    /// Base frequency in hertz. Every SSI clock frequency is this value divided by an integer, so all edges are evenly
     /// spaced.
     pub const BASE_HZ: u32 = 12_000_000;
-    /// Maximum clock in hertz.
+    /// Maximum clock frequency in hertz.
     pub const MAX_HZ: u32 = 4_000_000;
     const MIN_HZ: u32 = 50_000;
 
-    /// Checks the requested settings. The actual clock is at most the requested one.
+    /// Checks the settings. The actual clock frequency does not exceed the requested one.
     pub(crate) fn new(clocks: u8, clock_hz: u32, pause_us: u16, flags: SsiFlags) -> Result<Self, Refusal> {
         if !(1..=64).contains(&clocks) {
             return Err((ErrorCode::BAD_ARGUMENT, "1 to 64 clocks"));
@@ -39,12 +39,12 @@ impl SsiSetting {
         Ok(SsiSetting { clocks, divisor, pause_us })
     }
 
-    /// Returns the actual clock in hertz, rounded down.
+    /// Returns the actual clock frequency in hertz, rounded down.
     pub fn clock_hz(self) -> u32 {
         Self::BASE_HZ / u32::from(self.divisor.max(1))
     }
 
-    /// Returns the duration of the clock burst in microseconds, rounded up.
+    /// Returns the duration of the clock burst for a word in microseconds, rounded up.
     pub fn burst_us(self) -> u32 {
         // 64 clocks at the lowest frequency are 1280 µs.
         (u32::from(self.clocks) * u32::from(self.divisor)).div_ceil(12)
@@ -82,7 +82,8 @@ mod tests {
         }
     }
 
-    /// Durations in the reference, section 1: at 400 kHz, 25 clocks take 62.5 µs and 33 clocks take 82.5 µs.
+    /// The expected durations are from `protocol/ssi.md`, section 1: at 400 kHz, 25 clocks take 62.5 µs and 33 clocks
+    /// take 82.5 µs.
     #[test]
     fn durations_match_the_reference() {
         let burst = |clocks, hz| SsiSetting::new(clocks, hz, 25, SsiFlags::FALLING_EDGE).unwrap();

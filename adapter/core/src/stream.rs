@@ -1,5 +1,5 @@
-//! Packing of a stream's frames. The hardware clocks frames at equal intervals and keeps their words for a while.
-//! Frames that the host does not fetch in time are lost. The next packet contains their number.
+//! Packs the frames of a stream. The hardware clocks frames at equal intervals and keeps a limited number of them.
+//! Frames that are not fetched in time are lost, and the next packet reports how many.
 
 use alloc::vec::Vec;
 
@@ -7,12 +7,12 @@ use bridge_codec::{BissData, MAX_BODY, SsiData, StreamData};
 
 use crate::{Bus, Clocking, FrameWords};
 
-/// Time in microseconds after which a packet is sent even if it is not full.
+/// Maximum time in microseconds before a packet is sent, even if it is not full.
 const FLUSH_US: u64 = 10_000;
-/// Number of bytes that precede the samples in a packet.
+/// Number of bytes before the samples in a packet.
 const HEAD: usize = 20;
 
-/// A running stream of frames.
+/// A running stream of SSI or BiSS frames.
 #[derive(Clone, Debug)]
 pub struct ClockedStream {
     clocking: Clocking,
@@ -40,7 +40,7 @@ impl ClockedStream {
         }
     }
 
-    /// Returns the width of a value and the size of a sample in a packet, both in bytes.
+    /// Returns the sizes of a value and of a sample in a packet, in bytes.
     fn width(&self) -> (u8, usize) {
         match self.clocking {
             Clocking::Ssi(setting) => (setting.clocks.div_ceil(8), usize::from(setting.clocks.div_ceil(8))),

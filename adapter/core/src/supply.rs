@@ -1,4 +1,4 @@
-//! The switched encoder supply. The adapter does not generate the voltage: it measures the voltage at the input of the
+//! The switched encoder supply. The adapter does not generate the voltage. It measures the voltage at the input of the
 //! switch, and switches on only if this is the requested voltage. The switch itself limits the current and reports an
 //! overload.
 //!
@@ -16,10 +16,10 @@ pub(crate) struct Supply {
     faults: SupplyFaults,
 }
 
-/// Range of voltages that may be requested, in millivolts.
+/// Range of permitted voltages, in millivolts.
 const RANGE: core::ops::RangeInclusive<u16> = 4_500..=15_000;
-/// Permitted deviation of the measured voltage from the requested voltage, in per cent. It includes the tolerance of
-/// the divider.
+/// Permitted difference between the measured and the requested voltage, in per cent. It includes the tolerance of the
+/// voltage divider.
 const TOLERANCE: u32 = 10;
 
 impl Supply {
@@ -57,7 +57,7 @@ impl Supply {
         Ok(measured)
     }
 
-    /// Switches the supply off after an overload.
+    /// Switches the supply off if the switch reports an overload.
     pub(crate) fn poll<B: Bus>(&mut self, bus: &mut B) {
         if self.is_on && bus.has_supply_fault() {
             self.switch_off(bus);

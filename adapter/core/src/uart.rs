@@ -1,4 +1,4 @@
-//! The serial line: its settings, the bits of its characters, and transfers of a request and its reply.
+//! The serial line: its settings, the encoding of characters, and transfers of a request and its reply.
 
 use alloc::vec::Vec;
 
@@ -9,7 +9,7 @@ use crate::{Bus, Refusal};
 /// Settings of the serial line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UartSetting {
-    /// Duration of an eighth of a bit in 256ths of a system clock cycle.
+    /// Duration of an eighth of a bit, in 256ths of a system clock cycle.
     pub divisor: u32,
     parity: Parity,
     turnaround_us: u16,
@@ -31,14 +31,14 @@ pub(crate) struct Transfer {
     pub(crate) seq: u8,
     timeout_us: u32,
     idle_us: u32,
-    /// Time at which the last character was sent, or `None` during sending.
+    /// Time at which the last character was sent, or `None` while characters are being sent.
     sent_us: Option<u64>,
-    /// Number of characters received so far, and the time when this number last changed.
+    /// Number of characters received so far, and the time at which this number last changed.
     received: (usize, u64),
 }
 
 impl UartSetting {
-    /// Bit rate of the state machines at a divisor of 1. They take eight cycles per bit.
+    /// Bit rate of the state machines with a divisor of 1. They need eight cycles per bit.
     const BASE_HZ: u64 = 120_000_000 / 8;
     const BAUD: core::ops::RangeInclusive<u32> = 300..=1_000_000;
 
@@ -69,8 +69,8 @@ impl UartSetting {
         }
     }
 
-    /// Returns the mean delay in microseconds with which the receiver marks an edge: one and a half of its eight cycles
-    /// per bit.
+    /// Returns the mean delay in microseconds until the receiver marks an edge. It is one and a half cycles, at eight
+    /// cycles per bit.
     pub const fn mark_delay_us(self) -> u32 {
         self.divisor * 3 / 2 / 256 / (Self::BASE_HZ as u32 * 8 / 1_000_000)
     }
@@ -86,9 +86,9 @@ impl UartSetting {
         u32::from(byte) << 1 | stop << 9
     }
 
-    /// Decodes a word of the receiver, or returns `None` if the stop bit is missing. The word contains the character in
-    /// its highest bits, with the last bit at the top. Parity is not checked, because the checksums of the host detect
-    /// such errors.
+    /// Decodes a word from the receiver, or returns `None` if the stop bit is missing. The highest bits of the word are
+    /// the character, with its last bit at the top. Parity is not checked, because the host's checksums detect such
+    /// errors.
     fn decode(self, word: u32) -> Option<u8> {
         // Eight data bits remain.
         (word >> 31 == 1).then_some((word >> (33 - self.bits())) as u8)
@@ -96,7 +96,7 @@ impl UartSetting {
 }
 
 impl Transfer {
-    /// Maximum number of received bytes in a reply, in addition to the time.
+    /// Maximum number of received bytes in a reply, which also contains the time.
     pub(crate) const MAX_RX: usize = MAX_BODY - 8;
     const MAX_TIMEOUT_US: u32 = 2_000_000;
     const MAX_IDLE_US: u32 = 500_000;
@@ -116,7 +116,7 @@ impl Transfer {
         Ok(Transfer { seq, timeout_us, idle_us, sent_us: None, received: (0, 0) })
     }
 
-    /// Returns the time of the first start edge and the reply if the transfer is complete.
+    /// Returns the time of the first start bit and the received bytes, or `None` while the transfer is in progress.
     pub(crate) fn poll<B: Bus>(&mut self, bus: &mut B, setting: UartSetting) -> Option<(u64, Vec<u8>)> {
         let now = bus.now_us();
         if !bus.has_sent() {
@@ -144,7 +144,7 @@ impl Transfer {
         Some((first_edge.unwrap_or(now), rx))
     }
 
-    /// Returns the time after this transfer until which the line must not be driven.
+    /// Returns the time until which the line must not be driven after this transfer.
     pub(crate) fn free_us(now_us: u64, setting: UartSetting) -> u64 {
         now_us + u64::from(setting.turnaround_us)
     }
@@ -171,7 +171,7 @@ mod tests {
         assert_eq!(UartSetting::new(9_600, 2, 0).unwrap().character_us, 1_146);
     }
 
-    /// The order of the bits is start bit 0, data with the lowest bit first, parity, stop bit 1.
+    /// A character consists of start bit 0, data with the lowest bit first, parity, and stop bit 1.
     #[test]
     fn characters_have_their_bits_in_order() {
         let line = |parity, byte| {

@@ -1,4 +1,4 @@
-//! Tests of an adapter on a model of the wires, from the perspective of a host.
+//! Tests of an adapter, from the perspective of a host. The wires are simulated.
 
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::panic)]
 
@@ -50,7 +50,7 @@ fn frames_and_their_status_are_reported() {
     }
 }
 
-/// A read of address 66h returns 4Bh, with the bits of the reference, section 3.
+/// A read of address 66h returns 4Bh. The control bits are from `protocol/biss.md`, section 3.
 #[test]
 fn a_register_is_read_by_control_bits() {
     let mut bench = Bench::new();
@@ -98,7 +98,7 @@ fn a_stream_has_every_sample_at_its_time() {
     assert!(next > 20_000 && packets > 200, "{next} samples in {packets} packets");
 }
 
-/// With 64 clocks, two of the three words are full.
+/// A word of 64 clocks fills two of the three 32-bit words of a frame.
 #[test]
 fn long_words_survive_a_stream() {
     let mut bench = Bench::new();
@@ -221,8 +221,8 @@ fn malformed_packets_are_counted_and_answered() {
     assert_eq!(bench.adapter.faulty_packets(), (1, 3));
 }
 
-/// Random packets and random bytes: the adapter answers each valid packet once, never panics, and works afterwards. The
-/// requirement demands a million packets.
+/// The adapter answers each valid packet once, never panics on random bytes, and still works afterwards. The
+/// requirement is a million packets.
 #[test]
 fn a_million_random_packets_are_survived() {
     let count = std::env::var("ADAPTER_FUZZ_PACKETS").map_or(1_000_000, |count| count.parse().unwrap());

@@ -1,4 +1,4 @@
-//! Tests of the sine and cosine of an adapter on a model of the inputs, from the perspective of a host.
+//! Tests of an adapter's analogue inputs, from the perspective of a host. The inputs are simulated.
 
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::panic)]
 
@@ -7,7 +7,7 @@ mod model;
 use bridge_codec::{ErrorCode, Message, Reply, Request, StreamData};
 use model::{Bench, refusal};
 
-/// The sine is converted at even multiples of 10 µs, and the cosine 2 µs later.
+/// The sine is converted every 10 µs, and the cosine 2 µs after it.
 #[test]
 fn pairs_are_sampled_back_to_back_at_their_time() {
     let mut bench = Bench::new();

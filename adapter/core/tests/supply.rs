@@ -1,4 +1,4 @@
-//! Tests of the encoder supply of an adapter on a model of the wires, from the perspective of a host.
+//! Tests of an adapter's encoder supply, from the perspective of a host. The wires are simulated.
 
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::panic)]
 

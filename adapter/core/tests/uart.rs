@@ -1,4 +1,4 @@
-//! Tests of the serial line of an adapter on a model of the wires, from the perspective of a host.
+//! Tests of an adapter's serial line, from the perspective of a host. The wires are simulated.
 
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::panic)]
 
@@ -13,7 +13,7 @@ fn transfer(timeout_us: u32, idle_us: u32) -> Request {
     Request::UartTransfer { timeout_us, idle_us, tx: vec![0x40, 0x42, 0x02] }
 }
 
-/// Returns the bits of a received character with even parity: data and parity below the stop bit.
+/// Returns the bits of a received character with even parity. The stop bit is the highest, followed by parity and data.
 fn received(byte: u8) -> u32 {
     1 << 31 | (byte.count_ones() % 2) << 30 | u32::from(byte) << 22
 }

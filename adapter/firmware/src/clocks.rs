@@ -1,5 +1,5 @@
-//! Clocks. The system runs at 120 MHz instead of the usual 125 MHz, because all clock periods of SSI (12 MHz / n) and
-//! BiSS (10 MHz / n) are then whole numbers of cycles, without jitter.
+//! Clock setup. The system runs at 120 MHz instead of the usual 125 MHz. Every clock period of SSI (12 MHz / n) and
+//! BiSS (10 MHz / n) is then a whole number of cycles, without jitter.
 
 use rp2040_hal as hal;
 
@@ -12,10 +12,10 @@ use hal::pll::{PLLConfig, setup_pll_blocking};
 
 /// Frequency of the system clock in hertz.
 pub(crate) const SYSTEM_HZ: u32 = 120_000_000;
-/// Frequency of the crystal on the Pico in hertz.
+/// Frequency of the Pico's crystal in hertz.
 pub(crate) const CRYSTAL_HZ: u32 = 12_000_000;
 
-/// Settings of the system PLL: 12 MHz × 120 / (6 × 2) = 120 MHz.
+/// Configuration of the system PLL: 12 MHz × 120 / (6 × 2) = 120 MHz.
 const SYSTEM: PLLConfig = PLLConfig { vco_freq: HertzU32::MHz(1440), refdiv: 1, post_div1: 6, post_div2: 2 };
 
 /// Starts the crystal oscillator and both PLLs.

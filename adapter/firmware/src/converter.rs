@@ -1,5 +1,4 @@
-//! The analogue inputs. The converter samples all five in turn at full speed, which takes 2 µs per input. The DMA
-//! copies the values.
+//! The analogue inputs. The ADC samples all five in turn at full speed, 2 µs per input, and the DMA copies the values.
 
 use rp2040_hal as hal;
 
@@ -10,15 +9,15 @@ use hal::pac::{ADC, RESETS};
 
 use crate::ring::Ring;
 
-/// Number of the converter's DMA request.
+/// Number of the DMA request signal of the ADC.
 const REQUEST: u8 = 36;
-/// Mask of all inputs: sine, cosine, supply voltage, voltage of the board, and temperature.
+/// Bit mask of all inputs: sine, cosine, supply voltage, board voltage and temperature.
 const INPUTS: u8 = 0b1_1111;
 
-/// A pin used as an input of the converter, without pull-up and pull-down.
+/// A pin that is used as an ADC input, without pull-up and pull-down.
 type Input<I> = AdcPin<Pin<I, FunctionSio<SioInput>, PullNone>>;
 
-/// The converter with its pins and the ring buffer for its values.
+/// The ADC with its pins and the ring buffer for its values.
 pub(crate) struct Converter {
     adc: ADC,
     ring: Ring,
@@ -81,7 +80,7 @@ impl Converter {
         self.discard();
     }
 
-    /// Empties the FIFO and clears its error flags by writing ones to them.
+    /// Empties the FIFO, and clears its error flags by writing ones to them.
     fn discard(&mut self) {
         while self.adc.fcs().read().empty().bit_is_clear() {
             let _ = self.adc.fifo().read();
@@ -115,7 +114,7 @@ impl Converter {
         self.ring.value(number) as u16
     }
 
-    /// Returns whether the FIFO was full when a conversion ended.
+    /// Returns whether a conversion ended while the FIFO was full.
     pub(crate) fn has_overrun(&self) -> bool {
         self.adc.fcs().read().over().bit_is_set()
     }

@@ -1,5 +1,5 @@
-//! Firmware of the adapter for the Raspberry Pi Pico (RP2040). The behaviour of the adapter is in `adapter-core`. This
-//! crate contains the clocks, the pins, the state machines of the lines, and USB.
+//! Firmware of the adapter for the Raspberry Pi Pico (RP2040). It contains the clocks, the pins, the state machines of
+//! the lines, and USB. The adapter's behaviour is implemented in `adapter-core`.
 
 #![no_std]
 #![no_main]
@@ -45,11 +45,11 @@ static BOOT2: [u8; 256] = rp2040_boot2::BOOT_LOADER_GENERIC_03H;
 
 #[global_allocator]
 static HEAP: LlffHeap = LlffHeap::empty();
-/// Size of the heap in bytes. Up to 32 KiB hold bytes that wait for the host.
+/// Size of the heap in bytes. Up to 32 KiB of it hold bytes that wait for the host.
 const HEAP_BYTES: usize = 64 * 1024;
 
 const SERIAL_NUMBER: &str = "1";
-/// Maximum sleep of the main loop in microseconds during a transfer, during a stream, and otherwise.
+/// Maximum duration of a sleep of the main loop in microseconds: during a transfer, during a stream, and otherwise.
 const SLEEP_US: [u32; 3] = [200, 2_000, 100_000];
 /// Time in milliseconds after which the watchdog restarts an unresponsive adapter.
 const WATCHDOG_MS: u32 = 2_000;
@@ -160,7 +160,7 @@ fn run() -> Option<()> {
     }
 }
 
-/// Returns the reason for the last start. The chip cannot distinguish a low voltage from power-on.
+/// Returns the reason for the last start. The chip cannot distinguish a supply voltage drop from power-on.
 fn restart_reason(watchdog: &pac::WATCHDOG, reset: &pac::VREG_AND_CHIP_RESET) -> RestartReason {
     let cause = reset.chip_reset().read();
     let watchdog = watchdog.reason().read();

@@ -1,14 +1,14 @@
-//! Pins of the Pico. For the wiring, see `docs/adapter.md`.
+//! Pins of the Pico. The wiring is described in `docs/adapter.md`.
 
-/// Output to the driver: clock of SSI, and MA of BiSS.
+/// Clock output to the line driver (SSI clock, BiSS MA).
 pub(crate) const CLOCK: u8 = 2;
-/// Input from the receiver: data of SSI, and SLO of BiSS.
+/// Data input from the line receiver (SSI data, BiSS SLO).
 pub(crate) const DATA: u8 = 3;
-/// Serial line: to the driver, from the receiver, and direction (high: the driver is on).
+/// Serial line: output to the driver, input from the receiver, and direction (high enables the driver).
 pub(crate) const SERIAL_OUT: u8 = 8;
 pub(crate) const SERIAL_IN: u8 = 9;
 pub(crate) const DIRECTION: u8 = 10;
-/// Converter input that measures the input voltage of the supply switch through a divider.
+/// ADC input that measures the voltage at the input of the supply switch, through a divider.
 pub(crate) const SUPPLY_INPUT: u32 = 2;
-/// Signal between the two BiSS state machines. The pin must not be connected.
+/// Signal between the two state machines of BiSS. The pin must not be connected.
 pub(crate) const DONE: u8 = 5;

@@ -1,5 +1,5 @@
 //! Ring buffers for the values of a stream. The DMA copies and counts the values without the processor, so that lost
-//! values are always noticed.
+//! values are always detected.
 //!
 //! Two channels alternate every 2³¹ values and start each other. Both write to the same ring, whose length is a divisor
 //! of 2³¹.
@@ -10,14 +10,14 @@ use rp2040_hal as hal;
 
 use hal::pac::{DMA, RESETS};
 
-/// Capacity of the two rings: words of a clocked bus, and converted values.
+/// Capacities of the two rings: words of SSI or BiSS, and converted values.
 pub(crate) const WORDS: u32 = BYTES / 4;
 pub(crate) const CONVERSIONS: u32 = BYTES / 2;
 
-/// Length of a ring in bytes, which is the maximum supported by the DMA.
+/// Length of a ring in bytes, which is the maximum that the DMA supports.
 const BYTES: u32 = 1 << ADDRESS_BITS;
 const ADDRESS_BITS: u32 = 15;
-/// Number of values that a channel copies before the other one continues.
+/// Number of values that a channel copies before the other channel continues.
 const TURN: u32 = 1 << 31;
 
 /// Memory with the alignment required by a DMA ring.
@@ -30,15 +30,15 @@ unsafe impl Sync for Memory {}
 static WORD_MEMORY: Memory = Memory(UnsafeCell::new([0; BYTES as usize]));
 static CONVERSION_MEMORY: Memory = Memory(UnsafeCell::new([0; BYTES as usize]));
 
-/// A ring of values with its two DMA channels.
+/// A ring buffer with its two DMA channels.
 pub(crate) struct Ring {
     memory: &'static Memory,
     channels: [usize; 2],
-    /// Number of bytes in a value, as a power of two.
+    /// Binary logarithm of the number of bytes in a value.
     size: u32,
 }
 
-/// Takes the DMA out of reset. Returns the ring for words of a clocked bus and the ring for converted values.
+/// Takes the DMA out of reset. Returns the ring for SSI or BiSS words, and the ring for converted values.
 pub(crate) fn rings(dma: DMA, resets: &mut RESETS) -> (Ring, Ring) {
     resets.reset().modify(|_, w| w.dma().clear_bit());
     while resets.reset_done().read().dma().bit_is_clear() {}
@@ -57,7 +57,7 @@ pub(crate) fn dma() -> &'static hal::pac::dma::RegisterBlock {
 }
 
 impl Ring {
-    /// Starts copying the values of a FIFO that uses the given DMA request number.
+    /// Starts copying the values of the FIFO with this DMA request signal.
     pub(crate) fn start(&mut self, fifo: *const u32, request: u8) {
         let others = self.channels.into_iter().rev();
         for (channel, other) in self.channels.into_iter().zip(others) {
@@ -86,7 +86,7 @@ impl Ring {
         unsafe { dma().multi_chan_trigger().write(|w| w.bits(1 << first)) };
     }
 
-    /// Ends the copying.
+    /// Stops the copying.
     pub(crate) fn stop(&mut self) {
         let mut mask = 0;
         for channel in self.channels {
@@ -121,7 +121,7 @@ impl Ring {
         }
     }
 
-    /// Returns a value by its number since the start.
+    /// Returns a value by its number, counted from the start.
     pub(crate) fn value(&self, number: u32) -> u32 {
         let at = ((number << self.size) % BYTES) as usize;
         let address = self.memory.0.get().cast::<u8>();

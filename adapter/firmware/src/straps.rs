@@ -1,4 +1,4 @@
-//! Strap pins that indicate the fitted parts. Each fitted part connects its pin to ground.
+//! Strap pins, which indicate the parts fitted on the board. A fitted part connects its pin to ground.
 
 use bridge_codec::Capabilities;
 use embedded_hal::digital::InputPin as _;
@@ -7,7 +7,7 @@ use rp2040_hal as hal;
 use hal::gpio::bank0::{Gpio18, Gpio19, Gpio20};
 use hal::gpio::{FunctionNull, Pin, PullDown};
 
-/// Returns the capabilities of this build. Every build has SSI and BiSS.
+/// Returns the capabilities of this board. Every board has SSI and BiSS.
 pub(crate) fn capabilities(
     serial: Pin<Gpio18, FunctionNull, PullDown>,
     supply: Pin<Gpio19, FunctionNull, PullDown>,

@@ -1,4 +1,4 @@
-//! The switch of the encoder supply: its pins and its input voltage.
+//! The switch for the encoder supply: its pins and its input voltage.
 
 use embedded_hal::digital::{InputPin as _, OutputPin as _};
 use rp2040_hal as hal;
@@ -6,13 +6,13 @@ use rp2040_hal as hal;
 use hal::gpio::bank0::{Gpio14, Gpio15};
 use hal::gpio::{FunctionNull, FunctionSio, Pin, PinState, PullDown, PullNone, PullUp, SioInput, SioOutput};
 
-/// Full-scale input voltage of the converter, with the divider by six, in millivolts.
+/// Input voltage of the divider, in millivolts, at the full scale of the ADC. The divider divides by six.
 const FULL_SCALE_MILLIVOLT: u32 = 6 * 3_300;
 
-/// The pins of the switch. A resistor keeps it off until the firmware drives its pin.
+/// The pins of the supply switch. A resistor keeps the switch off until the firmware drives its pin.
 pub(crate) struct Switch {
     enable: Pin<Gpio14, FunctionSio<SioOutput>, PullNone>,
-    /// Fault pin of the switch, which is low during an overload.
+    /// Fault pin, which the switch pulls low during an overload.
     fault: Pin<Gpio15, FunctionSio<SioInput>, PullUp>,
 }
 
@@ -33,7 +33,7 @@ impl Switch {
     }
 }
 
-/// Converts a value of the converter to the input voltage of the divider in millivolts.
+/// Converts an ADC value to the input voltage of the divider in millivolts.
 pub(crate) fn millivolt(value: u16) -> u16 {
     // At most 19 800.
     (u32::from(value) * FULL_SCALE_MILLIVOLT / 4096) as u16

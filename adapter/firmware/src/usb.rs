@@ -1,6 +1,6 @@
-//! The serial port over USB. The interrupt handler serves the requests of the USB host and receives its bytes, even
-//! while the main loop waits for an encoder. When the buffer is full, the interrupt is masked until the main loop has
-//! read some bytes. Meanwhile, the USB host waits.
+//! The USB serial port. The interrupt handler serves the USB host and receives its bytes, even while the main loop
+//! waits for an encoder. When the buffer is full, the interrupt is masked and the host must wait until the main loop
+//! has read some bytes.
 
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -14,7 +14,7 @@ use usb_device::bus::UsbBusAllocator;
 use usb_device::device::{StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbVidPid};
 use usbd_serial::SerialPort;
 
-/// Shared USB ID for serial ports of open projects; see `docs/adapter.md`. The descriptor strings distinguish the
+/// USB ID that open projects share for serial ports; see `docs/adapter.md`. The descriptor strings distinguish the
 /// devices.
 const ID: UsbVidPid = UsbVidPid(0x16C0, 0x27DD);
 const MANUFACTURER: &str = "encoder-studio.example";
@@ -73,7 +73,7 @@ fn unmask() {
     unsafe { NVIC::unmask(Interrupt::USBCTRL_IRQ) };
 }
 
-/// Reads received bytes into the buffer and returns their number.
+/// Moves received bytes into the buffer and returns their number.
 pub(crate) fn read(buffer: &mut [u8; PACKET]) -> usize {
     let count = with(|port| {
         let count = port.count.min(PACKET);
@@ -88,7 +88,7 @@ pub(crate) fn read(buffer: &mut [u8; PACKET]) -> usize {
     count.unwrap_or(0)
 }
 
-/// Passes bytes to the USB host and returns the number of accepted bytes.
+/// Passes bytes to the USB host and returns how many were accepted.
 pub(crate) fn write(bytes: &[u8]) -> usize {
     with(|port| {
         let count = if bytes.is_empty() { 0 } else { port.serial.write(bytes).unwrap_or(0) };
@@ -104,7 +104,7 @@ pub(crate) fn is_open() -> bool {
     with(|port| port.device.state() == UsbDeviceState::Configured && port.serial.dtr()).unwrap_or(false)
 }
 
-/// Sleeps until an interrupt, unless there was one since the last call.
+/// Sleeps until the next interrupt, or returns at once if there was an interrupt since the last call.
 pub(crate) fn sleep() {
     critical_section::with(|_| {
         // An interrupt from here on stays pending and ends the sleep.
@@ -114,7 +114,7 @@ pub(crate) fn sleep() {
     });
 }
 
-/// Atomic swap with interrupts disabled, because the processor has no atomic exchange.
+/// Atomic swap with interrupts disabled, for a processor without atomic exchange.
 trait SwapFalse {
     fn swap_false(&self) -> bool;
 }

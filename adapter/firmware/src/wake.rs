@@ -1,4 +1,4 @@
-//! The alarm that ends a sleep of the main loop.
+//! The timer alarm that wakes the main loop.
 
 use core::cell::RefCell;
 
@@ -11,7 +11,7 @@ use hal::timer::{Alarm as _, Alarm0, Timer};
 
 static ALARM: Mutex<RefCell<Option<Alarm0>>> = Mutex::new(RefCell::new(None));
 
-/// Enables the interrupt of timer alarm 0, which ends a sleep.
+/// Enables the interrupt of timer alarm 0, which wakes the main loop.
 pub(crate) fn start(timer: &mut Timer) {
     if let Some(mut alarm) = timer.alarm_0() {
         alarm.enable_interrupt();
@@ -21,7 +21,7 @@ pub(crate) fn start(timer: &mut Timer) {
     }
 }
 
-/// Sets the time after which a sleep ends, in microseconds.
+/// Sets the time until the main loop wakes, in microseconds.
 pub(crate) fn after(us: u32) {
     critical_section::with(|section| {
         if let Some(alarm) = ALARM.borrow_ref_mut(section).as_mut() {

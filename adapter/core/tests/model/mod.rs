@@ -1,4 +1,4 @@
-//! A model of the wires with an encoder, a virtual clock and a host. Not every test uses every item.
+//! A model of the wires with an encoder, a virtual clock and a host. Some items are used by only one of the tests.
 
 #![allow(dead_code)]
 
@@ -7,30 +7,30 @@ use std::collections::VecDeque;
 use adapter_core::{Adapter, Bus, Clocking, Correction, Frame, FrameWords, Identity, UartSetting};
 use bridge_codec::{Capabilities, ErrorCode, Message, Packet, Receiver, Request, RestartReason};
 
-/// Wires to an encoder whose values are functions of time.
+/// Model of the wires to an encoder, whose values are functions of time.
 pub(crate) struct Model {
     pub(crate) now_us: u64,
     pub(crate) clocking: Option<Clocking>,
-    /// Period and start of the running stream in microseconds.
+    /// Interval and start time of the running stream, in microseconds.
     pub(crate) stream: Option<(u32, u64)>,
-    /// Function from a time in microseconds to the SSI word.
+    /// SSI word as a function of the time in microseconds.
     pub(crate) ssi: fn(u64) -> u64,
-    /// Four levels before the data of a BiSS frame.
+    /// The four levels before the data of a BiSS frame.
     pub(crate) biss_head: u64,
     pub(crate) biss: fn(u64) -> u64,
     /// Control bits of the encoder and of the host.
     pub(crate) cds: VecDeque<bool>,
     pub(crate) cdm: Vec<bool>,
-    /// Start of the conversions, and whether one was missed.
+    /// Start time of the conversions, and whether one was missed.
     pub(crate) conversions: Option<u64>,
     pub(crate) has_overrun: bool,
-    /// Function from an input and a time in microseconds to the converted value.
+    /// Converted value as a function of the input and the time in microseconds.
     pub(crate) input: fn(u32, u64) -> u16,
     /// Voltage at the input of the supply switch, state of the switch, and whether it reports a fault.
     pub(crate) input_millivolt: u16,
     pub(crate) is_supplied: bool,
     pub(crate) has_fault: bool,
-    /// Sent characters, the end of their transmission, and the reply with its delay.
+    /// Characters sent, end of their transmission, and the reply with its delay.
     pub(crate) sent: Vec<u32>,
     pub(crate) sent_us: u64,
     pub(crate) reply: Vec<u32>,
@@ -150,7 +150,7 @@ impl Bus for Model {
 
     fn configure_uart(&mut self, _: UartSetting) {}
 
-    /// A character takes a millisecond.
+    /// Each character takes one millisecond.
     fn begin_transfer(&mut self, characters: &[u32]) {
         self.sent = characters.to_vec();
         self.sent_us = self.now_us + 1_000 * characters.len() as u64;
@@ -187,7 +187,7 @@ impl Bus for Model {
     }
 }
 
-/// An adapter and its host.
+/// An adapter with its host.
 pub(crate) struct Bench {
     pub(crate) adapter: Adapter<Model>,
     receiver: Receiver,

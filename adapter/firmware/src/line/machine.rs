@@ -1,4 +1,4 @@
-//! A running state machine with its FIFOs.
+//! A running PIO state machine with its FIFOs.
 
 use pio::{Instruction, InstructionOperands, JmpCondition, MovDestination, MovOperation, MovSource, SetDestination};
 use rp2040_hal as hal;
@@ -9,9 +9,9 @@ pub(super) struct Machine<SM: ValidStateMachine> {
     machine: StateMachine<SM, Running>,
     rx: Rx<SM>,
     tx: Tx<SM>,
-    /// Address of the first instruction.
+    /// Address of the program's first instruction.
     start: u8,
-    /// Level that the machine drives while it waits, if it drives a pin.
+    /// Level of the output pin while the machine waits, or `None` if the machine has no output pin.
     idle: Option<u8>,
 }
 
@@ -20,23 +20,23 @@ impl<SM: ValidStateMachine> Machine<SM> {
         Machine { machine, rx, tx, start, idle }
     }
 
-    /// Sets the number of system clocks per cycle.
+    /// Sets the number of system clock cycles per state machine cycle.
     pub(super) fn set_divisor(&mut self, divisor: u16) {
         self.machine.clock_divisor_fixed_point(divisor, 0);
     }
 
-    /// Sets the number of system clocks per cycle as a whole number and 256ths.
+    /// Sets the number of system clock cycles per state machine cycle, in whole cycles and 256ths.
     pub(super) fn set_divisor_256(&mut self, whole: u16, fraction: u8) {
         self.machine.clock_divisor_fixed_point(whole, fraction);
     }
 
-    /// Loads OSR. The machine must be waiting.
+    /// Loads the output shift register (OSR). The machine must be waiting.
     pub(super) fn load_osr(&mut self, value: u32) {
         self.tx.write(value);
         self.execute(InstructionOperands::PULL { if_empty: false, block: false });
     }
 
-    /// Loads Y through OSR. The machine must be waiting.
+    /// Loads the Y register through the OSR. The machine must be waiting.
     pub(super) fn load_y(&mut self, value: u32) {
         self.load_osr(value);
         self.execute(InstructionOperands::MOV {
@@ -50,7 +50,8 @@ impl<SM: ValidStateMachine> Machine<SM> {
         self.execute(InstructionOperands::SET { destination: SetDestination::X, data: 0 });
     }
 
-    /// Sets Y to a number below 32. Unlike [`load_y`](Self::load_y), this is possible while the machine waits for a word.
+    /// Sets the Y register to a number below 32. Unlike [`load_y`](Self::load_y), this is possible while the machine
+    /// waits for a word.
     pub(super) fn set_y(&mut self, data: u8) {
         self.execute(InstructionOperands::SET { destination: SetDestination::Y, data });
     }
@@ -63,7 +64,7 @@ impl<SM: ValidStateMachine> Machine<SM> {
         });
     }
 
-    /// Sets the output pins of the machine to high.
+    /// Sets the machine's output pins to high.
     pub(super) fn set_output_high(&mut self) {
         self.execute(InstructionOperands::MOV {
             destination: MovDestination::PINS,
@@ -72,12 +73,12 @@ impl<SM: ValidStateMachine> Machine<SM> {
         });
     }
 
-    /// Returns whether the machine waits at the beginning of its program.
+    /// Returns whether the machine is waiting at the beginning of its program.
     pub(super) fn is_at_start(&self) -> bool {
         self.machine.instruction_address() == u32::from(self.start)
     }
 
-    /// Returns the address of the input FIFO and the number of its DMA request.
+    /// Returns the address of the input FIFO, and the number of its DMA request signal.
     pub(super) fn input(&self) -> (*const u32, u8) {
         (self.tx.fifo_address(), self.tx.dreq_value())
     }
@@ -92,12 +93,12 @@ impl<SM: ValidStateMachine> Machine<SM> {
         self.tx.write(word);
     }
 
-    /// Returns whether the machine has consumed all words.
+    /// Returns whether the machine has taken all words from its input FIFO.
     pub(super) fn has_taken_all(&self) -> bool {
         self.tx.is_empty()
     }
 
-    /// Waits for the next word and returns it.
+    /// Waits for the next output word and returns it.
     pub(super) fn receive(&mut self) -> u32 {
         loop {
             if let Some(word) = self.rx.read() {
@@ -106,12 +107,12 @@ impl<SM: ValidStateMachine> Machine<SM> {
         }
     }
 
-    /// Discards all received words.
+    /// Discards all words in the output FIFO.
     pub(super) fn discard(&mut self) {
         while self.rx.read().is_some() {}
     }
 
-    /// Returns the address of the output FIFO and the number of its DMA request.
+    /// Returns the address of the output FIFO, and the number of its DMA request signal.
     pub(super) fn output(&self) -> (*const u32, u8) {
         (self.rx.fifo_address(), self.rx.dreq_value())
     }

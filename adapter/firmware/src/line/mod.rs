@@ -1,5 +1,5 @@
-//! The clock and data lines. PIO 1 runs the state machines of SSI, and PIO 0 runs those of BiSS, each with a pacer. The
-//! clock pin is connected to one of the two.
+//! The clock and data lines. PIO 1 runs the state machines for SSI, and PIO 0 those for BiSS. A pacer on each starts
+//! the frames of a stream. The clock pin is connected to one of the two PIO blocks.
 
 mod machine;
 mod serial;
@@ -23,14 +23,14 @@ use crate::supply::{self, Switch};
 use machine::Machine;
 use serial::Serial;
 
-/// Number of cycles from the start of a frame to the first falling edge, for both SSI and BiSS.
+/// Number of cycles from the start of a frame to the first falling clock edge, for SSI and for BiSS.
 const START_CYCLES: u32 = 3;
 const BISS_START_CYCLES: u32 = 5;
-/// Number of system clocks per microsecond. A pacer counts microseconds, so this is also its divisor.
+/// Number of system clock cycles per microsecond. A pacer counts microseconds, so this is also its divisor.
 const PER_US: u16 = (SYSTEM_HZ / 1_000_000) as u16;
 /// Time in microseconds that a pacer needs in addition to its count.
 const PACER_US: u32 = 3;
-/// Number of the PIO flag that starts a frame.
+/// Number of the PIO interrupt flag that starts a frame.
 const START: u8 = 1;
 
 /// The pins of the lines.
@@ -63,7 +63,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// Loads the programs and starts the machines, which wait with the clock high.
+    /// Loads the programs and starts the state machines, which then wait with the clock high.
     pub(crate) fn new(
         pio0: PIO0,
         pio1: PIO1,
@@ -169,7 +169,7 @@ impl Line {
         })
     }
 
-    /// Returns the time from the start of a frame to its first falling edge, rounded to microseconds.
+    /// Returns the time from the start of a frame to its first falling clock edge, rounded to microseconds.
     fn start_us(&self) -> u64 {
         let cycles = match self.clocking {
             Some(Clocking::Ssi(setting)) => START_CYCLES * u32::from(setting.divisor),
@@ -385,7 +385,7 @@ impl Bus for Line {
     }
 }
 
-/// Connects the clock pin to the machines of a bus.
+/// Connects the clock pin to the state machines of a bus.
 fn connect_clock(clocking: Clocking) {
     // Safety: only this function changes the function of the pin, which `Line` owns. Both machines keep the pin high.
     let bank = unsafe { &*IO_BANK0::ptr() };

@@ -1,5 +1,5 @@
 //! The serial line, which uses two state machines of PIO 1 and four DMA channels. The processor only starts a transfer
-//! and reads its result. The characters and the time of the reply therefore do not depend on the main loop.
+//! and reads its result, so the characters and the time of the reply do not depend on the main loop.
 
 use core::cell::UnsafeCell;
 
@@ -14,14 +14,16 @@ use crate::ring::dma;
 
 /// Maximum number of characters in a request or a reply.
 const LENGTH: usize = 512;
-/// DMA channels: sending, the mark of the first edge, the time of this edge, and the characters of the reply.
+/// DMA channels for sending, for the mark of the first edge, for the time of this edge, and for the received
+/// characters.
 const SEND: usize = 4;
 const MARK: usize = 5;
 const STAMP: usize = 6;
 const RECEIVE: usize = 7;
-/// Number of the DMA request that is always active.
+/// Number of the DMA request signal that is always active.
 const ALWAYS: u8 = 63;
-/// Placeholder for a character that has not arrived. Received characters only use the highest bits of a word.
+/// Placeholder for a character that has not arrived. It is distinct, because received characters use only the highest
+/// bits of a word.
 const NOTHING: u32 = 1;
 
 /// Memory shared by the DMA and the processor.
@@ -32,7 +34,7 @@ unsafe impl<const N: usize> Sync for Shared<N> {}
 
 static SENT: Shared<LENGTH> = Shared(UnsafeCell::new([0; LENGTH]));
 static RECEIVED: Shared<LENGTH> = Shared(UnsafeCell::new([0; LENGTH]));
-/// The mark of the first edge, whose value is meaningless, and the lower half of its time.
+/// The mark of the first edge, whose value has no meaning, and the lower half of the edge's time.
 static EDGE: Shared<2> = Shared(UnsafeCell::new([0; 2]));
 
 impl<const N: usize> Shared<N> {
@@ -57,9 +59,9 @@ impl<const N: usize> Shared<N> {
 pub(super) struct Serial {
     pub(super) sender: Machine<(PIO1, SM1)>,
     pub(super) receiver: Machine<(PIO1, SM2)>,
-    /// Placeholder for the time before the first edge: a time in the past.
+    /// Placeholder for the time of an edge that has not occurred yet: a time in the past.
     no_edge: u32,
-    /// Delay of the mark in microseconds.
+    /// Delay of the edge's mark in microseconds.
     mark_delay_us: u32,
     /// Number of characters received so far.
     count: usize,
@@ -81,7 +83,7 @@ impl Serial {
         self.receiver.set_y(bits - 2);
     }
 
-    /// Starts sending characters and then receiving. `now` is the lower half of the clock.
+    /// Starts sending characters, after which the hardware receives. `now` is the lower half of the clock.
     pub(super) fn begin(&mut self, characters: &[u32], now: u32) {
         self.end();
         (self.no_edge, self.count) = (now.wrapping_sub(1), 0);
@@ -118,7 +120,7 @@ impl Serial {
         !is_busy(SEND) && self.sender.has_taken_all() && self.sender.is_at_start()
     }
 
-    /// Returns the lower half of the first edge's time, or `None` before the edge.
+    /// Returns the lower half of the first edge's time, or `None` if there was no edge yet.
     pub(super) fn first_edge(&self) -> Option<u32> {
         Some(EDGE.read(1)).filter(|time| *time != self.no_edge).map(|time| time.wrapping_sub(self.mark_delay_us))
     }
@@ -153,14 +155,14 @@ impl Serial {
     }
 }
 
-/// Flags for advancing the read or write address during a copy.
+/// Flags that advance the read address and the write address during a copy.
 const READS: u32 = 1 << 4;
 const WRITES: u32 = 1 << 5;
 
 /// Options of a DMA copy.
 struct Copied {
     request: u8,
-    /// Channel to start at the end. A channel's own number starts none.
+    /// Channel to start when the copy ends, or the channel's own number to start none.
     chain: usize,
     advance: u32,
 }

@@ -1,4 +1,4 @@
-//! `do`: actions other than writing values.
+//! The `do` command: actions such as restarting the encoder or setting its position.
 
 use serde_json::json;
 

@@ -1,5 +1,5 @@
-//! Access codes from the environment and from the `--code` option, which every command and the window accept. Messages
-//! never repeat text that could be an access code.
+//! Access codes from the environment and from the `--code` option of every command. Messages never repeat text that
+//! could be an access code.
 
 use std::str::FromStr;
 

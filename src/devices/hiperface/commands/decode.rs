@@ -1,4 +1,4 @@
-//! `decode`: explains captured bytes, offline.
+//! The `decode` command, which explains captured bytes without a connection.
 
 use serde_json::Map;
 

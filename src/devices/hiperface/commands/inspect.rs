@@ -1,4 +1,4 @@
-//! Read-only commands: `find`, `identify`, `status`, `position` and `read`.
+//! The read-only commands `find`, `identify`, `status`, `position` and `read`.
 
 use std::time::Duration;
 
@@ -183,7 +183,7 @@ fn code_list(codes: &[StatusCode]) -> Vec<Json> {
     codes.iter().map(|code| json!({"code": code.byte(), "text": code.text()})).collect()
 }
 
-/// Lists status codes one per line, or states that there are none.
+/// Returns the status codes, one per line, or a message that there are none.
 pub(super) fn codes_text(codes: &[StatusCode]) -> String {
     if codes.is_empty() {
         return "no errors or warnings\n".to_owned();

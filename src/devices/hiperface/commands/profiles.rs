@@ -1,4 +1,4 @@
-//! The `save` and `restore` commands for HIPERFACE encoders. Other commands read the encoder here to compare it.
+//! The `save` and `restore` commands for HIPERFACE encoders, and reading an encoder for a comparison.
 
 use std::collections::BTreeMap;
 
@@ -122,7 +122,7 @@ fn report_locked_fields(output: &Output, saved: &SavedProfile, what: &str) {
     }
 }
 
-/// Returns the user's decisions, from the command line, about data fields that contain bytes of unknown meaning.
+/// Returns the decisions given by `--copy` and `--leave` about data fields with bytes of unknown meaning.
 fn parse_decisions(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     let mut answers = BTreeMap::new();
     for (given, copies) in [(&restore.copy, true), (&restore.leave, false)] {
@@ -138,8 +138,8 @@ fn parse_decisions(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     Ok(answers)
 }
 
-/// Reports the data fields that contain bytes of unknown meaning. Returns an error if the command line contains no
-/// decision for one of them, except in a dry run, which leaves such a field unchanged.
+/// Reports the data fields that contain bytes of unknown meaning. Each of them requires a decision on the command line,
+/// or an error is returned. A dry run leaves fields without a decision unchanged.
 fn check_copy_decisions(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
     let words = |own: &UnknownMeaningField| explain::unknown_field(own).terminal_text();
     let fields = &prepared.unknown_fields;

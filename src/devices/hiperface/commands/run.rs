@@ -1,5 +1,4 @@
-//! Runs jobs on a HIPERFACE encoder with the access codes from the command line, and prints the status codes that the
-//! encoder announces.
+//! Runs jobs on a HIPERFACE encoder with the access codes from the command line, and prints announced status codes.
 
 use super::HiperfaceCommands;
 use crate::app::TypeMap;
@@ -17,7 +16,7 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Hiperface>;
 
 impl CliDevice for Hiperface {
-    /// Character format of the serial line. `identify` prints it.
+    /// Character format of the serial line, which `identify` prints.
     type Context = CharacterFormat;
     const HAS_ONE_MASTER: bool = true;
     const COMMANDS: &'static dyn DeviceCommands = &HiperfaceCommands;

@@ -1,4 +1,4 @@
-//! Positions as CSV for scripts. In every language, the separator is a comma and the decimal separator is a point.
+//! Positions as CSV for scripts, with commas as separators and a decimal point in every language.
 
 use crate::devices::hiperface::procedures::PositionReading;
 use crate::devices::hiperface::protocol::{Geometry, StatusCode};

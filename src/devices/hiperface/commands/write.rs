@@ -1,5 +1,5 @@
-//! The command `write`, and the parts that all writing commands share: printing the plan, asking for consent and
-//! executing it.
+//! The `write` command, and the steps that all writing commands share: print the plan, ask for consent, execute the
+//! plan.
 
 use serde_json::{Value as Json, json};
 
@@ -103,7 +103,7 @@ fn parse_item_value(item: Item, value: &str) -> Result<i64> {
     parse_number(value).ok_or_else(|| Failure::Usage(format!("{item}: {value:?} is not a number")))
 }
 
-/// Executes the plan after asking for consent if required. An empty plan sends nothing.
+/// Executes a plan, and asks for consent first if required. If the plan is empty, nothing is sent.
 pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,
@@ -120,7 +120,7 @@ pub(super) fn commit_plan(
     Ok(WriteSummary::from_commit(output, committed))
 }
 
-/// Describes the plan: its cost, and the old and new value of each operation.
+/// Describes a plan: its number of EEPROM writes, and the old and new value of each operation.
 pub(super) fn plan_text(prepared: &Prepared) -> String {
     let plan = &prepared.plan;
     let mut lines = change_lines(plan);
@@ -164,8 +164,8 @@ pub(super) fn operations_json(plan: &HiperfacePlan) -> Vec<Json> {
         .collect()
 }
 
-/// Returns the old and new value of an operation as text. A field status and line settings are bytes, in the form that
-/// `status:N` and `settings` accept.
+/// Returns the old and new value of an operation as text. A field status and line settings are shown as bytes, in the
+/// form that `status:N` and `settings` accept.
 fn old_and_new_text(op: &Op) -> (String, String) {
     match op {
         Op::Define { from, to, .. } => {

@@ -1,4 +1,4 @@
-//! Jobs of a HIPERFACE encoder and their results.
+//! Jobs for a HIPERFACE encoder, and their results.
 
 use crate::analysis::check::CycleCount;
 use std::fmt;
@@ -35,7 +35,7 @@ pub enum HiperfaceJob {
     Rest,
     Read(Item),
     Save(SaveOptions),
-    /// Executes the start-up sequence and gives a verdict for each item.
+    /// Runs the start-up sequence, and rates each step.
     Check {
         /// Whether to restart the encoder with 53h first.
         restart: bool,
@@ -108,11 +108,11 @@ pub enum Change {
     IncrementCounter,
 }
 
-/// Kind of change, which determines how an interrupted change is completed.
+/// Kind of change, which determines how an interrupted change can be completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// A write of edited bytes. Bytes that were not written remain as edits.
+    /// A write of edited bytes. Bytes that were not written remain in the editor as unwritten edits.
     Bytes,
     /// A single operation, which is executed either completely or not at all.
     Single,
@@ -149,21 +149,20 @@ pub struct Prepared {
     pub unchanged: u64,
     /// Items left unchanged because they cannot be read, or because they are missing in the profile or the encoder.
     pub missing: Vec<FieldRange>,
-    /// Mounting values that differ but are left unchanged.
+    /// Mounting values, such as a commutation offset, that differ but are left unchanged.
     pub mounting_left: Vec<FieldRange>,
-    /// Mounting values of another device that are written and must be set up again.
+    /// Mounting values that are copied from another device and must be set up again.
     pub mounting_written: Vec<FieldRange>,
     /// Data fields whose bytes of unknown meaning differ between the profile and the encoder.
     pub unknown_fields: Vec<UnknownMeaningField>,
-    /// Data fields created by the undone write that are not deleted, because they have changed since then or are not
-    /// the last fields.
+    /// Data fields that the undone write created and that are kept, because they have changed or other fields follow.
     pub created_left: Vec<u8>,
     pub other_type: Option<TypeMismatch>,
-    /// Requested position, if the plan sets another one to preserve the phase.
+    /// Position that the user requested, if the plan sets a different one to preserve the phase.
     pub wanted_position: Option<u32>,
 }
 
-/// Type code in a profile, and the different type code of the encoder to which the profile is written.
+/// Type codes of a profile and of the encoder to which it is written, if they differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TypeMismatch {
     pub profile: u8,
@@ -181,7 +180,7 @@ impl Prepared {
     }
 }
 
-/// A plan to which the user has consented.
+/// A plan that the user has approved.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 pub type Committed = crate::worker::CommitResult<WrittenChanges>;
@@ -189,7 +188,7 @@ pub type Committed = crate::worker::CommitResult<WrittenChanges>;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     Number(i64),
-    /// Analogue value, and its limit if the extended label contains one.
+    /// Measured analogue value, and its limit if the extended label contains one.
     Analogue {
         value: i16,
         limit: Option<i16>,

@@ -1,4 +1,4 @@
-//! The HIPERFACE encoder as a device of a session, and its jobs.
+//! Sessions and jobs for HIPERFACE encoders.
 
 mod commit;
 mod job;
@@ -41,7 +41,7 @@ pub struct Hiperface {
     /// Geometry from the last identification in this session, used to interpret samples.
     geometry: Option<Geometry>,
     status: RecentStatusCodes,
-    /// Counts of line errors that have already been reported.
+    /// Number of line errors of each kind that have already been reported.
     told_troubles: [u64; 4],
 }
 
@@ -76,7 +76,8 @@ impl Hiperface {
         status::record_codes(&context.store, &device, codes);
     }
 
-    /// Stores the status codes of samples. A code that occurs in many consecutive samples is not stored every time.
+    /// Stores the status codes of polled samples. If a code repeats in many samples, it is stored at most once a
+    /// minute.
     fn record_sampled_codes(&mut self, context: &mut SessionContext) {
         let codes = self.station.take_unlogged_codes();
         if !codes.is_empty() && self.status.mark_and_check_new(&codes, context.clock.now()) {

@@ -1,4 +1,4 @@
-//! Opening a session with a HIPERFACE encoder from a link.
+//! Opens a session with a HIPERFACE encoder from a link.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub fn check_link(url: &LinkUrl) -> Result<(), OpenError> {
 }
 
 /// Returns whether a drive may be a second master on the line. A drive reads the encoder only at power-up and then uses
-/// sine and cosine, so it may be present even if the line is silent.
+/// sine and cosine, so a drive may be present even if the line is silent.
 pub fn may_have_other_master(url: &LinkUrl) -> bool {
     matches!(url.scheme, LinkScheme::Serial | LinkScheme::Tcp | LinkScheme::Bridge)
 }
@@ -50,7 +50,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     Ok(Session::new(wire, clock, station, store, types, url.scheme == LinkScheme::Sim))
 }
 
-/// Returns the line of the encoder behind an adapter.
+/// Returns a link to the encoder through an adapter's serial line.
 fn at_adapter(
     wire: Box<dyn ByteLink>,
     clock: &Arc<dyn Clock>,

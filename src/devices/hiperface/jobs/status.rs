@@ -9,7 +9,7 @@ use crate::devices::hiperface::protocol::{KIND, StatusCode};
 use crate::store::{DeviceKey, EntryKind, Event, Logbook, Store};
 use crate::units::Moment;
 
-/// Time for which a status code is not stored again if it occurs repeatedly during polling.
+/// Minimum time before a status code that repeats during polling is stored again.
 const REPEAT_INTERVAL: Duration = Duration::from_secs(60);
 
 /// Status codes recorded recently while polling the position.
@@ -17,7 +17,7 @@ const REPEAT_INTERVAL: Duration = Duration::from_secs(60);
 pub(super) struct RecentStatusCodes(Vec<(StatusCode, Moment)>);
 
 impl RecentStatusCodes {
-    /// Returns whether any of these codes has not been recorded within the last minute, and marks all of them as
+    /// Returns whether any of these codes is new, that is, not recorded within the last minute. Marks all of them as
     /// recorded.
     pub(super) fn mark_and_check_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
         self.0.retain(|(_, kept)| now.duration_since(*kept) < REPEAT_INTERVAL);

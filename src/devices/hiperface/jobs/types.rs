@@ -1,4 +1,4 @@
-//! The table of encoder types, in which user-defined rows precede built-in rows.
+//! The table of encoder types, in which user-defined rows take precedence over built-in rows.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ pub struct TypeTableFileError {
     pub cause: TypeTableError,
 }
 
-/// Returns the table of encoder types, in which user-defined rows precede built-in rows.
+/// Returns the table of encoder types, in which user-defined rows take precedence over built-in rows.
 ///
 /// # Errors
 /// Returns a [`TypeTableFileError`] if the user's file exists but cannot be read or parsed. In this case,

@@ -1,4 +1,4 @@
-//! Device check: the start-up sequence of the manual (figures 8 and 9) with a verdict for each item.
+//! Device check: runs the start-up sequence of the manual (figures 8 and 9), and rates each step.
 
 use super::fields::separate_value_error;
 use super::{
@@ -13,7 +13,7 @@ pub type HiperfaceStepResult = crate::analysis::check::StepResult<CheckStep, Che
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
-    /// Restart (53h), including the waiting times.
+    /// Restart (53h), including the waiting times in the manual.
     Restart,
     /// Status codes, read with 50h until the queue is empty.
     Status,
@@ -46,7 +46,7 @@ pub enum CheckFinding {
         number: u8,
         status: DataFieldStatus,
     },
-    /// Data field with an unknown access code. The status contains the number of the code.
+    /// Data field whose access code is unknown. Its status contains the number of the code.
     FieldLocked {
         number: u8,
         status: DataFieldStatus,
@@ -63,8 +63,8 @@ pub enum CheckFinding {
     Line(LineQuality),
 }
 
-/// Runs the check, which ends early only if the encoder stops replying. If `restart` is set, the check first restarts
-/// the encoder with 53h, so that it examines the state after power-on.
+/// Checks the encoder. The check ends early only if the encoder stops replying. If `restart` is set, the encoder is
+/// restarted first (53h), so that its state after power-on is checked.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the job is cancelled.
@@ -122,7 +122,7 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperf
     }
 }
 
-/// Compares the analogue channels with their limits on the extended label. A channel that the encoder rejects is
+/// Compares the analogue channels with their limits on the extended label. Channels that the encoder rejects are
 /// omitted.
 fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<HiperfaceStepResult>, Error> {
     let Some(label) = identity.extended_label() else { return Ok(None) };
@@ -171,7 +171,7 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperfac
     Ok(HiperfaceStepResult { step: CheckStep::DataFields, verdict, findings })
 }
 
-/// Returns the verdict on the line. If requests had to be repeated, the line works, but its wiring needs attention.
+/// Rates the line. Repeated requests mean that the line works, but that its wiring needs attention.
 fn check_line(master: &mut Master<'_>) -> HiperfaceStepResult {
     let quality = master.station().line.quality.clone();
     let verdict = if quality.has_errors() { Verdict::Attention } else { Verdict::Good };

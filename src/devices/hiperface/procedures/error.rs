@@ -1,4 +1,4 @@
-//! Errors of jobs with an encoder, including the details for the error messages.
+//! Errors of encoder jobs, with the details for the error messages.
 
 use crate::devices::hiperface::profile::PlanItem;
 use crate::devices::hiperface::protocol::{AccessCodeNumber, Command, LineSettings, Reply, ReplyError, StatusCode};
@@ -15,7 +15,7 @@ pub enum Error {
         address: u8,
         command: Command,
         tries: u32,
-        /// Whether the adapter returned the sent bytes as an echo. An echo shows that the line itself works.
+        /// Whether the sent bytes came back as an echo, which shows that the line itself works.
         echo_heard: bool,
     },
     #[error("damaged reply to {} (attempts: {tries}): {cause}", command.row().name)]
@@ -25,7 +25,7 @@ pub enum Error {
     NeverSilent,
     #[error("{} was refused: {}", command.row().name, code_list(codes))]
     Rejected { command: Command, codes: Vec<StatusCode> },
-    /// The encoder can no longer be reached, so it is unknown whether a change was executed.
+    /// The connection was lost, so it is unknown whether a change was executed.
     #[error("it is not known whether {} was carried out: {cause}", command.row().name)]
     Unclear {
         command: Command,
@@ -84,7 +84,7 @@ impl Error {
 pub enum ReadBackValue {
     #[error("{0}")]
     Value(String),
-    /// The data field does not behave in accordance with the status that was written.
+    /// The data field does not behave as its newly written status specifies.
     #[error("another status")]
     AnotherStatus,
 }
@@ -122,7 +122,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the device can no longer be reached, so that further attempts would be useless.
+    /// Returns whether the connection to the encoder is lost, so that further attempts are useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } => true,
@@ -131,7 +131,7 @@ impl Error {
         }
     }
 
-    /// Returns whether the encoder temporarily did not report a position.
+    /// Returns whether the encoder has no position to report at the moment.
     pub fn is_without_position(&self) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.invalidates_position()))
     }

@@ -1,4 +1,4 @@
-//! Reading data fields (4Ch, 4Ah). If the line damages a long transfer, it is split in half.
+//! Reads data fields (4Ch, 4Ah). A long transfer that the line damages is split in half.
 
 use super::error::ReplyDamage;
 use super::identify::read_type_label;
@@ -76,7 +76,7 @@ pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<Fiel
     Ok(separate_value_error(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
 }
 
-/// Converts an error to an inner error if the encoder still replies to another request.
+/// Returns the error as an inner error if the encoder still replies to other requests.
 ///
 /// # Errors
 /// Returns an error if the encoder no longer replies or the user cancels.
@@ -165,7 +165,7 @@ pub fn read_range(
 }
 
 /// Reads one byte in a transfer that includes an adjacent byte. The reply to a single-byte transfer can equal the
-/// request, including the access code, so an echo from the adapter could be mistaken for it.
+/// request, including the access code, and would then look like its echo.
 fn read_byte(master: &mut Master<'_>, field: u8, address: usize, code: AccessCode) -> Result<Vec<u8>, Error> {
     let start = address.saturating_sub(1);
     let pair = read_range(master, field, start, 2, code)?;

@@ -1,4 +1,4 @@
-//! Searching for encoders with unknown settings.
+//! Searches for encoders with unknown settings.
 //!
 //! The search listens for a second before it sends the first byte. If any bytes are received, a machine may be running,
 //! and nothing is sent. The search probes with 52h, because 50h would remove codes from the status queue of an encoder.
@@ -18,8 +18,8 @@ pub const LISTEN: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FindOptions {
-    /// Whether the user states that exactly one encoder is connected. If no address replies, the broadcast address is
-    /// tried as well.
+    /// Whether the user has confirmed that exactly one encoder is connected. If no address replies, the broadcast
+    /// address is then tried as well.
     pub one_encoder: bool,
     /// Maximum time to wait for the user to switch the encoder off and on again. After the restart, the encoder is
     /// searched for with its default settings.
@@ -63,7 +63,7 @@ pub enum SearchProgress<'a> {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EncoderSearchResult {
-    /// Another device is sending on this line, so no data was sent.
+    /// Another device is sending on the line, so the search sent nothing.
     ForeignTraffic {
         /// Bytes received while listening.
         bytes: usize,
@@ -71,13 +71,13 @@ pub enum EncoderSearchResult {
     Searched {
         /// Encoders in the order in which they replied. The list may be empty.
         found: Vec<FoundEncoder>,
-        /// Whether all combinations were tried, that is, whether the user did not cancel the search.
+        /// Whether all combinations were tried. `false` means that the user cancelled the search.
         complete: bool,
     },
 }
 
-/// Searches all baud rates, parities and addresses, or only the addresses if the link cannot set the baud rate. The
-/// port settings are restored at the end. Cancellation ends the search, and the encoders found so far are returned.
+/// Tries all baud rates, parities and addresses, or only the addresses if the link cannot set the baud rate. The port
+/// settings are restored at the end. If the user cancels, the encoders found so far are returned.
 ///
 /// # Errors
 /// Returns an error if the connection fails.
@@ -107,7 +107,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Runs the search. If another device sends, returns the number of bytes received from it instead.
+    /// Runs the search. If another device is sending, returns the number of bytes received from it instead.
     fn run(&mut self, master: &mut Master<'_>, options: &FindOptions) -> Result<Option<usize>, Error> {
         // A device server has a fixed format. Trying several formats would find the same encoder several times.
         let formats = if master.can_set_format() { formats_by_likelihood() } else { vec![master.station().format] };
@@ -162,8 +162,7 @@ fn formats_by_likelihood() -> Vec<CharacterFormat> {
         .collect()
 }
 
-/// Sends a request with factory settings every tenth of a second until an encoder that has just been switched on
-/// replies.
+/// Sends a request with factory settings every tenth of a second until an encoder that was just switched on replies.
 fn search_in_default_window(
     master: &mut Master<'_>,
     patience: Duration,
@@ -181,7 +180,7 @@ fn search_in_default_window(
     Ok(None)
 }
 
-/// Sends a request, and repeats it once if the reply is damaged, because a damaged reply proves that a device is
+/// Sends a request, and sends it again if the reply is damaged, because even a damaged reply shows that a device is
 /// present.
 fn probe_address(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<FoundEncoder>, Error> {
     master.station().address = address;

@@ -10,16 +10,16 @@ use crate::devices::hiperface::protocol::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
     pub address: u8,
-    /// Reply to 52h.
+    /// Type label (52h).
     pub label: TypeLabel,
-    /// Reply to 56h, with empty strings if the encoder does not support the command.
+    /// Serial number and firmware (56h), with empty strings if the encoder does not support the command.
     pub serial: SerialLabel,
-    /// Reply to 4Eh, or `None` if the encoder does not support the command.
+    /// Free memory (4Eh), or `None` if the encoder does not support the command.
     pub memory: Option<FreeMemory>,
     pub name: String,
     /// Periods and turns, as specified by the user, the extended label or the table of encoder types.
     pub geometry: Option<Geometry>,
-    /// Whether the encoder is a kit without a bearing, whose code tracks are aligned with 63h. `None` means unknown.
+    /// Whether the encoder is a kit without a bearing, whose code tracks are aligned with 63h, or `None` if unknown.
     pub kit: Option<bool>,
     /// Content of data field FFh, if the encoder has this field.
     pub extended_label: Option<Vec<u8>>,
@@ -31,7 +31,7 @@ impl Identity {
     }
 }
 
-/// Returns the identity recorded in a profile, which does not include the free memory.
+/// Returns the identity as stored in a profile. The free memory is not included.
 pub fn recorded_identity(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity {
     let own = &profile.identity;
     let label = TypeLabel {
@@ -115,7 +115,7 @@ pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
     Ok(read_type_label(master)?.settings)
 }
 
-/// Reads the address of the encoder that replies at the session's address, which may be the broadcast address.
+/// Reads the encoder's own address. The request uses the session's address, which may be the broadcast address.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the encoder rejects the request.
@@ -142,7 +142,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     Ok(master.station().take_undisplayed_codes())
 }
 
-/// Converts the rejection of an unsupported command to `None`. Any other error is returned.
+/// Returns `None` if the encoder does not support the command. Any other error is returned as an error.
 fn optional_value<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
     match result {
         Ok(value) => Ok(Some(value)),

@@ -1,5 +1,5 @@
-//! The host side of the serial line, which repeats requests, reads back changes, and collects status codes that the
-//! encoder announces. Single exchanges are implemented in [`exchange`].
+//! The host side of the serial line: repeats requests, reads back changes, and collects announced status codes. Single
+//! exchanges are implemented in [`exchange`].
 //!
 //! A read is repeated at most five times within at most eight seconds. A write is never repeated without checking its
 //! effect.
@@ -24,13 +24,13 @@ pub struct Master<'a> {
 
 pub(super) struct TimedReply {
     pub(super) reply: Reply,
-    /// Time of the falling edge of the reply's first start bit.
+    /// Time of the first falling edge of the reply, where its first start bit begins.
     pub(super) at: Moment,
     pub(super) sender: u8,
 }
 
 impl<'a> Master<'a> {
-    /// Creates a master for one job with the full time limit.
+    /// Creates a master for one job, with the full time limit.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         Master { line: SerialLine::new(ctx), station }
@@ -44,7 +44,7 @@ impl<'a> Master<'a> {
         self.line.now()
     }
 
-    /// Runs `work` without reacting to cancellation, for steps that return the encoder to a safe state.
+    /// Runs `work` without reacting to cancellation. It is used for steps that return the encoder to a safe state.
     pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.ignore_cancellation(true);
         let result = work(self);
@@ -68,7 +68,7 @@ impl<'a> Master<'a> {
         Ok(self.line.receive_pending(duration)?)
     }
 
-    /// Sets baud rate and parity of the host.
+    /// Sets the baud rate and parity of the host.
     ///
     /// # Errors
     /// Returns an error if the connection fails.
@@ -78,8 +78,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Returns whether the baud rate and parity can be set by the host. Otherwise, they are set at the far end of the
-    /// link.
+    /// Returns whether the host can set the baud rate and parity. Otherwise, they are set at the far end of the link.
     pub fn can_set_format(&self) -> bool {
         self.line.ctx.wire.can_set_format()
     }
@@ -92,7 +91,7 @@ impl<'a> Master<'a> {
         self.request_with_time(request).map(|timed| timed.reply)
     }
 
-    /// Runs `work`, in which every reply must be received twice, for values that will be stored.
+    /// Runs `work` with every reply received twice, for values that will be stored.
     pub fn run_double_checked<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -100,7 +99,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Sends a request like [`request`](Self::request). If the line has damaged any data before, the same reply must be
+    /// Sends a request like [`request`](Self::request). If the line has damaged data before, the same reply must be
     /// received twice.
     ///
     /// # Errors
@@ -181,7 +180,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Prepares the line for the next attempt, or returns an error if no attempt is left.
+    /// Prepares the line for another attempt, or returns an error after the last attempt.
     pub(super) fn prepare_retry(
         &mut self,
         request: &Request,

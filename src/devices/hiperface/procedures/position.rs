@@ -1,4 +1,4 @@
-//! Reading the position, analogue values and the counter, either once or by polling, and checking for standstill.
+//! Reads the position, analogue values and the counter, once or by polling, and checks that the shaft is at rest.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use crate::units::Moment;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionReading {
-    /// Time at which the encoder sampled the position. It is the falling edge of the reply's first start bit.
+    /// Time at which the encoder sampled the position: the falling edge of the reply's first start bit.
     pub at: Moment,
     pub raw: u32,
     /// Position, or `None` if periods and turns are unknown.
@@ -41,7 +41,7 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
 #[derive(Clone, Debug, PartialEq)]
 pub enum PolledSample {
     Position(PositionReading),
-    /// The encoder is present but currently has no position to report.
+    /// The encoder replies, but has no position to report at the moment.
     NoPosition {
         at: Moment,
         codes: Vec<StatusCode>,
@@ -50,7 +50,7 @@ pub enum PolledSample {
     Watched(WatchedReading),
 }
 
-/// Value that can be polled in addition to the position. All other values of an encoder change only when written.
+/// Value that can be polled in addition to the position. All other values in an encoder change only when written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum WatchedQuantity {
     /// Analogue channel (command 44h). Channel 48h is the temperature in °C. Channels 00h and 01h are usually the sine
@@ -67,8 +67,8 @@ impl WatchedQuantity {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
-    /// Time at which the encoder sampled an analogue value, which is the falling edge of the reply's first start bit.
-    /// For the counter or a rejection, this is the time at which the reply was parsed.
+    /// Time at which the encoder sampled an analogue value: the falling edge of the reply's first start bit. For the
+    /// counter or a rejection, it is the time at which the reply was parsed.
     pub at: Moment,
     pub watch: WatchedQuantity,
     pub value: Result<i64, Error>,
@@ -76,7 +76,7 @@ pub struct WatchedReading {
 }
 
 impl WatchedReading {
-    /// Returns whether the encoder does not support the command or the channel. Any other rejection is temporary.
+    /// Returns whether the encoder does not support the command or the channel. All other rejections are temporary.
     pub fn is_refused(&self) -> bool {
         match &self.value {
             Err(Error::Rejected { codes, .. }) => {
@@ -147,7 +147,7 @@ fn request_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16
     }
 }
 
-/// Reads the limit of an analogue channel from the extended label, if there is one.
+/// Reads an analogue channel's limit from the extended label, if there is one.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
@@ -202,7 +202,8 @@ pub(super) fn position_range(geometry: Option<Geometry>) -> u64 {
     geometry.and_then(Geometry::position_count).unwrap_or(1 << 32)
 }
 
-/// Returns the number of steps between two positions in the shorter direction. A shaft at rest may jitter across zero.
+/// Returns the number of steps between two positions in the shorter direction, because a shaft at rest may jitter
+/// across zero.
 pub(super) fn shortest_distance(a: u32, b: u32, range: u64) -> u64 {
     let straight = u64::from(a.abs_diff(b));
     straight.min(range.saturating_sub(straight))

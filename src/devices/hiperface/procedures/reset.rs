@@ -1,5 +1,5 @@
-//! Restarting an encoder (53h) and changing its interface temporarily (67h). The waiting times are from figure 38 of
-//! the manual.
+//! Restarts an encoder (53h) and changes its interface temporarily (67h). The waiting times are from figure 38 of the
+//! manual.
 
 use std::time::Duration;
 
@@ -8,10 +8,10 @@ use super::{Error, Master};
 use crate::devices::hiperface::protocol::{LineSettings, Request, StatusCode, Timing};
 use crate::units::CharacterFormat;
 
-/// Time from the restart to the first request. It lies within the window from 100 to 900 ms in which the encoder
-/// listens with factory settings.
+/// Time from the restart to the first request. Between 100 and 900 ms after the restart, the encoder uses its factory
+/// settings.
 const INTO_DEFAULT_WINDOW: Duration = Duration::from_millis(200);
-/// Margin added to the times in the manual for applying the stored settings, because clocks differ.
+/// Margin added to the manual's time for applying the stored settings, because clocks differ.
 const TIME_RESERVE: Duration = Duration::from_millis(100);
 
 /// Restarts the encoder, waits until it listens with its stored settings, and reads its complete status queue.

@@ -1,5 +1,5 @@
-//! Reading the position with the highest accuracy while the shaft is at rest, for commutation and synchronisation. The
-//! absolute position is combined with the sine and cosine signals, if the encoder has analogue channels for them.
+//! Reads the position with the highest accuracy while the shaft is at rest, for commutation and synchronisation. The
+//! absolute position is combined with sine and cosine if the encoder has analogue channels for them.
 
 use super::{Error, Master, ensure_standstill, read_analogue, read_position};
 use crate::devices::hiperface::protocol::Geometry;
@@ -25,7 +25,7 @@ impl Signals {
     pub const CHANNELS: (u8, u8) = (0x00, 0x01);
     /// Volts per analogue count, with ten bits for 5 V.
     const VOLTS_PER_COUNT: f64 = 5.0 / 1023.0;
-    /// Reference level of sine and cosine in counts, which corresponds to 2.5 V.
+    /// Analogue counts at the reference level of sine and cosine, 2.5 V.
     const MEAN: f64 = 511.5;
 
     fn from_counts(sine: f64, cosine: f64) -> Self {
@@ -33,7 +33,7 @@ impl Signals {
         Signals { sine_v: volts(sine), cosine_v: volts(cosine) }
     }
 
-    /// Returns the resolution of the position, which is the fraction of a period that one analogue count represents at
+    /// Returns the position resolution in periods. It is the fraction of a period that one analogue count represents at
     /// the amplitude of these signals.
     pub fn resolution_periods(&self) -> f64 {
         let amplitude = self.sine_v.hypot(self.cosine_v).max(Self::VOLTS_PER_COUNT);
@@ -77,8 +77,8 @@ fn read_signals(master: &mut Master<'_>) -> Result<Option<Signals>, Error> {
 mod tests {
     use super::*;
 
-    /// A level of 2.5 V equals 511.5 counts, and 3 V equals 613.8 counts. One count is 1/1023 of 5 V, or 4.888 mV,
-    /// which is 0.00978 rad at an amplitude of 0.5 V.
+    /// One count is 1/1023 of 5 V, so 2.5 V is 511.5 counts and 3 V is 613.8 counts. At an amplitude of 0.5 V, a count
+    /// is 0.00978 rad.
     #[test]
     fn counts_convert_to_volts_around_the_mean() {
         let signals = Signals::from_counts(613.8, 511.5);

@@ -1,4 +1,4 @@
-//! Reading the identity of an encoder and all restorable values.
+//! Reads the identity of an encoder and all values that can be restored.
 
 use super::{Error, Identity, Master, PolledSample, ReadPolicy, Survey, read_survey};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, RecordedValues};

@@ -1,4 +1,4 @@
-//! The state of a line and its encoder between jobs.
+//! The state of a line and its encoder, which is kept between jobs.
 
 use std::fmt;
 use std::time::Duration;
@@ -110,7 +110,7 @@ pub struct Station {
     pub codes: Codes,
     /// Periods and turns, as specified by the user for an encoder type that is not in the table.
     pub geometry: Option<Geometry>,
-    /// Status codes in the order in which they were read. They are removed once they have been displayed.
+    /// Status codes to display, in the order in which they were read. They are removed once displayed.
     pub codes_met: Vec<StatusCode>,
     /// Status codes for the logbook. This is their only copy, because 50h removes them from the encoder.
     codes_read: Vec<StatusCode>,
@@ -118,7 +118,7 @@ pub struct Station {
     pub identified: Option<(u8, String)>,
     /// Number of missing or damaged replies to 50h. Each of them may have contained a status code.
     pub(super) unanswered_codes: u32,
-    /// Whether every value must be read twice because it will be stored. This applies even to a line without errors.
+    /// Whether every value is read twice because it will be stored. This applies even to a line without errors.
     pub(super) thorough: bool,
     /// Maximum number of bytes per transfer. It is halved if the line damages long replies, and doubled otherwise.
     pub(super) chunk: usize,
@@ -142,8 +142,8 @@ impl Station {
         }
     }
 
-    /// Creates a station from link parameters and a margin. Factory settings replace missing parameters, and parameters
-    /// that do not concern the line are ignored.
+    /// Creates a station from link parameters and a margin for replies. Missing parameters have their factory settings,
+    /// and parameters that do not concern the line are ignored.
     ///
     /// # Errors
     /// Returns an error with the allowed values if a value is invalid.
@@ -161,7 +161,7 @@ impl Station {
         Timing::new(self.format, self.long_timeout)
     }
 
-    /// Returns whether values must be read twice. This is needed because an XOR misses some pairs of flipped bits.
+    /// Returns whether values must be read twice, because the XOR checksum misses some pairs of flipped bits.
     pub(super) fn requires_double_read(&self) -> bool {
         self.thorough || self.line.damaged > 0
     }
@@ -227,7 +227,7 @@ fn read_timeout(text: &str) -> Option<bool> {
     }
 }
 
-/// Maximum number of periods. A 32-bit word has room for 32 steps in each of them.
+/// Maximum number of periods. Each period has 32 steps in the 32-bit position word.
 pub const MAX_PERIODS: u32 = 1 << 27;
 
 fn read_periods(text: &str) -> Option<u32> {

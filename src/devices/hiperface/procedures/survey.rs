@@ -1,4 +1,4 @@
-//! Reading all values that the pages of an encoder display, in one job.
+//! Reads all values that are displayed for an encoder in a single job.
 
 use super::fields::separate_value_error;
 use super::{
@@ -11,7 +11,7 @@ use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     pub identity: Identity,
-    /// Codes from the status queue, in the encoder's order, and codes announced during the survey.
+    /// Codes from the status queue, in the encoder's order, followed by codes announced during the survey.
     pub codes: Vec<StatusCode>,
     /// All data fields. A field has no bytes if its access code is unknown or if it is listed in `unreadable`.
     pub fields: Vec<FieldImage>,
@@ -46,11 +46,11 @@ pub fn read_all_values(
     Ok(survey)
 }
 
-/// The handling of data fields that cannot be read.
+/// How to handle data fields that cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ReadPolicy {
     AsFarAsPossible,
-    /// An unreadable field ends the reading with an error, because a saved profile must be complete.
+    /// Returns an error if a field cannot be read, because a saved profile must be complete.
     Whole,
 }
 
@@ -77,7 +77,7 @@ pub(super) fn read_survey(
     Ok(Survey { identity, codes: Vec::new(), fields, unreadable, line, counter, position })
 }
 
-/// Reads all readable fields. Unreadable fields are reported with their status, if known.
+/// Reads all readable fields. Other fields are reported with their status, if known.
 fn read_accessible_fields(
     master: &mut Master<'_>,
     count: u8,

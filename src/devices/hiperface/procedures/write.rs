@@ -1,5 +1,5 @@
-//! Execution of a plan. The values on which the plan is based are read again, each operation is executed, and all
-//! changes are read back.
+//! Executes a plan. The values on which the plan is based are read again before the operations, and all changes are
+//! read back after them.
 
 pub use crate::profile::WrittenChanges;
 
@@ -22,7 +22,7 @@ use crate::profile::Write;
 
 type ConfirmedPlan<'p> = crate::profile::ConfirmedPlan<'p, Base, Op>;
 
-/// A write that ended early.
+/// A write that ended before all operations were executed.
 pub type InterruptedWrite = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, EndState>;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -90,7 +90,7 @@ impl Write for EncoderWriter<'_, '_> {
         Ok(())
     }
 
-    /// Restores the write protection of fields that were made writable, if the encoder still replies.
+    /// Write-protects fields again that were made writable, if the encoder still replies.
     fn return_to_safe_state(
         &mut self,
         confirmed: &ConfirmedPlan<'_>,
@@ -164,7 +164,7 @@ fn restore_write_protection(
     Ok(())
 }
 
-/// Executes one operation on an encoder with `range` positions, and returns how often the operation was sent.
+/// Executes one operation on an encoder with `range` positions, and returns the number of times it was sent.
 fn execute(master: &mut Master<'_>, op: &Op, confirmed: &ConfirmedPlan<'_>, range: u64) -> Result<u32, Error> {
     let code0 = master.station().codes.get(AccessCodeNumber::ZERO);
     match op {
@@ -273,7 +273,7 @@ fn is_code_accepted(
     }
 }
 
-/// Reads back the final value of every field and byte that the plan has changed.
+/// Reads back the final value of every field and byte that the plan changed.
 fn verify_plan(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u64, Error> {
     let mut verified = 0;
     for (at, op) in plan.ops.iter().enumerate() {
@@ -361,7 +361,7 @@ pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
     }
 }
 
-/// Reads all fields that require this access code, which shows whether the code was changed.
+/// Reads all fields that require this access code, to check whether the code was changed.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.

@@ -1,6 +1,6 @@
-//! The format in which this program stores a commutation offset in a data field. The manual does not define a format.
-//! The sixteen bytes fill a block of the EEPROM, and are recognised in a backup as a mounting value. See SICK 8010701,
-//! commutation, and section 5 of the project's sine/cosine reference.
+//! Commutation offset as stored by this program in a data field. The manual does not define a format. The sixteen bytes
+//! fill a block of the EEPROM, and a backup recognises them as a mounting value. See SICK 8010701, commutation, and
+//! section 5 of the project's sine/cosine reference.
 
 use super::HiperfaceProfile;
 use crate::analysis::commutation::ElectricalAngle;
@@ -28,7 +28,7 @@ pub struct CommutationRecord {
     pub confirmed: bool,
 }
 
-/// Error for bytes that begin like a commutation record but do not form a valid record.
+/// Error for bytes that begin like a commutation record but are not a valid one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CommutationRecordError;
 
@@ -77,8 +77,8 @@ fn crc(bytes: &[u8]) -> u16 {
 mod tests {
     use super::*;
 
-    /// Record with the offset from section 5 of the reference and four pole pairs. The CRC was calculated with Python's
-    /// `binascii.crc_hqx(body, 0xFFFF)`.
+    /// Record with four pole pairs and the offset from section 5 of the project's sine/cosine reference. The CRC was
+    /// calculated with Python's `binascii.crc_hqx(body, 0xFFFF)`.
     const RECORD: [u8; 16] =
         [0x43, 0x4F, 0x31, 0x01, 0x53, 0x05, 0x1E, 0xB8, 0x04, 0x00, 0x00, 0x00, 0x00, 0x00, 0xF2, 0x6A];
 

@@ -1,4 +1,4 @@
-//! Comparison of two encoders, or of an encoder with a profile: one item for each run of differing or equal bytes.
+//! Compares two encoders, or an encoder with a profile. Each run of differing or equal bytes is one item.
 
 use super::{FieldImage, FieldRange, Item};
 use crate::bits::hex_compact;
@@ -51,7 +51,7 @@ fn item(range: FieldRange) -> ComparedItem {
     ComparedItem { item: range.to_string(), ..ComparedItem::default() }
 }
 
-/// Returns the bytes of a field, or an empty text if they could not be read.
+/// Returns the bytes of a field in hexadecimal, or an empty string if they could not be read.
 fn bytes_text(field: &FieldImage) -> String {
     field.bytes.as_deref().map(hex_compact).unwrap_or_default()
 }

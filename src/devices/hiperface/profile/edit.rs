@@ -1,10 +1,10 @@
-//! Planning single changes. A change is checked against the rules of the encoder before anything is sent.
+//! Plans single changes. A change is checked against the encoder's rules before anything is sent.
 
 use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, SingleValue};
 use crate::devices::hiperface::protocol::{DataFieldStatus, FieldSize, FreeMemory};
 
-/// Plans to write bytes to data fields. Adjacent or overlapping edits are combined into one operation, in which the
-/// last edit of a byte applies. Edits that change nothing are omitted. `fields` contains each edited field once.
+/// Plans to write bytes to data fields. Adjacent or overlapping edits become one operation. If a byte is edited twice,
+/// the last edit applies. Edits that change nothing are omitted. `fields` contains each edited field once.
 ///
 /// # Errors
 /// Returns an error if a field is missing, protected or unreadable, or if the bytes do not fit into the field or into
@@ -26,8 +26,8 @@ pub fn plan_store(
     Ok(plan(field_count, fields, ops))
 }
 
-/// Returns the operations for one field in ascending order of address. An operation always fits into a transfer,
-/// because fields and transfers are both limited to 128 bytes.
+/// Returns the operations for one field in ascending order of address. An operation always fits into one transfer,
+/// because both fields and transfers are limited to 128 bytes.
 fn store_operations<'e>(
     field: &FieldImage,
     edits: impl Iterator<Item = &'e (FieldRange, Vec<u8>)>,

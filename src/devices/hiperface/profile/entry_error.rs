@@ -23,7 +23,7 @@ pub enum EntryError {
         /// Size of the field in bytes.
         expected: usize,
     },
-    /// A mounting mark names an item outside the data fields.
+    /// A mounting mark refers to an item that is not part of a data field.
     #[error("{0:?} is not of the form field:N@ADDR+COUNT")]
     Marked(String),
 }

@@ -1,4 +1,4 @@
-//! Names of the items in an encoder, such as `field:1@3+2`, `status:1`, `analogue:0x48`, `counter`, `address` and
+//! Items of an encoder and their names, such as `field:1@3+2`, `status:1`, `analogue:0x48`, `counter`, `address` and
 //! `settings`.
 
 use std::fmt;
@@ -54,7 +54,7 @@ pub enum PlanItem {
     Code(AccessCodeNumber),
 }
 
-/// Error for a text that does not name an item.
+/// Error for a string that is not the name of an item.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{0:?} is not an item; items are field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings"

@@ -1,4 +1,4 @@
-//! HIPERFACE profiles: the saved content of an encoder, the differences between two profiles, and restoring.
+//! HIPERFACE profiles: the saved content of an encoder, comparing it, and restoring it.
 
 #![warn(missing_docs)]
 

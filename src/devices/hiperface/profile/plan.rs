@@ -1,4 +1,4 @@
-//! Operations that change the memory of an encoder, and the values on which they are based.
+//! Operations that change an encoder's memory, and the values on which they are based.
 
 use super::item::PlanItem;
 use super::{FieldImage, FieldRange, Item};
@@ -9,7 +9,7 @@ use crate::profile::{ChangedItem, Operation, Plan};
 /// Planned write to a HIPERFACE encoder.
 pub type HiperfacePlan = Plan<Base, Op>;
 
-/// Values on which a plan is based.
+/// Values in the encoder on which a plan is based.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Number of data fields.
@@ -109,7 +109,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the item that the operation changes. If the item is readable, the `read` command accepts its name.
+    /// Returns the item that the operation changes. The `read` command accepts its name if the item is readable.
     pub fn plan_item(&self) -> PlanItem {
         PlanItem::Item(match self {
             Op::Define { field, .. } => Item::Status(*field),
@@ -142,7 +142,7 @@ impl Op {
         ChangedItem::new(self.plan_item(), old, new)
     }
 
-    /// Returns the number of changes, counted as in a comparison. Each byte of a data field counts as one change.
+    /// Returns the number of changes as a comparison would count them: each byte of a data field is one change.
     pub fn change_count(&self) -> u64 {
         match self {
             Op::Store { new, .. } => new.len() as u64,
@@ -151,7 +151,7 @@ impl Op {
     }
 
     /// Returns whether the operation makes a protected field writable. If so, the operation that restores the
-    /// protection must be executed even if an operation in between fails.
+    /// protection must run even if an operation in between fails.
     pub fn removes_protection(&self) -> bool {
         matches!(self, Op::Define { from, to, .. }
             if to.exists() && to.is_writable() && from.is_none_or(|from| !from.is_writable()))
@@ -162,7 +162,7 @@ impl Op {
         matches!(self, Op::Define { field, to, .. } if *field == number && to.exists() && !to.is_writable())
     }
 
-    /// Returns the number of the data field, or `None` if the operation concerns another item.
+    /// Returns the number of the data field, or `None` if the operation does not concern a field.
     pub fn field(&self) -> Option<u8> {
         match self {
             Op::Define { field, .. } | Op::Store { field, .. } => Some(*field),

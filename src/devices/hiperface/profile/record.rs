@@ -1,4 +1,4 @@
-//! Saved content of a HIPERFACE encoder. Access codes are never included.
+//! Profile of a HIPERFACE encoder: its saved content. Access codes are never included.
 
 use super::{EntryError, FieldRange, Item};
 use crate::devices::hiperface::protocol::{self, DataFieldStatus, LineSettings};
@@ -20,8 +20,8 @@ pub struct HiperfaceProfile {
     pub mounting: Vec<MountingMark>,
     /// Data fields in ascending order.
     pub fields: Vec<FieldImage>,
-    /// Fields created by the write, with their content. Only a backup contains such fields. Restoring the backup
-    /// deletes them.
+    /// Fields created by the write, with their content. Only a backup contains such fields, and restoring it deletes
+    /// them.
     pub created: Vec<FieldImage>,
     /// Unknown profile entries by field number.
     pub unknown_in_fields: Vec<(u8, UnknownValues)>,
@@ -72,7 +72,7 @@ pub struct RecordedValues {
     pub unknown: UnknownValues,
 }
 
-/// Mark of a data field range that contains a mounting value, which is valid only for one encoder as mounted on its
+/// Mark for a range of a data field that holds a mounting value. Such a value is valid only for one encoder on one
 /// motor.
 pub type MountingMark = crate::profile::MountingMark<FieldRange>;
 
@@ -93,7 +93,7 @@ impl HiperfaceProfile {
     /// Length of a commutation offset stored by this program, in bytes.
     pub const COMMUTATION_BYTES: usize = 16;
 
-    /// Marks all items that are recognised as mounting values, unless they are already marked.
+    /// Marks all items that are recognised as mounting values and are not marked yet.
     pub fn mark_mounting_dependent_values(&mut self) {
         for field in &self.fields {
             let Some(bytes) = &field.bytes else { continue };

@@ -1,5 +1,5 @@
-//! Planning a restore. Only differences are written, in as few writes as possible. Mounting values of another encoder
-//! are not written.
+//! Plans a restore. Only differences are written, in as few writes as possible. Mounting values from another encoder
+//! are not written unless the user agrees.
 
 mod device;
 mod error;
@@ -31,11 +31,11 @@ pub struct RestoreOptions {
     pub allow_other_type: bool,
     /// Whether mounting values may be written to another encoder.
     pub with_mounting: bool,
-    /// Whether a field other than the last may be deleted and created again to change its size. This also affects all
-    /// fields after it.
+    /// Whether a field may be deleted and created again to change its size even if it is not the last field. This also
+    /// affects all fields after it.
     pub recreate: bool,
-    /// Decisions about data fields that contain bytes of unknown meaning and would be written to another encoder.
-    /// `true` copies the field. A field without a decision is left unchanged.
+    /// The user's decision for each data field that contains bytes of unknown meaning and would be written to another
+    /// encoder. `true` copies the field. A field without a decision is left unchanged.
     pub copy: BTreeMap<u8, bool>,
 }
 
@@ -55,16 +55,15 @@ pub struct DeviceState {
 /// Result of planning a restore.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Restore {
-    /// Part of the result that is common to all kinds of device.
+    /// Part of the result that does not depend on the kind of device.
     pub common: crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange>,
     /// Data fields whose bytes of unknown meaning differ between the profile and the encoder.
     pub unknown_fields: Vec<UnknownMeaningField>,
-    /// Data fields created by the write that are not deleted, because they have changed since then or are not the last
-    /// fields.
+    /// Data fields that the write created and that are kept, because they have changed or other fields follow.
     pub created_left: Vec<u8>,
 }
 
-/// Value that must be set up again after restoring the profile of another encoder.
+/// Value that must be set up again after another encoder's profile has been restored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequiredSetup {
     /// Offset between encoder and motor.

@@ -1,12 +1,11 @@
-//! Undoing a write to an encoder: splitting changes into single bytes, and instructions for items that the backup
-//! cannot restore.
+//! Undoes a write: splits changes into single bytes, and gives instructions for items that the backup cannot restore.
 
 use super::{HiperfaceProfile, Item};
 use crate::devices::hiperface::protocol::DataFieldStatus;
 use crate::profile::{ChangedItem, Redo, single_bytes};
 
-/// Splits a change of field bytes into single bytes. The bytes of a created or deleted field belong to the change of
-/// its status.
+/// Splits a change to field bytes into single bytes. For a created or deleted field, only the change of the status is
+/// returned.
 pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
     match item.item.parse() {
         Ok(Item::Field(_)) if item.old.is_none() => Vec::new(),

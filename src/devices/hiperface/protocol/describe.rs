@@ -8,7 +8,7 @@ use super::{
 /// One item in the description of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FrameDetail {
-    /// Address and command of the frame.
+    /// Address and command of the described frame.
     Heading {
         /// Address, 40h to 5Fh, or FFh in a broadcast.
         address: u8,
@@ -17,7 +17,7 @@ pub enum FrameDetail {
     },
     /// The frame is a request.
     Request(Arguments),
-    /// The frame is not a request. Without its request, it cannot be recognised as a reply.
+    /// The frame is not a request. It cannot be recognised as a reply either, because its request is unknown.
     NoRequest(RequestError),
     /// The encoder rejected the request with this status code.
     Refused(StatusCode),
@@ -71,7 +71,8 @@ pub enum Arguments {
     Settings(LineSettings),
 }
 
-/// Describes a captured frame, starting with its heading. If `request` is given, the frame may be the reply to it.
+/// Describes a captured frame, beginning with its address and command. If `request` is given, the frame may be its
+/// reply.
 ///
 /// # Errors
 /// Returns an error if the bytes are not a frame.
@@ -92,7 +93,7 @@ pub fn describe_frame(bytes: &[u8], request: Option<&Request>) -> Result<Vec<Fra
     Ok(facts)
 }
 
-/// Parses a frame as the reply to an unknown request if its length rules out that it is a request.
+/// Interprets a frame as the reply to an unknown request, if the frame has a length that a request cannot have.
 fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<Answer> {
     let code = AccessCode::FACTORY;
     let candidate = match (Command::from_byte(frame.command)?, frame.payload) {

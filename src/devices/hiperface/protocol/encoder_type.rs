@@ -49,7 +49,7 @@ pub enum TypeTableError {
     },
 }
 
-/// Numeric entry of a row, which is displayed by its name in the file.
+/// Numeric entry of a row. It is displayed under the name that it has in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GeometryEntry {
     /// Periods per turn.
@@ -88,7 +88,7 @@ enum EncoderShape {
 }
 
 impl EncoderTypes {
-    /// Text of the table that is shipped with the program.
+    /// The table that is shipped with the program, as RON.
     pub const BUILT_IN: &'static str = include_str!("../../../../assets/devices/hiperface/encoder_types.ron");
 
     /// Parses an encoder type table.
@@ -111,7 +111,7 @@ impl EncoderTypes {
         Self::parse(Self::BUILT_IN).unwrap_or(EncoderTypes(Vec::new()))
     }
 
-    /// Returns the rows of both tables. The rows of `other` take precedence.
+    /// Returns the rows of both tables. If both have a row for a type code, the row of `other` applies.
     #[must_use]
     pub fn merged_with(self, other: EncoderTypes) -> Self {
         let mut rows = other.0;
@@ -126,8 +126,8 @@ impl EncoderTypes {
 }
 
 impl Row {
-    /// Upper limit for the number of periods, and for the product of periods and turns. Five of the 32 bits of the
-    /// position word count the steps within a period.
+    /// Upper limit for the number of periods, and for periods × turns. The other five of the 32 bits in the position
+    /// word count the steps within a period.
     const MAX_PERIODS_AND_TURNS: u32 = 1 << 27;
 
     fn into_encoder_type(self) -> Result<EncoderType, TypeTableError> {

@@ -20,8 +20,8 @@ pub struct ExtendedLabel {
     pub parameters: Vec<LabelParameter>,
 }
 
-/// Limit value on the extended label. Only the data sheet of the encoder defines the meaning of each limit number
-/// (`U`). If command 44h can read a quantity, the first limit word of the quantity is its analogue channel.
+/// Limit on the extended label. Only the encoder's data sheet defines the meaning of each limit number (`U`). If
+/// command 44h can read the quantity, its first limit word is its analogue channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LabelParameter {
     /// Number of the limit: 0 to 14 in the first set, 15 to 29 in the second, 30 to 44 in the third.
@@ -33,19 +33,19 @@ pub struct LabelParameter {
 /// Part of the extended label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LabelPart {
-    /// Checksum in byte 00h.
+    /// Checksum (byte 00h).
     Checksum,
-    /// Flags in byte 01h.
+    /// Flags (byte 01h).
     Flags,
-    /// Periods per revolution, or period length in nanometres, in bytes 02h to 05h.
+    /// Periods per revolution, or period length in nanometres (bytes 02h to 05h).
     Resolution(u32),
-    /// Number of revolutions, or coded range in signal periods, in bytes 06h to 09h.
+    /// Number of revolutions, or coded range in signal periods (bytes 06h to 09h).
     Range(u32),
-    /// Designation in bytes 0Ah to 1Bh.
+    /// Designation (bytes 0Ah to 1Bh).
     Designation,
-    /// Selector word of a set: bits 0 to 14 mark valid limits, and bit 15 indicates another set.
+    /// Selector word of a set. Bits 0 to 14 mark the valid limits, and bit 15 means that another set follows.
     Selector(u16),
-    /// Limit value, which is unused unless its bit in the selector word is set.
+    /// Limit, which is valid only if its bit in the selector word is set.
     Limit {
         /// Number of the limit.
         number: u8,
@@ -96,9 +96,9 @@ impl ExtendedLabel {
         })
     }
 
-    /// Returns analogue channels, each with its maximum reading, for quantities that command 44h can read. Only the
-    /// data sheet defines which parameters form such a pair (`U`). Therefore, any two parameters with consecutive
-    /// numbers are assumed to form a pair, which is used only for a remark and only if the channel replies.
+    /// Returns the analogue channels that have a limit, each with its maximum reading. Only the data sheet defines
+    /// which parameters form a pair of channel and limit (`U`). Therefore, any two parameters with consecutive numbers
+    /// are assumed to be a pair, which is used only for a remark and only if the channel replies.
     pub fn limits(&self) -> Vec<(u8, i16)> {
         let mut limits = Vec::new();
         let mut rest = self.parameters.as_slice();
@@ -186,7 +186,7 @@ impl ExtendedLabel {
 mod tests {
     use super::*;
 
-    /// Returns the synthetic 64-byte label from the reference, with an XOR checksum.
+    /// Returns a synthetic label of 64 bytes with an XOR checksum.
     fn label() -> Vec<u8> {
         let mut bytes = crate::bits::parse_hex(
             "53 00 00 00 00 10 00 00 10 00 53 45 4C 33 37 2D 48 46 42 30 2D 4B 30 32 20 20 20 20 00 03 00 48 00 73",

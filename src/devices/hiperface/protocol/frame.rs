@@ -36,7 +36,7 @@ pub enum FrameError {
 }
 
 impl<'a> Frame<'a> {
-    /// Error bit in the command byte of a reply.
+    /// Error bit in a reply's command byte.
     pub const ERROR_BIT: u8 = 0x80;
 
     /// Parses a slice that contains exactly one frame. On the line, silence marks the end of a frame.
@@ -70,8 +70,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Frames from the manual's example, "Beispiel zur Datenfelddefinition", each with a flag that states whether its
-    /// printed checksum is correct.
+    /// Frames from the manual's "Beispiel zur Datenfelddefinition", each with a flag that is set if its printed
+    /// checksum is correct.
     const MANUAL_EXAMPLE: [(&[u8], bool); 11] = [
         (&[0x40, 0x4E, 0x0E], true),
         (&[0x40, 0x4E, 0x08, 0x00, 0x06], true),

@@ -1,5 +1,5 @@
-//! The settings byte of the serial interface, which is read with 52h and set with 57h and 67h. See figure 42 of the
-//! manual. The positions of bits 7 and 6 are derived from their order in the figure.
+//! The settings byte of the serial interface, which is read with 52h and set with 57h and 67h (manual, figure 42). The
+//! positions of bits 7 and 6 are inferred from their order in the figure.
 
 use std::fmt;
 
@@ -40,7 +40,7 @@ impl LineSettings {
         self.0
     }
 
-    /// Returns a copy with another character format, or `None` if the byte cannot express the baud rate.
+    /// Returns the settings with another character format, or `None` if the byte cannot express the baud rate.
     pub fn with_format(self, format: CharacterFormat) -> Option<Self> {
         let speed = u8::try_from(BAUDS.iter().position(|baud| *baud == format.baud)?).ok()?;
         let parity = match format.parity {
@@ -51,13 +51,13 @@ impl LineSettings {
         Some(LineSettings(self.0 & 0xC8 | parity << 4 | speed))
     }
 
-    /// Returns a copy with a time-out of 44/baud if `long` is set, and of 11/baud otherwise.
+    /// Returns the settings with a time-out of 44/baud if `long` is set, and of 11/baud otherwise.
     #[must_use]
     pub const fn with_long_timeout(self, long: bool) -> Self {
         LineSettings(if long { self.0 | Self::LONG_TIMEOUT } else { self.0 & !Self::LONG_TIMEOUT })
     }
 
-    /// Returns a copy for a bus with several encoders if `bus` is set, and for a single encoder otherwise.
+    /// Returns the settings for a bus with several encoders if `bus` is set, and for a single encoder otherwise.
     #[must_use]
     pub const fn with_bus(self, bus: bool) -> Self {
         LineSettings(if bus { self.0 & !Self::STANDARD } else { self.0 | Self::STANDARD })
@@ -78,7 +78,7 @@ impl LineSettings {
         }
     }
 
-    /// Returns the character format, or `None` if baud rate or parity is reserved.
+    /// Returns the character format, or `None` if the code for the baud rate or the parity is reserved.
     pub fn character_format(self) -> Option<CharacterFormat> {
         Some(CharacterFormat { baud: self.baud()?, parity: self.parity()? })
     }

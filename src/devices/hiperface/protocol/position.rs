@@ -130,10 +130,10 @@ impl fmt::Display for Position {
     }
 }
 
-/// Returns the value in `range` that is nearest to `wanted` and has the same five lowest bits as `now`. If two values
-/// are equally near, the lower one is returned. Setting this value preserves the phase between the absolute value and
-/// the sine signal, because the five lowest bits equal the five highest bits of the arctangent. See the manual,
-/// "Position setzen".
+/// Returns the position in `range` that is nearest to `wanted` and has the same five lowest bits as `now`. If two
+/// positions are equally near, the lower one is returned. Setting this position preserves the phase between the
+/// absolute value and the sine signal, because the five lowest bits equal the five highest bits of the arctangent
+/// (manual, "Position setzen").
 pub fn nearest_in_phase(now: u32, wanted: u32, range: Option<u64>) -> u32 {
     let phase = u64::from(now % STEPS_PER_PERIOD);
     let wanted = u64::from(wanted);

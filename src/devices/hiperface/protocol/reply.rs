@@ -1,5 +1,5 @@
-//! Replies of an encoder. A reply contains the address and the command of the request, followed by the requested data.
-//! See the manual, "Fehlerbehandlung".
+//! Replies of an encoder. A reply repeats the address and the command of the request before its data (manual,
+//! "Fehlerbehandlung").
 //!
 //! The manual does not specify the layouts of the replies to 55h, 57h and 67h (`U`). These replies are accepted with
 //! and without the repeated argument.
@@ -39,7 +39,7 @@ pub enum Reply {
 pub enum Answer {
     /// The command was executed.
     Reply {
-        /// Whether the error bit is set, which means that command 50h can read more codes from the status queue.
+        /// Whether the error bit is set. If it is, command 50h can read more codes from the status queue.
         pending: bool,
         /// Reply data.
         reply: Reply,

@@ -1,5 +1,5 @@
-//! Requests of the host and their conversion to and from bytes. See the manual, "Die Befehle". The argument order of
-//! 43h, 46h and 56h is taken from public implementations (`P`).
+//! Requests to an encoder, and their conversion to and from bytes (manual, "Die Befehle"). The argument order of 43h,
+//! 46h and 56h is taken from public implementations (`P`).
 
 use std::fmt;
 
@@ -207,7 +207,7 @@ impl Request {
             .and_then(Self::check_ranges)
     }
 
-    /// Returns the argument bytes and the indices of those that are access codes.
+    /// Returns the argument bytes, and the indices of access codes among them.
     fn payload(&self) -> (Vec<u8>, Vec<usize>) {
         match self {
             Request::ReadPosition
@@ -294,7 +294,7 @@ impl Request {
         }))
     }
 
-    /// Checks the argument ranges that are known from the frame alone. The encoder checks all other ranges.
+    /// Checks those argument ranges that do not depend on the encoder. The encoder checks all others.
     fn check_ranges(request: Result<Self, RequestError>) -> Result<Self, RequestError> {
         match request? {
             Request::ReadData { count, .. } if count == 0 || usize::from(count) > MAX_TRANSFER => {
@@ -310,7 +310,7 @@ impl Request {
     }
 }
 
-/// The bytes of a request, with marks on those that would reveal an access code.
+/// The bytes of a request, in which all bytes that would reveal an access code are marked.
 #[derive(Clone, PartialEq, Eq)]
 pub struct MaskableFrame {
     bytes: Vec<u8>,
@@ -328,7 +328,7 @@ impl MaskableFrame {
         !self.secret.is_empty()
     }
 
-    /// Returns the bytes for display. Access codes are masked, and so is the checksum that would reveal them.
+    /// Returns the bytes for display. Access codes are masked, as is the checksum, which would reveal them.
     pub fn to_masked(&self) -> MaskedBytes {
         MaskedBytes::with_masked(&self.bytes, &self.secret)
     }

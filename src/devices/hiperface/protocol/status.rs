@@ -1,5 +1,5 @@
-//! Status codes that an encoder reports in reply to 50h. The manual refers to the data sheets for the codes. This list
-//! is taken from the data sheets of SEK34/SEL34 and DME, and from B&R error 7013 (`P`).
+//! Status codes that an encoder sends in reply to 50h. The manual leaves the codes to the data sheets. This list is
+//! taken from the data sheets of SEK34/SEL34 and DME, and from B&R error 7013 (`P`).
 
 use std::fmt;
 
@@ -20,7 +20,7 @@ pub enum StatusClass {
     Position,
     /// Message from the monitoring of temperature, transmitter or signals.
     Monitoring,
-    /// Code that is not in the list of known codes.
+    /// Code that is not listed.
     Unknown,
 }
 
@@ -114,8 +114,8 @@ impl StatusCode {
         matches!(self.0, 0x08 | 0x1C..=0x1E)
     }
 
-    /// Returns whether a position read together with this code is unreliable. This is the case for 01h to 06h and 1Fh
-    /// to 23h. Codes 09h to 12h concern a frame or a data field and never invalidate a position.
+    /// Returns whether a position read together with this code is unreliable, which is true for 01h to 06h and 1Fh to
+    /// 23h. Codes 09h to 12h concern a frame or a data field and never invalidate a position.
     pub fn invalidates_position(self) -> bool {
         matches!(self.0, 0x01..=0x06 | 0x1F..=0x23)
     }

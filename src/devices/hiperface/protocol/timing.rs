@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::{LineSettings, Request};
 use crate::units::CharacterFormat;
 
-/// Protocol times for specific line settings.
+/// Times of the protocol for specific line settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
     /// Duration of one 11-bit character.
@@ -17,7 +17,7 @@ pub struct Timing {
 impl Timing {
     /// Maximum time after power-on or reset during which the encoder does not receive.
     pub const INITIALISATION: Duration = Duration::from_millis(100);
-    /// End of the default window, counted from power-on. Until then, the encoder uses the factory settings.
+    /// Time from power-on to the end of the default window. Until then, the encoder uses the factory settings.
     pub const DEFAULT_WINDOW_END: Duration = Duration::from_millis(900);
     /// Maximum time during which the encoder does not receive while it applies the stored settings.
     pub const SWITCH: Duration = Duration::from_millis(200);
@@ -55,8 +55,8 @@ mod tests {
     use super::*;
     use crate::units::{Baud, Parity};
 
-    /// The expected worst cases, in units of 0.1 ms at 9600 8E1 with the default time-out, were calculated by hand from
-    /// 11 bits per character, 44 bits of time-out and the manual's maximum times.
+    /// The worst cases in units of 0.1 ms, at 9600 8E1 with the default time-out, were calculated by hand from 11 bits
+    /// per character, a time-out of 44 bits and the manual's maximum times.
     #[test]
     fn worst_case_durations_at_9600_baud() {
         let timing = Timing::from_settings(LineSettings::FACTORY).unwrap();

@@ -11,7 +11,7 @@ pub struct TypeLabel {
     pub encoder_type: u8,
     /// Size of the EEPROM in units of 16 bytes.
     pub eeprom_units: u8,
-    /// Byte with the hardware options, the software options and the HIPERFACE version. Its layout is not public.
+    /// Hardware options, software options and HIPERFACE version in one byte. The layout is not public.
     pub options: u8,
 }
 
@@ -43,9 +43,9 @@ impl SerialLabel {
     /// Maximum payload length, with a version of 20 characters.
     pub const MAX_PAYLOAD: usize = 9 + 20 + 8;
 
-    /// Parses the payload, in which the firmware version lies between the first nine and the last eight bytes. Returns
-    /// `None` unless the payload has [17](Self::MIN_PAYLOAD) to [37](Self::MAX_PAYLOAD) bytes. Bytes that are not
-    /// printable ASCII are written as `\xNN`.
+    /// Parses a payload of [17](Self::MIN_PAYLOAD) to [37](Self::MAX_PAYLOAD) bytes, or returns `None` for any other
+    /// length. The firmware version lies between the first nine and the last eight bytes. Bytes that are not printable
+    /// ASCII are written as `\xNN`.
     pub fn parse(payload: &[u8]) -> Option<Self> {
         if payload.len() > Self::MAX_PAYLOAD {
             return None;

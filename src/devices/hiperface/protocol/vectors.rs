@@ -1,4 +1,4 @@
-//! Tests of frames, requests and replies against the golden vectors in `tests/vectors/hiperface.txt`, and of damaged
+//! Tests of frames, requests and replies with the golden vectors in `tests/vectors/hiperface.txt`, and with damaged
 //! frames and noise.
 //!
 //! [`table`] contains the same vectors as Rust values.
@@ -14,7 +14,7 @@ mod table;
 
 const FILE: &str = include_str!("../../../../tests/vectors/hiperface.txt");
 
-/// The kind of a line in the vector file, as indicated by its first character.
+/// Kind of line in the vector file, as given by its first character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Request,
@@ -26,7 +26,7 @@ enum Kind {
     SingleByte,
 }
 
-/// A line of the vector file, together with the `=` line after it and the request before it.
+/// A line of the vector file, with its meaning from the `=` line below it and the request above it.
 #[derive(Debug)]
 struct Line {
     number: usize,
@@ -87,7 +87,7 @@ fn lines_of_kind(kind: Kind) -> impl Iterator<Item = Line> {
 }
 
 impl Line {
-    /// Returns the request that precedes the line, and the address of the request.
+    /// Returns the request above the line, and the address in that request.
     fn requested_frame(&self) -> (Request, u8) {
         let bytes = self.request.as_deref().unwrap();
         (Request::parse(&Frame::parse(bytes).unwrap()).unwrap(), bytes[0])
@@ -233,7 +233,7 @@ fn the_label_in_the_file_parses() {
     assert_eq!(label, expected);
 }
 
-/// A vector must not be added to only one of the two lists.
+/// Each vector must be in both lists.
 #[test]
 fn file_and_table_have_the_same_requests_and_replies() {
     let mut file = BTreeSet::new();
@@ -253,7 +253,7 @@ fn file_and_table_have_the_same_requests_and_replies() {
     assert_eq!(table.difference(&file).collect::<Vec<_>>(), Vec::<&String>::new(), "only in the table");
 }
 
-/// Returns random bytes. Half of them are frames with a valid checksum.
+/// Returns random bytes, of which half are frames with a valid checksum.
 fn noise_bytes() -> impl Strategy<Value = Vec<u8>> {
     let payload = proptest::collection::vec(any::<u8>(), 0..160);
     let command = prop_oneof![any::<u8>(), (0..COMMANDS.len()).prop_map(|at| COMMANDS[at].command.byte())];

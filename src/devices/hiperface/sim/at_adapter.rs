@@ -1,4 +1,4 @@
-//! The encoder on the serial line of a virtual adapter.
+//! A virtual encoder on the serial line of a virtual adapter.
 
 use super::{Bus, Config};
 use crate::buses::bridge::sim::{AttachableKind, AttachedDevice, SerialDevice};
@@ -13,7 +13,7 @@ parameters! {
     }
 }
 
-/// A virtual encoder with factory settings, which can be requested on the serial line of a virtual adapter.
+/// A virtual encoder with factory settings that a link can attach to a virtual adapter's serial line.
 #[derive(Clone, Copy, Debug)]
 pub struct AttachableEncoder;
 

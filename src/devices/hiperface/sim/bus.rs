@@ -1,6 +1,6 @@
-//! The line between the UART of the host and the encoders. It transmits characters in time order, each with its start
-//! and end time, and simulates the echo of the converter, noise, collisions and mismatched settings. Bytes are not
-//! interpreted. For half duplex and pull-ups, see the manual, "Parameterkanal".
+//! The line between the host's UART and the encoders. It transmits characters in time order, each with its start and
+//! end time, and simulates the converter's echo, noise, collisions and mismatched settings. Bytes are not interpreted.
+//! For half duplex and pull-ups, see the manual, "Parameterkanal".
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use crate::sim::SimulatedFaults;
 use crate::sim::line::{LineConditions, SerialCharacter, TransitQueue, VirtualLine};
 use crate::units::{CharacterFormat, Moment, Parity};
 
-/// A line with one or more encoders, as seen by the host. The line is created from a [`Config`].
+/// A line with one or more encoders, as seen by the host. It is created from a [`Config`].
 #[derive(Clone)]
 pub struct Bus {
     encoders: Vec<Encoder>,
@@ -47,7 +47,7 @@ struct LineDrivePeriod {
     end: Moment,
 }
 
-/// The next event on the line. If several events are simultaneous, the first variant takes precedence.
+/// The next event on the line. If several events are simultaneous, the variant listed first takes precedence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderActs(usize),
@@ -56,11 +56,11 @@ pub(crate) enum Event {
 }
 
 impl Bus {
-    /// Upper limit for the duration of a character. A transmission that ended earlier than this does not overlap any
-    /// character still in transit.
+    /// Upper limit for the duration of a character. A transmission that ended longer ago than this cannot overlap a
+    /// character in transit.
     const LONGEST_CHARACTER: Duration = Duration::from_millis(20);
 
-    /// Creates the line described by `config`, with encoders that have been powered on for a long time.
+    /// Creates the line described by `config`. Its encoders have been on for a long time.
     pub fn new(config: &Config) -> Self {
         Bus {
             encoders: (0..config.encoders).map(|index| Encoder::new(config, index)).collect(),
@@ -80,7 +80,7 @@ impl Bus {
         self.encoders.get(index)
     }
 
-    /// Returns a mutable reference to an encoder, for example to change the speed of its shaft or its temperature.
+    /// Returns a mutable reference to an encoder, for example to change its speed or temperature.
     pub fn encoder_mut(&mut self, index: usize) -> Option<&mut Encoder> {
         self.encoders.get_mut(index)
     }
@@ -141,7 +141,7 @@ impl Bus {
         self.wires.inbox.push(byte);
     }
 
-    /// Transmits bytes one character after another, and returns the end of the last character.
+    /// Transmits bytes one character after another, and returns the end time of the last character.
     fn drive(&mut self, talker: LineDriver, start: Moment, format: CharacterFormat, bytes: &[u8]) -> Moment {
         let sent = self.wires.send(start, format.character_time(), bytes);
         let on_the_way = |character: SerialCharacter| CharacterInTransit { talker, character, format };
@@ -170,7 +170,7 @@ impl Bus {
     }
 }
 
-/// Returns the byte that a receiver outputs for an unreadable character. The byte is never an address, so it cannot
+/// Returns the byte that a receiver outputs for an unreadable character. It is never an address byte, so it cannot
 /// start a frame.
 fn garbage_byte(rng: &mut Rng) -> u8 {
     rng.u8(0x80..0xFF)

@@ -1,5 +1,5 @@
-//! Settings of a virtual encoder in the query of a `sim:` link, such as `seed=7&fault=drop:0.01&encoders=2`.
-//! [`Bus::new`](super::Bus::new) creates the virtual line from them.
+//! Settings of a virtual line, given in the query of a `sim:` link, such as `seed=7&fault=drop:0.01&encoders=2`.
+//! [`Bus::new`](super::Bus::new) creates the line from them.
 
 use super::encoder::ResponseTimes;
 use super::models::{MODELS, Model};
@@ -67,13 +67,13 @@ impl Config {
         format!("{own:<9}")
     }
 
-    /// Returns the geometry of the requested type, or that of the model if the type is unknown.
+    /// Returns the geometry of the requested encoder type, or that of the model if the type is unknown.
     pub(super) fn geometry(&self, types: &EncoderTypes) -> Geometry {
         self.encoder_type.and_then(|code| types.find(code)?.geometry).unwrap_or(self.model.geometry)
     }
 
-    /// Returns whether the requested type is a kit without a bearing. If the type is unknown, the model determines the
-    /// result.
+    /// Returns whether the requested encoder type is a kit without a bearing. If the type is unknown, the model
+    /// determines this.
     pub(super) fn is_kit(&self, types: &EncoderTypes) -> bool {
         self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
     }
@@ -115,7 +115,7 @@ impl ParameterValues for ModelValues {
     }
 }
 
-/// Access codes by number, such as `0:55,2:66`.
+/// Access codes with their numbers, such as `0:55,2:66`.
 struct Codes;
 
 impl ParameterValues for Codes {

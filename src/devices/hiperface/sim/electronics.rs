@@ -1,5 +1,5 @@
-//! The electronics of an encoder: its data, and the effects of the twenty commands on this data (manual, "Die
-//! Befehle"). Timing and frames are implemented in [`encoder`](super::encoder).
+//! The electronics of an encoder: its data, and the effects of the twenty commands on them (manual, "Die Befehle").
+//! Timing and frames are implemented in [`encoder`](super::encoder).
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -62,7 +62,7 @@ pub(super) struct EncoderElectronics {
     encoder_type: u8,
     serial_number: String,
     pub(super) address: DeviceAddress,
-    /// Settings that take effect at the next start.
+    /// Interface settings that take effect at the next start.
     pub(super) stored_settings: LineSettings,
     pub(super) memory: Memory,
     pub(super) shaft: Shaft,
@@ -103,7 +103,7 @@ impl EncoderElectronics {
         electronics
     }
 
-    /// Restarts the electronics after power-on or reset. The content of the RAM is lost, and monitoring starts again.
+    /// Restarts the electronics after power-on or reset. RAM content is lost, and monitoring starts again.
     pub(super) fn restart(&mut self) {
         self.queue = StatusQueue::default();
         self.watch_temperature(i16::MIN);
@@ -119,8 +119,8 @@ impl EncoderElectronics {
         command != Command::Synchronise || self.kit
     }
 
-    /// Executes a request at time `at`, and returns the data of its reply. This function does not restart the encoder
-    /// for 53h, and returns no data for it.
+    /// Executes a request at time `at`, and returns the data of its reply. For 53h, it returns no data and does not
+    /// restart the encoder.
     ///
     /// # Errors
     /// Returns the status code with which the encoder rejects the request. In this case, nothing has changed.
@@ -212,7 +212,7 @@ impl EncoderElectronics {
         }
     }
 
-    /// Executes only the first half of a store (4Bh), which simulates a power failure.
+    /// Writes only the first half of the bytes of a store (4Bh), as in a power failure.
     ///
     /// # Errors
     /// Returns the same errors as a complete store.
@@ -250,7 +250,7 @@ impl EncoderElectronics {
         self.memory.check_code(AccessCodeNumber::ZERO, code0)
     }
 
-    /// Adds a code to the status queue if the temperature has just exceeded its limit.
+    /// Adds a code to the status queue if the temperature has just risen above its limit.
     fn watch_temperature(&mut self, before: i16) {
         let limit = self.model.temperature_limit;
         if before <= limit && limit < self.temperature {
@@ -259,7 +259,7 @@ impl EncoderElectronics {
     }
 }
 
-/// Returns the memory as delivered by the motor manufacturer: field 0 contains the name plate, and the rest is free.
+/// Returns the memory as delivered by a motor manufacturer: field 0 contains the name plate, and the rest is free.
 fn factory_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
     let mut memory = Memory::new(model.user_blocks);
     if let Some(size) = FieldSize::from_bytes(model.name_plate.len()) {

@@ -37,7 +37,7 @@ impl ResponseTimes {
     const STORE: Duration = Duration::from_millis(20);
     const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
 
-    /// Returns the processing time of a frame. A rejected frame takes as long as a status request.
+    /// Returns the time for processing a frame. A rejected frame takes as long as a status request.
     fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
         let longest = |command: Command| command.row().max_time;
         match (self, verdict) {
@@ -78,9 +78,9 @@ pub struct Encoder {
     faults: SimulatedFaults,
     pace: ResponseTimes,
     power: Power,
-    /// Interface settings that were stored at the last start.
+    /// Interface settings that were in the EEPROM at the last start.
     user: LineSettings,
-    /// Interface settings changed with 67h, until the next start.
+    /// Interface settings set by 67h, which apply until the next start.
     temporary: Option<LineSettings>,
     activity: Activity,
     /// End of the last lost character. The rest of its frame is also lost.
@@ -113,7 +113,7 @@ struct IncomingFrame {
     bytes: Vec<u8>,
     intact: bool,
     overlong: bool,
-    /// Time at which the frame ends, unless another character begins earlier.
+    /// Time at which the frame ends, unless another character begins first.
     ends: Moment,
 }
 
@@ -178,7 +178,7 @@ impl Encoder {
         self.electronics.set_temperature(celsius);
     }
 
-    /// Adds a monitoring code to the status queue. The code is lost if the queue already contains four codes.
+    /// Adds a monitoring code to the status queue. The code is lost if the queue is full (four codes).
     pub fn queue_code(&mut self, code: StatusCode) {
         self.electronics.queue.push(code);
     }
@@ -254,8 +254,7 @@ impl Encoder {
         }
     }
 
-    /// Records the start of a received character. All actions that were due earlier must already have been
-    /// [executed](Self::run_due_action).
+    /// Records a received character. All actions due before its start must have been [executed](Self::run_due_action).
     pub(super) fn handle_input(&mut self, heard: ReceivedCharacter) {
         let Some(settings) = self.active_settings_at(heard.start) else { return };
         let Some(timing) = Timing::from_settings(settings) else { return };
@@ -374,7 +373,7 @@ impl Encoder {
     }
 }
 
-/// Checks parity, checksum and length, in the order specified by the reference.
+/// Checks parity, then checksum, then length.
 fn validate_frame(reception: &IncomingFrame) -> Result<Frame<'_>, StatusCode> {
     if !reception.intact {
         return Err(StatusCode::PARITY);

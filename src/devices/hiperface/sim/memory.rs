@@ -1,7 +1,6 @@
 //! The EEPROM of an encoder, with consecutive data fields and four access codes (manual, "Datenspeicherung und
-//! Verwaltung"). Requests are rejected with the status codes specified by the reference. The checks are, in this order,
-//! field (12h), range (11h), access code (0Fh), write enable (0Eh) and size (10h). This module does not handle frames,
-//! time or wear.
+//! Verwaltung"). Checks are made in this order, and each has its own status code: field (12h), range (11h), access code
+//! (0Fh), write enable (0Eh), size (10h). This module does not handle frames, time or wear.
 //!
 //! The manual leaves some behaviour open (`U`). In this model, bytes that were never written are FFh. The bytes of a
 //! deleted field remain in the memory, and reappear in a field created in its place. Changing a field requires its
@@ -22,11 +21,11 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Status of the extended label, which exists, is write-protected, requires no access code and has 64 bytes.
+    /// Status of the extended label: an existing, write-protected field of 64 bytes that requires no access code.
     const LABEL_STATUS: DataFieldStatus = DataFieldStatus::from_byte(0x83);
 
-    /// Creates a memory with the given number of 16-byte blocks. It contains no fields, and all access codes have their
-    /// factory values.
+    /// Creates a memory with the given number of 16-byte blocks. It has no fields, and all access codes have factory
+    /// values.
     pub fn new(blocks: u8) -> Self {
         Memory {
             bytes: vec![0xFF; usize::from(blocks) * FieldSize::BLOCK],
@@ -194,8 +193,8 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns the status of a field, provided that the field is not reserved for the encoder and `code` is its access
-    /// code. The access code is required even if CE is 0.
+    /// Returns the status of a field if `code` is its access code and the field is not reserved for the encoder. The
+    /// access code is required even if CE is 0.
     fn check_field_access(&self, field: u8, code: AccessCode) -> Result<DataFieldStatus, StatusCode> {
         let present = self.status(field)?;
         self.check_code(present.code(), code)?;
@@ -233,7 +232,7 @@ mod tests {
         DataFieldStatus::from_byte(byte)
     }
 
-    /// Returns a memory with eight blocks that contains field 0 (32 bytes) and field 1 (16 bytes).
+    /// Returns a memory of eight blocks with field 0 (32 bytes) and field 1 (16 bytes).
     fn two_fields() -> Memory {
         let mut memory = Memory::new(8);
         memory.define_field(0, status(0xC9), CODE).unwrap();

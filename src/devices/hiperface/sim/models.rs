@@ -1,9 +1,9 @@
-//! The data of the encoders that can be simulated. Types and geometries are taken from SICK data sheets, and field FFh
-//! from the manual, "Inhalt des Datenfeldes FFh".
+//! The encoder models that can be simulated. Types and geometries are taken from SICK data sheets, and field FFh from
+//! the manual, "Inhalt des Datenfeldes FFh".
 
 use crate::devices::hiperface::protocol::Geometry;
 
-/// An encoder model with its factory settings. Data field 0 has the content written by a motor manufacturer.
+/// An encoder model with factory settings. Data field 0 is filled as by a motor manufacturer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
     /// Name used in `sim:?model=`.
@@ -26,8 +26,8 @@ pub struct Model {
     pub position: u32,
     /// Temperature in degrees Celsius above which code 1Eh is reported.
     pub temperature_limit: i16,
-    /// Content of data field 0, whose length is a multiple of 16 bytes. A field of 32 bytes has the status C9h. If the
-    /// content is empty, the encoder does not have the field.
+    /// Content of data field 0, in multiples of 16 bytes. A field of 32 bytes has the status C9h. If the content is
+    /// empty, the encoder does not have the field.
     pub name_plate: &'static [u8],
     /// Content of field FFh, which is padded with 00h to 64 bytes. If it is empty, the encoder has no extended label.
     pub extended_label: &'static [u8],
@@ -62,16 +62,16 @@ const fn rotary_geometry(periods: u32, turns: u32) -> Geometry {
     Geometry::Rotary { periods, turns }
 }
 
-/// Name plate of a servo motor in a drive manufacturer's format. It consists of the designation, several big-endian
-/// words and a 32-bit serial number. The words are the speed in 1/min, the rated and peak current in units of 10 mA,
-/// the pole pairs, the voltage, and the commutation offset in units of 1/65536 turn.
+/// Name plate of a servo motor in a drive manufacturer's format: designation, several big-endian words and a 32-bit
+/// serial number. The words are the speed in 1/min, the rated and peak current in units of 10 mA, the pole pairs, the
+/// voltage, and the commutation offset in units of 1/65536 turn.
 const MOTOR: &[u8] = b"EMD71K-4 3000rpm\x0B\xB8\x01\x22\x03\x66\x00\x03\x00\xE6\x2A\x5F\x00\x01\xE2\x40";
 
 /// Name plate of the motor with the kit encoder, in the same format.
 const KIT_MOTOR: &[u8] = b"SMK42-08 4500rpm\x11\x94\x00\xB4\x02\x1C\x00\x04\x00\x30\x71\xC4\x00\x03\x0D\x40";
 
-/// Extended label with 16 periods, 4096 turns and valid limits 0 and 1, which mean channel 48h and 115 °C. The first
-/// byte is the XOR of all others.
+/// Extended label with 16 periods, 4096 turns, and the valid limits 0 and 1: channel 48h and 115 °C. The first byte is
+/// the XOR of all others.
 const SEL37_LABEL: &[u8] = b"\x53\x00\x00\x00\x00\x10\x00\x00\x10\x00SEL37-HFB0-K02    \x00\x03\x00\x48\x00\x73";
 
 impl Model {

@@ -1,7 +1,7 @@
-//! The shaft or scale that the encoder measures, with its position as an exact function of time and its sine and cosine
-//! signals (manual, "Position lesen", "Position setzen"). The position word is the mechanical position plus an offset.
-//! The analogue signals depend only on the mechanical position. As in a real encoder, setting a position may therefore
-//! change the phase between position word and signals.
+//! The shaft or scale that the encoder measures. Its position is an exact function of time, and so are its sine and
+//! cosine signals (manual, "Position lesen", "Position setzen"). The position word is the mechanical position plus an
+//! offset. The analogue signals depend only on the mechanical position. As in a real encoder, setting a position may
+//! therefore change the phase between position word and signals.
 
 use std::f64::consts::TAU;
 
@@ -13,14 +13,14 @@ use crate::units::Moment;
 pub(super) struct Shaft {
     geometry: Geometry,
     rpm: f64,
-    /// Mechanical position in steps at the time `since`.
+    /// Mechanical position at the time `since`, in steps.
     place: f64,
     since: Moment,
     offset: u64,
 }
 
 impl Shaft {
-    /// Speed in 1/min above which no absolute position is available. The value is from data sheets.
+    /// Speed in 1/min above which the encoder has no absolute position (from data sheets).
     pub(super) const MAX_RPM: f64 = 6000.0;
     /// Number of values of the 32-bit position word.
     const WORD: u64 = 1 << 32;
@@ -135,8 +135,7 @@ mod tests {
         assert!(!shaft.can_reach(0x0100_0000));
     }
 
-    /// At quarter periods, the expected values are 511 counts for 2.5 V (01FFh in the reference), 613 counts for 3 V
-    /// and 409 counts for 2 V.
+    /// At quarter periods, the signals are 511 counts for 2.5 V, 613 counts for 3 V and 409 counts for 2 V.
     #[test]
     fn the_signals_repeat_every_period() {
         for (position, sine, cosine) in [(0, 511, 613), (8, 613, 511), (16, 511, 409), (24, 409, 511)] {

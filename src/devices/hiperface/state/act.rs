@@ -1,5 +1,4 @@
-//! Handling the user's actions on an encoder. Edits take effect immediately. All other actions start a job of the
-//! session or a task.
+//! Handles the user's actions on an encoder. Edits take effect immediately. All other actions start a job or a task.
 
 use std::time::Duration;
 
@@ -15,7 +14,7 @@ use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::LineSettings;
 use crate::devices::hiperface::state::explain;
 
-/// Interval at which watched values are read. They change slowly, and reading them delays the position.
+/// Interval at which watched values are read. They change slowly, and reading them delays the next position.
 const WATCH_INTERVAL: Duration = Duration::from_millis(500);
 
 impl Encoder {
@@ -58,7 +57,7 @@ impl Encoder {
         }
     }
 
-    /// Starts or stops reading a value along with the position.
+    /// Starts or stops polling a value in addition to the position.
     fn watch_value(&mut self, what: WatchedQuantity, on: bool) {
         let mut watched = self.record.watched_values();
         watched.retain(|own| *own != what);

@@ -12,14 +12,14 @@ use crate::profile::PlanId;
 
 pub enum HiperfaceAction {
     ReadStatus,
-    /// Starts or stops reading a value along with the position.
+    /// Starts or stops polling a value in addition to the position.
     Watch(WatchedQuantity, bool),
     ReadAnalogue(u8),
     /// Reads the position, sine and cosine while the shaft is at rest.
     ReadRest,
     ReadCounter,
     Check {
-        /// Whether the encoder is restarted first with command 53h.
+        /// Whether to restart the encoder first (53h).
         restart: bool,
     },
     Reset,
@@ -37,10 +37,9 @@ pub enum HiperfaceAction {
     },
     Revert(FieldRange),
     Plan(Change),
-    /// Prepares the plan again. A restore is planned with the given options. Any other plan is prepared without
-    /// changes.
+    /// Prepares the plan again. The options apply only to a restore.
     PlanAgain(RestoreOptions),
-    /// Permits or forbids writing to an encoder that has reached its limit of write cycles.
+    /// Allows or forbids writing to an encoder that has reached its limit of write cycles.
     ForceWear(bool),
     Write(PlanId),
     CloseReview,

@@ -1,8 +1,7 @@
-//! The commutation assistant, which determines the offset between encoder and motor from the position at which the
-//! motor rests while a static vector is energised. It supports both methods of the manual. The assistant does not
-//! energise the motor or write to the encoder. Its result is an edit of the memory or a position to set. Both are
-//! reviewed before they are written. See SICK 8010701, commutation, and section 5 of the project's sine/cosine
-//! reference.
+//! The commutation assistant, which determines the offset between encoder and motor. A static vector is energised, and
+//! the motor's rest position is read. Both methods of the manual are supported. The assistant does not energise the
+//! motor or write to the encoder. Its result is an edit of the memory or a position to set, and both are reviewed
+//! before they are written. See SICK 8010701, commutation, and section 5 of the project's sine/cosine reference.
 
 mod act;
 mod form;
@@ -28,9 +27,9 @@ pub enum CommutationAction {
     Read(VectorSlot),
     Use(VectorSlot),
     Clear,
-    /// Enters the offset in the memory as an edit, which is method 1 of the manual.
+    /// Enters the offset in the memory as an edit (method 1 of the manual).
     Store,
-    /// Plans to set the position and starts the review, which is method 2 of the manual.
+    /// Plans to set the position, and starts the review (method 2 of the manual).
     Set,
 }
 
@@ -40,13 +39,13 @@ pub struct Commutation {
     /// Reason why the last action was not executed.
     pub problem: Option<Text>,
     readings: [Option<RestReading>; 3],
-    /// Slot of the last reading. The shaft is assumed not to have moved since.
+    /// The last reading, after which the shaft is assumed not to have moved.
     last: Option<VectorSlot>,
     asked: Option<PendingReading>,
 }
 
-/// A reading in progress, with the source and the phase that the form contained when it was requested. The user may
-/// edit the form in the meantime.
+/// A reading in progress, with the source and phase at the time of the request, because the user may edit the form in
+/// the meantime.
 #[derive(Debug)]
 struct PendingReading {
     slot: VectorSlot,
@@ -57,10 +56,10 @@ struct PendingReading {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestReading {
-    /// Position in signal periods, within the whole range of the encoder.
+    /// Position in signal periods within the encoder's whole range.
     pub fine_periods: f64,
     pub kind: PositionKind,
-    /// Position word of the encoder, or `None` if the position was typed.
+    /// Position word of the encoder, or `None` if the user typed the position.
     pub raw: Option<u32>,
 }
 
@@ -70,10 +69,10 @@ pub enum PositionKind {
     Fine {
         residual_periods: f64,
         verdict: Verdict,
-        /// Resolution in signal periods, or `None` if the phase was typed.
+        /// Resolution in signal periods, or `None` if the user typed the phase.
         resolution_periods: Option<f64>,
     },
-    /// Absolute position without the analogue signals, assumed to be at the middle of its step.
+    /// Absolute position without the analogue signals. The shaft is assumed to be at the middle of the step.
     Absolute,
     Typed,
 }
@@ -114,7 +113,7 @@ impl Commutation {
         (self.readings, self.last, self.problem) = ([None; 3], None, None);
     }
 
-    /// Stores a reading in the slot for which it was requested, if any.
+    /// Stores the position of a reading that the assistant has requested. Other readings are ignored.
     pub(super) fn accept_position(&mut self, rest: RestPosition, geometry: Option<Geometry>) {
         let Some(asked) = self.asked.take() else { return };
         match asked.to_reading(rest, geometry) {
@@ -123,8 +122,8 @@ impl Commutation {
         }
     }
 
-    /// Handles a failed job. Returns whether the job was the requested reading, whose error is then shown with the
-    /// request.
+    /// Handles a failed job, and returns whether it was a reading that the assistant has requested. If so, its error is
+    /// displayed.
     pub(super) fn handle_failure(&mut self, why: &Text) -> bool {
         let own = self.asked.take().is_some();
         if own {
@@ -173,7 +172,7 @@ impl PendingReading {
     }
 }
 
-/// Combines the absolute position and the phase. Returns an error if the residual exceeds 14/32 of a period.
+/// Combines the absolute position and the phase. If they differ by more than 14/32 of a period, returns an error.
 fn fine_reading(
     raw: u32,
     phase: Phase,

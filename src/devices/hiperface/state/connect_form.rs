@@ -1,4 +1,4 @@
-//! The connection form for HIPERFACE encoders, which creates a link but does not open it.
+//! The connection form for HIPERFACE encoders. It creates a link but does not open it.
 
 use super::search::EncoderSearchForm;
 use crate::app::Text;
@@ -32,7 +32,7 @@ pub enum LinkKind {
 }
 
 /// Entries of the connection form. An empty entry selects the default. Entries for other kinds of connection are kept,
-/// but are not part of the link.
+/// but they do not become part of the link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkForm {
     pub kind: LinkKind,
@@ -54,7 +54,7 @@ pub struct LinkForm {
     pub leave_supply: bool,
     /// Values of the remaining parameters, as entered.
     pub typed: EnteredValues,
-    /// Names and values of link parameters that the form cannot show.
+    /// Names and values of link parameters that have no input field.
     pub rest: Vec<(String, String)>,
 }
 
@@ -140,7 +140,7 @@ impl LinkForm {
         MODELS.iter().map(|model| model.name)
     }
 
-    /// Returns the parameters of the virtual encoder that the form offers as text entries.
+    /// Returns the virtual encoder's parameters for which the form has a text entry.
     pub fn virtual_device_entries() -> Vec<Entry> {
         select_entries(&Config::entries(), &["rpm", "fault"])
     }
@@ -153,7 +153,7 @@ impl LinkForm {
         AdapterParameters::entries()
     }
 
-    /// Returns the parameters that the form offers as text entries.
+    /// Returns the parameters for which the form has a text entry.
     fn entries(&self) -> Vec<Entry> {
         let own = match self.kind {
             LinkKind::Virtual => Self::virtual_device_entries(),

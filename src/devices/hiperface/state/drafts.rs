@@ -1,4 +1,4 @@
-//! Drafts of the edits in an encoder's memory, which survive a crash.
+//! Drafts, which preserve the edits in an encoder's memory across a crash.
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;

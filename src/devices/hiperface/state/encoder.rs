@@ -1,4 +1,4 @@
-//! An open encoder, or a profile of one, with its edits and running jobs.
+//! An open encoder or an open profile, with its edits and running jobs.
 
 use std::collections::BTreeMap;
 
@@ -28,9 +28,9 @@ pub struct Encoder {
     pub line_quality: LineQuality,
     pub check: Option<Vec<check::HiperfaceStepResult>>,
     pub counter: Option<u32>,
-    /// Old and new value of the last position that this program has set.
+    /// Previous and new position, if this program has set the position.
     pub position_set: Option<(u32, u32)>,
-    /// Last analogue value of each channel and its limit, or the reason why the encoder does not provide it.
+    /// Last analogue value of each channel with its limit, or the reason why the encoder has no value for the channel.
     pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
     pub record: Record,
     pub commutation: Commutation,
@@ -39,11 +39,11 @@ pub struct Encoder {
     /// Access codes that the user has entered or changed. The next session with this encoder starts with them.
     pub(super) access_codes: Vec<(AccessCodeNumber, AccessCode)>,
     pub(super) asked: Option<Item>,
-    /// Access codes that the session receives again after the encoder is identified.
+    /// Access codes that are passed to the session again once the encoder is identified.
     pub(super) codes_due: Vec<(AccessCodeNumber, AccessCode)>,
-    /// Interface settings that the encoder will have after the running job.
+    /// Interface settings of the encoder after the running job.
     pub(super) settings_then: Option<LineSettings>,
-    /// Number of the access code that the user entered last. The next survey shows whether the code is correct.
+    /// Number of the access code that the user entered last. The next survey shows whether this code is correct.
     pub(super) tried_code: Option<AccessCodeNumber>,
 }
 
@@ -112,7 +112,7 @@ impl Encoder {
         Some(profile)
     }
 
-    /// Adopts the values read from the encoder. Edits are kept unless they belong to another encoder.
+    /// Takes over the values read from the encoder. Edits are kept unless they belong to another encoder.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         self.session.values_read_at = Some(services.current_time().timestamp());
         let Survey { identity, codes, fields, unreadable, line, counter, position } = survey;
@@ -166,7 +166,7 @@ impl Encoder {
         self.record.add_samples(samples, dropped, geometry);
     }
 
-    /// Reports whether the access code entered last opens its fields. The message does not contain the code.
+    /// Reports whether the last entered access code unlocks its fields. The message does not contain the code.
     fn report_code_result(&mut self, services: &mut Services) {
         let Some(number) = self.tried_code.take() else { return };
         let own = |field: &&FieldImage| field.status.code() == number && field.status.code_required();

@@ -1,4 +1,4 @@
-//! Events from the connection: job results, messages of the encoder, live samples and loss of the connection.
+//! Events from the connection: job results, encoder messages, live samples and the loss of the connection.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;
@@ -68,8 +68,8 @@ impl Kind for Hiperface {
 }
 
 impl Encoder {
-    /// Reads the encoder. If there are access codes to use, the encoder is identified first, because the codes belong
-    /// to a specific encoder.
+    /// Reads the encoder. If access codes are to be used, the encoder is identified first, because codes belong to a
+    /// specific encoder.
     pub(super) fn read_encoder(&mut self, services: &mut Services) {
         let identify = self.session.just_connected && !self.access_codes.is_empty();
         self.submit(if identify { HiperfaceJob::Identify } else { HiperfaceJob::Survey }, services);
@@ -89,8 +89,8 @@ impl Encoder {
         self.codes.get_or_insert_default().extend(codes);
     }
 
-    /// Updates the address, the access codes and the position offset of the session after a write. The offset is stored
-    /// only by this program, because the encoder does not report it.
+    /// Updates the session's address, access codes and position offset after a write. The offset is known only to this
+    /// program, because the encoder does not report it.
     pub(super) fn apply_operations(&mut self, ops: &[Op], services: &mut Services) {
         for op in ops {
             match op {
@@ -117,7 +117,7 @@ impl Encoder {
         }
     }
 
-    /// Adopts the line settings that the job has changed. The next session starts with them.
+    /// Takes over the line settings that a job has changed, so that the next session starts with them.
     fn adopt_line_settings(&mut self) {
         let Some(settings) = self.settings_then.take() else { return };
         let (Source::Link(url), Some(format)) = (&mut self.session.source, settings.character_format()) else { return };
@@ -233,8 +233,8 @@ impl SessionEvents for Encoder {
         }
     }
 
-    /// Returns whether the error means that the encoder does not respond. Invalid bytes are interpreted in this way
-    /// only immediately after connecting.
+    /// Returns whether the error means that the encoder does not respond. Invalid bytes count as no response only
+    /// directly after connecting.
     fn is_no_response(&self, error: &JobError) -> bool {
         let cause = match error {
             JobError::Device(cause) => cause,
@@ -274,7 +274,7 @@ impl SessionEvents for Encoder {
         begun
     }
 
-    /// Handles a failed job. If the encoder rejects an analogue channel, this is treated as the result of the reading.
+    /// Handles a failed job. If the encoder rejects an analogue channel, the rejection is shown in place of a value.
     fn handle_failed_job(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);

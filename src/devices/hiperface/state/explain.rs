@@ -1,4 +1,4 @@
-//! Texts for a HIPERFACE encoder: job errors and status messages.
+//! Messages about a HIPERFACE encoder, such as job errors and status codes.
 
 mod change;
 mod check;
@@ -53,7 +53,7 @@ pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns the messages for an interrupted write, with the progress, the result and the location of the backup.
+/// Returns the messages for an interrupted write: its progress, its result and the location of the backup.
 pub fn interruption_text(interrupted: &InterruptedWrite, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let done = &interrupted.done;
     let mut texts = vec![match &interrupted.cause {
@@ -86,14 +86,14 @@ pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     }
 }
 
-/// Returns the message for a completed write. If no value was read back, the message states that the encoder has
+/// Returns the message for a completed write. If nothing was read back, it only states that the encoder has
 /// acknowledged the write.
 pub fn written_text(written: &WrittenChanges) -> Text {
     let id = if written.verified == 0 { "session.acknowledged" } else { "session.written" };
     TEXTS.text(id).with("cycles", written.write_cycles)
 }
 
-/// Returns the message for a completed write, as displayed at the end of a review.
+/// Returns the message that ends the review of a completed write.
 pub fn verified_text(written: &WrittenChanges) -> Text {
     match written.verified {
         0 => Text::new("session.acknowledged").with("cycles", written.write_cycles),
@@ -177,7 +177,7 @@ pub fn unknown_field(field: &UnknownMeaningField) -> Text {
     TEXTS.text(id).with("field", field.field).with("bytes", field.bytes)
 }
 
-/// Returns the message for created fields that remain after the write is undone, or `None` if there are none.
+/// Returns the message for created fields that an undo has not deleted, or `None` if there are none.
 pub fn undeleted_fields_text(fields: &[u8]) -> Option<Text> {
     let numbers: Vec<String> = fields.iter().map(ToString::to_string).collect();
     (!fields.is_empty()).then(|| TEXTS.text("review.created_left").with("fields", numbers.join(", ")))
@@ -187,7 +187,7 @@ pub fn unanswered_codes(count: u32) -> Text {
     TEXTS.text("status.unheard").with("count", count)
 }
 
-/// Returns the message for a profile of another encoder type.
+/// Returns the message for a profile from another type of encoder.
 pub fn other_type(types: TypeMismatch) -> Text {
     let TypeMismatch { profile, device } = types;
     TEXTS.text("review.other_type").with("profile", type_name(profile)).with("device", type_name(device))

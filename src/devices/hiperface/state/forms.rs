@@ -1,4 +1,4 @@
-//! Parsing of access codes, addresses and channels that the user has entered. The error messages name the valid values.
+//! Parses access codes, addresses and channels that the user has entered. The error messages state the valid values.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{
@@ -34,7 +34,7 @@ pub fn address(text: &str) -> Result<DeviceAddress, Text> {
         .ok_or_else(|| with_address_range(TEXTS.text("entry.address")).with("entry", text))
 }
 
-/// Adds the range of encoder addresses to a message.
+/// Adds the valid range of encoder addresses to a message.
 pub(super) fn with_address_range(text: Text) -> Text {
     let [first, last] = [DeviceAddress::FIRST, DeviceAddress::LAST].map(|own| format!("{:02X}", own.byte()));
     text.with("first", first).with("last", last)

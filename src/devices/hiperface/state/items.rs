@@ -1,4 +1,4 @@
-//! Names and values of the items of an encoder for lists: comparisons, the logbook and reports.
+//! Names and values of an encoder's items, as listed in comparisons, the logbook and reports.
 
 use super::{TEXTS, explain};
 use crate::app::{ItemValue, Text};
@@ -24,7 +24,7 @@ pub(super) fn item_name(item: &str) -> Option<Text> {
     })
 }
 
-/// Returns the data field to which an item belongs, as the heading of a group.
+/// Returns the group heading for an item: the name of its data field. Other items have no heading.
 pub(super) fn item_group(item: &str) -> Option<Text> {
     match item.parse().ok()? {
         Item::Field(FieldRange { field, .. }) | Item::Status(field) => {
@@ -34,7 +34,7 @@ pub(super) fn item_group(item: &str) -> Option<Text> {
     }
 }
 
-/// Describes the value of an item. The bytes of a field that could not be read are empty.
+/// Describes the value of an item. An empty value means that the field could not be read.
 pub(super) fn item_value(item: &str, value: &str) -> Option<ItemValue> {
     let bytes = parse_hex(value).ok()?;
     match (item.parse().ok()?, bytes.as_slice()) {

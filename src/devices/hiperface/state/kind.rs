@@ -1,4 +1,4 @@
-//! HIPERFACE as a kind of device in the studio, before an encoder is opened.
+//! Properties and functions of the HIPERFACE device kind that do not require an open encoder.
 
 use super::{Encoder, LinkForm, items, report};
 use crate::app::report::{ReportContent, ReportContext};

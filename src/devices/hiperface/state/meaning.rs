@@ -1,4 +1,4 @@
-//! Explanations of frames in the trace. A reply is explained together with the preceding request.
+//! Explains frames in the trace. A reply is explained together with the preceding request.
 
 use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::devices::hiperface::procedures::ReplyDamage;
@@ -6,7 +6,7 @@ use crate::devices::hiperface::protocol::{Answer, Frame, FrameDetail, Reply, Req
 use crate::devices::hiperface::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
-/// A decoder that explains frames in the order of transmission and remembers the last request.
+/// A decoder that explains frames in the order of transmission. It remembers the last request to explain the reply.
 #[derive(Debug, Default)]
 pub(super) struct FrameDecoder {
     request: Option<(u8, Request)>,
@@ -80,8 +80,8 @@ mod tests {
         TraceEntry { at: Moment::START, direction, bytes: MaskedBytes::unmasked(bytes) }
     }
 
-    /// Damaged replies are marked, and their explanation names the error. The frames are replies to commands in the
-    /// manual and were corrupted deliberately (issue 22.11).
+    /// Damaged replies are marked, and their explanation names the error. The frames are valid replies that were
+    /// corrupted on purpose (issue 22.11).
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let position = [0x40, 0x42, 0x02];

@@ -1,4 +1,4 @@
-//! State of the HIPERFACE tab: an open encoder, the edits of its memory and the review of a write.
+//! State of the HIPERFACE tab: an open encoder, the edits to its memory, and the review of a write.
 
 mod act;
 mod action;

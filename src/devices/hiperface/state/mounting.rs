@@ -1,4 +1,4 @@
-//! Values in the memory that are valid only for one encoder as mounted on its motor.
+//! Values in the memory that are valid only while an encoder stays mounted on its motor.
 
 use super::encoder::Encoder;
 use crate::app::session::Source;

@@ -43,7 +43,7 @@ impl PositionUnit {
         }
     }
 
-    /// Returns the ID of the text with the unit's name.
+    /// Returns the message ID for the unit's name.
     pub const fn word(self) -> &'static str {
         match self {
             PositionUnit::Steps => "position_unit.steps",
@@ -55,7 +55,7 @@ impl PositionUnit {
 }
 
 impl PositionEntry {
-    /// Creates an entry that contains a position in the given unit, with a decimal point.
+    /// Creates an entry for a position, in the given unit and with a decimal point.
     pub fn of(steps: u32, unit: PositionUnit, geometry: Option<Geometry>) -> Self {
         let own = |value: String| PositionEntry { unit, turns: String::new(), value };
         match (unit, geometry.and_then(|geometry| Some((geometry, geometry.steps_per_turn()?)))) {
@@ -176,7 +176,7 @@ fn nearest(text: &str, (above, below): (u128, u128)) -> Option<u128> {
     Some(number.checked_mul(above)?.checked_add(below / 2)? / below.max(1))
 }
 
-/// Formats the product of `steps` and the fraction, with at least `least` decimals and enough decimals to distinguish
+/// Formats the product of `steps` and the fraction. It has at least `least` decimals, and enough to distinguish
 /// consecutive steps.
 fn ratio(steps: u128, (above, below): (u128, u128), least: u32) -> String {
     let below = below.max(1);

@@ -1,4 +1,4 @@
-//! Recording a polled HIPERFACE encoder: positions in the units of its geometry, analogue values and the counter.
+//! Records a polled HIPERFACE encoder: positions in the units of its geometry, analogue values and the counter.
 
 use crate::devices::hiperface::state::TEXTS;
 
@@ -65,7 +65,7 @@ impl Record {
         self.last.as_ref().filter(|_| !self.refused)
     }
 
-    /// Returns whether the encoder currently does not report a position.
+    /// Returns whether the encoder has no position to report at the moment.
     pub fn is_position_refused(&self) -> bool {
         self.refused
     }

@@ -1,4 +1,4 @@
-//! Tests of the draft format in users' files.
+//! Tests that drafts in users' files keep their format.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::hiperface::jobs::Hiperface;

@@ -1,5 +1,4 @@
-//! The values of an encoder in a report: identity, interface, extended label, and the data fields as a map and as
-//! bytes.
+//! Content of an encoder report: identity, interface, extended label, and the data fields as a map and as bytes.
 
 use std::ops::Range;
 
@@ -21,7 +20,7 @@ const BLOCK_BYTES: usize = 16;
 const MAP_ROW: u32 = 32;
 /// Side length of a block in the map.
 const BLOCK: u32 = 20;
-/// Colours of the fields, chosen so that black text remains legible in print.
+/// Fill colours of the fields, on which black text remains legible in print.
 const COLOURS: [&str; 6] = ["#b8dcff", "#ffd9a0", "#cdebc9", "#e2d3f7", "#ffd0cb", "#e4e2b4"];
 const UNUSED: &str = "#ffffff";
 const BORDER: &str = "#8a939b";
@@ -42,7 +41,7 @@ pub(super) fn content(
     Ok(ReportContent { title, key: Some(device_key(&identity, false)), sections })
 }
 
-/// Returns the status codes of an encoder for a report.
+/// Returns the status codes as lines of a report.
 pub fn status_lines(codes: &[StatusCode]) -> Vec<StatusLine> {
     let line = |code: &StatusCode| StatusLine {
         mark: if code.is_warning() { Mark::Warning } else { Mark::Bad },
@@ -120,7 +119,7 @@ fn memory_section(context: &ReportContext<'_>, profile: &HiperfaceProfile) -> Se
     section
 }
 
-/// Returns the bytes of a field. The meanings of mounting values are shown next to their bytes.
+/// Returns the bytes of a field as a table. Mounting values have their meaning next to them.
 fn field_block(context: &ReportContext<'_>, profile: &HiperfaceProfile, field: &FieldImage) -> Block {
     let Some(bytes) = &field.bytes else {
         return Block::Paragraph(context.say(TEXTS.text("report.hf_locked")));

@@ -1,4 +1,4 @@
-//! Reading the position while the shaft is at rest, for the commutation assistant or on request.
+//! Reads the position while the shaft is at rest, for the commutation assistant or for the user.
 
 use super::{Encoder, HiperfaceAction};
 use crate::app::services::Services;
@@ -34,7 +34,7 @@ impl Encoder {
         self.commutation.accept_position(rest, geometry);
     }
 
-    /// Handles a failed job. Returns whether the job was a reading at rest, whose error is then displayed next to the
+    /// Handles a failed job, and returns whether it was a reading at rest. If so, its error is displayed next to the
     /// request.
     pub(super) fn handle_rest_failure(&mut self, why: &Text) -> bool {
         if std::mem::take(&mut self.rest.is_under_way) {

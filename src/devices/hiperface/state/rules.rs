@@ -1,5 +1,5 @@
 //! The encoder's rules for data fields, which are checked before an action is offered. The check creates the same plan
-//! as the write, based on the memory that was last read.
+//! as the later write, from the values that were last read.
 
 use super::StagedEdits;
 use crate::app::Text;
@@ -36,8 +36,8 @@ pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &StagedEdits) -> A
     check_edits_preserved(staged, field.number, 0)
 }
 
-/// Checks whether the protection and the access code of the field can be changed, for which the encoder requires the
-/// access code of the field.
+/// Checks whether the protection and the access code of the field can be changed. The field's current access code must
+/// be known.
 pub fn status(field: &FieldImage) -> ActionPermission {
     match field.bytes {
         Some(_) => Ok(()),
@@ -67,7 +67,7 @@ pub(super) fn check_change(staged: &StagedEdits, change: &Change) -> ActionPermi
     }
 }
 
-/// Checks that the plan preserves every byte with an unwritten edit.
+/// Checks that the plan does not delete any byte with an unwritten edit.
 pub(super) fn preserves_edits(staged: &StagedEdits, plan: &HiperfacePlan) -> ActionPermission {
     plan.ops.iter().try_for_each(|op| match op {
         Op::Define { field, from: Some(_), to } => {
@@ -77,7 +77,7 @@ pub(super) fn preserves_edits(staged: &StagedEdits, plan: &HiperfacePlan) -> Act
     })
 }
 
-/// Checks that the field has no edit beyond its first `bytes` bytes.
+/// Checks that the field has no edits after its first `bytes` bytes.
 fn check_edits_preserved(staged: &StagedEdits, field: u8, bytes: usize) -> ActionPermission {
     match staged.edited_bytes().filter(|(own, address, _)| *own == field && *address >= bytes).count() {
         0 => Ok(()),
@@ -110,7 +110,7 @@ fn plan_permission(plan: Result<HiperfacePlan, PlanError>) -> ActionPermission {
 mod tests {
     use super::*;
 
-    /// A plan that deletes an edited field is rejected. An example is a restore that creates fields again.
+    /// A plan that deletes an edited field is rejected, such as a restore that deletes fields and creates them again.
     #[test]
     fn a_plan_that_deletes_an_edited_field_is_refused() {
         let status = DataFieldStatus::from_byte(0xC8);

@@ -1,4 +1,4 @@
-//! The search for encoders with unknown settings on a line, which tries every baud rate, parity and address.
+//! Searches a line for encoders with unknown settings by trying every baud rate, parity and address.
 
 use crossbeam_channel::Receiver;
 
@@ -25,7 +25,7 @@ pub struct Search {
     pub(crate) url: LinkUrl,
     pub(crate) options: FindOptions,
     pub(crate) line: Option<LiveSession<Hiperface>>,
-    /// Receiver that is disconnected as soon as the attempt to open the link has ended.
+    /// Receiver that is disconnected once the attempt to open the link is over.
     pub(crate) over: crossbeam_channel::Receiver<()>,
     pub found: Vec<FoundEncoder>,
     /// Message about the result of the search, or `None` while the search is running.
@@ -120,7 +120,7 @@ impl Search {
 #[derive(Default)]
 pub struct EncoderSearchForm {
     pub search: Option<Search>,
-    /// Options of the requested search. It starts when the user confirms that no drive is on the line.
+    /// Options of the requested search, which starts once the user confirms that no drive is on the line.
     asked: Option<FindOptions>,
 }
 

@@ -1,5 +1,5 @@
-//! The data fields of the encoder together with the edited bytes. A write is planned from the differences. This module
-//! does not write anything to the encoder.
+//! The encoder's data fields together with the edited bytes. A write is planned from the differences. This module does
+//! not write anything to the encoder.
 //!
 //! Edits are kept when the encoder is read again. Edited bytes keep their edited values, and all other bytes are
 //! updated. If a field cannot be read because its access code is unknown, its edits are kept until the field is
@@ -8,15 +8,15 @@
 use crate::app::{EditBase, Edits};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 
-/// Data fields with edited bytes, which are identified by field number and index.
+/// Data fields with edited bytes. Each byte is identified by its field number and index.
 pub type StagedEdits = Edits<Vec<FieldImage>>;
 
 impl EditBase for Vec<FieldImage> {
     type Location = (u8, usize);
     type Value = u8;
 
-    /// Returns whether a byte differs from the byte in the encoder. In a field that could not be read, every byte is
-    /// considered different.
+    /// Returns whether a byte differs from the byte in the encoder. In a field that could not be read, every byte
+    /// counts as different.
     fn is_edit(&self, (field, address): (u8, usize), byte: u8) -> bool {
         let image = self.iter().find(|image| image.number == field);
         match image.map(|image| (&image.bytes, image.status)) {
@@ -44,7 +44,7 @@ pub enum ByteEditError {
 }
 
 impl StagedEdits {
-    /// Adopts the bytes read from the encoder. An edit is dropped if its byte no longer exists or already has the
+    /// Takes over the bytes read from the encoder. An edit is dropped if its byte no longer exists or already has the
     /// edited value.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
         self.update_base(|own| *own = device);
@@ -125,7 +125,7 @@ impl StagedEdits {
         self.iter().map(|((field, address), byte)| (field, address, byte))
     }
 
-    /// Adopts the edits of a draft. Edits of missing bytes and edits that change nothing are dropped.
+    /// Takes over the edits of a draft. Edits of missing bytes and edits that change nothing are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = (u8, usize, u8)>) {
         self.edit_values(draft.into_iter().map(|(field, address, byte)| ((field, address), byte)));
     }

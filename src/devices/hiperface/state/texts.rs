@@ -1,6 +1,6 @@
-//! The text catalogue for HIPERFACE.
+//! Catalogue of HIPERFACE messages in English and German.
 
 use crate::app::Catalogue;
 
-/// The catalogue of HIPERFACE messages. The common catalogue provides all other IDs.
+/// The messages specific to HIPERFACE. All other message IDs are in the common catalogue.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/hiperface.ron"));

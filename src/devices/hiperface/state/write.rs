@@ -1,4 +1,4 @@
-//! Writing of edits or a profile to an encoder, and the update of the session afterwards.
+//! Writes edits or a profile to an encoder, and updates the session afterwards.
 
 use super::commutation::Commutation;
 use super::encoder::Encoder;
@@ -14,7 +14,7 @@ use crate::devices::hiperface::profile::{HiperfaceProfile, RecordedValues, Resto
 use crate::profile::{Body, ProfileError};
 
 impl Encoder {
-    /// Prepares the plan under review again, for example after the encoder did not reply.
+    /// Prepares the plan under review again, for example because the encoder did not reply.
     pub(super) fn refresh_plan(&mut self, change: Change, services: &mut Services) {
         if self.session.is_busy() {
             return;
@@ -64,7 +64,7 @@ impl HasMemory for Encoder {
         self.apply_operations(&ops, services);
     }
 
-    /// Has no effect, because the list of jobs already shows the start.
+    /// Does nothing, because the list of jobs already shows the start.
     fn log_write_start(&self, _: &Text, _: &Prepared, _: &mut Services) {}
 
     fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {
@@ -123,7 +123,7 @@ impl HasProfile for Encoder {
     }
 }
 
-/// Returns a restore with other options, or any other change as it is.
+/// Returns a restore with the given options. Any other change is returned unchanged.
 pub(super) fn with_options(change: &Change, options: RestoreOptions) -> Change {
     match change {
         Change::Restore { profile, .. } => Change::Restore { profile: profile.clone(), options },

@@ -1,4 +1,4 @@
-//! The page of the commutation assistant: preparation, readings, results, and the two ways to store the result.
+//! The page of the commutation assistant: preparation, readings, results, and two ways to store the offset.
 
 mod result;
 
@@ -103,8 +103,8 @@ fn limits_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     two_numbers_ui(ui, theme, ("commutation.current", current, ""), ("commutation.time", time, ""));
 }
 
-/// Draws two number fields, in one row if there is enough space. Each field is given by the text ID of its name, its
-/// text and its hint.
+/// Draws two number fields, in one row if there is enough space. Each argument contains a field's label ID, entered
+/// text and hint.
 fn two_numbers_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -275,7 +275,7 @@ fn slot_ui(
     }
 }
 
-/// Draws the position of a slot and its source. Without a reading, an empty line is drawn.
+/// Draws the position of a reading and its source, or a dash without a reading.
 fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: VectorSlot) {
     let Some(reading) = encoder.commutation.reading_of(slot) else {
         ui.label(theme.monospace("–").color(theme.palette.muted));

@@ -1,4 +1,4 @@
-//! The large display of the position and of the values read along with it.
+//! Large display of the position and of the values polled with it.
 
 use egui::{RichText, Ui};
 

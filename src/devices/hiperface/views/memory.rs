@@ -1,4 +1,4 @@
-//! The memory page: the map of data fields with their actions, the bytes of the selected field and their meaning, and
+//! The memory page: the map of data fields with their actions, the bytes of the selected field with their meaning, and
 //! the bar for writing edits.
 
 use egui::{RichText, Ui};
@@ -17,7 +17,7 @@ use crate::ui::widgets::{
 };
 use crate::ui::{Theme, edit_bar, icons};
 
-/// State of the memory page: the selected field and its text buffers.
+/// State of the memory page, such as the selected field and the entries.
 pub(super) struct MemoryUiState {
     field: u8,
     free: bool,
@@ -215,7 +215,7 @@ fn field_ui(
     }));
 }
 
-/// Draws the selected field and its actions. A disabled action shows why it is disabled.
+/// Draws the heading of the selected field with its actions. A disabled action states why it is disabled.
 fn field_header_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -39,7 +39,7 @@ impl TabPage for Page {
     ];
 }
 
-/// State of the tab for one session, with text buffers and selections.
+/// State of the tab for one session, such as selections and entered text.
 #[derive(Default)]
 pub(crate) struct HiperfaceUiState {
     memory: memory::MemoryUiState,

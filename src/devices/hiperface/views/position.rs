@@ -1,4 +1,4 @@
-//! The card for setting the position, with the new position in a selectable unit, its value in the other units, and a
+//! The card for setting the position. It shows the new position in a selectable unit and in all other units, and a
 //! button to undo the last change.
 
 use egui::Ui;
@@ -102,7 +102,7 @@ fn entry_ui(ui: &mut Ui, theme: &Theme, geometry: Option<Geometry>, own: &mut Po
     });
 }
 
-/// Draws the last change of the position with a button to undo it. The change is recorded by this program, because the
+/// Draws the last change of the position, with a button to undo it. Only this program records the change, because the
 /// encoder does not report it.
 fn undo_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, geometry: Option<Geometry>, actions: &mut Vec<Action>) {
     let Some((from, to)) = encoder.position_set else { return };

@@ -1,5 +1,5 @@
-//! The wiring card: the eight wires with their signals, and the line termination. Pins and wire colours depend on the
-//! encoder type and are specified in its data sheet.
+//! The wiring card: the eight wires with their signals, and the line termination. Pins and wire colours differ between
+//! encoder types and are given in the data sheet.
 
 use egui::Ui;
 

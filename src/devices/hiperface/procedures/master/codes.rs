@@ -1,13 +1,13 @@
-//! Reading the status queue. 50h removes a code from the encoder, so a lost reply may have contained a code. Therefore,
+//! Reads the status queue. 50h removes a code from the encoder, so a lost reply may have contained a code. Therefore,
 //! late replies are accepted, and codes that may have been lost are counted.
 
 use super::Master;
 use crate::devices::hiperface::procedures::Error;
 use crate::devices::hiperface::protocol::{Answer, Reply, Request, StatusCode};
 
-/// Maximum number of codes in the queue of an encoder, plus one reply that indicates the end of the queue.
+/// Maximum number of codes in an encoder's queue, plus one reply that indicates the end of the queue.
 const MAX_CODES: usize = 5;
-/// Number of replies without a new code after which the queue is no longer read.
+/// Number of replies without a new code after which the reading ends.
 const MAX_REPEATED: u32 = 5;
 /// Length of a reply to 50h in bytes: address, command, one to four codes, checksum.
 const REPLY: std::ops::RangeInclusive<usize> = 4..=7;
@@ -16,7 +16,7 @@ const REPLY: std::ops::RangeInclusive<usize> = 4..=7;
 type Codes = (Vec<StatusCode>, bool);
 
 impl Master<'_> {
-    /// Reads the complete status queue into the station. It repeats 50h until the error bit is clear.
+    /// Reads the complete status queue. The request 50h is repeated until the error bit in the reply is clear.
     ///
     /// # Errors
     /// Returns an error if every attempt fails or the user cancels. The station then holds the codes received so far,
@@ -38,7 +38,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Reads the next codes from the queue, and returns whether more codes follow. `seen` contains the codes of all
+    /// Reads the next codes from the queue, and returns whether more codes follow. `seen` holds the codes of all
     /// earlier replies.
     fn next_codes(&mut self, seen: &mut Vec<Vec<StatusCode>>) -> Result<bool, Error> {
         self.detect_echo()?;
@@ -78,8 +78,8 @@ impl Master<'_> {
         }
     }
 
-    /// Records the status codes in a reply to command 50h. A reply that equals an earlier one may be a late duplicate.
-    /// If so, its codes are already known, and the reply to the current request may be missing.
+    /// Records the status codes in a reply to 50h. A reply that equals an earlier one may be a late duplicate, so it is
+    /// ignored. The actual reply may then be missing.
     fn record_reply_codes(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
         if seen.contains(&codes) {
             return;
@@ -94,7 +94,7 @@ impl Master<'_> {
         Ok(self.line.receive_late_bytes(&mut self.station.line, tries, quiet)?)
     }
 
-    /// Finds replies to 50h in skipped bytes.
+    /// Finds replies to 50h among skipped bytes.
     fn find_replies(&self, bytes: &[u8]) -> Vec<Codes> {
         let (mut rest, mut found) = (bytes, Vec::new());
         while let [_, behind @ ..] = rest {
@@ -109,9 +109,9 @@ impl Master<'_> {
         found
     }
 
-    /// Returns the reply to 50h at the start of the bytes, and the remaining bytes. The checksum also matches the first
-    /// bytes of some replies, such as 01h and 11h from address 40h. A reply that ends with the bytes, or before the
-    /// next reply, therefore takes precedence.
+    /// Parses the reply to 50h at the start of the bytes, and returns the bytes after it. The checksum of a reply can
+    /// also match after its first bytes, such as 01h and 11h from address 40h. A length at which the bytes end or
+    /// another reply begins therefore takes precedence.
     fn parse_status_reply<'b>(&self, bytes: &'b [u8]) -> Option<(Codes, &'b [u8])> {
         let replies = REPLY.filter_map(|length| bytes.split_at_checked(length)).filter_map(|(frame, behind)| {
             let answer = Request::ReadStatus.parse_reply(self.station.address, frame).ok()?;

@@ -76,7 +76,7 @@ impl Master<'_> {
         }))
     }
 
-    /// Determines whether the line has an echo, unless this is already known.
+    /// Finds out whether the line has an echo, unless this is already known.
     pub(super) fn detect_echo(&mut self) -> Result<(), Error> {
         if self.station.line.echo == Echo::Unknown {
             self.request(&Request::ReadTypeLabel)?;
@@ -100,7 +100,7 @@ impl Master<'_> {
         self.station.timing().timeout + self.station.format.baud.duration_of_bits(1)
     }
 
-    /// Returns the duration of silence after which the line is free.
+    /// Returns how long the line must be silent before it counts as free.
     pub(super) fn silence_duration(&self) -> Duration {
         self.dead_time() + self.station.line.margin
     }

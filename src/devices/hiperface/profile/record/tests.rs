@@ -130,7 +130,7 @@ fn unknown_entries_of_older_files_move_to_extra() {
     assert_eq!((again.beyond, again.unknown, again.body), (Vec::new(), document.unknown, document.body));
 }
 
-/// A profile with a newer schema cannot be written, so its unknown entries are not lost (issue 22.17).
+/// A profile with a newer schema is never written, so that its unknown entries are not lost (issue 22.17).
 #[test]
 fn a_newer_schema_is_read_only() {
     let newer = SHORT.replace("schema: 1,", "schema: 7, feilds: 1,").replace("number: 0,", "number: 0, statsu: 3,");
@@ -143,15 +143,15 @@ fn a_newer_schema_is_read_only() {
     assert_eq!(zero, Err(ProfileError::Schema { found: 0, known: 1 }));
 }
 
-/// Changing a value changes the text at a single location (issue 22.26).
+/// Changing a value edits the file in a single place (issue 22.26).
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut HiperfaceProfile| own.interface.address = 0x41;
     assert_edit_in_place(&commented_profile(), edit, "address: 64", "address: 0x41");
 }
 
-/// Bytes with custom line breaks are reformatted, and the lost comment is reported. All other text remains unchanged
-/// (issue 22.26).
+/// Bytes with custom line breaks are reformatted, and a comment that is lost is reported. All other text remains
+/// unchanged (issue 22.26).
 #[test]
 fn bytes_with_custom_line_breaks_are_reformatted() {
     let (_, carried) = edit_profile(&commented_profile(), |_, own: &mut HiperfaceProfile| {

@@ -1,4 +1,4 @@
-//! Comparison of an encoder with the encoder from which a profile was read.
+//! Checks whether a profile was read from this encoder.
 
 use super::{PlanError, RestoreOptions};
 use crate::devices::hiperface::profile::HiperfaceProfile;

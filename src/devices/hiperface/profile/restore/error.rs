@@ -33,7 +33,7 @@ pub enum PlanError {
         /// Size in the encoder, in bytes.
         device: usize,
     },
-    /// Fields can only be created in ascending order.
+    /// Fields can only be created in ascending order, and a field in between is missing.
     #[error("field {field} cannot be created before field {missing}")]
     Gap {
         /// Field number.
@@ -49,7 +49,7 @@ pub enum PlanError {
         /// Number of free bytes.
         free: usize,
     },
-    /// A field must be created again, but its content cannot be read.
+    /// A field must be deleted and created again, but its content cannot be read.
     #[error("field {field} must be created again, but its content cannot be read: access code {code} is not known")]
     WouldLose {
         /// Field number.
@@ -57,7 +57,7 @@ pub enum PlanError {
         /// Number of the access code that protects the field.
         code: AccessCodeNumber,
     },
-    /// Fields can only be created in ascending order.
+    /// Fields can only be created in ascending order, and the requested field is not the next one.
     #[error("field {field} cannot be created: the next field is {next}")]
     NotNext {
         /// Requested field number.

@@ -1,4 +1,4 @@
-//! The operations of a restore, field by field.
+//! Plans the operations of a restore, field by field.
 
 use std::ops::Range;
 
@@ -25,8 +25,9 @@ pub(super) struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    /// Removes fields that are left unchanged from the targets, unless mounting values are written to them. A field
-    /// that the encoder lacks is created without content if another field must be created after it.
+    /// Excludes fields whose bytes of unknown meaning are left unchanged, unless mounting values are written to them.
+    /// If such a field is missing in the encoder and a later field must be created, the field is created without
+    /// content.
     pub(super) fn skip_unknown_fields(&mut self) {
         let (profile, device, with_mounting) = (self.profile, self.device, self.with_mounting);
         let left = std::mem::take(&mut self.left);
@@ -74,7 +75,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Checks that the numbers of fields to be created are consecutive.
+    /// Checks that the fields to be created are numbered consecutively.
     pub(super) fn check_fields_are_consecutive(&self) -> Result<(), PlanError> {
         let mut next = self.device.memory.fields;
         for field in self.wanted.iter().filter(|field| field.number >= self.device.memory.fields) {
@@ -86,7 +87,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Returns the first field that must change its size even though other fields follow it.
+    /// Returns the first field that must be created again, because its size changes and other fields follow it.
     pub(super) fn first_field_to_recreate(&self, allowed: bool) -> Result<Option<u8>, PlanError> {
         let last = self.device.fields.last().map(|field| field.number);
         for target in &self.wanted {
@@ -129,7 +130,8 @@ impl Planner<'_> {
         self.wanted.iter().find(|field| field.number == number)
     }
 
-    /// Returns the fields of the profile. If fields are created again, fields that exist only in the encoder are added.
+    /// Returns the fields of the profile. If fields must be created again, fields that exist only in the encoder are
+    /// added.
     pub(super) fn target_fields(&self, recreated: Option<u8>) -> Vec<FieldImage> {
         let mut targets = self.wanted.clone();
         if let Some(first) = recreated {
@@ -157,8 +159,8 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Plans a new field. All of its bytes are written, because its initial content is unknown. Write protection is set
-    /// afterwards.
+    /// Plans a new field. All its bytes are written, because its initial content is unknown. Write protection is set
+    /// last.
     pub(super) fn create(&mut self, target: &FieldImage) {
         let writable = target.status.with_write_enable(true);
         let first = if target.bytes.is_some() { writable } else { target.status };
@@ -212,8 +214,8 @@ impl Planner<'_> {
         }
     }
 
-    /// Returns the parts of a range that may be written. Mounting values may be excluded if the profile is from another
-    /// encoder.
+    /// Returns the parts of a range that may be written. If the profile is from another encoder, mounting values may be
+    /// excluded.
     fn writable_parts(&mut self, field: u8, range: Range<usize>) -> Vec<Range<usize>> {
         if !self.is_other {
             return vec![range];

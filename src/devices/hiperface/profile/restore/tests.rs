@@ -48,8 +48,8 @@ fn device(free_blocks: u8, fields: Vec<FieldImage>) -> DeviceState {
     }
 }
 
-/// Returns the operations in a short notation. For example, `C9>A9` changes the status of a field, and `@3+2` writes
-/// two bytes from index 3.
+/// Returns the operations in a short notation: `C9>A9` changes a field's status, and `@3+2` writes two bytes from index
+/// 3.
 fn ops(profile: &HiperfaceProfile, device: &DeviceState, options: RestoreOptions) -> Result<Vec<String>, PlanError> {
     let restore = plan_restore(profile, device, options)?.common;
     let short = |op: &Op| match op {
@@ -218,8 +218,7 @@ fn bytes_of_unknown_meaning_are_copied_only_on_request() {
     assert_eq!(plan_restore(&wanted, &own, RestoreOptions::default()).unwrap().unknown_fields, []);
 }
 
-/// Another type requires a separate permission. The permission for another serial number is not sufficient (issue
-/// 22.9).
+/// Another encoder type requires permission even if another serial number is already permitted (issue 22.9).
 #[test]
 fn another_type_needs_a_separate_permission() {
     let mut wanted = profile("B", vec![]);
@@ -271,8 +270,8 @@ fn unchanged_bytes_are_counted() {
     assert_eq!(restore.plan.write_cycles(), 1);
 }
 
-/// Restoring a backup deletes the fields that the write created, starting with the last one, if they are unchanged.
-/// Other profiles never delete surplus fields (issue 22.12).
+/// Restoring a backup deletes unchanged fields that the write created, starting with the last one. Other profiles never
+/// delete surplus fields (issue 22.12).
 #[test]
 fn restoring_a_backup_deletes_fields_its_write_created() {
     let wanted = profile("A", vec![field(0, 0xC9, &[(0, 1)]), field(1, 0xA8, &[(3, 7)]), field(2, 0xC8, &[])]);

@@ -1,11 +1,11 @@
-//! Deletion of fields created by a write when its backup is restored.
+//! Deletes the fields that a write created when its backup is restored.
 
 use super::DeviceState;
 use crate::devices::hiperface::profile::{FieldImage, HiperfacePlan, HiperfaceProfile, Op};
 use crate::devices::hiperface::protocol::FreeMemory;
 
-/// Returns the created fields to delete, and the numbers of the remaining created fields. A field is deleted only if it
-/// has not changed since the write and no field remains after it.
+/// Returns the created fields to delete, and the numbers of the created fields to keep. A field is deleted only if it
+/// has not changed since the write and all later fields are deleted too.
 pub(super) fn deletable_created_fields(profile: &HiperfaceProfile, device: &DeviceState) -> (Vec<FieldImage>, Vec<u8>) {
     let (mut undone, mut left) = (Vec::new(), Vec::new());
     for now in device.fields.iter().rev() {
@@ -37,7 +37,7 @@ pub(super) fn delete(field: &FieldImage) -> Op {
     Op::Define { field: field.number, from: Some(field.status), to: field.status.as_deleted() }
 }
 
-/// Returns the fields that a plan creates and fills completely.
+/// Returns the fields that a plan both creates and fills completely.
 pub fn created_fields(plan: &HiperfacePlan) -> Vec<FieldImage> {
     let mut created: Vec<(FieldImage, usize)> = Vec::new();
     let had = |number: u8| plan.base.fields.iter().any(|field| field.number == number);

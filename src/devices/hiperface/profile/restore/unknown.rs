@@ -1,19 +1,19 @@
-//! Data fields with bytes of unknown meaning in a profile of another encoder. They may contain an offset between
-//! encoder and motor.
+//! Data fields in another encoder's profile that contain bytes of unknown meaning. These bytes may include an offset
+//! between encoder and motor.
 
 use super::{DeviceState, RestoreOptions};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile};
 use crate::profile::difference::differing_ranges;
 
-/// Data field in which bytes of unknown meaning differ between the profile and another encoder. They may contain an
-/// offset between encoder and motor.
+/// Data field whose bytes of unknown meaning differ between an encoder and another encoder's profile. They may include
+/// an offset between encoder and motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnknownMeaningField {
     /// Field number.
     pub field: u8,
     /// Number of differing bytes of unknown meaning.
     pub bytes: usize,
-    /// Decision of the user. `Some(true)` copies the bytes. Otherwise, they are left unchanged.
+    /// The user's decision. `Some(true)` copies the bytes. Otherwise, they are left unchanged.
     pub answer: Option<bool>,
 }
 
@@ -23,13 +23,13 @@ impl UnknownMeaningField {
         self.answer == Some(true)
     }
 
-    /// Returns the whole field as an item, in the form that `--copy` and `--leave` accept.
+    /// Returns the whole field as an item, which `--copy` and `--leave` accept.
     pub fn as_range(&self) -> FieldRange {
         FieldRange { field: self.field, start: 0, count: None }
     }
 }
 
-/// Returns the data fields in which bytes other than mounting values differ from the profile of another encoder.
+/// Returns the data fields that differ from another encoder's profile in bytes other than mounting values.
 pub(super) fn unknown_fields(
     profile: &HiperfaceProfile,
     device: &DeviceState,

@@ -1,5 +1,4 @@
-//! The golden vectors as Rust values: the request of the host, the bytes on the line, and the meaning of the encoder's
-//! reply.
+//! The golden vectors as Rust values: each request with its bytes, and each reply with its bytes and meaning.
 
 use super::bytes;
 use crate::devices::hiperface::protocol::*;
@@ -94,7 +93,7 @@ fn type_label(encoder_type: u8) -> Reply {
     Reply::TypeLabel(TypeLabel { settings, encoder_type, eeprom_units: 0x80, options: 0x01 })
 }
 
-/// Returns all requests in the reference, with their replies.
+/// Returns all requests of the vector file, with their replies.
 #[rustfmt::skip]
 pub(super) fn all_vectors() -> Vec<Vector> {
     let serial = SerialLabel {
@@ -210,7 +209,7 @@ fn requests_and_replies_match_the_table() {
     }
 }
 
-/// Requests with different access codes are not equal, even though the codes are never shown.
+/// Requests with different access codes are not equal, even though both are displayed without their code.
 #[test]
 fn requests_with_other_codes_are_not_equal() {
     assert_ne!(read(1, 5, 2, CODE), read(1, 5, 2, CODE_66));

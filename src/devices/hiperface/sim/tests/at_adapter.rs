@@ -1,11 +1,11 @@
-//! Tests of the encoder on the serial line of a virtual adapter, from the perspective of a host.
+//! Tests of a virtual encoder on a virtual adapter's serial line, from the perspective of a host.
 
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::tests::Host;
 use crate::devices::hiperface::sim::AttachableEncoder;
 
-/// Sends the status request from the reference. The expected times are eleven bits per character, 44 bits of silence,
-/// and half of the maximum of 5 ms for the command.
+/// The reply begins after eleven bits per character, 44 bits of silence, and half of the maximum of 5 ms for the
+/// command.
 #[test]
 fn the_adapters_uart_reaches_a_hiperface_encoder() {
     let mut host = Host::to("uart=hiperface", &[&AttachableEncoder]);

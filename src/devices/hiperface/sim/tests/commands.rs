@@ -1,4 +1,4 @@
-//! Tests of the golden vectors, the example in the manual, rejections, the status queue and wear.
+//! Tests of the golden vectors, the manual's example, rejections, the status queue and EEPROM wear.
 
 use super::*;
 use crate::devices::hiperface::protocol::{Command, StatusCode};

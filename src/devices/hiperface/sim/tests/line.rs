@@ -177,8 +177,7 @@ fn one_long_poll_equals_many_short_ones() {
     }
 }
 
-/// Bytes that exceed the buffer of a UART are lost, so that the line becomes idle as soon as the buffer is empty (issue
-/// 22.18).
+/// A UART drops bytes that exceed its buffer, so the line is idle again as soon as the buffer is empty (issue 22.18).
 #[test]
 fn the_encoder_answers_after_a_flood_of_bytes() {
     let mut host = Host::with("");

@@ -1,5 +1,5 @@
-//! Tests of the virtual encoder from the perspective of a host, in virtual time. Expected bytes are taken from the
-//! manual and the reference. The expected bytes are never calculated by the code under test.
+//! Tests of the virtual encoder from the perspective of a host, in virtual time. All expected bytes are literals and
+//! never calculated by the code under test.
 
 mod at_adapter;
 mod commands;
@@ -15,7 +15,7 @@ use crate::devices::hiperface::protocol::LineSettings;
 use crate::sim::ByteDevice;
 use crate::units::{CharacterFormat, Moment};
 
-/// A host that receives until the line is idle, and then observes the dead time.
+/// A host that receives until the line is idle, and then waits for the dead time.
 struct Host {
     bus: Bus,
     now: Moment,

@@ -1,11 +1,11 @@
-//! Tests of commands 57h and 67h, and of the power-up sequence in figure 38, in which the encoder is deaf, uses factory
+//! Tests of commands 57h and 67h, and of the power-up sequence in figure 38: the encoder is deaf, uses factory
 //! settings, is deaf again, and then uses the stored settings.
 
 use super::*;
 
 const POSITION: &str = "40 42 00 0E 05 31 38";
 
-/// Returns the host of an encoder with stored settings of 19200 8E1 that has just been power-cycled.
+/// Returns the host of an encoder with stored settings of 19200 8E1 whose power has just been switched off and on.
 fn restarted() -> Host {
     let mut host = Host::with("settings=0xE5");
     host.bus.power_cycle(host.now);

@@ -1,4 +1,4 @@
-//! Handling the user's actions in the commutation assistant.
+//! Handles the user's actions in the commutation assistant.
 
 use super::outcome::check_can_read;
 use super::{CommutationAction, VectorSlot};
@@ -52,7 +52,7 @@ impl Encoder {
         }
     }
 
-    /// Returns the result, or an error if the offset has not been verified.
+    /// Returns the result if the offset has been verified, or an error otherwise.
     fn if_verified<T>(&self, result: impl FnOnce(&Self) -> Result<T, Text>) -> Result<T, Text> {
         let result = result(self)?;
         self.commutation.check_offset_is_verified(self.geometry()).map(|()| result)

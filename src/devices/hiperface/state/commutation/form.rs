@@ -1,4 +1,4 @@
-//! The form of the commutation assistant and the parsing of its entries.
+//! The input form of the commutation assistant, and the parsing of its entries.
 
 use crate::analysis::arctan::Phase;
 use crate::analysis::commutation::Motor;
@@ -7,7 +7,8 @@ use crate::app::number::{MAX_PERIODS, parse_in_range, parse_integer};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
-/// Entries of the commutation assistant. If the number of periods is empty, that of the encoder type is used.
+/// Entries of the commutation assistant, as typed or selected. If the number of periods is empty, the number for the
+/// encoder type is used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Form {
     /// Whether the user has confirmed that the controller is disabled.
@@ -30,7 +31,7 @@ pub struct Form {
     /// Whether the position decreases as the electrical angle increases.
     pub reversed: bool,
     pub source: Source,
-    /// Position within a period, as entered, if it was measured with another device.
+    /// Position within a period, as entered, for a phase that was measured with another device.
     pub phase: String,
     /// Permitted difference, in electrical degrees, between approaches from opposite sides, as entered.
     pub limit_deg: String,
@@ -38,27 +39,27 @@ pub struct Form {
     pub second_deg: String,
     /// Whether the user accepts the offset without verification by a second vector.
     pub without_second: bool,
-    /// Fine positions in periods, as entered, in the order of [`VectorSlot::ALL`].
+    /// Typed fine positions in periods, in the order of [`VectorSlot::ALL`].
     pub typed: [String; 3],
     pub storage: Storage,
     /// Data field for the offset, or `None` for the proposed field.
     pub field: Option<u8>,
     /// Index of the first byte, as entered, or empty for the proposed index.
     pub address: String,
-    /// Signal period of the position that method 2 sets, as entered.
+    /// Signal period in which the position of method 2 lies, as entered.
     pub period: String,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VectorSlot {
     OneSide,
-    /// Rest position after an approach from the other side.
+    /// Rest position after approaching it from the other side.
     OtherSide,
-    /// Rest position with the second vector.
+    /// Rest position at the second vector.
     Second,
 }
 
-/// Vector that is energised during a reading, named by its wiring.
+/// Vector that is energised during a reading, named after its wiring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnergisedVector {
     /// Current into U that returns through V and W, at 0°.
@@ -72,7 +73,7 @@ pub enum EnergisedVector {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// Analogue channels of the encoder, or the absolute position if there are none.
+    /// Analogue channels of the encoder, or its absolute position if it has no such channels.
     Signals,
     Typed,
     /// Absolute position only, with a resolution of 1/32 of a period.
@@ -99,7 +100,7 @@ pub struct OffsetInputs {
     pub limit_deg: f64,
 }
 
-/// Maximum accepted number of pole pairs, which exceeds that of any motor.
+/// Maximum accepted number of pole pairs. It is greater than that of any motor.
 const MAX_POLE_PAIRS: u32 = 500;
 
 impl VectorSlot {
@@ -155,7 +156,8 @@ impl Form {
         (current, parse_in_range(TEXTS.text("commutation.time"), &self.time_s, 0.1, 600.0))
     }
 
-    /// Checks that the user has confirmed all preparations and entered all limits before the motor is energised.
+    /// Checks that the user has confirmed all preparations and entered all limits. This is required before the motor is
+    /// energised.
     ///
     /// # Errors
     /// Returns an error that names a missing or invalid entry.
@@ -219,8 +221,8 @@ impl Form {
         parse_in_range(TEXTS.text("commutation.fine"), text, 0.0, f64::from(1_u32 << 27))
     }
 
-    /// Returns the entered number of signal periods per revolution. If the entry is empty, the number for the encoder
-    /// type is returned.
+    /// Returns the entered number of signal periods per revolution, or the number for the encoder type if the entry is
+    /// empty.
     ///
     /// # Errors
     /// Returns an error if the entry is invalid.
@@ -239,7 +241,7 @@ impl Form {
         Some(TEXTS.text("commutation.other_periods").with("own", own).with("typed", typed))
     }
 
-    /// Returns the numbers from which the offset is calculated.
+    /// Returns the input values for calculating the offset.
     ///
     /// # Errors
     /// Returns an error with the reason if an entry is invalid. Only the first invalid entry is reported.

@@ -1,5 +1,5 @@
-//! The location of the offset in the memory. The assistant proposes a free location, and warns before other data is
-//! replaced. This module does not change the memory.
+//! Location of the commutation offset in the memory. The assistant proposes a free location, and warns before other
+//! data is replaced. This module does not change the memory.
 
 use super::{Commutation, Storage};
 use crate::app::Text;
@@ -8,7 +8,7 @@ use crate::devices::hiperface::profile::{CommutationRecord, FieldImage};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::{StagedEdits, TEXTS, rules};
 
-/// Byte values of empty memory, which was erased or never written.
+/// Byte values of empty memory, after erasing or before the first write.
 const FILLERS: [u8; 2] = [0x00, 0xFF];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,9 +19,8 @@ pub struct OffsetLocation {
 }
 
 impl Commutation {
-    /// Returns the location that the user has entered, or otherwise a proposed location. The proposed location is an
-    /// existing record that can be replaced or, if there is none, an empty block in the last writable field that has
-    /// one.
+    /// Returns the location that the user has entered, or else a proposed location. The proposal is an existing record
+    /// that can be replaced. If there is none, it is an empty block in the last writable field that has one.
     ///
     /// # Errors
     /// Returns an error if no field has enough space or the typed address is invalid.
@@ -42,7 +41,7 @@ impl Commutation {
         Ok(OffsetLocation { field, address })
     }
 
-    /// Returns a warning with the data that the offset would replace, or `None` if the location is empty or already
+    /// Returns a warning about the data that the offset would replace, or `None` if the location is empty or already
     /// contains an offset.
     pub fn replacement_warning(&self, geometry: Option<Geometry>, staged: &StagedEdits) -> Option<Text> {
         let (field, address, bytes) = self.bytes(geometry, staged).ok()?;
@@ -61,8 +60,8 @@ impl Commutation {
     }
 }
 
-/// Returns the first block of a field that satisfies `holds`. A block has the size of a commutation record. An offset
-/// that is stored as a number also occupies a whole block, because zeros between other numbers may be data.
+/// Returns the first block of a field that satisfies `holds`. Blocks have the size of a commutation record even if the
+/// offset is stored as a number, because zeros between other numbers may be data.
 fn first(field: &FieldImage, holds: impl Fn(&[u8]) -> bool) -> Option<OffsetLocation> {
     let block = field.bytes.as_deref()?.chunks_exact(CommutationRecord::BYTES).position(holds)?;
     Some(OffsetLocation { field: field.number, address: block * CommutationRecord::BYTES })
@@ -87,8 +86,8 @@ mod tests {
     use super::*;
     use crate::devices::hiperface::protocol::DataFieldStatus;
 
-    /// Returns a memory with status bytes as defined for command 4Dh in the manual. D8h and DAh are writable fields of
-    /// 16 and 48 bytes, and 89h is a write-protected field.
+    /// Returns a memory with a writable field of 16 bytes (D8h), a writable field of 48 bytes (DAh) and a
+    /// write-protected field (89h). The status bytes are defined for command 4Dh in the manual.
     fn memory(fields: &[(u8, &[u8])]) -> StagedEdits {
         let image = |(number, (status, bytes)): (u8, &(u8, &[u8]))| FieldImage {
             number,
@@ -131,8 +130,8 @@ mod tests {
         assert_eq!(proposed_location(&both, Storage::Record, Some(0)), Ok((0, 0)), "in the field that is chosen");
     }
 
-    /// The existing record is taken from the reference. It has the offset 5305 1EB8h, four pole pairs, and a CRC
-    /// calculated with Python's `binascii.crc_hqx`.
+    /// The existing record has the offset 5305 1EB8h and four pole pairs. Its CRC was calculated with Python's
+    /// `binascii.crc_hqx`.
     #[test]
     fn an_existing_record_is_proposed_for_replacement() {
         let record = [0x43, 0x4F, 0x31, 0x00, 0x53, 0x05, 0x1E, 0xB8, 4, 0, 0, 0, 0, 0, 0x2A, 0x23];

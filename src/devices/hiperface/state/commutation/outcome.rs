@@ -1,5 +1,5 @@
-//! Results of the commutation readings: the mean of both approaches, the offset and its verification with a second
-//! vector, the bytes for method 1, and the position for method 2.
+//! Results of the commutation readings: the mean of both approaches, the offset and its check by a second vector, the
+//! bytes for method 1, and the position for method 2.
 
 use super::{Commutation, OffsetInputs, OffsetLocation, PositionKind, RestReading, Source, Storage, VectorSlot};
 use crate::analysis::arctan::Phase;
@@ -11,11 +11,11 @@ use crate::devices::hiperface::profile::{CommutationRecord, CommutationRecordErr
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::{ActionPermission, StagedEdits, TEXTS};
 
-/// Step size in electrical degrees at or above which method 2 is rejected, because the torque may have the wrong sign
-/// (`U`: not documented).
+/// Electrical degrees per signal period at or above which method 2 is rejected, because the torque may have the wrong
+/// sign. The limit is not documented (`U`).
 const UNUSABLE_DEG: f64 = 90.0;
-/// Step size in electrical degrees at or above which the user is warned, because the torque is reduced to cos 30° or
-/// less (`U`: not documented).
+/// Electrical degrees per signal period at or above which the user is warned, because the torque is reduced to cos 30°
+/// or less. The limit is not documented (`U`).
 const WEAK_TORQUE_DEG: f64 = 30.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,14 +36,14 @@ pub struct CommutationOffset {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositionSetting {
     pub value: u32,
-    /// Whether exactly this value must be set, because the absolute position and the phase of the encoder disagree.
+    /// Whether exactly this value must be set, because the encoder's absolute position and phase disagree.
     pub exact: bool,
     /// Offset in electrical degrees that remains after setting the position, −180 to 180.
     pub remaining_deg: f64,
     pub verdict: Verdict,
 }
 
-/// Commutation record found in the memory, including edits.
+/// Commutation record found in the memory or in its unwritten edits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StoredRecord {
     pub field: u8,
@@ -93,7 +93,7 @@ impl Commutation {
         })
     }
 
-    /// Returns the comparison of the second vector with the offset, or `None` until the second vector has been read.
+    /// Compares the second vector with the offset, or returns `None` if the second vector has not been read yet.
     ///
     /// # Errors
     /// Returns an error if an entry or a reading is missing or unusable.
@@ -103,9 +103,9 @@ impl Commutation {
     }
 
     fn evaluate_second_reading(&self, fine_periods: f64, geometry: Option<Geometry>) -> Result<(Verdict, Text), Text> {
-        /// Fraction of the expected movement below which the shaft is considered not to have moved.
+        /// Fraction of the expected movement below which the shaft counts as not moved.
         const MIN_MOVEMENT_FRACTION: f64 = 0.1;
-        /// Permitted ratio of the actual movement to the expected movement.
+        /// Permitted ratio of actual to expected movement.
         const MOVEMENT_RATIO: std::ops::RangeInclusive<f64> = 0.8..=1.25;
         let (inputs, offset, turns) =
             (self.form.inputs(geometry)?, self.offset(geometry)?, self.form.second_vector_turns()?);
@@ -136,7 +136,7 @@ impl Commutation {
         matches!(self.second_vector_result(geometry), Some(Ok((Verdict::Ok, _))))
     }
 
-    /// Returns whether both approaches gave identical readings, which suggests that the shaft has not been turned.
+    /// Returns whether both approaches gave exactly the same reading, which suggests that the shaft was not turned.
     pub fn are_sides_identical(&self) -> bool {
         let is_fine = |reading: &&RestReading| matches!(reading.kind, PositionKind::Fine { .. });
         let [one, other] =
@@ -144,8 +144,7 @@ impl Commutation {
         one.is_some() && one == other
     }
 
-    /// Checks whether the offset may be used. It must be confirmed by a second vector, unless the user has chosen to
-    /// omit the second vector.
+    /// Checks that a second vector has confirmed the offset, unless the user has chosen to omit the second vector.
     ///
     /// # Errors
     /// Returns an error if an entry or a reading is missing or unusable.
@@ -161,7 +160,7 @@ impl Commutation {
         }
     }
 
-    /// Returns the data field, the index of the first byte and the bytes for method 1.
+    /// Returns what method 1 writes: the data field, the index of the first byte, and the bytes.
     ///
     /// # Errors
     /// Returns an error if an entry or a reading is missing or unusable.
@@ -233,7 +232,7 @@ pub fn stored(staged: &StagedEdits) -> Vec<StoredRecord> {
     found
 }
 
-/// Checks whether the position may be read, for which all previous steps of the assistant must be complete.
+/// Checks whether a position may be read, which requires that all previous steps of the assistant are complete.
 pub fn check_can_read(commutation: &Commutation, ready: bool) -> ActionPermission {
     commutation.form.check_prepared()?;
     if commutation.form.source == Source::Typed {
@@ -242,8 +241,7 @@ pub fn check_can_read(commutation: &Commutation, ready: bool) -> ActionPermissio
     if ready { Ok(()) } else { Err(TEXTS.text("commutation.not_ready")) }
 }
 
-/// Returns the signed distance between two positions in signal periods, measured in the shorter direction within a
-/// revolution.
+/// Returns the signed distance between two positions in signal periods, in the shorter direction within a revolution.
 fn signed_distance(from: f64, to: f64, periods: u32) -> f64 {
     let turn = f64::from(periods);
     let forward = (to - from).rem_euclid(turn);
@@ -254,7 +252,7 @@ fn periods_to_electrical_deg(periods: f64, inputs: &OffsetInputs) -> f64 {
     periods * inputs.motor.electrical_step_deg()
 }
 
-/// Returns the offset for which the electrical angle at the given position equals the angle of the vector.
+/// Returns the offset that makes the electrical angle at a position equal to the angle of the vector.
 fn offset_angle(fine_periods: f64, inputs: &OffsetInputs) -> Option<ElectricalAngle> {
     let shaft = if inputs.reversed { -fine_periods } else { fine_periods };
     let vector = ElectricalAngle::from_turns(inputs.vector_turns)?;

@@ -1,4 +1,4 @@
-//! Report of a commutation procedure. It lists the preparation, the readings and the results, one item per line.
+//! Report of a commutation procedure: the preparation, the readings and the results, one per line.
 
 use super::{Commutation, EnergisedVector, PositionKind, RestReading, VectorSlot};
 use crate::analysis::synchronise::Synchroniser;
@@ -8,8 +8,7 @@ use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
 impl Commutation {
-    /// Returns the results of the commutation procedure for a report of the encoder, or `None` before the first
-    /// reading.
+    /// Returns the commutation results for an encoder report, or `None` before the first reading.
     pub fn session_result(&self, name: &str, geometry: Option<Geometry>) -> Option<SessionResult> {
         VectorSlot::ALL.into_iter().find_map(|slot| self.reading_of(slot))?;
         let mut texts = self.report_texts(name, geometry).into_iter();

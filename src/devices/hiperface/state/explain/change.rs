@@ -1,4 +1,4 @@
-//! Texts for changes: review titles and job names.
+//! Review titles and job names for changes to an encoder.
 
 use super::format;
 use crate::app::Text;

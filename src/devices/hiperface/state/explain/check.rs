@@ -1,4 +1,4 @@
-//! Texts for the device check.
+//! Messages of the device check.
 
 use super::encoder_error_text;
 use super::format::{field_status, position_text, raw_position_text, status_with_number};

@@ -1,4 +1,4 @@
-//! Texts for the data of an encoder, in both languages. The English texts are the same as in the protocol tables.
+//! Descriptions of encoder data in English and German. The English descriptions match the protocol tables.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{DataFieldStatus, Geometry, LineSettings, Position, StatusCode};

@@ -1,4 +1,4 @@
-//! Description of a frame for the trace and for `decode`.
+//! Descriptions of frames for the trace and for the `decode` command.
 
 use super::{command_text, field_status, line_settings, status_with_number};
 use crate::app::Text;

@@ -1,4 +1,4 @@
-//! Description of the extended type label, byte by byte.
+//! Describes the extended type label byte by byte.
 
 use crate::app::Text;
 use crate::bits::hex;

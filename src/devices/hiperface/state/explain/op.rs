@@ -1,4 +1,4 @@
-//! Descriptions of plan operations for the review.
+//! Descriptions of planned operations for the review before a write.
 
 use super::format::{field_access, field_code_required, field_status, line_settings};
 use crate::app::Text;
@@ -68,7 +68,7 @@ fn define_texts(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -
     }
 }
 
-/// Returns the old and new texts of all properties that differ between two field statuses.
+/// Describes each property that differs between two field statuses, with its old and new value.
 fn changed_status_properties(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
     let size = |status: DataFieldStatus| TEXTS.text("op.size").with("size", status.size().bytes());
     let code = |status: DataFieldStatus| TEXTS.text("op.code").with("code", status.code());

@@ -1,4 +1,4 @@
-//! Tests of the messages for errors from lower layers, in both languages.
+//! Tests of the messages for protocol and link errors, in English and German.
 
 use std::time::Duration;
 

@@ -1,5 +1,4 @@
-//! Messages about a user-defined table of encoder types that cannot be used, and about links that cannot be opened
-//! because of such a table.
+//! Messages for an unusable user-defined table of encoder types, and for links that cannot be opened because of it.
 
 use crate::app::Text;
 use crate::app::explain::{self as general, syntax_error_text};

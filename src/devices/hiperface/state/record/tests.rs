@@ -101,7 +101,7 @@ fn lines_break_between_stop_and_start() {
     assert_eq!(breaks, [false, false, true, false, false, true]);
 }
 
-/// Records ten minutes at 1 kHz and 600 rpm across the end of the range, with a pause of three seconds every ten
+/// Records ten minutes at 1 kHz and 600 rpm across the end of the range. Polling pauses for three seconds every ten
 /// thousand samples.
 #[test]
 fn a_long_recording_keeps_every_break_and_wrap() {

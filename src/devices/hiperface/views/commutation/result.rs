@@ -1,5 +1,4 @@
-//! The results of the commutation assistant: the offset, its storage in a data field, the position to set, and the
-//! report.
+//! Results of the commutation assistant: the offset, its storage in a data field, the position to set, and the report.
 
 use egui::{RichText, Ui};
 
@@ -16,7 +15,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Draws the offset. The same space is reserved if there is no offset yet.
+/// Draws the offset. Its space is reserved even if there is no offset yet.
 pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
     card(ui, theme, TEXTS.text("commutation.offset"), |ui| {
         let offset = encoder.commutation.offset(encoder.geometry());
