@@ -17,18 +17,18 @@ pub struct Plot<'a> {
     pub labels: (String, String),
     /// Curves in drawing order.
     pub curves: Vec<Curve>,
-    /// Formats the number of a tick with the given decimals.
+    /// Formats a tick value with the given number of decimals.
     pub format: &'a dyn Fn(f64, usize) -> String,
 }
 
 /// A curve of a plot.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// Points from left to right, or along the curve.
+    /// Points from left to right or along the curve, in axis units.
     pub points: Vec<(f64, f64)>,
     /// Colour of the curve.
     pub colour: &'static str,
-    /// Name in the legend, or `None` for a curve that needs no name.
+    /// Name in the legend, or `None` to omit the curve from it.
     pub name: Option<String>,
 }
 

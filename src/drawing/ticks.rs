@@ -1,4 +1,4 @@
-//! Round steps for the ticks of an axis.
+//! Tick steps of 1, 2 or 5 times a power of ten.
 
 /// Returns the smallest step of 1, 2 or 5 times a power of ten that divides `span` into at most `most` parts.
 pub fn step_1_2_5(span: f64, most: f64) -> f64 {

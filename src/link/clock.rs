@@ -1,4 +1,4 @@
-//! Clocks. The real clock is used for hardware and for virtual devices in the window, the virtual clock in tests.
+//! A real clock for hardware and for virtual devices in the window, and a virtual clock for tests.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -14,7 +14,7 @@ pub trait Clock: Send + Sync {
     fn sleep_until(&self, moment: Moment);
 }
 
-/// The monotonic clock of the computer, counted from the creation of this value.
+/// The computer's monotonic clock, which starts when the value is created.
 #[derive(Debug)]
 pub struct RealClock(Instant);
 
@@ -38,8 +38,8 @@ impl Clock for RealClock {
     }
 }
 
-/// Measures the step of the timer, which is the duration of the shortest sleep. Windows before version 10 (1803) wakes
-/// a thread only at ticks that are up to 15.6 ms apart.
+/// Measures the resolution of the timer, which is the duration of the shortest sleep. Windows before version 10 (1803)
+/// wakes threads only at ticks that are up to 15.6 ms apart.
 pub fn measure_timer_step(clock: &dyn Clock) -> Duration {
     const SHORT_SLEEP: Duration = Duration::from_millis(1);
     let sleep = || {
@@ -53,7 +53,7 @@ pub fn measure_timer_step(clock: &dyn Clock) -> Duration {
     (0..4).map(|_| sleep()).min().unwrap_or_default()
 }
 
-/// A clock that advances only while a thread waits on it. A wait of an hour takes no real time.
+/// A clock that advances only while a thread waits on it. Even a wait of an hour takes no real time.
 #[derive(Debug, Default)]
 pub struct VirtualClock {
     nanoseconds: AtomicU64,

@@ -1,5 +1,5 @@
-//! Datagrams in addition to a byte stream. They carry cyclic data. A lost packet is not repeated, because the next
-//! packet replaces it.
+//! Datagram channels for cyclic data, used in addition to a byte stream. A lost packet is not sent again, because the
+//! next packet replaces it.
 
 use core::net::{Ipv4Addr, SocketAddrV4};
 
@@ -8,10 +8,10 @@ use crate::units::Moment;
 
 /// A channel for datagrams to and from a single target.
 pub trait DatagramChannel: Send {
-    /// Returns the local port to which the target must send.
+    /// Returns the local port to which the target must send its packets.
     fn port(&self) -> u16;
 
-    /// Sets the port of the target for subsequent packets.
+    /// Sets the port of the target to which further packets are sent.
     fn set_target_port(&mut self, port: u16);
 
     /// Joins a multicast group to which the target sends packets. Virtual devices have a single receiver and ignore
@@ -46,7 +46,7 @@ pub trait DatagramPort: Send {
     fn open(&mut self) -> Result<Box<dyn DatagramChannel>, LinkError>;
 }
 
-/// A channel for broadcast requests and the replies to them.
+/// A channel for broadcast requests and their replies.
 pub trait BroadcastChannel: Send {
     /// Sends a request to all devices in the network.
     ///

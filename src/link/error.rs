@@ -42,7 +42,7 @@ pub enum LinkErrorKind {
     /// The replayed recording contains no reply to the request.
     #[error("the recording has no answer to {0}")]
     NotRecorded(String),
-    /// Any other error reported by the system.
+    /// Any other error reported by the operating system.
     #[error("{0}")]
     Other(String),
 }
@@ -53,7 +53,7 @@ impl LinkError {
         LinkError { target: target.into(), kind }
     }
 
-    /// Converts an I/O error of an open connection. An error of unknown cause is treated as a lost connection.
+    /// Converts an I/O error on an open connection. An unknown error is treated as a lost connection.
     pub(super) fn from_io_error(target: &str, error: &io::Error) -> Self {
         let kind = match error.kind() {
             io::ErrorKind::InvalidInput | io::ErrorKind::OutOfMemory => LinkErrorKind::Other(error.to_string()),

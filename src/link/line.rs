@@ -1,5 +1,5 @@
-//! Parts of a frame exchange common to all serial protocols: silence, echoes, late replies, retries and time-outs. The
-//! device modules decode the frames. This module interprets only the echo.
+//! The parts of a frame exchange that all serial protocols have in common: silence, echoes, late replies, retries and
+//! time-outs. The device modules decode the frames. This module interprets only the echo.
 
 mod echo;
 mod quality;
@@ -18,13 +18,13 @@ use super::{Ctx, Direction, LinkError, LinkErrorKind};
 use crate::bits::MaskedBytes;
 use crate::units::Moment;
 
-/// Maximum number of attempts of a read command.
+/// Maximum number of attempts to send a read command.
 pub(crate) const MAX_ATTEMPTS: u32 = 5;
-/// Maximum time for repeating a command without a valid reply. A command must finish within ten seconds.
+/// Maximum time for retrying a command without a valid reply. A command must finish within ten seconds.
 const RETRY_TIMEOUT: Duration = Duration::from_secs(8);
 /// Longest interval between two checks for cancellation.
 const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
-/// Duration of continuous reception after which the wait for silence ends with an error.
+/// Duration of continuous reception after which waiting for silence fails.
 const MAX_CONTINUOUS_RECEPTION: Duration = Duration::from_secs(2);
 /// Maximum number of unexpected bytes to keep. A socket can deliver unlimited noise.
 pub(crate) const MAX_KEPT_BYTES: usize = 4096;
@@ -112,7 +112,8 @@ impl<'a> SerialLine<'a> {
         if !self.shielded && self.ctx.cancel.stops_transaction() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
-    /// Begins an exchange and skips bytes that arrived earlier. After such bytes, the line must be silent for `quiet`.
+    /// Begins an exchange, and skips bytes that arrived before it. After such bytes, the line must be silent for
+    /// `quiet`.
     ///
     /// # Errors
     /// Returns a [`LineError`] if the user cancels or the line stays busy.
@@ -149,7 +150,7 @@ impl<'a> SerialLine<'a> {
         self.ctx.wire.receive(until, into)
     }
 
-    /// Starts recording the bytes that are not part of a reply.
+    /// Starts recording skipped bytes, which are not part of a reply.
     pub(crate) fn record_late_bytes(&mut self) {
         self.passed = Some(Vec::new());
     }
@@ -174,8 +175,8 @@ impl<'a> SerialLine<'a> {
         self.show(at, MaskedBytes::fully_masked(count));
     }
 
-    /// Counts an unanswered attempt and returns whether another attempt is allowed. `longest` is the maximum duration
-    /// of an attempt.
+    /// Counts a failed attempt, and returns whether another one is allowed. `longest` is the maximum duration of an
+    /// attempt.
     pub(crate) fn may_retry(&mut self, state: &mut LineState, tries: u32, longest: Duration) -> bool {
         let now = self.now();
         state.damaged += 1;
@@ -190,8 +191,8 @@ impl<'a> SerialLine<'a> {
         again
     }
 
-    /// Waits for a late reply after a time-out. The wait becomes longer with each attempt. A late reply is skipped,
-    /// because it would be mistaken for the reply to the next request.
+    /// Waits for a late reply after a time-out, and skips it, because it would be mistaken for the reply to the next
+    /// request. The wait becomes longer with each attempt.
     ///
     /// # Errors
     /// Returns a [`LineError`] if the user cancels, the line is never silent or the connection fails.
@@ -220,8 +221,8 @@ impl<'a> SerialLine<'a> {
         self.discard_late_answers(state, quiet)
     }
 
-    /// Skips the late replies to all unanswered requests. The first late byte shows the delay of the connection. Bytes
-    /// are skipped until that delay has passed since the last request and the line is silent for `quiet`.
+    /// Skips the late replies to all unanswered requests. The first late byte shows how late replies are. Bytes are
+    /// skipped until a reply to the last request could no longer arrive and the line is silent for `quiet`.
     ///
     /// # Errors
     /// Returns a [`LineError`] if the line is never silent or the connection fails.

@@ -41,7 +41,7 @@ pub use url::{LinkScheme, LinkUrl, UrlError, UrlQuery, Wire};
 
 use crate::units::{CharacterFormat, Moment};
 
-/// A connection that transports bytes in both directions.
+/// A connection that transfers bytes in both directions.
 pub trait ByteLink: Send {
     /// Sends all bytes of a frame in one call, so that there is no gap within the frame. This function may return
     /// before the last bit has been sent.
@@ -62,8 +62,8 @@ pub trait ByteLink: Send {
     /// Returns an error if the connection was lost or the format cannot be set.
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
 
-    /// Returns whether [`set_format`](Self::set_format) has an effect. The call has no effect on a device server, which
-    /// uses its configured format. A reply through such a server does not confirm the baud rate and parity.
+    /// Returns whether [`set_format`](Self::set_format) has an effect. It has none on a device server, which uses its
+    /// configured format. A reply through such a server does not confirm the baud rate and parity.
     fn can_set_format(&self) -> bool {
         true
     }

@@ -12,8 +12,8 @@ struct RecordedExchange {
     reply: Option<Vec<u8>>,
 }
 
-/// Playback of a recording. The search for a request starts at the position of the previous one and wraps around once.
-/// Masked bytes match anything.
+/// Playback of a recording in place of a device. The search for a request starts after the previous request and wraps
+/// around once. Masked bytes match any byte.
 pub struct ReplayLink {
     target: String,
     exchanges: Vec<RecordedExchange>,
@@ -23,7 +23,7 @@ pub struct ReplayLink {
 }
 
 impl ReplayLink {
-    /// Creates the playback of a recording. Errors refer to it as `target`.
+    /// Creates a playback of recorded frames. Errors refer to it as `target`.
     pub fn new(target: &str, entries: Vec<TraceEntry>, clock: Arc<dyn Clock>) -> Self {
         let mut exchanges: Vec<RecordedExchange> = Vec::new();
         for entry in entries {

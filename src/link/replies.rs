@@ -1,4 +1,4 @@
-//! Reply times of a device, which any thread can read.
+//! Reply times of a device, which can be read from any thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -10,7 +10,7 @@ use serialport::{ClearBuffer, SerialPort, SerialPortBuilder, SerialPortType};
 use super::{ByteLink, Clock, LinkError, LinkErrorKind};
 use crate::units::{CharacterFormat, Moment, Parity};
 
-/// Example of a port and of links to it.
+/// An example of a serial port, with links to it.
 pub struct PortExample {
     /// Name of the port.
     pub port: &'static str,
@@ -65,7 +65,7 @@ pub fn ports() -> Result<Vec<PortInfo>, LinkError> {
     Ok(ports)
 }
 
-/// Splits the name of a port from its number, so that `COM3` is sorted before `COM10`.
+/// Splits a port name into its text and number, so that `COM3` is sorted before `COM10`.
 fn split_port_number(path: &str) -> (&str, u64, &str) {
     let name = path.trim_end_matches(|c: char| c.is_ascii_digit());
     (name, path.strip_prefix(name).and_then(|number| number.parse().ok()).unwrap_or(0), path)
@@ -214,7 +214,8 @@ mod platform {
 
     use super::LinkErrorKind;
 
-    /// Returns whether `serialport` can list ports. The crate reads this folder without checking that it exists.
+    /// Returns whether `serialport` can list ports. On Linux, the crate reads this folder without checking that it
+    /// exists.
     pub(super) fn can_list_ports() -> bool {
         !cfg!(target_os = "linux") || Path::new("/sys/class/tty").is_dir()
     }
@@ -248,7 +249,8 @@ mod platform {
 
 #[cfg(not(unix))]
 mod platform {
-    //! Systems on which ports have names such as `COM3` and no owner. A port in use causes "access denied".
+    //! Systems on which ports have names such as `COM3` and no owner. Opening a port that is in use fails with "access
+    //! denied".
 
     use super::LinkErrorKind;
 

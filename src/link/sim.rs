@@ -1,4 +1,4 @@
-//! `sim:`: a virtual device in this process. With a virtual clock, waiting for a reply takes no time.
+//! `sim:`: a virtual device in this process. With a virtual clock, no real time passes while a reply is awaited.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};

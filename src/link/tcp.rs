@@ -17,8 +17,7 @@ pub struct TcpLink {
 
 impl TcpLink {
     const CONNECT_TIME: Duration = Duration::from_secs(3);
-    /// Duration below which a wait polls the socket, because the time-out of a socket has the resolution of the system
-    /// tick.
+    /// Duration below which a wait polls the socket, because socket time-outs have the resolution of the system tick.
     const POLL_THRESHOLD: Duration = Duration::from_millis(10);
     const POLL_INTERVAL: Duration = Duration::from_micros(500);
 
@@ -119,8 +118,7 @@ mod tests {
     use crate::link::RealClock;
     use std::net::TcpListener;
 
-    /// Without polling, each of a hundred short waits would last until the next system tick, up to ten milliseconds,
-    /// which is a second in total.
+    /// Without polling, each of a hundred short waits would last until the next system tick, up to a second in total.
     #[test]
     fn polling_does_not_wait_and_short_waits_are_short() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();

@@ -57,9 +57,11 @@ impl Trace {
         self.watchers.push(Box::new(watcher));
     }
 
-    /// Reports a frame to all watchers. The time of a reply is calculated from the duration of its bytes. If a device
-    /// server or a pseudo-terminal transfers all bytes at once, the result may be earlier than the request. In this
-    /// case, the time of the request is used.
+    /// Reports a frame to all watchers.
+    ///
+    /// The time of a reply is calculated back from the duration of its bytes. If a device server or a pseudo-terminal
+    /// transfers all bytes at once, the result may be earlier than the request. In this case, the time of the request
+    /// is used.
     pub fn record_frame(&mut self, at: Moment, direction: Direction, bytes: MaskedBytes) {
         if bytes.is_empty() {
             return;
@@ -91,7 +93,7 @@ pub fn write_entry(file: &mut impl Write, entry: &TraceEntry) -> io::Result<()> 
     writeln!(file, "{}", entry_line(entry.at, entry.direction, &entry.bytes))
 }
 
-/// Formats a line of a trace file, without the line end. `bytes` are hexadecimal, with `**` for masked bytes.
+/// Formats a line of a trace file without the line ending. `bytes` are hexadecimal, with `**` for masked bytes.
 pub fn entry_line(at: Moment, direction: Direction, bytes: impl fmt::Display) -> String {
     let sign = match direction {
         Direction::Sent => '>',

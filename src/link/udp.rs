@@ -22,8 +22,8 @@ const MAX_WAITING_PACKETS: usize = 64;
 /// Maximum time until a receiver thread notices that its channel has been dropped.
 const DROP_CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
-/// A factory for UDP channels to the target of a TCP connection. Channels use the local address that has a route to the
-/// target.
+/// A factory for UDP channels to the target of a TCP connection. Channels use the local address from which the target
+/// can be reached.
 pub struct UdpPort {
     target: String,
     clock: Arc<dyn Clock>,
@@ -69,7 +69,7 @@ impl DatagramPort for UdpPort {
     }
 }
 
-/// Returns the local address that routes to the target.
+/// Returns the local address from which the target can be reached.
 fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
     // Connecting a UDP socket does not send anything, but selects the network interface.
@@ -80,8 +80,8 @@ fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     }
 }
 
-/// A channel for packets to and from a single target. A dedicated thread receives packets, so a wait ends as soon as a
-/// packet arrives.
+/// A channel for packets to and from a single target. A separate thread receives the packets, so a wait ends as soon as
+/// a packet arrives.
 struct UdpChannel {
     name: String,
     target: SocketAddrV4,
@@ -94,7 +94,7 @@ struct UdpChannel {
     clock: Arc<dyn Clock>,
 }
 
-/// A thread that listens on a socket until the listener is dropped.
+/// A thread that listens on a socket until this value is dropped.
 struct SocketListener {
     is_stopped: Arc<AtomicBool>,
 }
@@ -186,8 +186,8 @@ impl DatagramChannel for UdpChannel {
     }
 }
 
-/// Waits for a packet in short sleeps. On Windows, a thread that waits for a channel wakes at the next tick of the
-/// system timer, up to 15.6 ms late, whereas a sleep uses a high-resolution timer.
+/// Waits for a packet in short sleeps. On Windows, waiting for a channel ends at the next tick of the system timer, up
+/// to 15.6 ms late, whereas a sleep uses a high-resolution timer.
 fn sleep_for_packet(heard: &Receiver<Vec<u8>>, until: Moment, clock: &dyn Clock) -> Result<Vec<u8>, RecvTimeoutError> {
     const POLL_THRESHOLD: Duration = Duration::from_millis(1);
     loop {

@@ -71,10 +71,10 @@ pub struct LinkUrl {
     pub query: UrlQuery,
 }
 
-/// The port, host or file that a link opens. Several links may use the same resource.
+/// The port, host or file that a link uses. Several links may use the same resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire<'a> {
-    /// A virtual device in this process, which needs no connection.
+    /// A virtual device in this process, which needs no external resource.
     Inside,
     /// Path or name of a serial port.
     Port(&'a str),
@@ -181,7 +181,7 @@ impl LinkUrl {
         LinkUrl { scheme: LinkScheme::Sim, target: String::new(), query: UrlQuery::default() }
     }
 
-    /// Returns the resource that the link opens.
+    /// Returns the port, host or file that the link uses.
     pub fn wire(&self) -> Wire<'_> {
         let target = self.target.as_str();
         match (self.scheme, target.strip_prefix("tcp:")) {

@@ -6,15 +6,15 @@ use sha2::{Digest, Sha256};
 
 use super::Report;
 
-/// The SHA-256 hash of a report's content. The time of printing is not part of the content.
+/// The SHA-256 hash of a report's content. The content does not include the print time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ContentHash(String);
 
-/// Number of digits of the hash that form a report number.
+/// Number of hash digits in a report number.
 const NUMBER_DIGITS: usize = 10;
 
 impl Report {
-    /// Returns the hash of the content.
+    /// Returns the hash of the report's content.
     pub fn content_hash(&self) -> ContentHash {
         // Texts, numbers and lists can always be written as JSON.
         let content = serde_json::to_vec(self).unwrap_or_default();
@@ -28,7 +28,7 @@ pub fn sha256_hex(bytes: &[u8]) -> String {
 }
 
 impl ContentHash {
-    /// Returns the report number, which is the beginning of the hash.
+    /// Returns the report number, which consists of the first digits of the hash.
     pub fn report_number(&self) -> String {
         let digits: String = self.0.chars().take(NUMBER_DIGITS).collect();
         digits.to_ascii_uppercase()

@@ -1,5 +1,5 @@
-//! Rendering of a report as a self-contained HTML page for A4 paper. The page has no scripts and no external resources,
-//! and the fonts are embedded.
+//! Rendering of a report as a self-contained HTML page for A4 paper. The page has embedded fonts, no scripts and no
+//! external resources.
 
 use askama::Template;
 use base64::Engine as _;
@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use super::{Block, CellStyle, ContentHash, Mark, Report};
 use crate::fonts;
 
-/// Length in bytes above which a cell may be broken anywhere. Shorter cells are broken only between words.
+/// Length in bytes above which the text of a cell may be broken anywhere. Shorter texts are broken only between words.
 const LONG_CELL: usize = 24;
 
 #[derive(Template)]
@@ -16,13 +16,13 @@ const LONG_CELL: usize = 24;
 struct Page<'a> {
     report: &'a Report,
     hash: &'a ContentHash,
-    /// Time of printing. It appears in the element with the class `printed`.
+    /// Print time, shown in the element with the class `printed`.
     printed: &'a str,
     fonts: [(&'static str, u16, &'static str, String); 3],
     logo: Option<String>,
 }
 
-/// Returns the report as an HTML page. `printed` is the time of printing. Everything else depends only on the content.
+/// Returns the report as an HTML page. `printed` is the print time. Everything else depends only on the content.
 pub fn render(report: &Report, printed: &str) -> String {
     let font = |name, weight, format, bytes| (name, weight, format, STANDARD.encode(bytes));
     let page = Page {

@@ -27,7 +27,7 @@ pub struct Report {
     pub origin: Vec<Fact>,
     /// Sections of the report.
     pub sections: Vec<Section>,
-    /// Fixed texts around the content.
+    /// Fixed texts around the content, such as the label of the print time.
     pub labels: Labels,
 }
 
@@ -47,11 +47,11 @@ pub struct Labels {
     pub number: String,
     /// Label of the content hash.
     pub content_hash: String,
-    /// Label of the time of printing.
+    /// Label of the print time.
     pub printed: String,
     /// Word before a page number.
     pub page: String,
-    /// Word between a page number and the number of pages.
+    /// Word between a page number and the number of pages, such as "of".
     pub of: String,
     /// Statement that the report is not a calibration certificate.
     pub no_certificate: String,
@@ -64,7 +64,7 @@ pub struct Labels {
 pub struct Section {
     /// Heading.
     pub title: String,
-    /// Content in reading order.
+    /// Content blocks in reading order.
     pub blocks: Vec<Block>,
 }
 
@@ -125,7 +125,7 @@ pub enum CellStyle {
     Number,
 }
 
-/// A row of a table.
+/// A row of a table, with an optional verdict.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Row {
     /// Cells, from left to right.
@@ -137,14 +137,14 @@ pub struct Row {
 /// The verdict on a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum Mark {
-    /// No verdict.
+    /// The row has no verdict.
     #[default]
     None,
-    /// Within the limits.
+    /// The value is within the limits.
     Good,
-    /// A warning.
+    /// The row contains a warning.
     Warning,
-    /// An error.
+    /// The row contains an error.
     Bad,
 }
 
@@ -194,7 +194,7 @@ impl Table {
         self.rows.push(Row { cells: cells.into_iter().collect(), mark });
     }
 
-    /// Removes columns that have no entries.
+    /// Removes columns in which every cell is empty.
     fn remove_empty_columns(&mut self) {
         let is_used =
             |index: usize| self.rows.iter().any(|row| row.cells.get(index).is_some_and(|cell| !cell.is_empty()));

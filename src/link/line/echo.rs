@@ -7,9 +7,9 @@ use crate::parameter::Keywords;
 pub enum Echo {
     /// Not known yet. The first exchange shows whether there is an echo.
     Unknown,
-    /// The adapter echoes.
+    /// The adapter echoes sent bytes.
     On,
-    /// The adapter does not echo.
+    /// The adapter does not echo sent bytes.
     Off,
 }
 

@@ -12,7 +12,7 @@ pub struct LineQuality {
     pub replies: u64,
     /// Number of repeated requests.
     pub retries: u64,
-    /// Number of damaged replies and of requests that the device reported as damaged.
+    /// Number of damaged replies, and of requests that the device reported as damaged.
     pub damaged: u64,
     /// Number of requests without a reply.
     pub silent: u64,
@@ -35,7 +35,7 @@ impl LineQuality {
         [self.retries, self.damaged, self.silent, self.late]
     }
 
-    /// Returns the reply time that `percent` of the most recent replies did not exceed, or `None` without replies.
+    /// Returns the given percentile of the most recent reply times, or `None` without replies.
     pub fn answer_time_percentile(&self, percent: usize) -> Option<Duration> {
         let mut times: Vec<Duration> = self.answers.iter().copied().collect();
         times.sort_unstable();

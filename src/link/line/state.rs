@@ -9,13 +9,14 @@ use crate::units::Moment;
 /// Longest supported reply delay of a connection.
 pub(super) const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 
-/// Range of the allowed reply delay beyond the protocol's worst case.
+/// Range of the extra time allowed for a reply beyond the protocol's worst case.
 pub(crate) const MARGIN: Milliseconds = Milliseconds(0..=LONGEST_MARGIN.as_millis() as u64);
 
 /// The state of a line, kept between jobs.
 #[derive(Clone, Debug)]
 pub struct LineState {
-    /// Allowed reply delay beyond the protocol's worst case. USB adapters and device servers deliver bytes late.
+    /// Extra time allowed for a reply beyond the protocol's worst case, because USB adapters and device servers deliver
+    /// bytes late.
     pub margin: Duration,
     /// Whether the adapter echoes sent bytes.
     pub echo: Echo,
@@ -74,7 +75,7 @@ impl LineState {
         self.troubled_since = None;
     }
 
-    /// Raises the margin to one and a half times the sum of the margin and `lateness`, up to [`LONGEST_MARGIN`].
+    /// Raises the margin to 1.5 times the sum of the margin and `lateness`, up to [`LONGEST_MARGIN`].
     pub(super) fn raise_margin(&mut self, lateness: Duration) {
         let margin = (self.margin + lateness).saturating_mul(3) / 2;
         self.margin = margin.min(LONGEST_MARGIN).max(self.margin);

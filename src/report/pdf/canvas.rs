@@ -20,7 +20,7 @@ pub(super) const LINE: Colour = [0xd5, 0xda, 0xdf];
 /// A graphic element of a page.
 #[derive(Clone, Debug)]
 pub(super) enum PageMark {
-    /// A text, positioned by the left end of its baseline.
+    /// A text. The coordinates are those of the left end of its baseline.
     Text { x: f32, y: f32, size: f32, face: Face, colour: Colour, text: String },
     /// A horizontal line.
     Rule { x: f32, y: f32, width: f32, thickness: f32, colour: Colour },

@@ -19,11 +19,11 @@ const SIGNATURE: Style = Style { face: Face::Text, size: 8.0, colour: MUTED };
 
 /// Width of the label in a label–value pair in points (45 mm).
 const LABELS: f32 = 127.6;
-/// Distance between a label and its value in points: 4 mm.
+/// Distance between a label and its value in points (4 mm).
 const LABEL_GAP: f32 = 11.3;
 /// Vertical distance between two label–value pairs, in points.
 const FACT_GAP: f32 = 2.5;
-/// Maximum number of lines up to which a label–value pair is kept on one page.
+/// Maximum number of lines in a label–value pair that is kept on one page.
 const KEPT_LINES: usize = 6;
 /// Maximum line length of a paragraph, in points.
 const MEASURE: f32 = 425.2;
@@ -125,7 +125,7 @@ impl Flow<'_> {
         }
     }
 
-    /// Returns the height of the part that must be on the same page as the preceding heading.
+    /// Returns the height of the content that must be on the same page as the heading before it.
     fn lead_height(&self, blocks: &[Block]) -> f32 {
         match blocks {
             [] => 0.0,

@@ -5,9 +5,9 @@ use super::typeface::{Face, Typefaces};
 
 /// Size of A4 in points.
 pub(super) const PAGE: (f32, f32) = (595.28, 841.89);
-/// Left, right and top margin in points: 18 mm.
+/// Left, right and top margin in points (18 mm).
 pub(super) const MARGIN: f32 = 51.02;
-/// Bottom margin in points, which contains the page number: 22 mm.
+/// Bottom margin in points (22 mm). It contains the page number.
 pub(super) const BOTTOM: f32 = 62.36;
 /// Width of the content in points.
 pub(super) const WIDTH: f32 = PAGE.0 - 2.0 * MARGIN;
@@ -25,11 +25,11 @@ pub(super) struct Style {
     pub(super) colour: Colour,
 }
 
-/// Pages under construction.
+/// The pages of a report while content is being placed on them.
 pub(super) struct Flow<'a> {
     pub(super) faces: &'a Typefaces,
     pub(super) pages: Vec<Vec<PageMark>>,
-    /// Vertical position of the next part on the last page.
+    /// Vertical position of the next item on the last page.
     pub(super) y: f32,
 }
 
@@ -66,7 +66,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Adds vertical space after the preceding part. No space is added at the top of a page.
+    /// Adds vertical space, except at the top of a page.
     pub(super) fn skip(&mut self, distance: f32) {
         if !self.is_page_empty() {
             self.y += distance;

@@ -41,7 +41,7 @@ fn decode_logo(bytes: Vec<u8>) -> Result<Image, PdfError> {
     Image::from_png(bytes.into(), true).map_err(|_| PdfError::Logo)
 }
 
-/// Renders a report as a PDF document. `printed` is the time of printing. The rest of the document depends only on the
+/// Renders a report as a PDF document. `printed` is the print time. The rest of the document depends only on the
 /// report.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Layout of a table: column widths, rows that are kept on one page, and a heading on each page.
+//! Layout of a table: column widths, rows that are not split between pages, and a heading on each page.
 
 use super::canvas::{Colour, LINE, MUTED, TEXT};
 use super::flow::{Flow, MARGIN, Style, WIDTH};
@@ -10,7 +10,7 @@ const HEADING: Style = Style { face: Face::Text, size: 8.0, colour: MUTED };
 const GAP: f32 = 9.0;
 /// Distance between the text of a row and its rules, in points.
 const PADDING: f32 = 2.4;
-/// A number as wide as the narrowest column in which text is broken into lines.
+/// Digits whose width is the minimum width of a column with code.
 const LEAST_DIGITS: &str = "0000000";
 const GOOD: Colour = [0x0b, 0x7a, 0x52];
 const WARNING: Colour = [0xa9, 0x4b, 0x06];
@@ -135,8 +135,8 @@ const fn marked(style: Style, mark: Mark) -> Style {
     }
 }
 
-/// Returns the widths of the columns. Columns that must not be broken are as wide as their content. The others share
-/// the remaining width in proportion to their content.
+/// Returns the widths of the columns. Columns whose text must stay on one line are as wide as their content. The others
+/// share the remaining width in proportion to their content.
 fn column_widths(flow: &Flow<'_>, table: &Table) -> Vec<f32> {
     let available = WIDTH - GAP * table.columns.len().saturating_sub(1) as f32;
     let bounds: Vec<(f32, f32)> = table

@@ -1,5 +1,5 @@
-//! Typefaces and their glyph widths. Texts are set without kerning and ligatures, which the built-in fonts do not need
-//! at the sizes of a report.
+//! Typefaces and their glyph widths. Text is set without kerning and ligatures, because the built-in fonts do not need
+//! them at the sizes used in reports.
 
 use std::borrow::Cow;
 
@@ -31,7 +31,7 @@ pub(super) struct Run {
     pub(super) font: Font,
     pub(super) glyphs: Vec<KrillaGlyph>,
     pub(super) text: String,
-    /// Width at the size of the run, in points.
+    /// Width in points at the font size of the run.
     pub(super) width: f32,
 }
 
@@ -50,7 +50,7 @@ impl Typefaces {
         }
     }
 
-    /// Returns a typeface that contains a character, preferably the given one, and the glyph with its advance in ems.
+    /// Returns a typeface that contains a character, preferably the given one, with the glyph and its advance in ems.
     fn glyph(&self, face: Face, character: char) -> (Face, u32, f32) {
         let found = [face, Face::Mono, Face::Text].into_iter().find_map(|face| {
             let (glyph, advance) = self.face(face).glyph(character)?;

@@ -73,8 +73,8 @@ pub(super) fn encoder_parity(reading: &Reading, inverted: bool) -> Option<Parity
     reading.parity.map(|parity| Parity { even: parity.even != turned(parity), ..parity })
 }
 
-/// Returns the even parity bit after a Gray code, if any. Both this bit and a zero that is covered by the code look like
-/// the lowest position bit.
+/// Returns the even parity bit after a Gray code, if any. Both this bit and a zero that is covered by the code look
+/// like the lowest position bit.
 pub(super) fn find_ambiguous_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
     encoder_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
 }
