@@ -329,7 +329,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.recorder.handle_action(recorder::RecorderAction::SetSpan(span));
     }
 
-    /// Sets the scales of the following positions. If they no longer apply to the same positions, the current lines end.
+    /// Sets the scales of the following positions. If they no longer apply to the same positions, the lines end.
     fn set_scales(&mut self, meaning: &PositionScales) {
         if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_location(meaning)) {
             if own.meaning != *meaning {

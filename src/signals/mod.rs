@@ -1,4 +1,4 @@
-//! The Signals tool: analysis of recorded or live sine and cosine signals, without a session.
+//! The Signals tool, which analyses recorded or live sine and cosine signals. It needs no open device.
 
 pub(crate) mod commands;
 pub mod state;

@@ -1,7 +1,7 @@
-//! The only way to write, in the same order for every kind of device. The plan requires consent and an unchanged base.
-//! A backup is saved on disk, and the logbook records the intent. Each operation is written and read back, and the
-//! logbook records the result. A device supplies its own parts as a [`Write`] and cannot omit a step: its operations
-//! require a [`ConfirmedPlan`], which only [`write_plan`] creates.
+//! The only way to write, with the same steps for every kind of device. The plan requires consent and an unchanged
+//! base. A backup is saved on disk, and the logbook records the intent. Each operation is written and read back, and
+//! the logbook records the result. A device supplies its own parts as a [`Write`] and cannot omit a step: its
+//! operations require a [`ConfirmedPlan`], which only [`write_plan`] creates.
 
 #[cfg(test)]
 mod tests;
@@ -23,11 +23,12 @@ use crate::profile::{
 };
 use crate::store::{DeviceKey, EntryId, EntryKind, EntryUid, FileError, Intent, Logbook, LogbookError, Outcome, Store};
 
-/// Maximum time for an exchange with the server of the logbook, before the write cycles of this computer have to do.
+/// Maximum time for an exchange with the logbook server. After that, only the write cycles known to this computer
+/// count.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// Greatest limit of write cycles of a memory that wears out quickly. With such a limit, the write cycles that the
-/// logbook lacks may be as many as are left.
+/// Maximum limit of write cycles for which a memory counts as wearing out quickly. Write cycles missing from the
+/// logbook could then use up all that are left.
 const QUICKLY_WORN: u64 = 10_000;
 
 /// A plan approved by the user, with the values on which it is based.
@@ -43,7 +44,7 @@ pub struct ApprovedPlan<P> {
     pub undoes: Option<EntryUid>,
 }
 
-/// A write whose before-image is saved and which is recorded in the logbook.
+/// A write that is recorded in the logbook, with the backup saved before it.
 struct WriteIntent {
     backup: PathBuf,
     entry: Result<(Logbook, EntryId), LogbookError>,
@@ -52,11 +53,11 @@ struct WriteIntent {
 /// The result of a commit.
 #[derive(Clone, Debug, Default)]
 pub struct CommitResult<W> {
-    /// Outcome of the write, as defined by the kind of device.
+    /// Result of the write, as defined by the kind of device.
     pub written: W,
-    /// Path of the before-image. `None` if there was nothing to write.
+    /// Path of the backup. `None` if there was nothing to write.
     pub backup: Option<PathBuf>,
-    /// Logbook error after the write. The write itself is complete.
+    /// Logbook error after the write, which is itself complete.
     pub logbook_warning: Option<LogbookError>,
 }
 
@@ -66,13 +67,13 @@ pub enum NotStarted {
     /// The consent is for another plan.
     #[error("the consent is for another plan")]
     OtherPlan,
-    /// The number of earlier write cycles cannot be read, or the new ones cannot be counted.
+    /// The number of earlier write cycles is unknown, or the new ones cannot be counted.
     #[error("the number of previous write cycles is unknown, so {cost} more cannot be counted")]
     WearUnknown {
         /// Number of write cycles required by the plan.
         cost: u64,
     },
-    /// The logbook lacks write cycles, and the memory wears out quickly.
+    /// Write cycles may be missing from the logbook, and the memory wears out quickly.
     #[error("at least {seen} of {limit} write cycles seen, {cost} more are planned")]
     WearIncomplete {
         /// Number of known write cycles.
@@ -92,12 +93,12 @@ pub enum NotStarted {
         /// Number of write cycles beyond which the device is considered worn.
         limit: u64,
     },
-    /// The before-image cannot be saved.
+    /// The backup cannot be saved.
     #[error(transparent)]
     NotKept(FileError),
 }
 
-/// A plan made by a job, with all data needed for a write, except the connection.
+/// A plan made by a job, with everything needed to write it except the connection.
 pub trait PlannedWrite {
     /// Values on which the plan is based.
     type Base: Hash;
@@ -112,16 +113,16 @@ pub trait PlannedWrite {
     /// Returns the key that identifies the device in backups and the logbook.
     fn device(&self, is_virtual: bool) -> DeviceKey;
 
-    /// Returns the items that an operation changes, for the logbook.
+    /// Returns the items changed by an operation, for the logbook.
     fn changed_items(&self, op: &Self::Op) -> Vec<ChangedItem>;
 
     /// Returns the kind of the logbook entry.
     fn entry_kind(&self) -> EntryKind;
 
-    /// Returns the profile to be saved before the write. It contains the values from which the write can be undone.
+    /// Returns the profile to save before the write. It contains the values for undoing the write.
     fn backup(&self) -> ProfileDocument;
 
-    /// Returns how each operation can be undone. `None` means that the operation changes nothing.
+    /// Returns how each operation can be undone, or `None` for an operation that changes nothing.
     fn undos(&self) -> Vec<Option<Undo>> {
         Undo::of_plan(self)
     }
@@ -136,8 +137,7 @@ pub trait PlannedWrite {
         self.header().kind
     }
 
-    /// Returns the write cycles recorded for the device in the logbook of this computer. Returns `None` if the logbook
-    /// cannot be read.
+    /// Returns the device's write cycles according to the logbook, or `None` if the logbook cannot be read.
     fn cycles_seen(&self) -> Option<CycleCount> {
         self.header().cycles_seen
     }
@@ -154,18 +154,18 @@ pub struct PlanHeader<'p, P: PlannedWrite + ?Sized> {
     pub plan: &'p Plan<P::Base, P::Op>,
     /// Kind of change that the plan makes.
     pub kind: P::Kind,
-    /// Write cycles recorded for the device in the logbook. `None` if it cannot be read.
+    /// Write cycles of the device according to the logbook. `None` if the logbook cannot be read.
     pub cycles_seen: Option<CycleCount>,
     /// Number of write cycles beyond which the device is considered worn.
     pub wear_limit: u64,
 }
 
-/// The error of a write that did not begin or was interrupted. It is the device's error if the base has changed.
+/// The error of a write that did not begin or was interrupted. If the base has changed, it is the device's own error.
 type WritePlanError<P, W, E> =
     JobError<<<W as Write>::Error as OperationError>::Device, E, InterruptedWriteOf<W>, <P as PlannedWrite>::Kind>;
 
 /// Writes a plan to which the user has consented. Each operation is reported before it begins. A plan without
-/// operations succeeds.
+/// operations always succeeds.
 ///
 /// # Errors
 /// Returns a [`JobError`] if the write did not begin or was not completed.
@@ -212,32 +212,32 @@ pub fn write_plan<P: PlannedWrite, W: Write<Base = P::Base, Op = P::Op>, E>(
     }
 }
 
-/// Creates the profile to be saved before a write.
+/// Creates the profile to save before a write.
 pub fn backup_document(body: Body) -> ProfileDocument {
     let mut document = ProfileDocument::new(Timestamp::now().to_string(), body);
     document.note = Some("before-image of a write".to_owned());
     document
 }
 
-/// Returns the minimum total of a device's write cycles after `cost` further cycles. Returns `None` if `cost` is zero
-/// or the total is below `warning`.
+/// Returns the minimum total of write cycles after `cost` more. Returns `None` if `cost` is zero or the total is below
+/// `warning`.
 pub(crate) fn total_cycles_to_report(seen: Option<CycleCount>, cost: u64, warning: u64) -> Option<u64> {
     let after = seen.map_or(0, |count| count.seen).saturating_add(cost);
     (cost > 0 && after >= warning).then_some(after)
 }
 
-/// Returns whether a write costs cycles on a device whose earlier write cycles are unknown.
+/// Returns whether a write costs write cycles although the number of earlier ones is unknown.
 pub const fn is_uncounted(seen: Option<CycleCount>, cost: u64) -> bool {
     seen.is_none() && cost > 0
 }
 
-/// Returns whether a write needs a permit because the logbook lacks write cycles.
+/// Returns whether a write needs permission because write cycles may be missing from the logbook.
 pub fn is_incomplete(seen: Option<CycleCount>, cost: u64, limit: u64) -> bool {
     matches!(check_wear(seen, cost, limit, false), Err(NotStarted::WearIncomplete { .. }))
 }
 
-/// Returns the write cycles recorded for a device in the logbook, after asking other benches for theirs and announcing
-/// the device to them. Returns `None` if the logbook cannot be read.
+/// Returns a device's write cycles according to the logbook, after fetching those recorded on other computers. Also
+/// announces to them that the device is connected here. Returns `None` if the logbook cannot be read.
 pub fn cycles_seen(log: &SessionLog, store: &Store, device: &DeviceKey) -> Option<CycleCount> {
     log.record_identity(store, device);
     let path = store.logbook_path();
@@ -245,14 +245,14 @@ pub fn cycles_seen(log: &SessionLog, store: &Store, device: &DeviceKey) -> Optio
     count_cycles(&path, device, transferred.is_none_or(|result| result.is_ok()))
 }
 
-/// Returns the write cycles recorded for a device in the local file. Returns `None` if the file cannot be read, or if
-/// an earlier file was damaged and is still there.
+/// Returns a device's write cycles according to the local file. Returns `None` if the file cannot be read, or if an
+/// earlier damaged file still exists.
 pub fn known_cycles(store: &Store, device: &DeviceKey) -> Option<CycleCount> {
     let server = store.logbook_server();
     count_cycles(&store.logbook_path(), device, !server.is_set() || server.contact().is_reached)
 }
 
-/// Counts the write cycles in the local file. `is_complete` means that it has the entries of all benches.
+/// Counts the write cycles in the local file. `is_complete` states whether the file has the entries of all computers.
 fn count_cycles(path: &Path, device: &DeviceKey, is_complete: bool) -> Option<CycleCount> {
     if matches!(path.try_exists(), Ok(false)) {
         return Some(CycleCount { seen: 0, is_complete });
@@ -269,7 +269,7 @@ fn count_cycles(path: &Path, device: &DeviceKey, is_complete: bool) -> Option<Cy
     }
 }
 
-/// Checks whether a write with this cost may begin, according to the known write cycles.
+/// Checks whether a write of this cost may begin, given the known write cycles.
 ///
 /// # Errors
 /// Returns [`NotStarted::WearUnknown`], [`NotStarted::WearIncomplete`] or [`NotStarted::Worn`].
@@ -288,7 +288,7 @@ pub const fn check_wear(seen: Option<CycleCount>, cost: u64, limit: u64, force_w
 }
 
 impl WriteIntent {
-    /// Saves the before-image and records the intended write in the logbook.
+    /// Saves a backup and records the intended write in the logbook.
     fn record(store: &Store, device: &DeviceKey, intent: Intent, before: &str) -> Result<Self, FileError> {
         let backup = store.backups().save(&device.kind, &device.serial_number, Timestamp::now(), before)?;
         let intent = Intent { backup: Some(backup.clone()), ..intent };
@@ -300,7 +300,7 @@ impl WriteIntent {
         Ok(WriteIntent { backup, entry })
     }
 
-    /// Records the end of the write. Returns the path of the before-image and any logbook error.
+    /// Records the result of the write. Returns the path of the backup and any logbook error.
     fn record_outcome(self, outcome: Outcome, spent: u64) -> (PathBuf, Option<LogbookError>) {
         let warning = match self.entry {
             Ok((mut logbook, id)) => logbook.record_outcome(id, Timestamp::now(), outcome, spent).err(),

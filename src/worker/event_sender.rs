@@ -1,5 +1,5 @@
-//! Sending of events from the thread of a session. Events about jobs are never lost, and only the latest progress is
-//! kept. The thread never blocks.
+//! Sending of events from a session's thread. Events about jobs are never lost, but only the latest progress is kept.
+//! The thread never blocks.
 
 use std::sync::Arc;
 
@@ -10,8 +10,8 @@ use super::{Device, Event};
 /// Maximum number of unread events. Pending progress counts as one event.
 pub(super) const CAPACITY: usize = 64;
 
-/// A sender with a queue for events that do not fit into the channel. The queue never contains events of more than one
-/// job, because the next job does not start while the channel is full.
+/// A sender with a queue for events that do not fit into the channel. The queue never holds events of more than one
+/// job, because no job starts while the channel is full.
 pub(super) struct EventSender<D: Device> {
     sender: Sender<Event<D>>,
     wake: Arc<dyn Fn() + Send + Sync>,

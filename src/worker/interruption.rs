@@ -1,4 +1,4 @@
-//! Reasons why a job on a writable device is aborted, before or after the first write.
+//! Reasons for aborting a job on a writable device, before or after its first write.
 
 use std::path::PathBuf;
 
@@ -15,13 +15,13 @@ pub trait JobInterruption {
         None
     }
 
-    /// Returns whether the device had been written to before the job was aborted.
+    /// Returns whether anything had been written to the device before the job was aborted.
     fn has_begun(&self) -> bool {
         self.operations_done().is_some()
     }
 }
 
-/// The reason why a job was aborted. `E` is the error type of the device, `P` that of planning, `I` an
+/// The reason why a job was aborted. `E` is the error type of the device and `P` that of planning. `I` is an
 /// [`InterruptedWrite`], and `K` the kind of change.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError<E, P, I, K> {
@@ -37,7 +37,7 @@ pub enum JobError<E, P, I, K> {
     /// The write began but was not completed.
     #[error("{interrupted}; before-image: {}", backup.display())]
     Interrupted {
-        /// Changes that were written, the cause, and the state of the device.
+        /// Changes already written, the cause, and the state of the device.
         interrupted: Box<I>,
         /// Path of the backup.
         backup: PathBuf,
@@ -51,7 +51,7 @@ pub enum JobError<E, P, I, K> {
 impl<P, Op, E: OperationError, Done: WriteRecord, Left, K>
     JobError<E::Device, P, InterruptedWrite<Op, E, Done, Left>, K>
 {
-    /// Returns the error from the device or its connection, whether or not the device had been written to.
+    /// Returns the error from the device or its connection, whether or not anything had been written.
     pub fn device(&self) -> Option<&E::Device> {
         match self {
             JobError::Device(error) => Some(error),

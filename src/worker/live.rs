@@ -1,5 +1,5 @@
-//! Requests to a worker while its thread runs: cancellation, sampling interval and watched values. Requests are not
-//! queued, so only the latest one of each type is valid.
+//! Requests to a worker while its thread is running: cancellation, sampling interval and watched values. Requests are
+//! not queued: a new one replaces the previous one of its type.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -8,15 +8,15 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use crate::link::CancelToken;
 
-/// Maximum interval of polling and of watched values. Longer intervals are reduced to this value.
+/// Maximum interval of polling and of watched values. Longer intervals are shortened to this.
 const MAX_INTERVAL: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// The live requests of a session, shared by all clones.
+/// The current requests to a session, shared by all clones.
 #[derive(Clone)]
 pub(super) struct LiveRequests {
     requests: Arc<Mutex<PollRequests>>,
     sampling: CancelToken,
-    /// Channel that wakes the thread. If the channel is full, the thread is already about to wake.
+    /// Channel that wakes the thread. A full channel means that the thread is about to wake anyway.
     changed: Sender<()>,
 }
 
@@ -24,19 +24,19 @@ struct PollRequests {
     /// Cancellation token of the running job or, if none is running, of the last one.
     job: CancelToken,
     interval: Option<Duration>,
-    /// Number of the polling request. A failure ends only the request with the same number.
+    /// Number of the polling request. A failed sample ends polling only if it belongs to this request.
     number: u64,
 }
 
 impl LiveRequests {
-    /// Creates live requests with their initial values, and the receiver that notifies the thread of changes.
+    /// Creates the requests with their initial values, and the receiver that notifies the thread of changes.
     pub(super) fn new() -> (Self, Receiver<()>) {
         let (changed, changes) = bounded(1);
         let requests = Arc::new(Mutex::new(PollRequests { job: CancelToken::default(), interval: None, number: 0 }));
         (LiveRequests { requests, sampling: CancelToken::default(), changed }, changes)
     }
 
-    /// Sets the job to which subsequent stops apply.
+    /// Sets the job that a stop cancels from now on.
     pub(super) fn set_job_cancel(&self, cancel: CancelToken) {
         self.lock().job = cancel;
     }
@@ -69,7 +69,7 @@ impl LiveRequests {
         self.lock().number
     }
 
-    /// Ends polling after a sample of the given request has failed. The thread calls this function.
+    /// Ends polling after a sample has failed, unless a newer request has replaced `number`. Called by the thread.
     pub(super) fn poll_failed(&self, number: u64) {
         let mut requests = self.lock();
         if requests.number == number {
@@ -77,8 +77,8 @@ impl LiveRequests {
         }
     }
 
-    /// Interrupts a running sample. The caller must first store its request, because the thread resets the token before
-    /// it reads the requests.
+    /// Interrupts a running sample. The caller must store its request first, because the thread resets the token before
+    /// reading the requests.
     pub(super) fn interrupt_sample(&self) {
         self.sampling.request();
     }
@@ -115,7 +115,7 @@ struct WatchEntries<W> {
 struct WatchEntry<W> {
     value: W,
     interval: Duration,
-    /// Whether the device has rejected the value. A rejected value stays in the list but is not requested again.
+    /// Whether the device has rejected the value. A rejected value stays in the list but is no longer requested.
     refused: bool,
 }
 
@@ -125,7 +125,7 @@ impl<W: Clone + PartialEq> WatchList<W> {
         WatchList { list: Arc::new(Mutex::new(WatchEntries { entries: Vec::new(), number: 0 })), live }
     }
 
-    /// Sets the values to watch. If a value is listed more than once, the first entry is used.
+    /// Sets the values to watch. If a value is listed twice, its first entry is used.
     pub(super) fn set_entries(&self, watched: Vec<(W, Duration)>) {
         let mut list = self.lock();
         let mut entries: Vec<WatchEntry<W>> = Vec::with_capacity(watched.len());
@@ -144,7 +144,7 @@ impl<W: Clone + PartialEq> WatchList<W> {
         self.live.wake_thread();
     }
 
-    /// Returns the [active entries](Self::active_entries) if the list has changed since `known`. Updates `known`.
+    /// Returns the [active entries](Self::active_entries) if the list has changed since `known`, and updates `known`.
     pub(super) fn changed_entries(&self, known: &mut u64) -> Option<Vec<(W, Duration)>> {
         let list = self.lock();
         let changed = std::mem::replace(known, list.number) != list.number;
@@ -156,7 +156,7 @@ impl<W: Clone + PartialEq> WatchList<W> {
         self.lock().active_entries()
     }
 
-    /// Records that the device does not have the given value.
+    /// Records that the device does not have a value.
     pub(super) fn mark_unsupported(&self, what: &W) {
         let mut list = self.lock();
         list.number += 1;
@@ -183,7 +183,7 @@ impl<W> Clone for WatchList<W> {
     }
 }
 
-/// A handle that stops a worker without owning it. All clones stop the same worker.
+/// A handle that can stop a worker without owning it. All clones stop the same worker.
 #[derive(Clone)]
 pub struct WorkerStopHandle(LiveRequests);
 

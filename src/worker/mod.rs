@@ -46,7 +46,7 @@ use crate::analysis::check::Verdict;
 use crate::link::{CancelToken, LinkError};
 use crate::store::DeviceKey;
 
-/// A kind of device in a session, with its connection, known data and jobs.
+/// A kind of device as run by a session: its connection, known data and jobs.
 pub trait Device: Send + 'static {
     /// A request to the device.
     type Job: Send + fmt::Debug;
@@ -56,9 +56,9 @@ pub trait Device: Send + 'static {
     type Error: JobInterruption + Send + fmt::Debug;
     /// A message that the device sends in addition to its replies.
     type DeviceMessage: Send + fmt::Debug;
-    /// A polled sample. If it contains a watched value, it identifies that value.
+    /// A polled sample. If it contains a watched value, it also identifies the value.
     type Sample: Send + fmt::Debug + 'static;
-    /// A value that can be watched. It is requested between two samples.
+    /// A value that can be watched, which means that it is requested between two samples.
     type Watch: Clone + PartialEq + Send + fmt::Debug + 'static;
     /// A step reported by a job.
     type JobStep: Clone + Send + fmt::Debug;
@@ -74,34 +74,34 @@ pub trait Device: Send + 'static {
         tell: &mut dyn FnMut(JobReport<Self::DeviceMessage, Self::JobStep>),
     ) -> Result<Self::Output, Self::Error>;
 
-    /// Returns the key of the most recently identified device. The default is for devices without a serial number.
+    /// Returns the key of the device identified last. The default is for devices without a serial number.
     fn identified(&self, _is_virtual: bool) -> Option<DeviceKey> {
         None
     }
 
-    /// Returns the status codes in a result, for the logbook. The default is for devices that have none or that record
-    /// them while they are read.
+    /// Returns the status codes in a result, for the logbook. The default is for devices without status codes, or that
+    /// record them as they are read.
     fn status_codes(_output: &Self::Output) -> Option<String> {
         None
     }
 
-    /// Returns the verdicts of a device check, or `None` if the result is not that of a check.
+    /// Returns the verdicts of a device check, or `None` for the result of any other job.
     fn check_verdicts(_output: &Self::Output) -> Option<Vec<Verdict>> {
         None
     }
 
-    /// Sets the interval of subsequent samples. `None` stops sampling. Data that the device sends without requests
-    /// start with the next sample and stop when `None` is set.
+    /// Sets the interval of the following samples. `None` stops sampling. Data that the device sends without requests
+    /// start with the next sample and stop with `None`.
     fn set_sample_interval(&mut self, _desk: &mut SessionContext, _interval: Option<Duration>) {}
 
-    /// Takes one sample with as few exchanges as possible. Messages from the device during this time are included in
-    /// the sample.
+    /// Takes one sample with as few exchanges as possible. Any messages from the device in the meantime are part of the
+    /// sample.
     ///
     /// # Errors
     /// Returns an error if there is no sample. This ends polling.
     fn take_sample(&mut self, context: &mut SessionContext) -> Result<Self::Sample, Self::Error>;
 
-    /// Requests a watched value. Messages from the device during this time are included in the sample.
+    /// Requests a watched value. Any messages from the device in the meantime are part of the sample.
     ///
     /// # Errors
     /// Returns an error if the device does not answer. This ends polling. Rejecting the request counts as an answer.
@@ -127,7 +127,7 @@ pub trait Device: Send + 'static {
         IDLE
     }
 
-    /// Maintains the session while no job is running. Returns a message from the device, if any.
+    /// Maintains the connection while no job is running. Returns a message from the device, if any.
     fn maintain(&mut self, _desk: &mut SessionContext) -> Option<Self::DeviceMessage> {
         None
     }
@@ -147,9 +147,9 @@ pub(crate) const IDLE: Duration = Duration::from_millis(500);
 /// The reply to a request for a watched value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum WatchReply<S> {
-    /// The sample contains the value, or the reason why it is currently not available.
+    /// The value, or the reason why it is currently not available.
     Sample(S),
-    /// The device does not have the value, which is not requested again. The sample contains the rejection.
+    /// The device does not have the value. The sample contains the rejection, and the value is not requested again.
     Refused(S),
 }
 
@@ -197,7 +197,7 @@ pub enum Event<D: Device> {
     Finished(JobId, Box<D::Output>),
     /// The job failed.
     Failed(JobId, Box<D::Error>),
-    /// The user cancelled the job. For a job that writes, the error includes the changes that were already written.
+    /// The user cancelled the job. For a writing job, the error includes the changes already written.
     Cancelled(JobId, Box<D::Error>),
     /// A sample failed, and polling has stopped.
     PollFailed(Box<D::Error>),
@@ -208,10 +208,10 @@ pub enum Event<D: Device> {
 /// The reason why a job was not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SubmitError {
-    /// A job is already running. Jobs are not queued.
+    /// Another job is running. Jobs are not queued.
     #[error("busy with another job")]
     Busy,
-    /// The channel is full of unread events, which must be read first.
+    /// The channel is full. Unread events must be read first.
     #[error("the channel is full of unread events")]
     Unread,
     /// The worker has ended.
@@ -219,8 +219,7 @@ pub enum SubmitError {
     Ended,
 }
 
-/// A handle to the thread of a session. Dropping it stops the running work and ends the thread, without waiting for
-/// either.
+/// A handle to a session's thread. Dropping it stops the running work and ends the thread, without waiting.
 pub struct Worker<D: Device> {
     orders: Sender<SubmittedJob<D>>,
     events: Receiver<Event<D>>,
@@ -262,7 +261,7 @@ impl<D: Device> Worker<D> {
         Ok(Worker { orders, events, samples, live, watches, busy, ended, next: 0 })
     }
 
-    /// Submits a job. It takes precedence over sampling and waits only for the exchange in progress.
+    /// Submits a job. It takes precedence over sampling and waits only for an exchange in progress.
     ///
     /// # Errors
     /// Returns a [`SubmitError`] if the job is not accepted.
@@ -297,34 +296,32 @@ impl<D: Device> Worker<D> {
         self.live.stop_handle()
     }
 
-    /// Requests samples while no job is running. `interval` is the time between the starts of two samples. With an
-    /// interval of zero, each sample starts as soon as the previous one has ended. `None` stops sampling. A new request
-    /// takes effect immediately.
+    /// Requests samples while no job is running. `interval` is the time from the start of one sample to the start of
+    /// the next. With an interval of zero, each sample starts as soon as the previous one has ended. `None` stops
+    /// sampling. A new request takes effect immediately.
     pub fn poll(&self, interval: Option<Duration>) {
         self.live.poll(interval);
     }
 
-    /// Returns the current polling interval, or `None` while there is no polling, for example after a failed sample or
-    /// a stop.
+    /// Returns the current polling interval, or `None` if polling is off, for example after a failed sample or a stop.
     pub fn polling_interval(&self) -> Option<Duration> {
         self.live.polling_interval()
     }
 
-    /// Sets the values to watch, each with the interval between the starts of two requests. Duplicates are ignored, and
-    /// a new list replaces the previous one. While the device is polled, at most one value is requested between two
+    /// Sets the values to watch, each with its request interval, measured from start to start. Duplicates are ignored,
+    /// and a new list replaces the previous one. While the device is polled, at most one value is requested between two
     /// samples. A value that the device does not have is requested only once. The list is kept when polling ends, and
     /// watching resumes with polling.
     pub fn watch_values(&self, watched: Vec<(D::Watch, Duration)>) {
         self.watches.set_entries(watched);
     }
 
-    /// Returns the watched values in the order in which they were listed. Values that the device has rejected are
-    /// omitted.
+    /// Returns the watched values in listed order, without those that the device has rejected.
     pub fn watched_values(&self) -> Vec<(D::Watch, Duration)> {
         self.watches.active_entries()
     }
 
-    /// Returns the buffer of samples, which holds at most 4096. New samples do not call `wake`.
+    /// Returns the ring of samples, which holds at most 4096. New samples do not call `wake`.
     pub fn samples(&self) -> &Ring<D::Sample> {
         &self.samples
     }
@@ -350,8 +347,8 @@ impl<D: Device> Worker<D> {
         EndingWorker { events: self.events.clone(), ended: self.ended.clone() }
     }
 
-    /// Ends the thread like [`end`](Self::end) without consuming the worker. No further jobs are accepted. Waits for at
-    /// most `patience` and returns whether the thread has ended and the connection is free.
+    /// Ends the thread like [`end`](Self::end), without consuming the worker. No further jobs are accepted. Waits for
+    /// at most `patience` and returns whether the thread has ended and the connection is free.
     pub fn finish(&mut self, patience: Duration) -> bool {
         self.live.stop();
         // The thread ends as soon as no more jobs can arrive.
@@ -372,14 +369,14 @@ impl<D: Device> Drop for Worker<D> {
     }
 }
 
-/// A worker that is ending. Its thread ends as soon as the running work does.
+/// A worker that is ending. Its thread ends together with the running work.
 pub struct EndingWorker<D: Device> {
     events: Receiver<Event<D>>,
     ended: Receiver<Never>,
 }
 
 impl<D: Device> EndingWorker<D> {
-    /// Returns the channel of the remaining events, which report how the last job ended.
+    /// Returns the channel with the remaining events, which report how the last job ended.
     pub fn events(&self) -> &Receiver<Event<D>> {
         &self.events
     }

@@ -1,4 +1,4 @@
-//! Opening of connections from links. This part is common to all devices that use a byte stream.
+//! Opening of connections from links, for all devices on a byte stream.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -24,10 +24,10 @@ pub enum OpenError {
     /// The connection failed.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// The recording cannot be read.
+    /// The trace file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The file is not a valid recording.
+    /// The file is not a valid trace.
     #[error("{path}: {cause}")]
     Recording {
         /// Path of the file.
@@ -35,13 +35,13 @@ pub enum OpenError {
         /// Cause of the error.
         cause: TraceFileError,
     },
-    /// The user-defined table of encoder types is invalid.
+    /// The user's table of encoder types is invalid.
     #[error(transparent)]
     Store(#[from] StoreError),
 }
 
-/// Returns the delay of replies that a kind of connection adds to the worst case of the protocol. USB adapters deliver
-/// data in packets, and device servers reply over a network. A thread also needs time to wake up.
+/// Returns the time by which a connection may delay replies beyond the worst case of the protocol. USB adapters deliver
+/// data in packets, device servers reply over a network, and a thread needs time to wake up.
 pub(crate) const fn reply_margin(scheme: LinkScheme) -> Duration {
     match scheme {
         LinkScheme::Serial => Duration::from_millis(50),
@@ -76,12 +76,12 @@ pub fn connect_simulated(device: impl ByteDevice + 'static, clock: &Arc<dyn Cloc
     Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
 }
 
-/// Creates the error for a link whose scheme does not lead to a device of this kind. `known` lists the allowed schemes.
+/// Creates the error for a link that does not lead to this kind of device. `known` lists the allowed schemes.
 pub fn wrong_target_error(scheme: LinkScheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.keyword(), known }.into()
 }
 
-/// Reads a recorded trace.
+/// Reads a trace file for replay.
 ///
 /// # Errors
 /// Returns [`OpenError::File`] if the file cannot be read, or [`OpenError::Recording`] if it is not a valid recording.
@@ -103,8 +103,8 @@ pub fn check_parameters(query: &UrlQuery, scheme: LinkScheme, known: &[&str]) ->
     }
 }
 
-/// Returns the settings of a link's virtual device, which are the parameters of the link without those of the `line`. A
-/// real device has no settings.
+/// Returns the settings of the virtual device in a link: all parameters except those of the `line`. A link to a real
+/// device has no settings.
 ///
 /// # Errors
 /// Returns [`UrlError::Unknown`] if the link refers to a real device and has a parameter that the line does not

@@ -1,5 +1,5 @@
 //! The schedule of requests to a polled device. At most one watched value is requested between two samples. The
-//! schedule does not depend on a clock.
+//! schedule does not use a clock.
 
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,7 @@ pub(super) enum DueRequest<W> {
     Watch(W),
 }
 
-/// A schedule of requests, each with its own interval.
+/// A schedule of repeated requests, each with its own interval.
 pub(super) struct PollScheduler<W> {
     sample: PollTiming,
     watches: Vec<WatchSchedule<W>>,
@@ -39,8 +39,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         }
     }
 
-    /// Returns the next request and its time. If several requests are due, this is the sample, and otherwise the
-    /// earliest request. Watching pauses while sampling is off. A new request is due immediately.
+    /// Returns the request that is due first, and its time. If a sample and a watched value are due at the same time,
+    /// the sample comes first. Watching pauses while sampling is off. New requests are due immediately.
     pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, DueRequest<W>)> {
         let sample = self.sample.next_due(polling, now);
         let mut next: Option<(Instant, DueRequest<W>)> = None;
@@ -57,7 +57,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         next.filter(|(due, _)| *due < sample).or(Some((sample, DueRequest::Sample)))
     }
 
-    /// Records that the request was made and that its reply arrived at `now`.
+    /// Records that the request was made and answered at `now`.
     pub(super) fn mark_completed(&mut self, due: &DueRequest<W>, now: Instant) {
         self.sample_was_last = *due == DueRequest::Sample;
         match due {
@@ -71,8 +71,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
     }
 }
 
-/// The timing of a request with equal intervals between its starts. Starts that are missed because of a late request
-/// are skipped.
+/// The timing of a request whose starts are equally spaced. Starts missed because of a late request are skipped.
 #[derive(Default)]
 struct PollTiming {
     interval: Option<Duration>,
@@ -122,7 +121,7 @@ mod tests {
         assert_eq!(pace.next_due(None, start + ms(530)), None);
     }
 
-    /// Returns the requests up to `end` with their start times in milliseconds, if each request takes 25 ms.
+    /// Returns the requests made until `end` with their start times in milliseconds. Each request takes 25 ms.
     fn course(polling: u64, watches: &[(char, u64)], end: u64) -> String {
         let start = Instant::now();
         let mut agenda = PollScheduler::default();

@@ -1,5 +1,5 @@
 //! A bounded ring for data that may be dropped, such as samples and trace frames. The writer never waits for the
-//! reader. If the ring is full, the oldest entries are dropped and counted.
+//! reader: if the ring is full, the oldest entries are dropped and counted.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -11,7 +11,7 @@ pub struct Ring<T>(Arc<Mutex<State<T>>>);
 struct State<T> {
     items: VecDeque<T>,
     capacity: usize,
-    /// Maximum total size of the entries, as measured by `size_of`.
+    /// Maximum total size of the entries in bytes, as measured by `size_of`.
     most: usize,
     size: usize,
     size_of: fn(&T) -> usize,
@@ -28,7 +28,7 @@ impl<T> State<T> {
 }
 
 impl<T> Ring<T> {
-    /// Creates an empty ring that holds at most `capacity` entries, but at least one.
+    /// Creates an empty ring for at most `capacity` entries. A capacity of 0 counts as 1.
     pub fn new(capacity: usize) -> Self {
         Ring::with_byte_limit(capacity, usize::MAX, |_| 0)
     }
@@ -40,7 +40,7 @@ impl<T> Ring<T> {
         Ring(Arc::new(Mutex::new(State { items, capacity, most, size: 0, size_of, dropped: 0 })))
     }
 
-    /// Appends an entry. If the ring is full, the oldest entry is dropped.
+    /// Appends an entry. A full ring drops its oldest entry.
     pub fn push(&self, item: T) {
         let mut state = self.lock();
         let size = (state.size_of)(&item);
@@ -55,7 +55,7 @@ impl<T> Ring<T> {
         drop(oldest);
     }
 
-    /// Takes all entries, oldest first. Also returns the number of entries dropped since the previous call.
+    /// Takes all entries, oldest first, and the number of entries dropped since the previous call.
     pub fn drain(&self) -> (Vec<T>, u64) {
         let mut state = self.lock();
         let items = std::mem::take(&mut state.items);

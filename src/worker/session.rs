@@ -1,4 +1,4 @@
-//! A session, which consists of a connection, the data about the connected device, and the context for jobs.
+//! A session: a connection, the data known about the device, and the context for jobs.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -7,7 +7,7 @@ use super::{Device, Event, JobId, JobInterruption as _, JobReport, SessionLog, W
 use crate::link::{CancelToken, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::{DeviceKey, EntryKind, Event as LogbookEvent, Store};
 
-/// The context in which a job runs, for any kind of device: clock, cancellation flag, trace and folders.
+/// The context in which a job runs: clock, cancellation flag, trace and folders.
 pub struct SessionContext {
     /// Clock of the session.
     pub clock: Arc<dyn Clock>,
@@ -26,19 +26,18 @@ impl SessionContext {
         Ctx { wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace }
     }
 
-    /// Returns the log of the session. It can be used after the borrow of the context has ended.
+    /// Returns the log of the session, which stays usable after the context is gone.
     pub fn log(&self) -> SessionLog {
         self.log.clone()
     }
 
-    /// Records that a device was identified. A repeated call for the same device has no effect.
+    /// Records that a device was identified. Repeated calls for the same device have no effect.
     pub fn record_identity(&self, device: &DeviceKey) {
         self.log.record_identity(&self.store, device);
     }
 }
 
-/// A connection from its opening to its closing. A worker runs its jobs on a separate thread, and tests run them on
-/// their own thread.
+/// A connection from opening to closing. A worker runs its jobs on a separate thread, tests on their own.
 pub struct Session<D> {
     context: SessionContext,
     pub(crate) device: D,
@@ -52,7 +51,7 @@ impl<D: Device> Session<D> {
         Session { context: SessionContext { clock, cancel, trace, store, is_virtual, log }, device }
     }
 
-    /// Makes this session use a log that it shares with the caller.
+    /// Makes this session use the caller's log.
     pub fn share_log(&mut self, log: SessionLog) {
         self.context.log = log;
     }
@@ -62,7 +61,7 @@ impl<D: Device> Session<D> {
         self.context.cancel.clone()
     }
 
-    /// Replaces the cancellation flag. Tests use it to cancel automatically.
+    /// Replaces the cancellation flag. Tests use this to cancel automatically.
     pub fn set_cancel(&mut self, cancel: CancelToken) {
         self.context.cancel = cancel;
     }
@@ -90,7 +89,7 @@ impl<D: Device> Session<D> {
         self.device.idle_interval()
     }
 
-    /// Maintains the session between jobs and returns a device message, if any.
+    /// Maintains the connection between jobs and returns a device message, if any.
     pub fn maintain(&mut self) -> Option<D::DeviceMessage> {
         self.context.log.try_to_complete();
         self.device.maintain(&mut self.context)
@@ -100,12 +99,12 @@ impl<D: Device> Session<D> {
         self.device.is_urgent()
     }
 
-    /// Restores any state that must not outlast the session.
+    /// Restores any device state that must not outlive the session.
     pub fn restore_state(&mut self) {
         self.device.restore_state(&mut self.context);
     }
 
-    /// Runs a job on this thread. `tell` receives all events except the last, which is returned.
+    /// Runs a job on this thread and returns its last event. `tell` receives all others.
     pub fn run(&mut self, id: JobId, job: D::Job, tell: &mut dyn FnMut(Event<D>)) -> Event<D> {
         tell(Event::Started(id));
         let result = self.run_and_record(job, &mut |report| match report {
@@ -143,7 +142,7 @@ impl<D: Device> Session<D> {
         self.device.read_watched(&mut self.context, what)
     }
 
-    /// Returns a message that the device has sent since the last call, unless the message was already part of an event.
+    /// Returns the message that the device has sent since the last call, unless an event already contained it.
     pub(super) fn take_device_message(&mut self) -> Option<D::DeviceMessage> {
         self.device.take_device_message()
     }
@@ -156,7 +155,7 @@ impl<D: Device> Session<D> {
         self.run_and_record(job, &mut |_| {})
     }
 
-    /// Runs a job, and adds its result to the logbook before the result is displayed.
+    /// Runs a job, and records its result in the logbook before it is displayed.
     fn run_and_record(
         &mut self,
         job: D::Job,

@@ -1,5 +1,5 @@
-//! Logbook entries that a session makes without writing to the device. If the logbook cannot be used, this is reported
-//! in the log file, and the job continues.
+//! Logbook entries made by a session without writing to the device. If the logbook cannot be used, the log file reports
+//! this and the job continues.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -13,8 +13,8 @@ use crate::store::{
     AssetName, DeviceHold, DeviceKey, EntryKind, Event, Logbook, LogbookError, LogbookErrorKind, Store,
 };
 
-/// Maximum time that a job waits for a logbook that another process is using. After this time, the connection is
-/// recorded later.
+/// Maximum time that a job waits for a logbook in use by another process. After this time, the connection is recorded
+/// later.
 const BRIEFLY: Duration = Duration::from_millis(50);
 
 /// Access to the logbook for one session. Clones refer to the same session.
@@ -23,15 +23,15 @@ pub struct SessionLog(Arc<Mutex<State>>);
 
 #[derive(Debug, Default)]
 struct State {
-    /// Asset to which an identified device is assigned.
+    /// Asset to which identified devices are assigned.
     asset: Option<AssetName>,
     /// The device that was identified last.
     device: Option<DeviceKey>,
     /// Whether the last device is assigned to the asset.
     is_assigned: bool,
-    /// Announces to other computers that the last device is connected here.
+    /// Claim that shows other computers that the last device is connected here.
     hold: Option<DeviceHold>,
-    /// Connections to be recorded as soon as the logbook is no longer in use, oldest first.
+    /// Connections still to be recorded because the logbook was in use, oldest first.
     pending: VecDeque<Connection>,
 }
 
@@ -45,7 +45,7 @@ struct Connection {
 }
 
 impl SessionLog {
-    /// Assigns the devices of the session to an asset when they are identified.
+    /// Assigns the session's devices to an asset as soon as they are identified.
     pub fn assign(&self, asset: AssetName) {
         self.state().asset = Some(asset);
     }
@@ -55,23 +55,22 @@ impl SessionLog {
         self.state().device.clone()
     }
 
-    /// Informs other computers, with the next transfer, that the device is no longer connected.
+    /// Releases the device, so that the next transfer reports it as no longer connected.
     pub fn release_device(&self) {
         self.state().hold = None;
     }
 
-    /// Returns whether the device that was identified last is assigned to the asset of the session.
+    /// Returns whether the last identified device is assigned to the session's asset.
     pub fn is_assigned(&self) -> bool {
         self.state().is_assigned
     }
 
-    /// Records the connections that could not be recorded because the logbook was in use. This method waits for the
-    /// logbook as long as a write does.
+    /// Records the pending connections. Waits for the logbook for as long as a write does.
     pub fn complete(&self) {
         self.state().record_pending(Logbook::open);
     }
 
-    /// Records the connections that could not be recorded because the logbook was in use, unless it is still in use.
+    /// Records the pending connections, unless the logbook is still in use.
     pub(super) fn try_to_complete(&self) {
         self.state().record_pending(|path| Logbook::open_with_timeout(path, Duration::ZERO));
     }
@@ -93,7 +92,7 @@ impl SessionLog {
         state.record_pending(|path| Logbook::open_with_timeout(path, BRIEFLY));
     }
 
-    /// Records an event of the device that was identified last. Does nothing if no device has been identified.
+    /// Records an event of the last identified device. Does nothing if there is none.
     pub fn record(&self, store: &Store, event: &Event) {
         self.complete();
         if let Some(device) = self.device() {

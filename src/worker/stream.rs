@@ -1,6 +1,6 @@
-//! Streams of samples that arrive without requests. A separate thread passes batches of samples through a bounded ring,
-//! which drops and counts the oldest ones. The thread never waits for the reader. It wakes the window at intervals
-//! rather than for each batch.
+//! Streams of samples that arrive without requests. A separate thread collects the samples in a bounded ring, which
+//! drops and counts the oldest ones. The thread never waits for the reader, and wakes the window at intervals rather
+//! than for each batch.
 //!
 //! This module does not depend on the source of the samples, which are supplied by a [`Producer`].
 
@@ -23,9 +23,9 @@ use crate::analysis::SampleTime;
 use crate::analysis::wiring::Wires;
 use crate::link::Clock;
 
-/// Maximum duration of a single wait in a producer. A stop or a change takes effect within this time.
+/// Maximum duration of a single wait in a producer, after which a stop or a change takes effect.
 pub(crate) const MAX_WAIT: Duration = Duration::from_millis(20);
-/// Minimum interval between two calls that wake the window.
+/// Minimum interval between two wake-ups of the window.
 const WAKE: Duration = Duration::from_millis(50);
 
 /// A series of samples at equal intervals.
@@ -37,7 +37,7 @@ pub struct Batch<S> {
     pub time: SampleTime,
     /// Interval between samples in nanoseconds.
     pub period_ns: i64,
-    /// Number of samples lost before this batch, at the source or because they were not read in time.
+    /// Number of samples lost before this batch, either at the source or because they were not read in time.
     pub lost: u64,
     /// The samples.
     pub samples: S,
@@ -55,10 +55,10 @@ pub trait Producer: Send + 'static {
     type Request: Send + 'static;
     /// The samples of a batch.
     type Samples: SampleCount;
-    /// The reason why the source ended without a request to do so.
+    /// The reason why the source ended unexpectedly.
     type Error: Send + 'static;
 
-    /// Applies a change, which takes effect with the next sample.
+    /// Applies a change of settings, starting with the next sample.
     fn apply_change(&mut self, request: Self::Request);
 
     /// Waits for samples for at most `patience`. Returns `None` if none have arrived.
@@ -67,16 +67,16 @@ pub trait Producer: Send + 'static {
     /// Returns an error if no more samples will arrive.
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Self::Samples>>, Self::Error>;
 
-    /// Ends the stream at the source, which would otherwise continue to send.
+    /// Ends the stream at the source, which would otherwise keep sending.
     fn end(&mut self, _clock: &dyn Clock) {}
 }
 
-/// A signal for the end of a stream, for code that needs the resources of the stream.
+/// A signal that a stream has ended, for code that needs the same resources.
 #[derive(Clone, Debug)]
 pub struct StreamEnd(Receiver<Never>);
 
 impl StreamEnd {
-    /// Waits for at most `patience`. Returns whether the thread has ended and its resources are free.
+    /// Waits for at most `patience`, and returns whether the thread has ended and its resources are free.
     pub fn wait_for_end(&self, patience: Duration) -> bool {
         matches!(self.0.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
@@ -87,7 +87,7 @@ impl StreamEnd {
     }
 }
 
-/// A producer that runs on a separate thread. Dropping the stream ends the thread without waiting for it.
+/// A producer running on a separate thread. Dropping the stream ends the thread without waiting for it.
 pub struct Stream<P: Producer> {
     shared: Arc<Shared<P>>,
     ended: Receiver<Never>,
@@ -95,7 +95,7 @@ pub struct Stream<P: Producer> {
 
 struct Shared<P: Producer> {
     ring: Mutex<Ring<P::Samples>>,
-    /// Latest request, until the thread takes it.
+    /// Latest request that the thread has not taken yet.
     request: Mutex<Option<P::Request>>,
     error: Mutex<Option<P::Error>>,
     stop: AtomicBool,
@@ -110,7 +110,7 @@ struct Ring<S> {
 }
 
 impl<P: Producer> Stream<P> {
-    /// Starts a thread for a producer. The buffer holds at most `capacity` samples, or a single larger batch. `wake` is
+    /// Starts a thread for a producer. The buffer holds at most `capacity` samples, or one larger batch. `wake` is
     /// called when the stream ends, and at most 20 times per second while there is data to read.
     ///
     /// # Errors
@@ -133,8 +133,8 @@ impl<P: Producer> Stream<P> {
         Ok(Stream { shared, ended })
     }
 
-    /// Requests a change of the producer's settings, starting with its next sample. The request replaces an earlier one
-    /// that is still pending.
+    /// Requests a change of the producer's settings, starting with its next sample. An earlier pending request is
+    /// replaced.
     pub fn request_change(&self, request: P::Request) {
         *lock(&self.shared.request) = Some(request);
     }
@@ -153,7 +153,7 @@ impl<P: Producer> Stream<P> {
         lock(&self.shared.ring).lost
     }
 
-    /// Returns the reason why the stream ended without a request. The reason is returned only once.
+    /// Returns, only once, the reason why the stream ended unexpectedly.
     pub fn take_error(&self) -> Option<P::Error> {
         lock(&self.shared.error).take()
     }
@@ -168,7 +168,7 @@ impl<P: Producer> Stream<P> {
         has_ended(&self.ended)
     }
 
-    /// Returns a signal for the end of the stream. It remains valid after the stream is dropped.
+    /// Returns a signal for the end of the stream. It stays valid after the stream is dropped.
     pub fn end_signal(&self) -> StreamEnd {
         StreamEnd(self.ended.clone())
     }
@@ -181,7 +181,7 @@ impl<P: Producer> Drop for Stream<P> {
 }
 
 impl<S: SampleCount> Ring<S> {
-    /// Adds a batch and returns the batches that it displaces. The caller drops these after releasing the lock.
+    /// Adds a batch and returns the batches it displaces, which the caller drops after releasing the lock.
     fn push(&mut self, mut batch: Batch<S>) -> Vec<Batch<S>> {
         self.lost += batch.lost;
         self.held += batch.samples.count();
@@ -212,7 +212,7 @@ impl SampleCount for Wires {
     }
 }
 
-/// A guard that signals the end of a thread for any reason.
+/// A guard that signals the end of a thread, whatever the reason.
 struct ExitSignal {
     alive: Option<Sender<Never>>,
     wake: Arc<dyn Fn() + Send + Sync>,

@@ -1,4 +1,4 @@
-//! A test device that never sends a message.
+//! A test device that sends nothing.
 
 use super::{Device, JobInterruption, JobReport, SessionContext, WatchReply};
 use crate::link::LinkError;

@@ -1,5 +1,5 @@
-//! The thread of a session. It runs jobs as they arrive, takes samples and watched values between them, and regularly
-//! checks the connection.
+//! The thread of a session, which runs jobs as they arrive. Between jobs, it takes samples and watched values, and
+//! regularly checks the connection.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,7 +23,7 @@ pub(super) struct SubmittedJob<D: Device> {
     pub(super) cancel: CancelToken,
 }
 
-/// A type without values. A channel of this type only signals the end of the thread, by closing.
+/// A type without values. A channel of this type only signals, by closing, that the thread has ended.
 pub(super) enum Never {}
 
 /// The state of a session's thread.
@@ -38,7 +38,7 @@ pub(super) struct SessionThread<D: Device> {
     pub(super) busy: Arc<AtomicBool>,
 }
 
-/// Starts the thread. `alive` is dropped last, once the connection is free.
+/// Starts the thread. `alive` is dropped last, when the connection is free.
 ///
 /// # Errors
 /// Returns an error if the system cannot start another thread.
@@ -51,7 +51,7 @@ pub(super) fn start<D: Device>(bench: SessionThread<D>, alive: Sender<Never>) ->
     Ok(())
 }
 
-/// A guard that frees the job slot of a thread when the thread ends for any reason.
+/// A guard that marks the thread as free for jobs again when it ends, whatever the reason.
 struct Slot(Arc<AtomicBool>);
 
 impl Drop for Slot {
@@ -128,8 +128,8 @@ impl<D: Device> SessionThread<D> {
         self.events.send(end);
     }
 
-    /// Takes the sample or watched value that is due. Returns `false` if a job or another request has interrupted it,
-    /// in which case it is still due.
+    /// Takes the sample or watched value that is due. Returns `false` if a job or another request has interrupted it;
+    /// it then remains due.
     fn serve_due(&mut self, due: &DueRequest<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling_cancel_token().clone());
         let request = self.live.request_number();
@@ -165,8 +165,8 @@ impl<D: Device> SessionThread<D> {
         }
     }
 
-    /// Waits until a job arrives, a request changes or `patience` has passed. The main loop takes the job from its
-    /// channel.
+    /// Waits until a job arrives, a request changes or `patience` has passed. A job is left in its channel for the main
+    /// loop.
     fn wait_for_work(&self, patience: Duration) {
         let mut ready = Select::new();
         ready.recv(&self.orders);

@@ -36,7 +36,7 @@ pub(super) struct AnalyseArgs {
     pub(super) periods: Option<u32>,
 }
 
-/// Options of a report of a capture.
+/// Options for a report on a capture.
 #[derive(Args)]
 pub(super) struct ReportOptions {
     /// For a capture: encoder family whose limits apply.

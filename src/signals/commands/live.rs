@@ -1,4 +1,4 @@
-//! Sampling by an adapter for the `analyse` command.
+//! Sampling with an adapter for the `analyse` command.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,7 +13,7 @@ use crate::link::{Clock, LinkUrl, RealClock};
 use crate::signals::state::{bridge_error_text, open_error_text};
 use crate::worker::stream::{MAX_WAIT, Producer};
 
-/// Samples sine and cosine for the given duration. The supply of the encoder is not switched.
+/// Samples sine and cosine for the given duration. The encoder's supply is not switched.
 pub(super) fn sample(output: &Output, link: &LinkUrl, hz: u32, duration: Duration) -> Result<Capture, Failure> {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let opened = open_adapter(link, clock.clone(), attachable_kinds());

@@ -1,4 +1,4 @@
-//! The command `analyse`, which reports the quality of a sine/cosine signal from a recording or an adapter.
+//! The command `analyse`, which determines the quality of sine and cosine signals from a recording or an adapter.
 
 mod args;
 mod live;
@@ -93,7 +93,7 @@ fn read(output: &Output, path: &Path, hints: &TableHints) -> std::result::Result
     Ok(capture)
 }
 
-/// Analyses samples. `path` is the file or the link from which the samples come.
+/// Analyses samples. `path` is the file or link they come from.
 fn analyse_capture(output: &Output, path: &Path, capture: &Capture, arguments: &AnalyseArgs) -> Result {
     let samples = Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v };
     let references_v = capture.references_v();
@@ -136,7 +136,7 @@ fn print_remarks(output: &Output, layout: &Layout, capture: &Capture) {
     }
 }
 
-/// Calculates DNL and INL against the reference angle. If the number of periods is missing, a remark explains how to
+/// Calculates DNL and INL from the reference angle. If the number of periods is missing, a remark explains how to
 /// specify it.
 fn analyse_revolution(
     output: &Output,

@@ -24,7 +24,7 @@ use crate::store::ReadCaptureError;
 pub struct Signals {
     family: Family,
     periods: Option<u32>,
-    /// Whether the number of periods comes from the virtual encoder. Such a number does not apply to a capture from a
+    /// Whether the number of periods was set by the virtual encoder. Such a number does not apply to a capture from a
     /// file.
     periods_of_source: bool,
     pub(crate) source: Source,
@@ -125,8 +125,7 @@ impl Signals {
         Signals { source: Source::with_link(links.first()), ..Signals::default() }
     }
 
-    /// Starts the adapter after other parts of the program have released its connection. The link is stored in the
-    /// settings.
+    /// Starts the adapter once the rest of the program has released its connection. The link is stored in the settings.
     fn start_adapter_when_free(&mut self, context: &mut ToolContext<'_>) {
         let earlier = match self.source.adapter_url() {
             Some(url) => context.release_connection(&url, TEXTS.text("session.let_go_for_signals")),
@@ -145,8 +144,8 @@ impl Signals {
         self.family
     }
 
-    /// Returns the signal periods per revolution, at least 1. Returns `None` if the number is unknown. Without the
-    /// number, results that depend on it are omitted.
+    /// Returns the signal periods per revolution, at least 1, or `None` if unknown. Results that depend on the number
+    /// are then omitted.
     pub fn signal_periods(&self) -> Option<u32> {
         self.periods
     }
@@ -163,7 +162,7 @@ impl Signals {
         &self.source
     }
 
-    /// Returns the results of the capture that was kept for comparison.
+    /// Returns the results of the capture kept for comparison.
     pub fn compared_result(&self) -> Option<&Arc<MeasurementResult>> {
         self.comparison.as_ref()
     }
@@ -173,7 +172,7 @@ impl Signals {
         self.table.as_ref()
     }
 
-    /// Returns the reason why the last table could not be read. The previous capture is still displayed in this case.
+    /// Returns the reason why the last table could not be read. The previous capture then remains on display.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -191,8 +190,7 @@ impl Signals {
         self.measurement.as_ref().map_or(&[], |measurement| &measurement.diagnosis.findings)
     }
 
-    /// Returns the changes relative to the capture that was kept for comparison. Both captures are judged by the same
-    /// limits.
+    /// Returns the changes from the capture kept for comparison. The same limits apply to both captures.
     pub fn changes(&self) -> Option<DiagnosisChanges> {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
         let before = kept.diagnosis.with_new_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
@@ -207,7 +205,7 @@ impl Signals {
         }
     }
 
-    /// Discards the reading in progress.
+    /// Cancels the reading of a capture.
     pub(super) fn abort_reading(&mut self) {
         if let Some(reading) = self.reading.take() {
             self.table.clone_from(&reading.settled);
@@ -292,15 +290,15 @@ impl Signals {
         services.notify(Severity::Error, vec![TEXTS.text(what)], None);
     }
 
-    /// Replaces the displayed samples. This cancels an export of the previous samples.
+    /// Replaces the displayed samples. A running export of the previous samples is cancelled.
     pub(super) fn replace_scope(&mut self, scope: Scope, services: &Services) {
         self.scope.recorder.handle_action(recorder::RecorderAction::CancelExport);
         task_guard::drop_in_background(&services.tasks, std::mem::replace(&mut self.scope, scope));
     }
 
     fn show(&mut self, measurement: Measurement, services: &Services) {
-        /// Number of samples above which memory is released on another thread. For fewer samples, starting the thread
-        /// takes longer than releasing them.
+        /// Number of samples above which memory is released on another thread. Below it, starting the thread would take
+        /// longer than releasing the memory.
         const LARGE_CAPTURE_SAMPLES: usize = 100_000;
         if let Some(before) = self.measurement.replace(Arc::new(measurement))
             && before.capture.sine_v.len() > LARGE_CAPTURE_SAMPLES
@@ -344,7 +342,7 @@ impl Signals {
         }
     }
 
-    /// Returns the table of the displayed capture. A table that is still being read is ignored.
+    /// Returns the table of the displayed capture, not one that is still being read.
     fn displayed_table(&self) -> Option<Table> {
         self.reading.as_ref().map_or_else(|| self.table.clone(), |reading| reading.settled.clone())
     }
@@ -385,7 +383,7 @@ impl Signals {
         });
     }
 
-    /// Starts reading a table and cancels a reading in progress.
+    /// Starts reading a table. A previous reading still in progress is cancelled.
     fn read(&mut self, place: TableSource, hints: TableHints, settled: Option<Table>, services: &mut Services) {
         self.attempts = self.attempts.wrapping_add(1);
         let number = self.attempts;

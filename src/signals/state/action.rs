@@ -10,23 +10,23 @@ use crate::store::ReadCaptureError;
 #[derive(Clone, Debug, PartialEq)]
 pub enum SignalsAction {
     Open(PathBuf),
-    /// Reads an example capture that ships with the program.
+    /// Read an example capture that ships with the program.
     Example(ExampleCapture),
-    /// Sets the delimiter instead of the detected one.
+    /// Set the delimiter, overriding the detected one.
     SetDelimiter(Delimiter),
-    /// Sets whether the decimal separator is a comma.
+    /// Set whether the decimal separator is a comma.
     SetDecimalComma(bool),
-    /// Selects a column by its number from 1. `None` selects no column.
+    /// Select a column by its number, starting at 1. `None` selects no column.
     SetColumn(Column, Option<usize>),
     SetTimeUnit(TimeUnit),
-    /// Sets the volts per unit of the table. The value must be finite and not zero.
+    /// Set the volts per unit of the table. The value must be finite and not zero.
     SetVolts(f64),
-    /// Detects the format of the table again.
+    /// Detect the format of the table again.
     Detect,
     Cancel,
     SetFamily(Family),
     SetPeriods(u32),
-    /// Keeps the displayed capture for comparison with others.
+    /// Keep the displayed capture for comparison with others.
     Keep,
     DropComparison,
     Source(SourceAction),
@@ -34,13 +34,13 @@ pub enum SignalsAction {
 }
 
 pub enum TaskResult {
-    /// A capture was read, or reading failed.
+    /// A capture was read, or could not be read.
     Read {
         /// Number of the attempt. Results of earlier attempts are ignored.
         number: u32,
         read: Box<ReadCapture>,
     },
-    /// The displayed capture was diagnosed again.
+    /// New verdicts are available for the displayed capture.
     Judged {
         /// Number of the attempt. Results of earlier attempts are ignored.
         number: u32,

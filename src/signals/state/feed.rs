@@ -1,4 +1,4 @@
-//! Live samples of sine and cosine from the virtual encoder or an adapter.
+//! Live sine and cosine samples from the virtual encoder or an adapter.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -20,12 +20,12 @@ use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
 use crate::worker::stream::{AnalogueSource, Batch, Producer, Stream, StreamEnd};
 
-/// Sine and cosine in volts, with equal numbers of samples.
+/// Sine and cosine in volts, with the same number of samples each.
 #[derive(Clone, Debug)]
 pub(super) struct ChannelSamples {
     pub(super) sine_v: Vec<f64>,
     pub(super) cosine_v: Vec<f64>,
-    /// Voltages of the four wires, if known.
+    /// Voltages of the four signal wires, if known.
     pub(super) wires: Option<Wires>,
 }
 
@@ -34,7 +34,7 @@ impl ChannelSamples {
         self.sine_v.len()
     }
 
-    /// Returns the samples of a wire, or an empty slice if they are unknown.
+    /// Returns the samples of a wire. The slice is empty if they are unknown.
     pub(super) fn wire_samples(&self, of: fn(&Wires) -> &Vec<f64>) -> &[f64] {
         self.wires.as_ref().map_or(&[], |wires| of(wires))
     }
@@ -56,13 +56,13 @@ pub(super) enum SignalFeed {
     Virtual(Stream<AnalogueSource>),
     Adapter {
         stream: Stream<Bridge<SineCosine>>,
-        /// Identity and actual sampling of the adapter, empty until the adapter has replied.
+        /// Identity and actual sampling of the adapter, unset until the adapter has replied.
         streaming: Arc<OnceLock<StreamingAdapter>>,
         url: LinkUrl,
     },
 }
 
-/// Link to an adapter, before the connection is opened.
+/// The link to an adapter that has not been connected yet.
 pub(super) struct AdapterLink {
     url: LinkUrl,
     clock: Arc<dyn Clock>,
@@ -74,7 +74,7 @@ impl AdapterLink {
     /// Parses a link to an adapter.
     ///
     /// # Errors
-    /// Returns the reason why the link cannot be used for an adapter.
+    /// Returns the reason why the link does not lead to an adapter.
     pub(super) fn read(text: &str) -> Result<Self, Text> {
         let url: LinkUrl =
             text.parse().map_err(|why| TEXTS.text("adapter.link").with_text("why", explain::url_error_text(&why)))?;
@@ -84,8 +84,8 @@ impl AdapterLink {
         Ok(AdapterLink { url, clock, margin, open })
     }
 
-    /// Starts sampling at the given rate. If a voltage is given, the adapter supplies the encoder with it. A missing
-    /// adapter is reported later by the stream.
+    /// Starts sampling at the given rate. If a voltage is given, the adapter supplies the encoder. A missing adapter is
+    /// reported later by the stream.
     ///
     /// # Errors
     /// Returns an error if no thread can be started.
@@ -115,7 +115,7 @@ impl AdapterLink {
     }
 }
 
-/// Maximum number of samples that wait for the window: two seconds at 100 kHz.
+/// Maximum number of samples waiting for the window: two seconds at 100 kHz.
 const MAX_WAITING_SAMPLES: usize = 200_000;
 
 impl SignalFeed {
@@ -192,7 +192,7 @@ impl SignalFeed {
         }
     }
 
-    /// Releases the feed. The adapter ends its stream in the background.
+    /// Releases the feed. The adapter's stream ends in the background.
     pub(super) fn release(self, services: &mut Services) {
         if let SignalFeed::Adapter { stream, url, .. } = self {
             let end: StreamEnd = stream.end_signal();

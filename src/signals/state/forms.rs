@@ -1,4 +1,4 @@
-//! Parsing entries in the Signals tab. The error messages name the valid values.
+//! Parsing of numbers typed in the Signals tab. The error messages state the valid values.
 
 use crate::app::Text;
 use crate::app::number::{MAX_PERIODS, parse_integer};

@@ -1,6 +1,6 @@
-//! Calculator for the input circuit of a drive. It shows the signal frequency and the effect of the filter at a given
-//! speed, and at speeds up to the encoder's limit. See SICK 8010701, process data channel, and section 1 of the
-//! project's sine/cosine reference.
+//! Calculator for the input circuit of a drive: signal frequency and effect of the filter, at a given speed and up to
+//! the encoder's bandwidth. See SICK 8010701, process data channel, and section 1 of the project's sine/cosine
+//! reference.
 
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, FilterResponse, InputFilter, signal_frequency_hz, speed_rpm_at};
 use crate::app::Text;
@@ -23,7 +23,7 @@ pub struct OperatingPoint {
     pub speed_rpm: f64,
     pub frequency_hz: f64,
     pub response: FilterResponse,
-    /// Lag of the measured shaft angle in mechanical degrees.
+    /// Lag of the measured shaft angle behind the actual one, in mechanical degrees.
     pub shaft_deg: f64,
 }
 
@@ -77,15 +77,15 @@ impl InputCircuitResult {
         self.here.frequency_hz <= BANDWIDTH_HZ
     }
 
-    /// Returns the operating points at `count` evenly spaced speeds. The last speed is the highest within the encoder's
+    /// Returns the operating points at `count` evenly spaced speeds, up to the highest speed within the encoder's
     /// bandwidth.
     pub fn operating_points(&self, count: u32) -> Vec<OperatingPoint> {
         let speed = |at: u32| self.most_rpm * f64::from(at) / f64::from(count.max(1));
         (1..=count).map(|at| operating_point(self.periods, self.filter, speed(at))).collect()
     }
 
-    /// Returns the angle error per microsecond between the sampling of both channels. The error is in electrical
-    /// degrees, at the entered speed.
+    /// Returns the angle error for each microsecond by which the two channels are sampled apart. The error is in
+    /// electrical degrees, at the entered speed.
     pub fn sampling_skew_deg(&self) -> f64 {
         360.0 * self.here.frequency_hz * 1e-6
     }
@@ -111,8 +111,8 @@ mod tests {
         }
     }
 
-    /// Rows of section 1: the filter of 10 kΩ and 47 pF at 102.4 kHz, and 1024 periods at 5859.375 rpm, which are 100
-    /// kHz with a shaft lag of 1/1024 of the electrical lag.
+    /// Rows of section 1: a filter of 10 kΩ and 47 pF at 102.4 kHz, and 1024 periods at 5859.375 rpm. The latter give
+    /// 100 kHz and a shaft lag of 1/1024 of the electrical lag.
     #[test]
     fn rows_match_section_1() {
         let rows = [

@@ -1,4 +1,4 @@
-//! Comparison of the octant table of a drive with the exact angle within a period. See SICK 8010701, interpolation, and
+//! Comparison between a drive's octant table and the exact angle within a period. See SICK 8010701, interpolation, and
 //! section 3 of the project's sine/cosine reference.
 
 use std::sync::LazyLock;
@@ -8,20 +8,20 @@ use crate::analysis::arctan::{self, DEGREES, OctantTable, Phase};
 use crate::app::Text;
 use crate::signals::state::TEXTS;
 
-/// Table sizes for the comparison, in intervals.
+/// Table sizes to compare, in intervals.
 pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OctantTableError {
     pub intervals: usize,
     pub largest_deg: f64,
-    /// Length of a period divided by the largest error.
+    /// Number of parts into which a period is divided if each part equals the largest error.
     pub parts: f64,
-    /// Resolution in bits per period at which a step equals the largest error.
+    /// Resolution in bits per period at which one step equals the largest error.
     pub bits: f64,
 }
 
-/// Phase of one pair of voltages, calculated exactly and with an octant table.
+/// The phase for one pair of voltages, calculated exactly and with an octant table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InterpolatedPhase {
     pub exact: Phase,
@@ -49,8 +49,8 @@ fn table_error(intervals: usize) -> OctantTableError {
     OctantTableError { intervals, largest_deg, parts, bits: parts.log2() }
 }
 
-/// Calculates the phase of typed voltages exactly and with a table of the given number of intervals. The voltages must
-/// not contain an offset.
+/// Calculates the phase of the typed voltages, both exactly and with a table. `intervals` is the size of the table. The
+/// voltages must not contain an offset.
 ///
 /// # Errors
 /// Returns an error if an entry is not a number or both voltages are zero.
@@ -67,7 +67,7 @@ pub fn interpolate(sine: &str, cosine: &str, intervals: usize) -> Result<Interpo
 mod tests {
     use super::*;
 
-    /// The tables match section 3 in number of intervals, largest error in radians, and parts of a period.
+    /// The tables match section 3 in number of intervals, largest error in radians, and parts per period.
     #[test]
     fn tables_match_section_3() {
         let expected =

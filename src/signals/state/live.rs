@@ -24,24 +24,24 @@ use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
 pub enum SourceAction {
     Start,
     StartAdapter,
-    /// Sets the link of the adapter. The change has no effect on a running adapter.
+    /// Set the link to the adapter. A running adapter is not affected.
     SetLink(String),
-    /// Sets the sample rate of the adapter. The change has no effect on a running adapter.
+    /// Set the adapter's sample rate. A running adapter is not affected.
     SetSampleRate(u32),
-    /// Sets the encoder family that the adapter supplies, or `None` for no supply. The change has no effect on a
-    /// running adapter.
+    /// Set the encoder family to which the adapter supplies power, or `None` for no supply. A running adapter is not
+    /// affected.
     SetSupply(Option<Family>),
-    /// Stops the source. The last measurement remains on display.
+    /// Stop the source. The last measurement remains on display.
     Stop,
-    /// Freezes the display or resumes it. The source continues to run.
+    /// Freeze or resume the display. The source continues to run.
     Hold(bool),
-    /// Sets a value of the virtual encoder. A value out of range is rejected.
+    /// Set a value of the virtual encoder. A value out of range is rejected.
     Set(Quantity, f64),
     SetOpenWire(Option<Wire>),
-    /// Sets whether each pair of wires is terminated by a resistor.
+    /// Set whether each pair of wires is terminated by a resistor.
     SetTerminated(bool),
     SetReferences(ReferenceLevel),
-    /// Sets the length of the measured section, which ends at the newest sample: 10 to 10 000 milliseconds.
+    /// Set the duration of the measured samples, up to the newest one: 10 to 10 000 milliseconds.
     SetWindow(u32),
     Reset,
 }
@@ -59,15 +59,15 @@ pub struct Source {
     /// Link to the adapter, as entered.
     link: String,
     sample_hz: u32,
-    /// Family of the encoder that the adapter supplies. The family is never stored in the settings, because another
+    /// Family of the encoder to which the adapter supplies power. It is never stored in the settings, because another
     /// encoder may be connected at the next start.
     supply: Option<Family>,
     adapter_problem: Option<Text>,
-    /// Kind of the source that was started last.
+    /// Kind of the last started source.
     kind: SourceKind,
     window_ms: u32,
     runs: u32,
-    /// Number of lost samples, except those lost by the running stream.
+    /// Number of lost samples, without those lost by the running stream.
     lost: u64,
     live: Option<LiveSource>,
 }
@@ -81,9 +81,9 @@ struct LiveSource {
     measured: Option<SampleTime>,
 }
 
-/// Range of lengths of the measured section, in milliseconds.
+/// Range of the measured duration, in milliseconds.
 const WINDOWS: std::ops::RangeInclusive<u32> = 10..=10_000;
-/// Link to the virtual adapter. Its shaft turns slowly, which makes single signal periods visible.
+/// Link to the virtual adapter. Its shaft turns slowly, so that single signal periods are visible.
 pub const VIRTUAL_ADAPTER: &str = "sim:?bridge=on&rpm=6";
 
 impl Default for Source {
@@ -105,7 +105,7 @@ impl Default for Source {
 }
 
 impl Source {
-    /// Creates the state from the link of the adapter that was used last.
+    /// Creates the state from the link of the last used adapter.
     pub(super) fn with_link(link: Option<&String>) -> Self {
         let usual = Source::default();
         Source { link: link.cloned().unwrap_or(usual.link), ..Source::default() }
@@ -124,12 +124,12 @@ impl Source {
         &self.link
     }
 
-    /// Returns the requested sample rate of the adapter in samples per second.
+    /// Returns the sample rate requested from the adapter, in samples per second.
     pub fn sample_hz(&self) -> u32 {
         self.sample_hz
     }
 
-    /// Returns the family of the encoder that the adapter supplies, or `None` if the adapter supplies no encoder.
+    /// Returns the family of the encoder to which the adapter supplies power, or `None` for no supply.
     pub fn supplied_family(&self) -> Option<Family> {
         self.supply
     }
@@ -166,8 +166,7 @@ impl Source {
         self.live.as_ref().is_some_and(|live| live.held)
     }
 
-    /// Returns the longest duration that can be measured, in milliseconds. Returns `None` if the setting is within this
-    /// limit.
+    /// Returns the maximum duration that can be measured, in milliseconds, if the setting exceeds it.
     pub fn limited_window_ms(&self) -> Option<f64> {
         let period_ns = match self.kind {
             SourceKind::Encoder => self.settings.period_ns(),
@@ -177,8 +176,8 @@ impl Source {
         (longest_ms < f64::from(self.window_ms)).then_some(longest_ms)
     }
 
-    /// Returns the number of samples lost since the last start. A sample is lost if it did not arrive, was not read in
-    /// time, or could not be displayed.
+    /// Returns the number of samples lost since the last start: those that did not arrive, were not read in time, or
+    /// could not be displayed.
     pub fn lost_samples(&self) -> u64 {
         self.lost + self.live.as_ref().map_or(0, |live| live.feed.lost_samples())
     }
@@ -227,7 +226,7 @@ impl Source {
         }
     }
 
-    /// Returns the parsed adapter link, or `None` if the entry is invalid.
+    /// Returns the link to the adapter, or `None` if the entry is not a valid link.
     pub(crate) fn adapter_url(&self) -> Option<LinkUrl> {
         self.link.parse().ok()
     }
@@ -236,7 +235,7 @@ impl Source {
         self.adapter_problem = Some(why);
     }
 
-    /// Stops the adapter if it uses the connection of the given link, because an encoder search needs the connection.
+    /// Stops the adapter if it uses the given link's connection, which is needed to search for encoders.
     pub(crate) fn release_connection(&mut self, url: &LinkUrl, services: &mut Services) {
         let holds = |live: &LiveSource| matches!(&live.feed, SignalFeed::Adapter { url: own, .. } if is_same_connection(own, url));
         if self.live.as_ref().is_some_and(holds) {
@@ -245,7 +244,7 @@ impl Source {
         }
     }
 
-    /// Starts the adapter and returns whether it has started. An invalid link is reported beside its entry.
+    /// Starts the adapter and returns whether it has started. An invalid link is reported next to its entry.
     fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) -> bool {
         let link = match AdapterLink::read(&self.link) {
             Ok(link) => link,
@@ -340,7 +339,7 @@ impl Signals {
         }
     }
 
-    /// Starts the adapter after the previous user of its connection has ended.
+    /// Starts the adapter once its connection is free. `earlier` closes at that moment.
     pub(crate) fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) {
         if self.source.start_adapter(earlier, services) {
             self.abort_reading();
@@ -348,8 +347,8 @@ impl Signals {
         }
     }
 
-    /// Changes the settings of the virtual encoder. With `with_periods`, its periods per revolution also apply to the
-    /// displayed capture.
+    /// Changes the settings of the virtual encoder. If `with_periods` is set, its periods per revolution also apply to
+    /// the displayed capture.
     fn set_source(&mut self, settings: Settings, with_periods: bool, services: &mut Services) {
         let own = self.source.kind == SourceKind::Encoder;
         if self.source.change_settings(settings) && with_periods && own {
@@ -357,7 +356,7 @@ impl Signals {
         }
     }
 
-    /// Takes the received samples, and starts a measurement if one is due.
+    /// Takes the received samples, and starts the next measurement when it is due.
     pub(crate) fn process_samples(&mut self, services: &mut Services) {
         let (number, window_ms) = (self.source.runs, self.source.window_ms);
         let judge = self.diagnosis_settings();
@@ -410,8 +409,8 @@ impl Signals {
         }
     }
 
-    /// Handles a failed measurement of the newest samples. The source is stopped, because every further measurement
-    /// would fail too.
+    /// Handles a failed measurement of the newest samples. The source is stopped, because further measurements would
+    /// fail too.
     pub(super) fn stop_after_failed_measurement(&mut self, number: u32, services: &mut Services) -> bool {
         let current = self.source.runs == number && self.source.is_running();
         if current {

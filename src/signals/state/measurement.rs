@@ -1,4 +1,4 @@
-//! A capture with all its results: analysis, diagnosis, spectra and Lissajous images. A task computes them once.
+//! A capture with all its results: analysis, diagnosis, spectra and Lissajous figures. A task computes them once.
 
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ pub enum TableSource {
 }
 
 impl Origin {
-    /// Returns the name for display. A path is shortened to the file name.
+    /// Returns the name for display. Only the file name of a path is shown.
     pub fn name(&self) -> Text {
         match self {
             Origin::Virtual => TEXTS.text("signals.virtual"),
@@ -67,44 +67,45 @@ pub struct Measurement {
 #[derive(Clone, Debug)]
 pub struct MeasurementResult {
     pub origin: Origin,
-    /// Number of table rows that were left out because they contain no value.
+    /// Number of table rows skipped because they contain no value.
     pub rows_left_out: u64,
     pub analysis: Result<Analysis, AnalysisError>,
     pub diagnosis: Diagnosis,
     pub judge: DiagnosisSettings,
-    /// Mean voltages of REFSIN and REFCOS, or `None` if they were not recorded.
+    /// Mean voltages of REFSIN and REFCOS, if recorded.
     pub levels_v: Option<(f64, f64)>,
     /// Spectra of both channels, or the reason why they cannot be determined.
     pub spectra: Result<Spectra, SpectrumError>,
-    /// DNL and INL, or the reason why they cannot be determined. The value is `None` without a reference angle, an
-    /// ellipse or the number of periods.
+    /// DNL and INL, or the reason why they cannot be determined. `None` without a reference angle, a fitted ellipse or
+    /// the number of periods.
     pub nonlinearities: Option<Result<Nonlinearities, RevolutionError>>,
-    /// Lead of the absolute position over the analogue position, or the reason why it cannot be determined. The value
-    /// is `None` without an absolute position.
+    /// How far the absolute position is ahead of the analogue position, or the reason why this cannot be determined.
+    /// `None` without an absolute position.
     pub absolute_offset: Option<Result<AbsoluteOffset, OffsetError>>,
-    /// Lissajous image of all samples, or `None` if the values are too large.
+    /// Lissajous figure of all samples, or `None` if the values are too large.
     pub raw: Option<SampleDensity>,
-    /// Lissajous image of all samples after the ellipse correction, or `None` without an ellipse.
+    /// Lissajous figure of all samples after the ellipse correction, or `None` without a fitted ellipse.
     pub corrected: Option<SampleDensity>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DiagnosisSettings {
     pub family: Family,
-    /// Signal periods per revolution, or `None` if unknown.
+    /// Signal periods per revolution, if known.
     pub periods: Option<u32>,
 }
 
-/// Cells per side of an image with many samples.
+/// Cells along each side of a Lissajous figure with many samples.
 const CELLS: usize = 240;
 const FEW_SAMPLES_CELLS: usize = 120;
-/// Number of samples up to which an image has larger cells. Single samples would be invisible in small cells.
+/// Maximum number of samples for which a Lissajous figure has larger cells. Single samples would be invisible in small
+/// cells.
 const FEW_SAMPLES: usize = 2_000;
-/// Minimum voltage from the centre of an image to its edge, large enough for all rings.
+/// Minimum voltage from the centre of a Lissajous figure to its edge. All limit circles fit into this range.
 const MIN_HALF_V: f64 = 0.75;
 
 impl Measurement {
-    /// Measures a capture. This takes about 100 ms for a million samples.
+    /// Analyses a capture. This takes about 100 ms for a million samples.
     pub fn from_capture(origin: Origin, capture: Arc<Capture>, judge: DiagnosisSettings) -> Self {
         let samples = capture_samples(&capture);
         let analysis = Analysis::from_samples(samples);
@@ -179,7 +180,7 @@ fn compare_with_reference(
     reference_comparison::compute_nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
 }
 
-/// Returns a Lissajous image centred on zero, after the correction if one is given.
+/// Returns the Lissajous figure centred on zero, after the correction if one is given.
 fn sample_density(samples: Samples<'_>, correction: Option<EllipseCorrection>) -> Option<SampleDensity> {
     /// Number of samples corrected at a time.
     const CHUNK_SAMPLES: usize = 1 << 14;

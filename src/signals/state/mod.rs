@@ -1,6 +1,5 @@
-//! State of the Signals tab: a capture of sine and cosine and its results. The capture comes from a file, a virtual
-//! encoder or an adapter. The state requires neither a window nor an encoder. Long operations run as tasks, and late
-//! results are dropped.
+//! State of the Signals tab: a capture of sine and cosine from a file, a virtual encoder or an adapter, with its
+//! results. Neither a window nor an encoder is needed. Long operations run as tasks, and late results are ignored.
 
 mod act;
 mod action;
@@ -29,7 +28,7 @@ use crate::app::{Tab, Tool, ToolAction, ToolKind};
 
 pub(crate) const TAB: Tab = Tab::named("Signals");
 
-/// Entry of the Signals tab in the list of tools.
+/// The entry for the Signals tab in the list of tools.
 pub(crate) struct SignalsKind;
 
 impl ToolKind for SignalsKind {

@@ -1,4 +1,4 @@
-//! Measured quantities of a signal, each with its unit, limit and verdict. The limits are those of `analysis::quality`.
+//! Measured quantities of a signal, each with its unit, limit and verdict. The limits come from `analysis::quality`.
 //! See SICK 8010701 for amplitudes and bandwidth.
 
 use super::MeasurementResult;
@@ -15,7 +15,7 @@ pub struct Quantity {
     pub unit: Unit,
     pub also: Option<(f64, usize, Unit)>,
     pub bound: Option<QuantityLimit>,
-    /// Result of the comparison with the limit, or `None` without a limit.
+    /// Whether the limit is met, or `None` without a limit.
     pub verdict: Option<Verdict>,
 }
 
@@ -34,11 +34,11 @@ pub enum Unit {
     Milliseconds,
 }
 
-/// Limit of a quantity, in the unit of the quantity.
+/// The limit of a quantity, in the quantity's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QuantityLimit {
     Between(f64, f64),
-    /// Greatest permitted absolute value.
+    /// Maximum absolute value.
     Within(f64),
     AtMost(f64),
     AtLeast(f64),
@@ -63,7 +63,7 @@ impl Unit {
 }
 
 impl QuantityLimit {
-    /// Returns whether a value is within the limit. The limit itself is included.
+    /// Returns whether a value meets the limit. A value equal to the limit does.
     pub fn is_met(self, value: f64) -> bool {
         /// Tolerance for rounding errors of a value that equals the limit.
         const ROUNDING_TOLERANCE: f64 = 1e-9;
@@ -79,7 +79,7 @@ impl QuantityLimit {
 }
 
 impl QuantityLimit {
-    /// Formats the limit without its unit. `number` formats a number.
+    /// Formats the limit without its unit, using `number` to format each number.
     pub fn format(self, number: impl Fn(f64) -> String) -> String {
         match self {
             QuantityLimit::Between(least, most) => format!("{} … {}", number(least), number(most)),
@@ -100,8 +100,8 @@ impl Quantity {
         self
     }
 
-    /// Compares the quantity with a limit. A value beyond the limit is only a warning, because the position is still
-    /// correct.
+    /// Adds a limit and the resulting verdict. A value beyond the limit is only a warning, because the position is
+    /// still correct.
     fn with_limit(mut self, bound: QuantityLimit) -> Self {
         self.bound = Some(bound);
         self.verdict = Some(if bound.is_met(self.value) { Verdict::Ok } else { Verdict::Warn });
@@ -115,7 +115,7 @@ impl Quantity {
 }
 
 /// Returns the quantities of a signal, with verdicts according to the limits of an encoder family. The speed is
-/// included if the number of `periods` per revolution is known. The list is empty if no ellipse was found.
+/// included if the number of `periods` per revolution is known. The list is empty if no ellipse could be fitted.
 pub fn signal_quantities(measurement: &MeasurementResult, family: Family, periods: Option<u32>) -> Vec<Quantity> {
     let Ok(analysis) = &measurement.analysis else { return Vec::new() };
     let mut list = ellipse_quantities(analysis, family);
@@ -181,7 +181,7 @@ fn ellipse_quantities(analysis: &Analysis, family: Family) -> Vec<Quantity> {
 }
 
 /// Returns the position error within a period, before and after the correction. If the number of `periods` per
-/// revolution is known, each value is also given in mechanical arcseconds.
+/// revolution is known, the error is also given in mechanical arcseconds.
 pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quantity> {
     /// Mechanical arcseconds per electrical degree at one period per revolution.
     const ARC_SECONDS: f64 = 3600.0;
@@ -260,7 +260,8 @@ mod tests {
         assert_eq!((least.verdict, least.bound), (Some(Verdict::Ok), Some(QuantityLimit::Between(0.4, 0.6))));
     }
 
-    /// A sine offset of 1 % causes ±0.5730°, 1.1459° peak to peak, and 4.029″ at 1024 periods (section 6).
+    /// A sine offset of 1 % causes an error of ±0.5730°, or 1.1459° peak to peak, which is 4.029″ at 1024 periods
+    /// (section 6).
     #[test]
     fn the_error_of_section_6_is_shown_in_arcseconds() {
         let angle = |at: i32| f64::from(at) / 1000.0 * 4.0 * std::f64::consts::TAU;

@@ -1,4 +1,4 @@
-//! Reading a capture in a task, with progress and cancellation, and the example captures.
+//! Reading of captures in a task, with progress and cancellation, and the example captures.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use super::{DiagnosisSettings, Measurement, Origin, ReadCapture, Scope, Table, T
 use crate::analysis::capture::{Capture, CaptureError, HEAD_BYTES, TableHints, TableImport};
 use crate::store::{ReadCaptureError, capture_head, read_capture};
 
-/// Example capture that ships with the program.
+/// An example capture that ships with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExampleCapture {
     Healthy,
@@ -45,12 +45,12 @@ impl ExampleCapture {
 pub struct CaptureReading {
     pub(super) number: u32,
     pub place: TableSource,
-    /// Previous table, which is restored if the reading is cancelled.
+    /// Table to restore if the reading is cancelled.
     pub(super) settled: Option<Table>,
     progress: Arc<ReadingProgress>,
 }
 
-/// Progress of a reading, shared between the task and the window.
+/// Progress of a capture being read, shared between the task and the window.
 #[derive(Debug, Default)]
 pub(super) struct ReadingProgress {
     done: AtomicU64,
@@ -64,7 +64,7 @@ impl CaptureReading {
         (CaptureReading { number, place, settled, progress: progress.clone() }, progress)
     }
 
-    /// Returns the fraction that has been read, 0 to 1, or `None` if the total is unknown.
+    /// Returns the fraction that has been read, from 0 to 1, or `None` if the total is unknown.
     pub fn fraction_read(&self) -> Option<f64> {
         let (done, total) = (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));
         (total > 0).then(|| (done as f64 / total as f64).min(1.0))
@@ -85,7 +85,7 @@ impl Drop for CaptureReading {
     }
 }
 
-/// Reads and measures a capture. This may take a long time for a large file.
+/// Reads and analyses a capture. This may take a long time for a large file.
 pub(super) fn read(
     place: TableSource,
     hints: TableHints,

@@ -1,5 +1,4 @@
-//! The newest samples of a running source, without gaps. The received batches are shared with the measurement and not
-//! copied.
+//! The newest samples of a running source, without gaps. Received batches are shared with the measurement, not copied.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -18,15 +17,15 @@ pub(super) struct RecentSamples {
     period_ns: i64,
 }
 
-/// Newest samples of a given duration.
+/// The newest samples over a given duration.
 pub(super) struct Window {
     chunks: Vec<Arc<ChannelSamples>>,
-    /// Number of samples to skip at the start of the first chunk, because they are too old.
+    /// Number of samples to skip at the start of the first batch because they are too old.
     skip: usize,
     period_ns: i64,
 }
 
-/// Maximum number of samples measured at once.
+/// Maximum number of samples in one measurement.
 pub(super) const MAX_SAMPLES: usize = 500_000;
 const EVERY_NS: i64 = 250_000_000;
 
@@ -52,7 +51,7 @@ impl RecentSamples {
         self.newest
     }
 
-    /// Returns whether the newest sample is at least a quarter of a second later than the last measured one.
+    /// Returns whether the newest sample is at least a quarter of a second later than the last measurement.
     pub(super) fn is_due(&self, measured: Option<SampleTime>) -> bool {
         match (self.newest, measured) {
             (Some(newest), Some(measured)) => newest.nanoseconds_since(measured) >= EVERY_NS,

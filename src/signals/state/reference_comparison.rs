@@ -1,5 +1,5 @@
 //! Comparison of a capture with a second measurement of the same shaft. A reference encoder yields DNL and INL. An
-//! absolute position yields its lead over the analogue position. See SICK 8010701, definitions of errors and forming
+//! absolute position yields its offset from the analogue position. See SICK 8010701, definitions of errors and forming
 //! the absolute position, and sections 4 and 6 of the project's sine/cosine reference.
 
 use super::quantities::{Quantity, Unit};
@@ -18,7 +18,7 @@ pub struct Nonlinearities {
     pub raw: Part,
     /// Values after the correction of offsets, gain ratio and phase error.
     pub corrected: Part,
-    /// Number of revolutions covered by the samples. If it is at least 1, the INL is valid for a whole revolution.
+    /// Number of revolutions covered by the samples. The INL applies to a whole revolution if this is at least 1.
     pub revolutions: f64,
 }
 
@@ -29,19 +29,19 @@ pub struct Part {
     pub differential_deg: f64,
     /// INL in mechanical degrees, as a ± value.
     pub integral_deg: f64,
-    /// Curve of the total deviation: reference angle and deviation in mechanical degrees. Each section of the curve is
-    /// represented by its minimum and its maximum.
+    /// Total deviation over the reference angle, both in mechanical degrees. Each section of the curve is represented
+    /// by its minimum and maximum.
     pub deviation: Vec<(f64, f64)>,
-    /// Curve of the deviation averaged over a period: reference angle and deviation in mechanical degrees.
+    /// Deviation averaged over a period, over the reference angle, both in mechanical degrees.
     pub mean: Vec<(f64, f64)>,
 }
 
-/// Offset of an absolute position relative to the analogue position.
+/// The offset of an absolute position from the analogue position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AbsoluteOffset {
-    /// Mean lead of the absolute position in 1/32 of a period.
+    /// Mean lead of the absolute position over the analogue position, in 1/32 of a period.
     pub offset_steps: f64,
-    /// Largest difference of a sample from the mean lead, in 1/32 of a period.
+    /// Largest deviation of a single sample from the mean lead, in 1/32 of a period.
     pub farthest_steps: f64,
     pub samples: usize,
 }
@@ -111,8 +111,8 @@ pub fn nonlinearity_quantities(nonlinearities: &Nonlinearities) -> Vec<Quantity>
     ]
 }
 
-/// Returns the lead of the absolute position in a capture, or `None` if it has no absolute position. Samples that the
-/// ellipse fit excludes are ignored.
+/// Returns the offset of the absolute position in a capture, or `None` without an absolute position. Samples excluded
+/// by the ellipse fit are ignored.
 pub(super) fn absolute_offset(
     capture: &Capture,
     analysis: Option<&Analysis>,
@@ -143,7 +143,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns a capture of 1.25 revolutions of 64 periods with 1 % sine offset, an eccentricity of 0.01°, and an
+    /// Returns a capture of 1.25 revolutions of 64 periods, with 1 % sine offset, an eccentricity of 0.01°, and an
     /// absolute position that is 3 steps ahead.
     fn capture() -> Capture {
         let count = 20_000;

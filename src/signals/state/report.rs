@@ -1,5 +1,5 @@
-//! Report of a sine/cosine capture. It lists each measured value with its limit and the findings, and plots the signals
-//! over time, the Lissajous figure, the spectrum and the position error within a period.
+//! Report on a sine/cosine capture: measured values with their limits, the findings, and plots of the signals over
+//! time, the Lissajous figure, the spectrum and the position error within a period.
 
 use super::{Measurement, Quantity, Spectra, TEXTS, Unit, error_quantities, signal_quantities};
 use crate::analysis::quality::{Family, Verdict};
@@ -15,17 +15,17 @@ const SINE: &str = "#1a6fa3";
 const COSINE: &str = "#b34d00";
 const CORRECTED: &str = "#00775a";
 const LIMIT: &str = "#c62828";
-/// Size of a plot that fills the width of a page. `SQUARE` is the size of a square plot.
+/// Size of a plot across the full width of a page. `SQUARE` is the size of a square plot.
 const WIDE: (u32, u32) = (700, 210);
 const SQUARE: (u32, u32) = (400, 370);
-/// Maximum number of points in a curve. More points cannot be distinguished on paper.
+/// Maximum number of points in a curve. On paper, more could not be distinguished.
 const POINTS: usize = 2000;
 /// Number of signal periods in the plot over time.
 const PERIODS: f64 = 4.0;
 /// Highest frequency in the spectrum, as a multiple of the signal frequency.
 const ORDERS: f64 = 12.0;
 
-/// Creates the report of a capture with the given name.
+/// Creates the report on a capture with the given name.
 ///
 /// # Errors
 /// Returns the reason why the capture cannot be analysed.
@@ -90,7 +90,7 @@ fn quality_section(context: &ReportContext<'_>, quantities: &[Quantity], family:
         .with(Block::Table(table))
 }
 
-/// Formats a quantity with its unit, followed by the value in a second unit if the quantity has one.
+/// Formats a quantity with its unit, followed by its value in a second unit, if any.
 fn quantity_fact(context: &ReportContext<'_>, quantity: &Quantity) -> Fact {
     let shown = |value, decimals, unit: Unit| format!("{} {}", context.number(value, decimals), unit.unit_symbol());
     let also = quantity.also.map(|(value, decimals, unit)| format!(" ({})", shown(value, decimals, unit)));
@@ -126,7 +126,7 @@ fn time_section(context: &ReportContext<'_>, measurement: &Measurement, analysis
     Some(Section::new(title).with(Block::Drawing(plot)))
 }
 
-/// Plots the samples as a Lissajous figure, with the limits of the vector length.
+/// Plots the samples as a Lissajous figure, with the limits for the vector length.
 fn lissajous_section(
     context: &ReportContext<'_>,
     measurement: &Measurement,

@@ -1,4 +1,4 @@
-//! Signals over time as series of the recorder: sine, cosine, the length of their vector, and the four wires if
+//! Signals over time as lines of the recorder: sine, cosine, the length of their vector, and the four wires if
 //! recorded. See SICK 8010701 for SIN, REFSIN, COS and REFCOS.
 
 use super::feed::ChannelSamples;
@@ -18,16 +18,15 @@ pub struct Scope {
     group: GroupId,
 }
 
-/// Reason why the times of a capture cannot serve as an axis.
+/// The reason why the times in a capture cannot be used as an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeAxisError {
     GoBack,
-    /// The times are beyond 292 years, the range of nanosecond time stamps. The cause may be milliseconds that were
-    /// read as seconds.
+    /// The times exceed 292 years, the range of nanosecond timestamps. Milliseconds may have been read as seconds.
     TooFar,
 }
 
-/// Maximum time in seconds that can be represented in nanoseconds.
+/// Maximum time in seconds that fits into a nanosecond timestamp.
 const MAX_TIME_S: f64 = 9.2e9;
 
 /// Maximum number of samples kept of a running source: five seconds at 100 kHz.

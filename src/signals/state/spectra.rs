@@ -1,5 +1,5 @@
-//! Spectra of both channels, reduced for drawing. Each frequency range is represented by its highest line, so no peak
-//! is lost.
+//! Spectra of both channels, reduced for drawing. In each frequency range, only the highest line is kept, so that no
+//! peak is lost.
 
 use crate::analysis::position_error::Samples;
 use crate::analysis::spectrum::{SpectralLine, Spectrum, SpectrumError, sample_rate_hz};
@@ -9,7 +9,7 @@ pub struct Spectra {
     pub sine: ChannelSpectrum,
     pub cosine: ChannelSpectrum,
     pub spacing_hz: f64,
-    /// Number of samples in the transform. Of a long capture, only the last samples are used.
+    /// Number of samples in the transform, taken from the end of a long capture.
     pub samples: usize,
 }
 
@@ -27,8 +27,8 @@ const LINES: usize = 1_000;
 const PEAKS: usize = 6;
 /// Minimum amplitude of a labelled peak, as a fraction of the highest peak.
 const MIN_PEAK: f64 = 1e-4;
-/// Minimum amplitude of a labelled peak, as a multiple of the median of all lines. Lower peaks may be noise: in a
-/// million lines of noise, the highest line reaches 4.5.
+/// Minimum amplitude of a labelled peak, as a multiple of the median of all lines. Anything lower may be noise: in a
+/// million lines of noise, the highest one reaches 4.5.
 const NOISE: f64 = 6.0;
 
 impl Spectra {
@@ -76,8 +76,7 @@ fn median(values: &[f64]) -> f64 {
 
 /// Converts a peak amplitude in volts to an rms level in decibels relative to one volt.
 pub fn to_decibel_volts(peak_v: f64) -> f64 {
-    /// Minimum level in decibels. At this level, an amplitude is indistinguishable from zero in a double next to one
-    /// volt.
+    /// Lowest level in decibels. Added to one volt in a double, a lower amplitude would make no difference.
     const MIN_DECIBELS: f64 = -160.0;
     (20.0 * (peak_v / std::f64::consts::SQRT_2).log10()).max(MIN_DECIBELS)
 }
@@ -86,8 +85,8 @@ pub fn to_decibel_volts(peak_v: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Reducing the spectra keeps every peak of a 100 kHz capture with 1 kHz at 0.5 V on both channels and 8 kHz at 20
-    /// mV on the sine.
+    /// Reduction keeps every peak of a 100 kHz capture, with 1 kHz at 0.5 V on both channels and 8 kHz at 20 mV on the
+    /// sine.
     #[test]
     fn reduced_spectra_keep_every_peak() {
         let time_s: Vec<f64> = (0..50_000).map(|at| f64::from(at) * 1e-5).collect();

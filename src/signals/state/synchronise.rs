@@ -1,6 +1,6 @@
-//! Combination of the absolute and the analogue position, from entries or from an encoder at rest. Several readings
-//! yield the mean lead of the absolute position. See SICK 8010701, forming the absolute position, and section 4 of the
-//! project's sine/cosine reference.
+//! Combination of absolute and analogue position, either typed or read from an encoder at rest. Several readings yield
+//! the mean offset between them. See SICK 8010701, forming the absolute position, and section 4 of the project's
+//! sine/cosine reference.
 
 use crate::analysis::arctan::{Phase, from_voltages};
 use crate::analysis::quality::{Limits, Verdict};
@@ -12,11 +12,11 @@ use crate::signals::state::TEXTS;
 #[derive(Clone, Debug, PartialEq)]
 pub enum SynchroniseAction {
     Edit(Box<Form>),
-    /// Uses the offset measured from the readings as the entry.
+    /// Use the offset measured from the readings.
     UseOffset,
-    /// Uses the offset found in a capture as the entry, in 1/32 of a period and without the half step.
+    /// Use the offset found in a capture, in 1/32 of a period and without the half step.
     UseCaptured(f64),
-    /// Discards the readings from which the offset is measured.
+    /// Discard the readings from which the offset is measured.
     Forget,
 }
 
@@ -35,27 +35,27 @@ pub struct Form {
     pub offset: String,
     /// Whether the absolute position refers to the middle of its step instead of the beginning.
     pub half_step: bool,
-    /// Value of the quadrature counter in quarters of a period, as entered, or empty without a counter.
+    /// Value of the quadrature counter in quarters of a period, as entered. Empty without a counter.
     pub quarters: String,
-    /// Timing uncertainty in milliseconds of a check without a latch, as entered.
+    /// Timing uncertainty in milliseconds when positions are compared without a latch, as entered.
     pub jitter_ms: String,
 }
 
-/// Form in which the analogue position is entered.
+/// The form in which the analogue position is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhaseInput {
-    /// Fraction of a period, 0 to 1.
+    /// Fraction of a period, from 0 to 1.
     Periods,
-    /// Electrical degrees, 0 to 360.
+    /// Electrical degrees, from 0 to 360.
     Degrees,
-    /// Sine and cosine in volts, without their mean level.
+    /// Sine and cosine in volts, with their mean level removed.
     Volts,
 }
 
 #[derive(Debug, Default)]
 pub struct SynchroniseState {
     pub form: Form,
-    /// Reason why the last attempt to read an encoder failed, if any.
+    /// Reason why the last encoder reading failed, if it did.
     pub problem: Option<Text>,
     readings: Vec<(u64, Phase)>,
     origin: Option<SineCosineOrigin>,
@@ -68,8 +68,8 @@ pub struct SynchronisationResult {
     pub period: u64,
     /// Step of the absolute position within its period, 0 to 31.
     pub step: u64,
-    /// Lead of the absolute over the analogue position within the period, in 1/32 of a period. The entered offset and
-    /// half step are not taken into account.
+    /// Lead of the absolute position over the analogue position within the period, in 1/32 of a period. The entered
+    /// offset and half step are not taken into account.
     pub difference_steps: f64,
     /// Fine position, or the reason why it cannot be determined.
     pub result: Result<SynchronisedPosition, AmbiguousPeriodError>,
@@ -80,7 +80,7 @@ const MIN_READINGS: usize = 2;
 const MAX_TURNS: u32 = 65_536;
 
 impl Default for Form {
-    /// Creates the entries of the example in the second row of the reference's table.
+    /// Creates the example in the second row of the table in the reference.
     fn default() -> Self {
         let typed = |text: &str| text.to_owned();
         Form {
@@ -121,7 +121,7 @@ impl Form {
         })
     }
 
-    /// Returns the fine position in periods from the quadrature counter, or `None` without a counter.
+    /// Returns the fine position in periods according to the quadrature counter, or `None` without a counter.
     ///
     /// # Errors
     /// Returns the reason why the first invalid entry was rejected.
@@ -136,8 +136,8 @@ impl Form {
         Ok(Some(period as f64 + phase.to_periods()))
     }
 
-    /// Returns the highest speed in revolutions per minute for a reliable check without a latch. Up to this speed, the
-    /// shaft moves at most half a period within the timing uncertainty.
+    /// Returns the highest speed at which positions can be compared without a latch, in revolutions per minute. Up to
+    /// this speed, the shaft moves at most half a period within the timing uncertainty.
     ///
     /// # Errors
     /// Returns the reason why the first invalid entry was rejected.
@@ -175,7 +175,7 @@ impl Form {
 }
 
 impl SynchronisationResult {
-    /// Returns the fine position as a shaft angle in degrees, within a revolution.
+    /// Returns the fine position as a shaft angle in degrees within one revolution.
     pub fn to_degrees(&self) -> Option<f64> {
         let fine = self.result.ok()?;
         Some(fine.periods().rem_euclid(f64::from(self.periods)) / f64::from(self.periods) * 360.0)
@@ -215,7 +215,7 @@ impl SynchroniseState {
         }
     }
 
-    /// Adopts the next reading of `source`, or shows why it failed. Has no effect if there is no new reading.
+    /// Adopts the next reading from `source`, or shows why it failed. Has no effect if there is no new reading.
     pub(crate) fn follow_source(&mut self, source: &mut dyn SineCosineSource) {
         match source.take_reading() {
             Some(Ok(reading)) => self.add_reading(reading, source.origin()),
@@ -259,7 +259,8 @@ impl SynchroniseState {
         self.readings.len()
     }
 
-    /// Returns the offset measured from the readings, in the form of the entry, or `None` if it cannot be measured.
+    /// Returns the offset measured from the readings, in the form in which it is entered. Returns `None` if it cannot
+    /// be measured.
     pub fn measured_offset(&self) -> Option<f64> {
         if self.readings.len() < MIN_READINGS {
             return None;
@@ -267,7 +268,7 @@ impl SynchroniseState {
         measure_offset(self.readings.iter().copied()).map(|offset| self.add_half_step(offset))
     }
 
-    /// Returns an offset in the form of the entry, which includes the half step if selected.
+    /// Returns an offset in the form in which it is entered, including the half step if selected.
     pub fn add_half_step(&self, offset: f64) -> f64 {
         offset + if self.form.half_step { 0.5 } else { 0.0 }
     }
@@ -284,7 +285,7 @@ mod tests {
         Form { absolute, phase, periods: typed(periods), turns: typed(turns), ..Form::default() }
     }
 
-    /// Typed values match the rows of section 4: P, a5, d, k, fine position, residual.
+    /// Typed values yield the rows of section 4: P, a5, d, k, fine position, residual.
     #[test]
     fn typed_rows_match_section_4() {
         let rows = [
@@ -326,7 +327,8 @@ mod tests {
         assert_eq!(nothing.compute_result().unwrap_err().id(), "synchronise.no_signal");
     }
 
-    /// Quadrature counters with a phase match section 4, as does the speed limit of 29 rpm for 1 ms with 1024 periods.
+    /// Quadrature counters with a phase match section 4. The same applies to the speed limit of 29 rpm for 1 ms with
+    /// 1024 periods.
     #[test]
     fn counters_and_check_speed_are_computed() {
         for (quarters, phase, fine) in [("43", "0.76", 10.76), ("44", "0.98", 10.98), ("43", "0.02", 11.02)] {
@@ -359,7 +361,7 @@ mod tests {
         }
     }
 
-    /// Two readings with leads half a step above and below 2.5 steps yield a mean lead of 2.5 steps.
+    /// Readings that lead by 2 and by 3 steps yield a mean lead of 2.5 steps.
     #[test]
     fn readings_measure_the_offset() {
         let mut page = SynchroniseState::default();

@@ -1,4 +1,4 @@
-//! The table of a capture: its first lines, its detected format, and the corrections of the user.
+//! The table of a capture: its first lines, its detected format, and the user's corrections.
 
 use super::TableSource;
 use crate::analysis::capture::{Columns, Delimiter, Layout, TableHints, decode_head};
@@ -9,9 +9,9 @@ pub struct Table {
     /// First lines of the table. Long lines are truncated.
     pub head: Vec<String>,
     pub hints: TableHints,
-    /// Format of the table, or `None` if it cannot be detected.
+    /// Format of the table, if it can be detected.
     pub layout: Option<Layout>,
-    /// Column numbers of REFSIN and REFCOS while only one of them is selected.
+    /// Columns of REFSIN and REFCOS while only one of them is selected.
     pub half_chosen: (Option<usize>, Option<usize>),
 }
 
@@ -34,7 +34,7 @@ const WIDTH: usize = 160;
 const MAX_COLUMNS: usize = 64;
 
 impl Table {
-    /// Creates a table from the first bytes of a file.
+    /// Creates a table from the beginning of a file.
     pub(super) fn from_head(place: TableSource, head: &[u8], hints: TableHints) -> Self {
         let text = decode_head(head);
         let shown = |line: &[u8]| {
@@ -55,7 +55,7 @@ impl Table {
         self.hints.columns.or(self.layout.as_ref().map(|layout| layout.columns))
     }
 
-    /// Returns the number of the column for a quantity, counted from 1.
+    /// Returns the column for a quantity, numbered from 1.
     pub fn column(&self, column: Column) -> Option<usize> {
         let columns = self.columns()?;
         match column {
@@ -84,8 +84,8 @@ impl Table {
         Some(name.as_str()).filter(|name| !name.is_empty())
     }
 
-    /// Selects a column. Returns `false` if the table cannot be read with this column, for example while the other
-    /// reference column is missing.
+    /// Selects a column. Returns `false` if the table cannot be read this way, for example because the other reference
+    /// column is missing.
     pub(super) fn select_column(&mut self, column: Column, number: Option<usize>) -> bool {
         let mut columns = self.columns().unwrap_or(Columns::TIME_SINE_COSINE);
         match (column, number) {

@@ -43,7 +43,7 @@ pub(super) fn run(
     });
 }
 
-/// Drops a large value on another thread, because freeing its memory can take a long time.
+/// Drops a large value on another thread, because releasing its memory can take a long time.
 pub(super) fn drop_in_background(tasks: &TaskRunner, large: impl Send + 'static) {
     tasks.run("let go", move || {
         drop(large);

@@ -1,4 +1,4 @@
-//! The settings of the adapter: link, sample rate, supply and errors.
+//! The adapter settings: link, sample rate, supply and errors.
 
 use egui::Ui;
 
@@ -12,11 +12,11 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Sample rates to choose from, in samples per second. The adapter uses the nearest rate that it supports.
+/// Selectable sample rates, in samples per second. The adapter uses the nearest rate that it supports.
 const RATES: [u32; 10] = [1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 200_000, 500_000, 1_000_000];
 const LINK_WIDTH: f32 = 280.0;
 
-/// Draws the settings of the adapter. Returns `true` if the settings can be closed.
+/// Draws the adapter settings. Returns `true` if they may be closed.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) -> bool {
     let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let (mut started, mut closed) = (false, false);

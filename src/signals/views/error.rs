@@ -1,4 +1,4 @@
-//! Position error within one period, raw and corrected, and its harmonics.
+//! Position error within a period, both raw and corrected, and its harmonics.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! Calculator for the input circuit of a drive. Nothing is measured here.
+//! Calculator for the input circuit of a drive. It uses typed values only.
 
 use egui::{Align, FontId, Layout, RichText, Ui, vec2};
 

@@ -1,4 +1,4 @@
-//! The Signals tab: one page for each view of sine and cosine. It requires neither an encoder nor a session.
+//! The Signals tab, with one page for each view of sine and cosine. It needs neither an encoder nor a session.
 
 mod adapter;
 mod error;
@@ -42,7 +42,7 @@ impl TabPage for Page {
     ];
 }
 
-/// Typed text that has not taken effect yet, with the reason if it is invalid.
+/// Typed text that has not taken effect yet, and the reason if it is invalid.
 type Draft = Option<(String, Option<Text>)>;
 
 #[derive(Default)]
@@ -128,7 +128,7 @@ fn page_ui(
     });
 }
 
-/// Returns a message in the window's language, from the Signals catalogue or the common one.
+/// Returns a message in the window's language, from the catalogue of the Signals tab or the common one.
 pub(crate) fn translate(theme: &Theme, id: &'static str) -> String {
     theme.format_text(&TEXTS.text(id))
 }

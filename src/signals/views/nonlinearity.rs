@@ -1,4 +1,4 @@
-//! DNL and INL over a revolution, measured against a reference encoder, as curves and ± values.
+//! DNL and INL over a revolution, relative to a reference encoder, as curves and ± values.
 
 use egui::Ui;
 

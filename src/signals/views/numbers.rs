@@ -1,4 +1,4 @@
-//! Rows of quantities: name, value, value of the compared capture, limit, and verdict.
+//! Rows of quantities with name, value, value of the compared capture, limit and verdict.
 
 use egui::{RichText, Ui, WidgetInfo};
 
@@ -7,15 +7,15 @@ use crate::signals::state::{Quantity, QuantityLimit, Unit};
 use crate::signals::views::translate;
 use crate::ui::{Theme, controls};
 
-/// Minimum width in points at which a value is also displayed in its second unit. In a narrower window, the second unit
-/// is in the tooltip.
+/// Minimum width in points at which a value is also displayed in its second unit. In a narrower window, the tooltip
+/// shows it.
 const MIN_SECOND_UNIT_WIDTH: f32 = 390.0;
-/// Minimum width in points for the column of limits. In a narrower window, each limit is displayed next to its verdict
-/// icon, without a unit, because the value has the same unit.
+/// Minimum width in points for a column of limits. In a narrower window, each limit is next to its verdict icon,
+/// without a unit because it has that of the value.
 const MIN_LIMITS_WIDTH: f32 = 350.0;
 const LIMITS_WIDTH: f32 = 110.0;
 
-/// Draws the rows. If a second list is given, its values and the differences are also drawn.
+/// Draws the rows. A second list, if given, is drawn for comparison, with the differences.
 pub(super) fn rows_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -97,7 +97,7 @@ pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) 
     with_unit_symbol(theme.format_number(without_negative_zero(value, decimals), decimals), unit)
 }
 
-/// Returns zero for a value that is displayed as zero, which avoids a minus sign.
+/// Returns positive zero for a value displayed as zero, which avoids a minus sign.
 fn without_negative_zero(value: f64, decimals: usize) -> f64 {
     let scale = 10_f64.powi(decimals as i32);
     if (value * scale).abs() < 0.5 { 0.0 } else { value }
@@ -119,7 +119,7 @@ fn with_unit_symbol(words: String, unit: Unit) -> String {
     }
 }
 
-/// Draws a verdict icon in its colour, with a label for screen readers and the limit as a tooltip.
+/// Draws a verdict icon in its colour. It has a label for screen readers, and a tooltip with the limit.
 fn verdict_icon_ui(ui: &mut Ui, theme: &Theme, verdict: Verdict, limit: &str) {
     let (icon, colour) = controls::verdict_badge(theme, verdict);
     let id = match verdict {

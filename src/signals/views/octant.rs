@@ -1,4 +1,4 @@
-//! Comparison of the octant table of a drive with the exact angle: the errors of several table sizes, and both results
+//! Comparison between a drive's octant table and the exact angle: the errors for several table sizes, and both results
 //! for one pair of voltages.
 
 use egui::Ui;

@@ -1,4 +1,4 @@
-//! Signal quality: the Lissajous figure, the findings, and every number with its limit.
+//! Signal quality: the Lissajous figure, the findings, and all values with their limits.
 
 use std::sync::Arc;
 
@@ -100,7 +100,7 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
     });
 }
 
-/// Cached texture of a Lissajous image. It is replaced if the samples or the colour change.
+/// Cached texture of a Lissajous figure. It is replaced when the samples or the colour change.
 #[derive(Default)]
 pub(super) struct Picture(Option<(Arc<MeasurementResult>, bool, Color32, TextureHandle)>);
 
@@ -142,7 +142,7 @@ fn quality_figure(
     LissajousFigure { picture, curve: measurement.analysis.as_ref().map(curve).unwrap_or_default(), colour, dashed }
 }
 
-/// Draws the reason why a capture could not be analysed, and its findings.
+/// Draws the reason why a capture could not be analysed, with its findings.
 pub(super) fn refusal_ui(ui: &mut Ui, theme: &Theme, measurement: &MeasurementResult) {
     let Some(why) = measurement.failure_text(theme.language) else { return };
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
@@ -189,8 +189,7 @@ fn verdict_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measu
     });
 }
 
-/// Draws the changes since the compared capture. The note that nothing is worse appears only if everything could be
-/// compared.
+/// Draws the changes since the compared capture. “Nothing is worse” appears only if everything could be compared.
 fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &DiagnosisChanges) {
     let under = |ui: &mut Ui, id| {
         ui.add_space(theme.space.inside);
@@ -244,7 +243,7 @@ fn values_ui(
     });
 }
 
-/// Draws the entry for the signal periods per revolution.
+/// Draws the entry for the number of signal periods per revolution.
 pub(super) fn periods_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -1,4 +1,4 @@
-//! View of the sample source with its progress and errors, at the top of every page that uses samples.
+//! The sample source with its progress and errors, drawn at the top of every page that uses samples.
 
 use egui::{Align, Layout, RichText, Ui, vec2};
 
@@ -23,7 +23,7 @@ pub(super) struct SourceUiState {
     adapter: bool,
 }
 
-/// Draws the source of the samples. Returns `true` if there is a capture to show below it.
+/// Draws the sample source. Returns `true` if there is a capture to show below it.
 pub(super) fn source_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -56,8 +56,8 @@ pub(super) fn source_ui(
     shown
 }
 
-/// Draws the settings of the virtual encoder while they are open. Each page places these settings next to the result
-/// that they affect.
+/// Draws the settings of the virtual encoder while they are open. Each page places them next to the result that they
+/// affect.
 pub(super) fn settings_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -71,7 +71,7 @@ pub(super) fn settings_ui(
     }
 }
 
-/// Returns the kind of source that is running or displayed, or `None` for a table.
+/// Returns the kind of source that is running or displayed. Returns `None` for a table.
 fn current_source(signals: &Signals) -> Option<SourceKind> {
     if signals.source().is_running() {
         return Some(signals.source().kind());
@@ -243,7 +243,7 @@ fn toggle_ui(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
     }
 }
 
-/// Draws the button that keeps the displayed capture for comparison.
+/// Draws the button for keeping the displayed capture for comparison.
 fn save_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let word = translate(theme, "compare.keep");
     let same = signals

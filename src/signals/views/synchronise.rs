@@ -1,4 +1,4 @@
-//! The page that combines the absolute and the analogue position, from entries or from an encoder.
+//! The page that combines the absolute and the analogue position, either typed or read from an encoder.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! The first lines of a capture's table and the detected format, which the user can correct.
+//! The first lines of a capture's table, and the detected format for the user to correct.
 
 use egui::{ScrollArea, Ui};
 

@@ -12,12 +12,12 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Slider for a setting, with its range and number of decimals. Values beyond the range can be typed.
+/// A slider for a setting, with its range and number of decimals. Values outside the range can be typed.
 struct SliderSpec {
     quantity: Quantity,
     ends: (f64, f64),
     decimals: usize,
-    /// Whether the slider has a logarithmic scale, on which small values have more room.
+    /// Whether the slider is logarithmic, which gives small values more room.
     logarithmic: bool,
 }
 
@@ -50,7 +50,7 @@ const DISTURBANCES: [SliderSpec; 8] = [
     linear_slider(Quantity::Modulation, 0.0, 20.0, 1),
     slider_spec(Quantity::Eccentricity, 0.0, 3600.0, 1),
 ];
-/// Selectable lengths of the measured section, in milliseconds.
+/// Selectable durations of the measured samples, in milliseconds.
 const WINDOWS: [u32; 5] = [20, 50, 200, 1000, 5000];
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) {

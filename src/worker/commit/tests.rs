@@ -1,9 +1,9 @@
-//! Tests of the steps of a write, and of the errors that prevent its first byte.
+//! Tests of the steps of a write, and of errors that prevent it from starting.
 
 use super::*;
 use crate::profile::{Comparison, Entries, Profile, ProfileError, Redo, Writer, WrittenChanges};
 
-/// A device that records its calls, and checks the files that exist at that moment.
+/// A device that records its calls and checks which backups and logbook entries exist at each one.
 struct Spy {
     store: Store,
     steps: Vec<&'static str>,
@@ -11,7 +11,7 @@ struct Spy {
     ends_early: bool,
 }
 
-/// The user cancelled it.
+/// The error after a cancellation by the user.
 #[derive(Debug, PartialEq)]
 struct Cancelled;
 
@@ -33,7 +33,7 @@ impl OperationError for Cancelled {
     }
 }
 
-/// An operation that costs this number of write cycles.
+/// An operation that costs the given number of write cycles.
 #[derive(Clone, Hash)]
 struct Op(u64);
 
@@ -106,8 +106,8 @@ impl Write for Spy {
     }
 }
 
-/// The profile of a device whose operation of 3 cycles must be written again, and whose operation of 4 cycles cannot be
-/// undone.
+/// The profile of a device on which an operation costing 3 cycles can only be undone by another write, and one costing
+/// 4 cycles not at all.
 #[derive(Clone, Debug, PartialEq)]
 struct SpyProfile;
 
@@ -228,7 +228,7 @@ fn nothing_is_written_without_operations_or_with_another_plans_consent() {
     assert!(matches!(ended, Err(JobError::NotStarted(NotStarted::OtherPlan))) && spy.steps.is_empty());
 }
 
-/// Issue 22.4: an unknown count is not 0. Such a write begins only if forced, and the logbook's error is reported then.
+/// An unknown count is not 0: the write begins only if forced, and then reports the logbook error (issue 22.4).
 #[test]
 fn an_unusable_logbook_prevents_a_write() {
     /// A device that checks nothing.
@@ -269,7 +269,7 @@ fn an_unusable_logbook_prevents_a_write() {
     }
 }
 
-/// Issue 30: while the server of the logbook is away, a memory that wears out quickly needs a permit.
+/// While the logbook server is unreachable, writing to a memory that wears out quickly needs permission (issue 30).
 #[test]
 fn an_incomplete_count_needs_a_permit_if_the_memory_wears_out_quickly() {
     let seen = Some(CycleCount { seen: 7, is_complete: false });

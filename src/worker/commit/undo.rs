@@ -1,4 +1,4 @@
-//! Determines, before a plan is written, how its operations can be undone.
+//! Determines how the operations of a plan can be undone, before they are written.
 
 use super::PlannedWrite;
 use crate::profile::{Body, ChangedItem, Operation as _, Redo};
@@ -7,23 +7,23 @@ use crate::store::{EntryKind, UndoObstacle};
 /// How an operation can be undone after the write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Undo {
-    /// Undoing the logbook entry restores exactly the old values.
+    /// Undoing the logbook entry restores the exact old values.
     Exactly,
-    /// The old value must be written again, because the backup does not contain it.
+    /// The old value must be written again, because it is not in the backup.
     AnotherWrite {
         /// Old value.
         value: String,
         /// Number of write cycles required to write the old value.
         cycles: u64,
     },
-    /// The logbook entry cannot be undone, but restoring the backup writes exactly the old values.
+    /// The logbook entry cannot be undone, but restoring the backup writes the exact old values.
     RestoreBackup,
     /// The operation cannot be undone.
     Never(Redo),
 }
 
 impl Undo {
-    /// Returns how each operation of a plan can be undone. An operation that changes nothing yields `None`.
+    /// Returns how each operation of a plan can be undone, or `None` for an operation that changes nothing.
     pub(super) fn of_plan<P: PlannedWrite + ?Sized>(prepared: &P) -> Vec<Option<Undo>> {
         let (backup, kind) = (prepared.backup().body, prepared.entry_kind());
         let of_operation = |op: &P::Op| {
@@ -45,7 +45,7 @@ impl Undo {
         }
     }
 
-    /// Returns a rank for the effort that an undo requires from the user. A higher rank means more effort.
+    /// Ranks the effort that an undo requires from the user. A higher rank means more effort.
     const fn effort(&self) -> u8 {
         match self {
             Undo::Exactly => 0,

@@ -1,6 +1,5 @@
-//! The virtual sine/cosine source as a producer. The clock sets its pace, as with a real source. If it is delayed
-//! because the computer was busy or asleep, it catches up on the samples of the last quarter of a second. Older samples
-//! are lost and counted.
+//! The virtual sine/cosine source as a producer. The clock sets its pace, as for a real source. After a delay, because
+//! the computer was busy or asleep, it catches up on the last quarter of a second. Older samples are lost and counted.
 
 use std::time::Duration;
 
@@ -13,11 +12,10 @@ use crate::units::Moment;
 
 /// Duration of a batch at full rate, in nanoseconds.
 const BATCH_NS: i64 = 10_000_000;
-/// Maximum delay, in nanoseconds, for which the source catches up.
+/// Maximum delay, in nanoseconds, that the source makes up for.
 const LATE_NS: i64 = 250_000_000;
 
-/// The error for samples whose settings are no longer stored because the settings have been changed too often in the
-/// meantime.
+/// The error for samples whose settings have been discarded after too many changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the settings for the requested samples are no longer stored")]
 pub struct StaleSettings;
@@ -30,7 +28,7 @@ pub struct AnalogueSource {
 }
 
 impl AnalogueSource {
-    /// Creates a source that starts at `start` on the clock of its stream.
+    /// Creates a source that starts at `start` on the stream's clock.
     pub fn new(checked: CheckedSettings, start: Moment) -> Self {
         AnalogueSource { source: Source::new(checked, SampleTime::from(start)), next: 0 }
     }

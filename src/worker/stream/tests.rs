@@ -1,4 +1,4 @@
-//! Tests of streams on threads: neither side waits for the other, and losses are counted.
+//! Tests of streams on threads: neither side waits for the other, and lost samples are counted.
 
 use std::sync::atomic::AtomicUsize;
 use std::time::Instant;
@@ -11,8 +11,8 @@ use crate::units::Moment;
 /// A time limit that exceeds the duration of any test.
 const HANGS: Duration = Duration::from_secs(20);
 
-/// A sample producer for tests. It produces consecutive numbers as fast as possible until it stalls or fails. Each
-/// batch advances its clock by one millisecond.
+/// A producer of consecutive numbers, as fast as possible until it stalls or fails. Each batch advances its clock by
+/// one millisecond.
 struct Numbers {
     sizes: VecDeque<usize>,
     next: u64,
@@ -57,7 +57,7 @@ fn wait_until(what: impl Fn() -> bool) {
     }
 }
 
-/// Checks that every number is either present or counted as lost at the correct batch.
+/// Checks that every number is either present or counted as lost in the correct batch.
 fn check(batches: &[Batch<Vec<u64>>], from: u64) -> u64 {
     batches.iter().fold(from, |next, batch| {
         assert_eq!(batch.first, next + batch.lost, "{batch:?}");

@@ -1,4 +1,4 @@
-//! Tests of late results, aborted tasks and changed settings, which cannot be forced in a window.
+//! Tests of late results, aborted tasks and changed settings, which cannot be provoked in a window.
 
 use std::time::{Duration, Instant};
 
