@@ -94,7 +94,7 @@ fn backups_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
     });
 }
 
-/// Draws the entry for the asset. The text that is being typed is kept with the entry.
+/// Draws the entry for the asset and keeps its text while the user is typing.
 fn asset_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     card(ui, theme, "asset_card.title", |ui| {
         paragraph(ui, theme.label(theme.translate("asset_card.words")));

@@ -1,4 +1,4 @@
-//! Cards, which are framed groups with a heading.
+//! Cards: framed groups with a heading.
 
 use egui::{Button, Id, RichText, Role, Ui, WidgetInfo};
 
@@ -14,7 +14,7 @@ pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl
     card_with_trailing(ui, theme, title, |_| {}, content)
 }
 
-/// Draws a card with a heading. `aside` draws to the right of the heading, or below it if there is not enough room.
+/// Draws a card with a heading. `aside` is drawn to the right of the heading, or below it if there is not enough room.
 pub(crate) fn card_with_trailing<R>(
     ui: &mut Ui,
     theme: &Theme,
@@ -34,8 +34,8 @@ pub(crate) fn card_with_trailing<R>(
         .inner
 }
 
-/// Draws the heading of a card with `aside` to the right of it or below. The width below which both do not fit in one
-/// row is known from an earlier frame.
+/// Draws a card's heading with `aside` to the right, or below if both do not fit on one line. The required width is
+/// measured in an earlier frame.
 fn heading_ui(ui: &mut Ui, theme: &Theme, heading: &str, aside: impl FnOnce(&mut Ui)) {
     let id = ui.scope_id().with("aside_below").with(heading);
     let width = ui.available_width();
@@ -75,7 +75,7 @@ pub(crate) fn folding_card(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, c
     folding_card_with_trailing(ui, theme, title, |_| {}, content);
 }
 
-/// Draws a [`folding_card`]. While the card is open, `aside` draws to the right of the heading.
+/// Draws a [`folding_card`]. While the card is open, `aside` is drawn to the right of the heading.
 pub(crate) fn folding_card_with_trailing(
     ui: &mut Ui,
     theme: &Theme,

@@ -1,4 +1,4 @@
-//! Drawing of the results of a device check, for every kind of device.
+//! Draws the results of a device check, for every kind of device.
 
 use egui::{RichText, Ui};
 
@@ -8,7 +8,7 @@ use crate::analysis::check::Verdict;
 use crate::app::Text;
 use crate::app::check::{CheckLine, verdict_text};
 
-/// Draws the result lines of the last check. If there is no result, describes what a check does.
+/// Draws the results of the last check, or explains what a check does if there are none.
 pub(crate) fn lines_ui(ui: &mut Ui, theme: &Theme, lines: Option<&[CheckLine]>, nothing: impl Into<Text>) {
     let Some(lines) = lines else {
         paragraph(ui, theme.label(theme.format_text(&nothing.into())));

@@ -18,7 +18,7 @@ use crate::store::{Backup, UserName};
 const COMMAND: Modifiers = Modifiers::COMMAND;
 const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
 
-/// Key that shows or hides the help, even over a dialog.
+/// Key that toggles the help, even while a dialog is open.
 pub(super) const HELP_KEY: Key = Key::F1;
 
 /// Keys that select the tabs in combination with Ctrl, in tab order.
@@ -26,13 +26,13 @@ const TAB_KEYS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 pub(super) struct Command {
-    /// Name of the device or tab on which the command acts. Empty for a command that acts on the whole program.
+    /// Name of the device or tab that the command affects. Empty for a command that affects the whole program.
     pub(super) about: String,
     pub(super) name: String,
-    /// Name in the other language. The command can also be found by this name.
+    /// Name in the language that is not selected. The command palette also finds the command by this name.
     pub(super) other_name: String,
     pub(super) shortcut: Option<KeyboardShortcut>,
-    /// Whether a text entry receives the key instead while the user is typing.
+    /// Whether a focused text entry receives the key instead of the command.
     pub(super) yields_to_typing: bool,
     pub(super) is_enabled: bool,
     pub(super) effect: CommandEffect,
@@ -207,7 +207,7 @@ fn backups(theme: &Theme, device: &AnyDevice) -> Vec<Command> {
     backups.iter().map(restore).collect()
 }
 
-/// Returns the commands that write an open profile to connected devices of the matching kind.
+/// Returns the commands that write an open profile to connected devices of the same kind.
 fn write_commands(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Command> {
     let is_target = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let write = |target: &AnyDevice| {
@@ -220,7 +220,7 @@ fn write_commands(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Com
 }
 
 impl NamedAction {
-    /// Creates an action that has the same name as its button. `word` is a text id in the common catalogue.
+    /// Creates an action with the same name as its button. `word` is a text id in the common catalogue.
     pub fn new(theme: &Theme, word: &'static str, is_enabled: bool, action: Action) -> Self {
         NamedAction { name: theme.translate(word), is_enabled, action }
     }

@@ -13,11 +13,11 @@ pub use super::label_column::{entry, row};
 use super::{Theme, icons};
 use crate::analysis::quality::Verdict;
 
-/// Minimum width in points at which a label is drawn beside an entry. In narrower spaces, an icon replaces the label.
+/// Minimum width in points at which an entry has a text label. Below it, an icon replaces the label.
 const MIN_LABEL_WIDTH: f32 = 64.0;
 /// Minimum width of a dialog in points.
 const MIN_MODAL_WIDTH: f32 = 240.0;
-/// Expands the UI to the full available width. That width may be negative in a very small window.
+/// Expands the UI to the available width, which may be negative in a very small window.
 pub(crate) fn fill_width(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
 }
@@ -36,8 +36,8 @@ pub(crate) fn problem_ui(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app
     }
 }
 
-/// Draws the reason why entries are invalid below them. The space is always reserved, so nothing below moves when a
-/// message appears.
+/// Draws the reason why entries are invalid below them. The space is always reserved, so a message does not move the
+/// widgets below.
 pub(crate) fn show_error_below(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let size = vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -48,7 +48,7 @@ pub(crate) fn show_error_below(ui: &mut Ui, theme: &Theme, problem: Option<&crat
     });
 }
 
-/// Draws the reason why an entry is invalid to the right of it, where a message does not move anything when it appears.
+/// Draws the reason why an entry is invalid to the right of it, so a message does not move other widgets.
 pub(crate) fn show_error_beside(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let Some(problem) = problem else { return };
     let (words, ink) = (theme.format_text(problem), theme.palette.bad);
@@ -59,8 +59,8 @@ pub(crate) fn show_error_beside(ui: &mut Ui, theme: &Theme, problem: Option<&cra
     }
 }
 
-/// Draws a message on one line, or on two lines in a smaller font. The total height is that of a button, so nothing
-/// below moves. A tooltip shows the full text of a longer message.
+/// Draws a message on one line, or on two lines in a smaller font. It is always as high as a button, so nothing below
+/// moves. A tooltip shows the full text of a longer message.
 pub(crate) fn message_label(ui: &mut Ui, theme: &Theme, words: String, ink: egui::Color32) -> Response {
     let width = ui.available_width();
     let font = |size: f32| egui::FontId::proportional(size);
@@ -99,8 +99,8 @@ pub(super) fn modal<R>(
     shown.inner
 }
 
-/// Draws the buttons at the end of a dialog, on a line as high as a button, with the first button at the far right.
-/// Centring the buttons in the remaining space would prevent the dialog from shrinking.
+/// Draws the buttons at the end of a dialog in a row, with the first button at the far right. Centring them in the
+/// remaining space would prevent the dialog from shrinking.
 pub(super) fn right_aligned(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
@@ -190,7 +190,7 @@ pub(crate) fn empty_placeholder(ui: &mut Ui, theme: &Theme, words: &str, action:
     pressed
 }
 
-/// Draws an icon that opens a small panel below it. Clicks and typing inside the panel do not close it.
+/// Draws an icon button that opens a small panel below it. Clicks and typing inside the panel do not close it.
 pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnce(&mut Ui)) {
     let config = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(icon).min_size(vec2(28.0, 28.0));
@@ -235,7 +235,7 @@ pub(crate) fn dropdown<T: PartialEq + Copy>(
     *value != before
 }
 
-/// Returns the width of a drop-down list in which a text is fully visible.
+/// Returns the width at which a drop-down list shows the given text in full.
 fn choice_width(ui: &Ui, shown: &str) -> f32 {
     let font = egui::TextStyle::Button.resolve(ui.style());
     let words = ui.painter().layout_no_wrap(shown.to_owned(), font, egui::Color32::PLACEHOLDER);
@@ -244,7 +244,7 @@ fn choice_width(ui: &Ui, shown: &str) -> f32 {
 }
 
 /// Draws a choice with all options visible, as many per row as fit. It also works in a panel that closes on an outside
-/// click, where a drop-down list would not.
+/// click, unlike a drop-down list.
 pub(crate) fn options<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,
@@ -325,8 +325,8 @@ pub(crate) fn two_columns<C>(
     split(ui, theme, (0.5, 640.0), context, left, right);
 }
 
-/// Draws the page of an encoder, with its identity and check beside its readings. For a profile, the page contains only
-/// the identity and the wiring.
+/// Draws the page of an encoder: its identity and check next to its readings. For a profile, it contains only the
+/// identity and the wiring.
 pub(crate) fn encoder_page<C>(
     ui: &mut Ui,
     theme: &Theme,

@@ -1,5 +1,5 @@
-//! View of a device. The device's folder implements a typed trait, and the window uses an object-safe one. A single
-//! adapter connects the two.
+//! Drawing of a device. Each device module implements a typed trait, which an adapter turns into the object-safe trait
+//! used by the window.
 
 #![warn(missing_docs)]
 
@@ -29,7 +29,7 @@ impl PageInfo {
     }
 }
 
-/// Type whose values are the pages of a tab.
+/// The pages of a tab as an enumeration.
 pub trait TabPage: Copy + PartialEq + Default + 'static {
     /// All pages, in navigation order.
     const PAGES: &'static [(Self, PageInfo)];
@@ -49,13 +49,13 @@ pub(crate) fn page_at<P: TabPage>(place: usize) -> Option<P> {
     P::PAGES.get(place).map(|(page, _)| *page)
 }
 
-/// View of a kind of device, with the types of that kind.
+/// Draws one kind of device, using the types of that kind.
 pub trait TypedDeviceView: Sync + 'static {
     /// Application state of the device, independent of drawing.
     type Device: DeviceType;
     /// Pages of the device's tab.
     type Page: TabPage;
-    /// Text buffers and selections of one session, which are dropped when a different device replies.
+    /// Text buffers and selections of one session. They are dropped when a different device replies.
     type Memory: Default + 'static;
     /// The form that edits a link to this device.
     type ConnectForm: TypedConnectForm;
@@ -99,7 +99,7 @@ pub trait TypedDeviceView: Sync + 'static {
     /// Draws the position in large digits in the given colour, followed by further values.
     fn value_ui(ui: &mut Ui, theme: &Theme, device: &Self::Device, ink: Rgb);
 
-    /// Draws the menu of values that are read together with the position, if the device has any.
+    /// Draws the menu for choosing values to read together with the position, if the device has any.
     fn watch_menu(
         _ui: &mut Ui,
         _skin: &Theme,
@@ -119,23 +119,22 @@ pub trait TypedDeviceView: Sync + 'static {
         Vec::new()
     }
 
-    /// Draws the part of an empty tab below the buttons common to all kinds. The tab is empty while no device is open.
+    /// Draws the part of an empty tab below the common buttons. A tab is empty while no device is open.
     fn empty_ui(_ui: &mut Ui, _skin: &Theme, _actions: &mut Vec<Action>) {}
 
-    /// Returns the name of the picture in which two profiles are compared. Returns `None` for a kind without a picture.
+    /// Returns the label of the picture that compares two profiles, or `None` for a kind without a picture.
     fn compared_picture() -> Option<Text> {
         None
     }
 
-    /// Draws two profiles over or below each other.
+    /// Draws both profiles in one picture.
     fn compared_picture_ui(_ui: &mut Ui, _theme: &Theme, _left: &ProfileOf<Self>, _right: &ProfileOf<Self>) {}
 }
 
-/// Profile of the devices that a view displays.
+/// Profile type of the devices that a view displays.
 pub type ProfileOf<V> = <<V as TypedDeviceView>::Device as DeviceType>::Profile;
 
-/// View of a kind of device, object-safe for the window. For a device of another kind, it does not draw anything and
-/// reports no edits.
+/// Object-safe view of one kind of device. For a device of another kind, it draws nothing and reports no edits.
 pub trait DeviceView: Sync {
     /// Returns the kind of device that the view displays.
     fn kind(&self) -> &'static dyn DeviceKind;
@@ -161,13 +160,13 @@ pub trait DeviceView: Sync {
     /// Creates the view of a session.
     fn session(&self) -> Box<dyn SessionView>;
 
-    /// Draws the part of an empty tab below the buttons common to all kinds. The tab is empty while no device is open.
+    /// Draws the part of an empty tab below the common buttons. A tab is empty while no device is open.
     fn empty_ui(&self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>);
 
-    /// Returns the name of the picture in which two profiles are compared. Returns `None` for a kind without a picture.
+    /// Returns the label of the picture that compares two profiles, or `None` for a kind without a picture.
     fn compared_picture(&self) -> Option<Text>;
 
-    /// Draws two profiles over or below each other. Draws nothing if they are of other kinds.
+    /// Draws both profiles in one picture. Draws nothing if they are of another kind.
     fn compared_picture_ui(&self, ui: &mut Ui, theme: &Theme, left: &Body, right: &Body);
 }
 
@@ -188,7 +187,7 @@ pub trait SessionView {
     /// Draws the progress of the running job in the status line, right-aligned.
     fn running_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>);
 
-    /// Draws the menu of values that are read together with the position, if the device has any.
+    /// Draws the menu for choosing values to read together with the position, if the device has any.
     fn watch_menu(&mut self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>);
 }
 
@@ -254,7 +253,7 @@ struct Memory<M> {
 }
 
 impl<M: Default> Memory<M> {
-    /// Returns the memory for the given device. The texts and selections of a previous device are cleared first.
+    /// Returns the view memory for the given device. Text and selections of a previous device are cleared first.
     fn for_device(&mut self, serial_number: Option<&str>) -> &mut M {
         if let Some(own) = serial_number
             && self.serial_number.as_deref() != Some(own)
@@ -297,9 +296,9 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
     }
 }
 
-/// View of a tab that does not require a device, before a window is open.
+/// A tab that requires no device, before a window is open.
 pub trait ToolView: Sync {
-    /// Returns the tool that the view displays.
+    /// Returns the tool shown on the tab.
     fn kind(&self) -> &'static dyn ToolKind;
 
     /// Returns the text id of the tab's name.

@@ -101,7 +101,7 @@ impl Docks {
         }
     }
 
-    /// Returns the tiles that contain only the given panes, even if the tiles were dragged elsewhere.
+    /// Returns the tiles that contain only the given panes, wherever the user has dragged them.
     fn tiles_of(&self, panes: &[Pane]) -> Vec<TileId> {
         let mut tiles = Vec::new();
         if let Some(root) = self.tree.root() {
@@ -110,8 +110,8 @@ impl Docks {
         tiles
     }
 
-    /// Collects the outermost tiles at or below `tile` that contain only the given panes. A pane that shares its tabs
-    /// with another one is left out.
+    /// Collects the outermost tiles at or below `tile` that contain only the given panes. A pane that shares a tab bar
+    /// with another pane is left out.
     fn collect_tiles(&self, tile: TileId, panes: &[Pane], tiles: &mut Vec<TileId>) {
         if self.contains_only(tile, panes) {
             tiles.push(tile);

@@ -1,5 +1,5 @@
-//! The edit bar of a page on which a memory is edited, for any device. It shows the number of edits and the buttons for
-//! discarding and writing them.
+//! The bar on pages that edit a memory, for any device. It shows the number of edits and the buttons for discarding and
+//! writing them.
 
 use egui::{RichText, Ui, WidgetInfo};
 
@@ -8,7 +8,7 @@ use super::{Theme, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 
-/// Width of the bar in points below which the button for discarding edits is drawn without its label.
+/// Width of the bar in points below which the discard button has no label.
 const NARROW_WIDTH: f32 = 660.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

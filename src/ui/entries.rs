@@ -1,4 +1,4 @@
-//! One-line text entries: plain, monospace, secret, labelled, and one that takes effect when it loses focus.
+//! One-line text entries: plain, monospace, secret, labelled, and one whose text takes effect when it loses focus.
 
 use egui::{Response, Ui, WidgetInfo};
 
@@ -56,8 +56,8 @@ pub(crate) fn clear_secret(ui: &Ui, response: &Response, text: &mut String) {
     egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
 }
 
-/// Draws a one-line entry for a number to the right of its label, with the decimal separator of the current language.
-/// Screen readers refer to the entry by the label.
+/// Draws a one-line number entry to the right of its label, with the decimal separator of the current language. Screen
+/// readers find the entry by the label.
 pub(crate) fn labelled_number_entry(
     ui: &mut Ui,
     theme: &Theme,

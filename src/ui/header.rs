@@ -207,7 +207,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, motion: Option<Text
     ui.label(RichText::new(theme.format_text(&text)).color(colour));
 }
 
-/// Returns whether the profile has a newer schema. Such a profile can be neither saved nor written.
+/// Returns whether the profile has a newer schema, so it can be neither saved nor written.
 fn is_read_only(device: &AnyDevice) -> bool {
     matches!(device.source(), Source::File { document, .. } if document.is_newer())
 }
@@ -224,8 +224,8 @@ fn link_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 }
 
 /// Draws the STOP button. The button ends every running job and every motion in all sessions. While this window moves a
-/// drive, the button acts on press instead of release and ends only motion, and its width is doubled. Without a drive,
-/// its label names the jobs. The tooltip says what a press stops at this moment.
+/// drive, the button is twice as wide, acts on press instead of release, and ends only motion. The tooltip states what
+/// a press would stop.
 fn stop_button_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let (moves, by_hand) = (shows_stop_overlay(studio), studio.is_turned_by_hand());
     let active = studio.can_stop_motion() || studio.can_stop();
@@ -260,7 +260,7 @@ fn stop_button_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec
     }
 }
 
-/// Returns whether a drive is moving that this window can stop.
+/// Returns whether this window can stop a drive that is moving.
 fn shows_stop_overlay(studio: &Studio) -> bool {
     studio.is_moving() && studio.can_stop_motion()
 }

@@ -1,5 +1,5 @@
-//! Icons by name, from a subset of the Phosphor font in `assets/fonts/Icons.ttf`. Every icon in the window has a label
-//! or a tooltip.
+//! Icons from a subset of the Phosphor font in `assets/fonts/Icons.ttf`. Every icon in the window has a label or a
+//! tooltip.
 
 pub const ARROWS_CLOCKWISE: &str = "\u{E094}";
 pub const ARROW_CLOCKWISE: &str = "\u{E036}";

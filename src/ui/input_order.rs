@@ -1,6 +1,6 @@
 //! The order of input within a frame. On a busy computer, a click on an entry and the text typed after it can arrive in
-//! the same frame. However, the entry does not have the keyboard focus until the next frame. Text after such an event
-//! is therefore held back for one frame.
+//! the same frame. The entry gets the keyboard focus only in the next frame, so text typed after the click is held back
+//! until then.
 
 use egui::{Event, Key};
 
@@ -10,7 +10,7 @@ pub(super) struct DeferredInput(Vec<Event>);
 
 impl DeferredInput {
     /// Reduces `events` to those of the current frame. If typing follows an event that may move the keyboard focus, the
-    /// frame ends with that event. If `at_once` is set, nothing is held back. Returns whether the next frame is due
+    /// frame ends with that event. If `at_once` is set, nothing is held back. Returns whether another frame is needed
     /// immediately.
     pub(super) fn split_frame_events(&mut self, events: &mut Vec<Event>, at_once: bool) -> bool {
         self.0.append(events);

@@ -1,6 +1,6 @@
-//! Filtering of key events before any widget receives them. A key that repeats, or that follows immediately after
-//! another key, does not press a button. Space stops a motion. While the pointer holds a button that moves a drive, any
-//! key stops the motion. Keys that hold such a button are handled by [`HoldState`](crate::app::HoldState).
+//! Filters key events before any widget receives them. A repeated key, or one that follows another too quickly, does
+//! not press a button. Space stops a motion. While the pointer holds a button that moves a drive, any key stops the
+//! motion. Keys that hold such a button are handled by [`HoldState`](crate::app::HoldState).
 
 use egui::{Context, Event, Key};
 
@@ -85,7 +85,7 @@ const fn is_modifier(key: Key) -> bool {
     matches!(key, ShiftLeft | ShiftRight | ControlLeft | ControlRight | AltLeft | AltRight | SuperLeft | SuperRight)
 }
 
-/// Returns the corresponding press key, or `None` if the key does not press buttons.
+/// Returns the press key for an egui key, or `None` if the key does not press buttons.
 pub(super) const fn press_key(key: Key) -> Option<PressKey> {
     match key {
         Key::Space => Some(PressKey::Space),

@@ -1,5 +1,5 @@
-//! Frame interval while live values arrive. If the window is drawn in software, as in a virtual machine, a frame costs
-//! far more processor time. The interval is then longer, which leaves processor time to other programs.
+//! Adjusts the frame interval while live values arrive. If the window is drawn in software, as in a virtual machine, a
+//! frame costs far more processor time, so the interval is longer.
 
 use std::time::Duration;
 
@@ -73,7 +73,7 @@ pub(super) fn processor_time() -> Option<Duration> {
 mod tests {
     use super::*;
 
-    /// Returns the interval reached after 20 seconds if each frame costs `cost` of processor time.
+    /// Returns the interval after 20 seconds if each frame takes `cost` of processor time.
     fn settled(cost: Duration) -> Duration {
         let (mut pace, mut now, mut used) = (LivePace::default(), Duration::ZERO, Duration::ZERO);
         let end = now + Duration::from_secs(20);

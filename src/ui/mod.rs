@@ -1,5 +1,5 @@
-//! The window, which only draws. A view reads the state and pushes actions. It stores only its text buffers and
-//! selection, and never performs I/O, decodes, sorts or blocks.
+//! The window, which only draws. Views read the state and push actions. They store only text buffers and selections,
+//! and never perform I/O, decode, sort or block.
 
 pub mod backups;
 mod cards;

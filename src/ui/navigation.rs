@@ -60,8 +60,8 @@ fn open_pages_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views)
     }
 }
 
-/// Draws the page entries of a tab and returns the index of the clicked entry. `edited` returns whether a page has
-/// edits that have not been written. Such pages are marked.
+/// Draws the pages of a tab and returns the index of the clicked one. Pages for which `edited` returns `true` are
+/// marked as having unwritten edits.
 fn pages_ui(
     ui: &mut Ui,
     theme: &Theme,

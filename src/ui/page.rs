@@ -1,4 +1,4 @@
-//! The margins around a page, a page that scrolls as a whole, and widgets with stable ids.
+//! The margins of a page, scrolling of a whole page, and widgets with stable ids.
 
 use egui::{AsIdSalt, Frame, Margin, ScrollArea, Ui, UiBuilder};
 

@@ -1,4 +1,4 @@
-//! The renderers of the window, which are tried in order until one of them opens the window.
+//! The renderers of the window, which are tried in order until one of them works.
 //!
 //! OpenGL 2 is available on every computer with a driver for its graphics card, and on Linux even without a card.
 //! Windows without such a driver, as on remote desktops and in virtual machines, provides only OpenGL 1.1. Direct3D 12
@@ -6,8 +6,8 @@
 
 use eframe::Renderer;
 
-/// Environment variable that selects a renderer. It is needed on computers where a renderer opens the window but does
-/// not draw correctly.
+/// Environment variable that selects a renderer. It is needed on computers where a renderer starts but does not draw
+/// correctly.
 const RENDERER_VARIABLE: &str = "ENCODER_STUDIO_RENDERER";
 
 /// Names of the renderers as used in [`RENDERER_VARIABLE`].
@@ -22,7 +22,7 @@ pub(super) fn renderers_to_try() -> Vec<Renderer> {
     renderers_for(std::env::var(RENDERER_VARIABLE).ok().as_deref())
 }
 
-/// Returns the renderers for the value of the variable. The list is empty for an unknown name such as `none`.
+/// Returns the renderers for the value of the variable. Returns an empty list for an unknown name such as `none`.
 fn renderers_for(selected: Option<&str>) -> Vec<Renderer> {
     let is_wanted = |name: &str| selected.is_none_or(|selected| selected.eq_ignore_ascii_case(name));
     NAMES.iter().filter(|(name, _)| is_wanted(name)).map(|(_, renderer)| *renderer).collect()

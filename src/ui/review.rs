@@ -1,5 +1,5 @@
-//! The review of a write, for any kind of device. It shows every operation with its old and new value, the cost and the
-//! requirements of the write, the request for consent, the progress, and the result.
+//! The review dialog before a write, for any kind of device. It shows every operation with its old and new value, the
+//! cost and requirements of the write, the request for consent, the progress and the result.
 
 use std::sync::Arc;
 
@@ -154,7 +154,7 @@ fn buttons_ui(
     });
 }
 
-/// Draws the operations and, during a write, the number of completed operations. Values are never truncated.
+/// Draws the operations and, during a write, the number of completed ones. Values are never truncated.
 fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], f32), done: Option<usize>) {
     let palette = theme.palette;
     theme.sunken_frame().show(ui, |ui| {
@@ -197,7 +197,7 @@ fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], 
     ui.add_space(theme.space.between);
 }
 
-/// Returns the old and new value laid out on one line. Returns `None` if they do not fit beside the item.
+/// Returns the old and new value on one line, or `None` if they do not fit next to the item's name.
 fn layout_change(ui: &Ui, theme: &Theme, item: &str, change: &ChangeTexts, ink: Rgb) -> Option<Arc<Galley>> {
     let mut job = LayoutJob::default();
     let font = FontId::monospace(theme.sizes.body);
@@ -236,8 +236,8 @@ fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeTexts, heads: [&'static 
     }
 }
 
-/// Minimum height of the operation list in points. The following constants are its maximum height, and the height of
-/// everything else in and around the dialog.
+/// Minimum height of the operation list in points. The next constants are its maximum height and the height of
+/// everything around it.
 const MIN_LIST_HEIGHT: f32 = 200.0;
 const MAX_LIST_HEIGHT: f32 = 440.0;
 const OTHER_HEIGHT: f32 = 424.0;
@@ -263,7 +263,7 @@ fn remarks_ui(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     }
 }
 
-/// Draws a red notice above the operations, listing the values that must be set up again.
+/// Draws a red notice above the operations that lists the values to set up again after the write.
 fn setup_notice_ui(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     let Some(text) = &sheet.redo else { return };
     let colour = theme.palette.bad;
@@ -292,7 +292,7 @@ fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Questi
     });
 }
 
-/// Draws the permissions that the user can grant, and the option to write to a worn device.
+/// Draws the permissions that the user can grant, including writing to a device whose memory is worn.
 fn options_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, sheet: &ReviewSheet, actions: &mut Vec<Action>) {
     if !sheet.toggles.is_empty() {
         ui.add_space(theme.space.inside);

@@ -1,9 +1,9 @@
-//! Handling of the arrow keys in a list with one selected row.
+//! Selection of a list row with the arrow keys.
 
 use egui::{EventFilter, Id, Key, Modifiers, Rect, Sense, Ui};
 
-/// Returns the number of rows by which the arrow keys move the selection. The keys are handled after a click on a row,
-/// while `keys` has the keyboard focus.
+/// Returns the number of rows by which the arrow keys move the selection. They act only while `keys` has the keyboard
+/// focus, which a click on a row gives it.
 pub(super) fn selection_step(ui: &Ui, keys: Id) -> Option<isize> {
     ui.interact(Rect::NOTHING, keys, Sense::focusable_noninteractive());
     if !ui.memory(|memory| memory.has_focus(keys)) {

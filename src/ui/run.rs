@@ -1,4 +1,4 @@
-//! Opening of the window. Without a display, a one-line error is reported.
+//! Opens the window. Without a display, a one-line error is reported.
 
 use std::sync::{Arc, OnceLock};
 use std::thread;
@@ -80,8 +80,7 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
     result
 }
 
-/// Returns the icon of the window. Wayland uses the icon of the desktop entry that has the same name as the app id
-/// instead.
+/// Returns the window icon. Wayland instead uses the icon of the desktop entry that has the same name as the app id.
 fn icon() -> egui::IconData {
     eframe::icon_data::from_png_bytes(ICON).unwrap_or_default()
 }
@@ -137,7 +136,7 @@ fn show_without_terminal(message: &str) {
     }
 }
 
-/// Does nothing. Other systems cannot show a dialog without a window; their desktops log the message.
+/// Does nothing. On other systems, the desktop logs the message.
 #[cfg(not(windows))]
 const fn show_without_terminal(_message: &str) {}
 

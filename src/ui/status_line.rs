@@ -13,9 +13,9 @@ use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand, Notice, Studio, TraceFault, TraceLine, TraceLog, connect};
 use crate::link::Direction;
 
-/// Height of the status line, enough for two lines of small text.
+/// Height of the status line, which fits two lines of small text.
 const BAR_HEIGHT: f32 = 36.0;
-/// Fraction of the width used by the running job while a notice is displayed next to it.
+/// Fraction of the width for the running job while a notice is displayed next to it.
 const JOB_WIDTH_SHARE: f32 = 0.45;
 const TIME: &str = "%H:%M:%S%.3f";
 
@@ -106,8 +106,8 @@ fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actio
     });
 }
 
-/// Returns whether a job is running or a link is being opened. A job with an open review does not count, because the
-/// review shows its progress.
+/// Returns whether a job is running or a link is being opened. A job with an open review dialog does not count, because
+/// the dialog shows its progress.
 fn has_running_job(device: &AnyDevice) -> bool {
     *device.phase() == Phase::Opening || device.running_job().is_some() && !device.is_reviewing()
 }
@@ -210,8 +210,7 @@ fn frame_ui(ui: &mut Ui, theme: &Theme, time: &str, line: &TraceLine) {
     ui.add(egui::Label::new(RichText::new(line.to_string_in(theme.language)).color(colour)).truncate());
 }
 
-/// Draws the running job and the stop button, right-aligned. The job is shown with its progress, or with the text
-/// `instead`.
+/// Draws the running job and the stop button, right-aligned. `instead` replaces the job's title and progress if given.
 pub(crate) fn running_ui(
     ui: &mut Ui,
     theme: &Theme,

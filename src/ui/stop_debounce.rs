@@ -1,16 +1,16 @@
-//! Stop button presses reported by egui. [`StopPressTracker`] interprets them.
+//! Passes stop button presses from egui to the [`StopPressTracker`].
 
 use egui::{Context, Event, Id, Key, Response, Ui};
 
 use crate::app::StopPressTracker;
 
-/// Returns whether a press in the frame at the given time applies to a motion that is running or has just ended.
+/// Returns whether a press in the frame at the given time is meant for a motion that is running or has just ended.
 pub(crate) fn register_stop_press(ctx: &Context, moves: bool, pressed: f64) -> bool {
     let now = ctx.input(|input| input.time);
     with_stop_press_tracker(ctx, |presses| presses.register_stop_press(moves, pressed, now))
 }
 
-/// Returns whether a press has stopped a motion so recently that another press must also be meant as a stop.
+/// Returns whether a motion was stopped so recently that another press must also be meant as a stop.
 pub(super) fn has_recently_stopped(ctx: &Context, pressed: f64) -> bool {
     with_stop_press_tracker(ctx, |presses| presses.has_recently_stopped(pressed))
 }
@@ -36,7 +36,7 @@ pub(crate) fn press_time(ui: &Ui, press_began: bool) -> f64 {
     with_stop_press_tracker(ui.ctx(), |presses| presses.press_time(press_began || released, now))
 }
 
-/// Returns whether Escape was pressed in this frame. Repetitions of a held key are ignored.
+/// Returns whether Escape was pressed in this frame. Repeats of a held key are ignored.
 pub(super) fn is_escape_pressed(ctx: &Context) -> bool {
     let is_press = |event: &Event| matches!(event, Event::Key { key: Key::Escape, pressed: true, repeat: false, .. });
     ctx.input(|input| input.events.iter().any(is_press))

@@ -1,5 +1,5 @@
-//! The end of the program by a signal or by loss of the display. Drives are stopped and released first, on any thread
-//! that can do so.
+//! Shutdown by a signal or by loss of the display. Drives are stopped and released first, on whichever thread can do
+//! so.
 
 use std::cell::OnceCell;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,7 +11,7 @@ const REPLY_TIMEOUT: Duration = Duration::from_secs(2);
 /// Exit status after a termination signal: 128 plus 15, which is the number of SIGTERM.
 const TERMINATED_STATUS: i32 = 143;
 
-/// A guard that releases the drives when its thread ends or ends the program.
+/// A guard that releases the drives when its thread ends or exits the program.
 struct ReleaseOnDrop(DriveStopHandles);
 
 impl Drop for ReleaseOnDrop {
@@ -22,12 +22,12 @@ impl Drop for ReleaseOnDrop {
 }
 
 thread_local! {
-    /// A guard on the window's thread that releases the drives when the display is lost. The display library then ends
+    /// A guard on the window's thread that releases the drives when the display is lost. The display library then exits
     /// the program, but thread-local values are still dropped.
     static RELEASE_GUARD: OnceCell<ReleaseOnDrop> = const { OnceCell::new() };
 }
 
-/// Installs the handlers for signals and for the end of the window's thread.
+/// Installs a signal handler and a guard for the end of the window's thread.
 pub(super) fn install_handlers(studio: &Studio) {
     let (brakes, mailbox) = (studio.drive_stop_handles(), studio.mailbox());
     RELEASE_GUARD.with(|last| last.set(ReleaseOnDrop(brakes.clone())).unwrap_or_default());
@@ -43,8 +43,7 @@ pub(super) fn install_handlers(studio: &Studio) {
     }
 }
 
-/// Stops and releases the drives and then closes the window without asking any question. Returns whether the window
-/// closes.
+/// Stops and releases the drives, then closes the window without any confirmation. Returns whether the window closes.
 fn stop_and_close(brakes: &DriveStopHandles, mailbox: &ActionMailbox) -> bool {
     brakes.begin_stop();
     mailbox.send(Action::Quit);

@@ -57,7 +57,7 @@ impl Theme {
         crate::app::format_decimal(value, decimals, self.language)
     }
 
-    /// Formats a number that is given with a decimal point, using the decimal separator of the current language.
+    /// Formats a number string that has a decimal point with the decimal separator of the current language.
     pub fn digits(&self, number: &str) -> String {
         crate::app::texts::localize_number(number, self.language)
     }
@@ -68,7 +68,7 @@ impl Theme {
         self.format_number(value, plain_decimals(value))
     }
 
-    /// Formats a number as hexadecimal digits, padded to its width.
+    /// Formats a word in hexadecimal, padded to its width.
     pub fn format_word(&self, word: Word) -> String {
         self.format_text(&Text::new("live.word").with("hex", word).with("count", word.bits))
     }
@@ -77,12 +77,12 @@ impl Theme {
         RichText::new(words).color(self.palette.muted)
     }
 
-    /// Returns a caption, which is small text beside or below widgets.
+    /// Returns text in the style of a caption, for small text next to or below widgets.
     pub fn caption(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).size(self.sizes.caption).color(self.palette.muted)
     }
 
-    /// Adds the space between two groups. It is `space.groups` minus the spacing that egui adds before the next widget.
+    /// Adds the space between two groups, less the spacing that egui adds before the next widget.
     pub fn add_gap(&self, ui: &mut egui::Ui) {
         ui.add_space((self.space.groups - ui.spacing().item_spacing.y).max(0.0));
     }
@@ -115,7 +115,7 @@ impl Theme {
             .inner_margin(Margin::same(12))
     }
 
-    /// Returns the frame of read-only content such as plots, bytes and the trace.
+    /// Returns the frame for read-only content such as plots, bytes and the trace.
     pub fn sunken_frame(&self) -> egui::Frame {
         egui::Frame::NONE.fill(self.palette.sunken.into()).corner_radius(self.radius).inner_margin(Margin::same(8))
     }
@@ -235,8 +235,7 @@ pub fn install_fonts(ctx: &egui::Context) {
 mod tests {
     use super::*;
 
-    /// No font may display 0x40 as 0×40, as contextual alternates do, because users copy displayed addresses into
-    /// scripts.
+    /// No font may turn 0x40 into 0×40, as contextual alternates do, because users copy addresses into scripts.
     #[test]
     fn no_font_substitutes_other_characters() {
         for (name, bytes) in FONTS {

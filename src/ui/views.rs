@@ -1,4 +1,4 @@
-//! The memory of the views while the window is open: text buffers and selections, but no application state.
+//! State of the views while the window is open: text buffers and selections, but no application state.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub struct Views {
     pub(super) company: CompanyView,
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
-    /// Whether a comparison shows the picture of its kind instead of the items.
+    /// Whether a comparison is shown as a picture instead of a list of items.
     pub(super) compares_pictures: bool,
     pub(super) help: bool,
     pub(super) palette: Option<PaletteUiState>,

@@ -52,7 +52,7 @@ impl Window {
         }
     }
 
-    /// Adapts the rate of live frames to the processor time of the program. `processor_time` returns that time.
+    /// Adapts the rate of live frames to the processor time used by the program, as returned by `processor_time`.
     #[must_use]
     pub(super) fn with_processor_time(self, processor_time: fn() -> Option<Duration>) -> Self {
         Window { processor_time, ..self }
@@ -62,8 +62,8 @@ impl Window {
         &self.studio
     }
 
-    /// Splits the input of a frame, so that typed text reaches the entry that was clicked just before. Nothing is held
-    /// back while drives are under control.
+    /// Splits the input of a frame so that typed text reaches the entry that was clicked just before it. Nothing is
+    /// held back while drives are under control.
     pub fn split_input(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
         let at_once = !input.focused || self.studio.has_control();
         if self.held_input.split_frame_events(&mut input.events, at_once) {
@@ -166,8 +166,8 @@ impl Window {
         dialogs::question_ui(ctx, theme, &self.studio, actions);
     }
 
-    /// Draws the status line at the bottom, with the current notice. A notice that requires an action stays until it is
-    /// dismissed. Other notices disappear after a time.
+    /// Draws the status line at the bottom, including the current notice. A notice that requires an action stays until
+    /// it is dismissed, and other notices disappear after a while.
     fn status_line(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         status_line::status_line_ui(ui, theme, &self.studio, &mut self.views, actions);
         let Some(notice) = self.studio.services.log.current() else {
@@ -187,8 +187,8 @@ impl Window {
         }
     }
 
-    /// Handles requests to close the window even if nothing is drawn. A minimised window can thus be closed as well.
-    /// This function never prolongs a motion.
+    /// Handles requests to close the window even if nothing is drawn, as while it is minimised. Never prolongs a
+    /// motion.
     pub fn logic(&mut self, ctx: &egui::Context) {
         self.handle_close_request(ctx);
         // The drawing of this frame must know about it.
@@ -269,7 +269,7 @@ impl Window {
         }
     }
 
-    /// Executes a command chosen by its shortcut or in the command palette.
+    /// Executes a command that was chosen by its shortcut or in the command palette.
     fn execute_effect(&mut self, effect: CommandEffect, actions: &mut Vec<Action>) {
         let Window { studio, views, docks, .. } = self;
         match effect {
@@ -314,7 +314,7 @@ impl Window {
     }
 
     /// Handles the Escape key: stops the running job, or else closes the open dialog or panel. A half-typed byte, an
-    /// open menu or a field being dragged takes precedence, because it holds the keyboard or the pointer.
+    /// open menu or a drag in progress is cancelled first.
     fn handle_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
         // While this window moves a drive, Esc applies to the motion, even if something is open or dragged.
         let moves = self.studio.is_turned_by_hand();

@@ -6,7 +6,7 @@ use super::Theme;
 use super::controls::paragraph;
 use crate::app::Catalogue;
 
-/// Draws a list of wires with texts from a catalogue. `width` is the width of the column of wire names.
+/// Draws a list of wires with texts from a catalogue. `width` is the width of the wire name column.
 pub(crate) fn wires_ui(
     ui: &mut Ui,
     theme: &Theme,

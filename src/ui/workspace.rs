@@ -11,7 +11,7 @@ use super::views::device_in_tab;
 use super::{Theme, Views, icons};
 use crate::app::{Action, LOGBOOK_TAB, Studio, connect};
 
-/// Fraction of the height that is left empty above the options of an empty tab.
+/// Fraction of the height left empty above the options in an empty tab.
 const EMPTY_TAB_TOP_SHARE: f32 = 0.22;
 /// Width of an option in an empty tab, in points.
 const OPTION_WIDTH: f32 = 240.0;

@@ -1,4 +1,4 @@
-//! The comparison: two sides to choose, their items side by side, and the buttons that take values over to the right.
+//! The comparison dialog: two sources side by side, with buttons that copy values to the right side.
 
 mod side;
 mod table;
@@ -19,7 +19,7 @@ use crate::app::{
 const WIDTH: f32 = 1160.0;
 /// Space between the dialog and the window in points.
 const MARGIN: f32 = 24.0;
-/// Height of a side with its line of facts in points.
+/// Height in points of a side, including the line of details below it.
 const SIDE: f32 = 56.0;
 /// Width of the button between the sides in points.
 const SWAP: f32 = 28.0;
@@ -78,7 +78,7 @@ fn sides_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, view: &ComparisonView, 
     });
 }
 
-/// Draws the filter and the number of differences. `picture` is the name of the picture and whether it is shown.
+/// Draws the filter and the number of differences. `picture` contains the label of the picture and whether it is shown.
 fn summary_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -1,4 +1,4 @@
-//! The choice of a side of the comparison, with a line about it.
+//! The selector for one side of the comparison, with a line of details below it.
 
 use egui::{RichText, Ui, WidgetInfo};
 
@@ -8,10 +8,10 @@ use crate::store::{Entry, EntryKind};
 use crate::ui::Theme;
 use crate::ui::backups::time;
 
-/// Maximum number of characters of the changes of an entry in the list.
+/// Maximum number of characters shown for the changes of a logbook entry in the list.
 const MAX_CHANGES: usize = 60;
 
-/// Draws the list of sources and, below it, what is known about the chosen one.
+/// Draws the list of sources with details of the selected one below it.
 pub(super) fn side_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -53,7 +53,7 @@ pub(super) fn side_ui(
     facts_ui(ui, theme, studio, (view, side));
 }
 
-/// Draws one line: why the side cannot be compared, its edits, or where its values come from.
+/// Draws one line: the reason why the side cannot be compared, its number of edits, or the origin of its values.
 fn facts_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, (view, side): (&ComparisonView, Side)) {
     let side = view.side(side);
     let palette = theme.palette;

@@ -1,5 +1,4 @@
-//! The items of a comparison as a table: name, left value, the button that takes it over, right value. Bytes are shown
-//! as lines of 8 or 16.
+//! The compared items as a table: name, left value, copy button, right value. Bytes are shown in lines of 16, 8 or 4.
 
 use egui::{Align, Color32, FontId, Label, Layout, RichText, Ui};
 use egui_extras::{Column, TableBuilder, TableRow};
@@ -11,14 +10,14 @@ use crate::ui::controls::name;
 
 /// Height of a row with one line in points.
 const ROW: f32 = 26.0;
-/// Height of a further line of bytes in points.
+/// Height of each additional line of bytes in points.
 const LINE: f32 = 17.0;
 const HEADING: f32 = 30.0;
 /// Width of the column with the buttons in points.
 const TAKE: f32 = 34.0;
-/// Part of the width for the names.
+/// Fraction of the table width for the names.
 const NAMES: f32 = 0.32;
-/// Repetitions of a byte from which they are only counted.
+/// Number of equal bytes from which only the byte and the count are shown.
 const MANY: usize = 16;
 
 /// A line of the table.
@@ -149,11 +148,11 @@ fn value_ui(
 
 enum ByteLine<'b> {
     Bytes(&'b [u8]),
-    /// Repetitions of a byte.
+    /// A repeated byte: its count and its value.
     Repeated(usize, u8),
 }
 
-/// Splits bytes into lines. Many equal bytes are one line.
+/// Splits bytes into lines. At least [`MANY`] equal bytes take a single line.
 fn byte_lines(bytes: &[u8], in_line: usize) -> Vec<ByteLine<'_>> {
     match bytes.first() {
         Some(byte) if bytes.len() >= MANY && bytes.iter().all(|own| own == byte) => {
@@ -163,7 +162,7 @@ fn byte_lines(bytes: &[u8], in_line: usize) -> Vec<ByteLine<'_>> {
     }
 }
 
-/// Returns the number of bytes that fit in a line, which is 16, 8 or 4.
+/// Returns the number of bytes per line: 16, 8 or 4, depending on the width.
 fn bytes_in_line(ui: &Ui, theme: &Theme, width: f32) -> usize {
     let font = FontId::monospace(theme.sizes.body);
     let byte = ui.painter().layout_no_wrap("00 ".to_owned(), font, Color32::PLACEHOLDER).size().x;

@@ -1,5 +1,4 @@
-//! The about dialog, which shows the program and its components, and the help for the open page, which refers to the
-//! manual.
+//! The about dialog with the program version and its components, and the help for the open page.
 
 use egui::{ScrollArea, Ui};
 

@@ -1,4 +1,4 @@
-//! The form for the company name and the logo that appear in reports.
+//! The form for the company name and logo that appear in reports.
 
 use egui::{RichText, Ui};
 
@@ -8,7 +8,7 @@ use crate::ui::entries::text_entry;
 use crate::ui::{Theme, icons};
 
 const WIDTH: f32 = 480.0;
-/// Height in points that is reserved for a message about the logo.
+/// Height in points reserved for an error message about the logo.
 const PROBLEM_HEIGHT: f32 = 44.0;
 
 /// Text typed into the form. It is discarded when the form is closed.
@@ -20,7 +20,7 @@ pub(in crate::ui) struct CompanyView {
 struct Typed {
     name: String,
     logo: String,
-    /// Path of the logo that was last taken over from the file dialog.
+    /// Path of the logo last chosen in the file dialog.
     taken: Option<String>,
 }
 

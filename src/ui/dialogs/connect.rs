@@ -1,4 +1,4 @@
-//! The connection dialog: a form for the link, recent links, the ports of this computer, and the search for an encoder
+//! The connection dialog: a form for the link, recent links, the ports of this computer, and a search for an encoder
 //! with unknown settings.
 
 pub(crate) mod entries;
@@ -101,7 +101,7 @@ fn recent_links_ui(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut V
     ui.add_space(theme.space.between);
 }
 
-/// Draws the entry for the link in the notation of the command line. The link and the form update each other.
+/// Draws the text entry for the link, in command-line notation. The link and the form update each other.
 fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
     let hint = Text::new("connect.link_hint").with("link", dialog.example_link());
     let (word, hint) = (theme.translate("connect.link"), theme.format_text(&hint));

@@ -1,4 +1,4 @@
-//! The dialog for a profile whose file another program has changed, which shows both versions side by side.
+//! The dialog shown when another program has changed the file of an open profile. It compares both versions.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -12,7 +12,7 @@ use crate::ui::{Theme, icons};
 
 /// Maximum height of the list in points. The buttons stay visible below a long list.
 const MAX_LIST_HEIGHT: f32 = 320.0;
-/// Maximum number of displayed characters of a value. A memory may contain thousands of them.
+/// Maximum number of characters shown of a value. Memory contents may have thousands of them.
 const MAX_VALUE_CHARS: usize = 60;
 
 /// Draws the dialog if there is a conflict.

@@ -1,4 +1,4 @@
-//! Choice of a file in the system's file dialog, which runs on a separate thread. If the system has no file dialog, the
+//! Asks for a file in the system's file dialog, which runs on a separate thread. If the system has no file dialog, the
 //! user types the path.
 
 use std::path::{Path, PathBuf};
@@ -13,16 +13,16 @@ use crate::ui::{Theme, icons};
 pub(in crate::ui) struct FileView {
     question: FileQuestion,
     path: String,
-    /// Folder to which relative paths refer.
+    /// Folder that relative paths are based on.
     working: Option<PathBuf>,
     fresh: bool,
 }
 
-/// Minimum time that a user needs to close a dialog. A dialog that ends sooner without an answer is assumed never to
-/// have opened.
+/// Minimum time that a user needs to close a dialog. If a dialog closes sooner without an answer, it is assumed never
+/// to have opened.
 const TOO_FAST: Duration = Duration::from_millis(250);
 
-/// Asks the user for a file. The answer arrives as an action. If the system has no file dialogs, [`file_ui`] asks
+/// Asks the user for a file. The answer arrives as an action. If the system has no file dialogs, [`file_ui`] is shown
 /// instead.
 pub(in crate::ui) fn ask_for_file(question: FileQuestion, theme: &Theme, mailbox: ActionMailbox) {
     let filter = theme.format_text(&kind(&question));

@@ -11,7 +11,7 @@ use crate::ui::entries::text_entry;
 const DIALOG_WIDTH: f32 = 560.0;
 const ROW_HEIGHT: f32 = 28.0;
 const ROWS: usize = 11;
-/// Width of the column of keys, which fits *Ctrl+Shift+Z*.
+/// Width of the shortcut column, which fits *Ctrl+Shift+Z*.
 const KEYS: f32 = 104.0;
 
 /// State of the palette: the typed text, and the row selected for Enter.

@@ -1,4 +1,4 @@
-//! The question asked before an action that would cause data loss.
+//! The confirmation dialog before an action that would cause data loss.
 
 use egui::RichText;
 

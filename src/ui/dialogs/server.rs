@@ -9,7 +9,7 @@ use crate::ui::entries::{mono_entry, secret_entry};
 use crate::ui::{Theme, icons};
 
 const WIDTH: f32 = 560.0;
-/// Height in points of the lines reserved for the result of a test.
+/// Height in points reserved for the result of a connection test.
 const OUTCOME_HEIGHT: f32 = 60.0;
 
 /// Text typed into the form. It is discarded when the form is closed.
@@ -21,7 +21,7 @@ pub(in crate::ui) struct ServerView {
 struct Typed {
     address: String,
     password: String,
-    /// The password entry. Its state could still contain the password after the form is closed.
+    /// Id of the password entry, whose state could still contain the password after the form is closed.
     entry: Option<egui::Id>,
 }
 

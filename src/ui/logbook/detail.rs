@@ -85,7 +85,7 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry) {
     }
 }
 
-/// Draws the entry that this one undoes, and the one that undid it. A click selects that entry.
+/// Draws links to the entry that this one undoes and to the one that undid it.
 fn links_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -111,7 +111,7 @@ fn links_ui(
     }
 }
 
-/// Draws user, computer and version. Entries of older logbooks have none of them.
+/// Draws the user, computer and program version. Entries of older logbooks contain none of them.
 fn origin_ui(ui: &mut Ui, theme: &Theme, origin: &Origin) {
     let Origin { user, bench, version } = origin;
     let words = theme.format_text(&Text::new("logbook.version").with("version", version));
@@ -135,8 +135,8 @@ fn items_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry) {
     }
 }
 
-/// Draws the actions for the backup. It can be compared with the device if that is open, or with another source. It can be
-/// restored while the device is connected.
+/// Draws the buttons for opening, comparing and restoring the backup. It can be restored only while the device is
+/// connected.
 fn backup_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, (entry, path): (&Entry, &Path), actions: &mut Vec<Action>) {
     let device = studio.device_of(&entry.device);
     if enabled_button(ui, true, icons::FILE_TEXT, &theme.translate("backups_card.look")).clicked() {
@@ -163,7 +163,7 @@ fn backup_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, (entry, path): (&Entry
     }
 }
 
-/// Draws the button that plans the write back. If that is impossible, its tooltip says why.
+/// Draws the button that plans the undo of a write. The tooltip of a disabled button shows the reason.
 fn undo_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry, actions: &mut Vec<Action>) {
     let target = studio.undo_target(entry);
     let button = enabled_button(ui, target.is_ok(), icons::ARROW_COUNTER_CLOCKWISE, &theme.translate("undo.button"));
@@ -177,7 +177,7 @@ fn undo_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry, actions: 
     }
 }
 
-/// Shows a device and executes a command for it.
+/// Selects a device and sends it a command.
 fn push_for(device: &AnyDevice, command: DeviceCommand, actions: &mut Vec<Action>) {
     actions.push(Action::Select(device.id()));
     actions.push(device.command(command));

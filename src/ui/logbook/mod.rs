@@ -1,5 +1,5 @@
-//! The page of the logbook: all entries of this computer, newest first. The selected entry is shown beside the list
-//! with its old and new values, its backup and its origin.
+//! The logbook page, which lists all entries of this computer, newest first. The selected entry is shown next to the
+//! list with its old and new values, its backup and its origin.
 
 mod detail;
 mod sharing;
@@ -26,22 +26,22 @@ pub(super) const PAGE: PageInfo = PageInfo::new(icons::BOOK_OPEN_TEXT, "logbook.
 const ROW: f32 = 22.0;
 /// Width of the search entry in points.
 const SEARCH: f32 = 200.0;
-/// Widths of the columns with the time, the result and the device in points.
+/// Widths of the time, result and device columns in points.
 const TIME: f32 = 128.0;
 const RESULT: f32 = 18.0;
 const DEVICE: f32 = 212.0;
 const NARROW_DEVICE: f32 = 168.0;
-/// Width of the selected entry beside the list in points.
+/// Width in points of the details next to the list.
 const DETAIL: f32 = 330.0;
 const NARROW_DETAIL: f32 = 272.0;
-/// Width of the page in points from which the usual widths are used.
+/// Minimum page width in points at which the normal widths are used.
 const WIDE: f32 = 960.0;
 
 #[derive(Default)]
 pub(super) struct LogbookView {
     search: String,
     selected: Option<EntryId>,
-    /// Whether to scroll the list to the selected entry.
+    /// Whether the list must scroll to the selected entry.
     scrolls_to_selected: bool,
     /// Note being written, with the device to which it belongs.
     note: Option<(DeviceKey, String)>,
@@ -243,17 +243,17 @@ fn row_ui(row: &mut TableRow<'_, '_>, theme: &Theme, studio: &Studio, entry: &En
     });
 }
 
-/// Formats a time within a sentence.
+/// Formats a time for use in a sentence.
 fn moment(at: Timestamp) -> String {
     at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S").to_string()
 }
 
-/// Returns the text that a write was undone.
+/// Returns the text stating when a write was undone.
 fn undone_by(theme: &Theme, undo: LinkedEntry) -> String {
     theme.format_text(&Text::new("undo.undone_by").with("time", moment(undo.at)))
 }
 
-/// Returns the icon, colour and text for the result of an entry.
+/// Returns the icon, colour and text for the outcome of an entry.
 fn result(theme: &Theme, entry: &Entry) -> (&'static str, Rgb, String) {
     let palette = theme.palette;
     let words = outcome_text(entry).unwrap_or_else(|| Text::new(entry_kind_text(entry.kind)));
@@ -276,7 +276,7 @@ fn result(theme: &Theme, entry: &Entry) -> (&'static str, Rgb, String) {
     }
 }
 
-/// Returns the description of an entry. Where its kind says everything else, it is the name or the path alone.
+/// Returns the description of an entry. It does not repeat what the kind of the entry already states.
 fn description(theme: &Theme, studio: &Studio, entry: &Entry) -> String {
     match (entry.kind, entry.items.as_slice(), &entry.backup) {
         (EntryKind::Connected, ..) => String::new(),
@@ -287,13 +287,13 @@ fn description(theme: &Theme, studio: &Studio, entry: &Entry) -> String {
     }
 }
 
-/// Returns the old and the new value of an item.
+/// Formats the old and new value of an item.
 fn old_and_new(item: &ChangedItem) -> String {
     let [old, new] = [&item.old, &item.new].map(|value| value.as_deref().unwrap_or("–"));
     format!("{old}  →  {new}")
 }
 
-/// Returns the bus, the serial number and optionally the type of a device.
+/// Returns the name of a device: its bus and serial number, and optionally its type.
 fn device_name(theme: &Theme, studio: &Studio, device: &DeviceKey, has_type: bool) -> String {
     let DeviceKey { kind, device_type, serial_number, is_virtual } = device;
     let bus = studio.bus(kind).unwrap_or(kind);

@@ -1,4 +1,4 @@
-//! The line below the entries, which shows whether the logbook is shared and which entries are missing from it.
+//! The line below the entries, which shows the sharing status, or the damaged file whose entries are missing.
 
 use egui::{RichText, Ui};
 

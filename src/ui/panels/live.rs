@@ -10,13 +10,12 @@ use crate::ui::controls::{dropdown, empty_placeholder, enabled_button, icon_butt
 use crate::ui::page::with_stable_ids;
 use crate::ui::{Theme, Views, icons, plot};
 
-/// Polling intervals in microseconds. The first one is zero, which means that each poll begins as soon as the previous
-/// one has ended.
+/// Selectable polling intervals in microseconds. At zero, each poll begins as soon as the previous one has ended.
 const RATES: [(u64, &str); 4] =
     [(0, "live.fastest"), (50_000, "live.every_50"), (200_000, "live.every_200"), (1_000_000, "live.every_1000")];
-/// Sample intervals of a streaming adapter, in microseconds.
+/// Selectable sample intervals of a streaming adapter, in microseconds.
 const STREAMS: [(u64, &str); 3] = [(50, "live.stream_20k"), (200, "live.stream_5k"), (1_000, "live.stream_1k")];
-/// Polling interval in microseconds to use if the chosen rate is not offered.
+/// Polling interval in microseconds if the chosen one is not available.
 const DEFAULT_INTERVAL_US: u64 = 50_000;
 
 /// Panel height in points below which the numbers beside the position share one line.
@@ -24,10 +23,10 @@ pub(crate) const LOW_PANEL_HEIGHT: f32 = 460.0;
 
 /// Minimum width of the rate selector, in points.
 const MIN_RATE_WIDTH: f32 = 64.0;
-/// Minimum width of the panel at which the first button has a label, in points.
+/// Minimum width of the panel in points at which the first button has a label.
 const ONE_ROW: f32 = 280.0;
 
-/// Time in seconds after which an unchanged position is marked as such.
+/// Time in seconds after which an unchanged position is marked as paused.
 const UNCHANGED_MARK_S: f32 = 0.4;
 
 pub(in crate::ui) fn live_ui(
@@ -67,7 +66,7 @@ fn pause_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, paused: bool) {
     });
 }
 
-/// Returns whether a job prevents the position from being read. Very short jobs are ignored, because the number would
+/// Returns whether a job keeps the position from being read. Very short jobs are ignored, because the number would
 /// flicker.
 fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     let waits = device.is_polling() && device.is_busy();
@@ -94,13 +93,13 @@ pub(in crate::ui) fn plot_ui(
     }
 }
 
-/// Draws a short remark beside the position. It is truncated at the edge of the panel, because a panel must not become
+/// Draws a short remark next to the position. It is truncated at the edge of the panel, so the panel never becomes
 /// wider than the window.
 pub(crate) fn remark_ui(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
     ui.add(egui::Label::new(RichText::new(theme.translate(word)).color(ink)).truncate());
 }
 
-/// Draws the rows for a position that has not been read. They reserve space, so the buttons below do not move later.
+/// Draws placeholder rows until a position has been read, so the buttons below do not move later.
 pub(crate) fn unknown_rows(ui: &mut Ui, theme: &Theme, labels: &[&'static str]) {
     const UNKNOWN: &str = "–";
     if ui.available_height() < LOW_PANEL_HEIGHT {

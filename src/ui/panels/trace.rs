@@ -1,6 +1,6 @@
-//! The trace panel of the selected session: time, gap, direction, bytes and meaning. The newest frame is at the bottom
-//! and stays visible until the user scrolls up or pauses the list. Then the visible frames keep their position while
-//! others arrive. A selected frame is shown beside the list with all of its bytes.
+//! The trace panel, which lists the frames of the selected session: time, gap, direction, bytes and meaning. The newest
+//! frame is at the bottom and stays visible until the user scrolls up or pauses the list. The details of a selected
+//! frame are shown next to the list.
 
 mod detail;
 
@@ -24,7 +24,7 @@ const TIMES: [f32; 2] = [96.0, 76.0];
 const ARROW_WIDTH: f32 = 16.0;
 /// Fraction of the remaining width for the bytes column.
 const BYTES_SHARE: f32 = 0.48;
-/// Width of a selected frame beside the list in points.
+/// Width in points of the details next to the list.
 const DETAIL_WIDTH: f32 = 290.0;
 
 #[derive(Default)]
@@ -36,7 +36,7 @@ pub(in crate::ui) struct TraceView {
     paused_at: Option<u64>,
     /// Number of the selected frame.
     selected: Option<u64>,
-    /// Number of rows that the log had removed when the list was last drawn with this filter.
+    /// Number of rows that had been removed from the log when the list was last drawn with this filter.
     removed: Option<u64>,
     offset: f32,
     /// Whether the user has scrolled up.
@@ -176,7 +176,7 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jum
     view.is_behind = view.offset + drawn.inner_rect.height() < drawn.content_size.y - pitch / 2.0;
 }
 
-/// Draws the search, filter, pause and save controls. Returns whether to show the newest frame.
+/// Draws the search, filter, pause and save controls. Returns whether to scroll to the newest frame.
 fn toolbar_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, actions: &mut Vec<Action>) -> bool {
     let mut jumps_to_end = false;
     ui.horizontal(|ui| {
@@ -222,7 +222,7 @@ fn toolbar_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, 
     jumps_to_end
 }
 
-/// Draws a frame. Returns the vertical range of the row.
+/// Draws a frame and returns the vertical range of its row.
 fn line_ui(
     row: &mut TableRow<'_, '_>,
     theme: &Theme,

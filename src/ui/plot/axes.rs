@@ -1,4 +1,4 @@
-//! Ticks and their labels: round steps for values, and for times in a suitable unit. All functions are pure.
+//! Ticks and their labels, with round steps for values and suitable units for times. All functions are pure.
 
 use crate::analysis::SampleTime;
 use crate::app::recorder::SAMPLE;
@@ -11,8 +11,8 @@ pub(super) fn value_label(value: f64, step: f64, language: Language) -> String {
     if value.abs() >= 1e9 { format!("{value:.2e}") } else { format_decimal(value, decimals, language) }
 }
 
-/// Returns a range that includes `low` to `high` and has at least the length `least`. Its limits are multiples of a
-/// round step, so the range does not change with every sample.
+/// Returns a range that contains `low` to `high` and is at least `least` long. Its limits are multiples of a round
+/// step, so the range does not change with every sample.
 pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     let (low, high) = if high - low < least {
         let middle = f64::midpoint(low, high);
@@ -75,7 +75,8 @@ pub(super) fn sample_ticks(from: SampleTime, to: SampleTime, most: usize, langua
     TimeTicks { ticks: tick_values(number(from), number(to), step).map(tick).collect(), base: None }
 }
 
-/// Returns the base time at or before `from`. It is a multiple of 0.1 s for steps below 1 ms, and of 10 s otherwise.
+/// Returns the base time of the labels, at or before `from`. It is a multiple of 0.1 s for steps below 1 ms, and of 10
+/// s otherwise.
 fn axis_base_time(from: SampleTime, step: i64) -> i64 {
     let grain = if step < SECOND / 1000 { SECOND / 10 } else { SECOND * 10 };
     from.as_nanoseconds().div_euclid(grain).saturating_mul(grain)

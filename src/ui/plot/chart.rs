@@ -82,9 +82,9 @@ const EDGE_DISTANCE: f32 = 2.0;
 /// Half of the height of a label, in points.
 const HALF_LABEL_HEIGHT: f32 = 5.5;
 
-/// Returns the labelled ticks with the heights of their labels. A label is normally beside its tick line, because the
-/// space between two lanes holds half a label. If a small lane has fewer than two such ticks, the labels of the
-/// outermost ticks are moved inside.
+/// Returns the labelled ticks with the vertical positions of their labels. A label is normally next to its tick,
+/// because the space between two lanes holds half a label. If a small lane has fewer than two such ticks, the labels of
+/// the outermost ticks are moved inside.
 fn labelled_ticks(ticks: &[(f64, f32)], top: f32, bottom: f32) -> Vec<(f64, f32)> {
     let inside: Vec<(f64, f32)> =
         ticks.iter().copied().filter(|(_, y)| (top + EDGE_DISTANCE..=bottom - EDGE_DISTANCE).contains(y)).collect();

@@ -1,5 +1,5 @@
-//! The layout of a plot, with one lane per line or a common lane, and the values in each lane. The reduced samples are
-//! recalculated only if the samples or the view have changed.
+//! The layout of a plot and the values in each lane. Each line has its own lane, or all lines share one. Samples are
+//! reduced again only if the samples or the view have changed.
 
 use std::ops::Range;
 
@@ -45,7 +45,7 @@ pub(super) struct Layout {
     pub(super) chart: Rect,
 }
 
-/// Reduced samples, cached between redraws.
+/// Samples reduced to the pixel columns of a lane, cached between redraws.
 #[derive(Default)]
 pub(super) struct ReducedLane {
     pictures: Vec<(SeriesId, HistoryPicture)>,
@@ -53,7 +53,7 @@ pub(super) struct ReducedLane {
     gutter: f32,
 }
 
-/// The inputs of a picture. The picture is calculated again only if they change.
+/// The inputs from which a lane's samples are reduced. The result is recalculated only if they change.
 #[derive(Clone, PartialEq)]
 struct PictureInputs {
     samples: Option<SampleGroupStamp>,
@@ -66,7 +66,7 @@ impl ReducedLane {
         self.pictures.iter().find(|(own, _)| *own == line).map(|(_, picture)| picture)
     }
 
-    /// Updates the pictures of the displayed lines if any input has changed.
+    /// Updates the reduced samples of the visible lines if any input has changed.
     fn update(&mut self, recorder: &Recorder, grid: &Grid) {
         let shown = |id: &SeriesId| recorder.visible_series().any(|line| line.id == *id);
         self.pictures.retain(|(id, _)| shown(id));

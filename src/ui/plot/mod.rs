@@ -33,7 +33,7 @@ pub struct PlotUiState {
 }
 
 impl PlotUiState {
-    /// Creates the state of a plot in a side panel, which can expand to the whole page.
+    /// Creates the state of a plot in a side panel. The plot can expand to the whole page.
     pub(in crate::ui) fn for_panel() -> Self {
         PlotUiState { large: Some(false), ..PlotUiState::default() }
     }

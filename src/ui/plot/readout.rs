@@ -1,5 +1,5 @@
-//! The numbers below the chart. For each line, they show the raw sample under the pointer or the newest sample, and the
-//! readings of the cursors.
+//! The numbers below the chart: for each line, the raw sample under the pointer or the newest sample, and the cursor
+//! readings.
 
 use egui::{RichText, Sense, Ui, vec2};
 
@@ -53,7 +53,7 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Sam
     }
 }
 
-/// Minimum width in points at which the numbers of the lines are stacked.
+/// Minimum width in points at which each line has its own row of numbers.
 const STACKED_WIDTH: f32 = 640.0;
 
 fn table_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<SampleTime>) {

@@ -1,5 +1,5 @@
-//! Pictures of the plot. The window delivers its pixels some frames after a request, and the part that contains the
-//! plot is cropped. The whole plot must be visible, without a menu or the pointer over it.
+//! Screenshots of the plot. The window delivers its pixels some frames after a request, and they are cropped to the
+//! plot. The whole plot must be visible, not covered by a menu or the pointer.
 
 use std::sync::{Arc, OnceLock};
 
@@ -11,7 +11,7 @@ use crate::app::{Action, Picture};
 pub(super) enum Screenshot {
     #[default]
     None,
-    /// A picture was requested and is waiting until the plot is visible. Contains the number of frames waited so far.
+    /// A snapshot was requested and waits until the plot is visible. Contains the number of frames waited so far.
     Wanted(usize),
     /// The window's pixels were requested. The rectangle is the position of the plot in the previous frame.
     Asked(Arc<OnceLock<Arc<ColorImage>>>, Rect),
@@ -21,13 +21,13 @@ pub(super) enum Screenshot {
 const FRAMES: usize = 60;
 
 impl Screenshot {
-    /// Requests a picture of a later frame, because the menu is still open in the current one.
+    /// Requests a snapshot from a later frame, because the menu is still open in the current one.
     pub(super) fn request(&mut self, ctx: &Context) {
         *self = Screenshot::Wanted(0);
         ctx.request_repaint();
     }
 
-    /// Returns whether a picture is pending and may be captured in the next frame.
+    /// Returns whether a snapshot is pending and may be captured in the next frame.
     pub(super) fn is_wanted(&self) -> bool {
         !matches!(self, Screenshot::None)
     }
@@ -132,7 +132,7 @@ mod tests {
         actions
     }
 
-    /// The picture shows the whole plot as it was in the frame of the pixels, without the menu or anything else.
+    /// The menu is open when the snapshot is requested, and other widgets surround the plot.
     #[test]
     fn the_snapshot_shows_exactly_the_plot_of_its_frame() {
         let ctx = Context::default();
@@ -157,7 +157,7 @@ mod tests {
         assert!(!shot.is_wanted());
     }
 
-    /// A plot that is partly hidden is not captured, and this is reported.
+    /// A partly hidden plot is not captured, and a message reports this.
     #[test]
     fn a_partly_hidden_plot_yields_no_snapshot() {
         let ctx = Context::default();

@@ -1,4 +1,4 @@
-//! The plot's toolbar: hold and follow, time span, cursors, trigger, lines with their units, and export.
+//! The plot's toolbar: hold, follow, time span, cursors, trigger, lines with their units, and export.
 
 use egui::{RichText, Ui};
 
@@ -77,7 +77,7 @@ fn switch_ui(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: 
     response.on_hover_text(&word).on_disabled_hover_text(&word).clicked()
 }
 
-/// Draws the time span selector. It shows a preset or the span that results from zooming.
+/// Draws the selector for the time span. It shows a preset or the span that results from zooming.
 fn span_ui(ui: &mut Ui, context: &mut Context<'_>) {
     const SECOND: i64 = 1_000_000_000;
     if context.recorder.counts_samples() {
@@ -193,7 +193,7 @@ fn export_menu_ui(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::S
     context.actions.extend(chosen);
 }
 
-/// Draws the state of a waiting trigger or of a table that is being written.
+/// Draws the status of the trigger and of an export in progress.
 fn state_ui(ui: &mut Ui, context: &mut Context<'_>) {
     let (theme, recorder) = (context.theme, context.recorder);
     if let Some((_, state)) = recorder.trigger() {

@@ -1,4 +1,4 @@
-//! Drawing a line of samples as shapes. Dense samples form one mesh without antialiasing, which is fast to fill. Sparse
+//! Draws a line of samples as shapes. Dense samples form one mesh without antialiasing, which is fast to fill. Sparse
 //! samples form a smooth line with dots. Breaks appear as gaps, and invalid samples and warnings are always visible.
 
 use egui::epaint::{Vertex, WHITE_UV};
@@ -28,8 +28,7 @@ impl TimeAxis {
         self.left + (time.nanoseconds_since(self.from) as f64 * self.scale) as f32
     }
 
-    /// Returns the left edge of the pixel column for a time. The positions of columns are fixed and do not depend on
-    /// the samples.
+    /// Returns the left edge of the pixel column that contains a time. Column positions do not depend on the samples.
     fn column(&self, time: SampleTime) -> f32 {
         self.left + ((self.x(time) - self.left) / self.pixel).floor() * self.pixel
     }

@@ -1,4 +1,4 @@
-//! The form for a trigger: the line, the event, the level, and the fraction of the view before the event.
+//! The trigger form: line, event, level, and the fraction of the view before the event.
 
 use egui::{RichText, Ui};
 

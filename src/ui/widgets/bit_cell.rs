@@ -1,5 +1,5 @@
-//! A cell for one bit, used in every strip of bits. It has the colour of its field, and a one is more intense than a
-//! zero.
+//! A cell that shows one bit, used in every strip of bits. It has the colour of its field, and a one is more intense
+//! than a zero.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect};
 
@@ -12,7 +12,7 @@ pub(crate) struct BitCell<'a> {
     pub(crate) bit: Option<bool>,
     /// Text shown in place of an unknown bit.
     pub(crate) blank: &'a str,
-    /// Whether the bit reports an error, in which case the cell is filled with the error colour.
+    /// Whether the bit reports an error. The cell is then filled with the error colour.
     pub(crate) alarm: bool,
 }
 

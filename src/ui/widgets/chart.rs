@@ -1,5 +1,5 @@
-//! Small static charts with curves or bars, such as the position error over a period, its harmonics, or a spectrum.
-//! They are drawn by egui_plot in the theme of the window.
+//! Small static charts of curves or bars, such as the position error over a period, its harmonics, or a spectrum. They
+//! are drawn by egui_plot in the theme of the window.
 //!
 //! * **Size**: the available width, the given height.
 //! * **Keyboard**: none; Tab skips it.
@@ -27,7 +27,7 @@ pub struct Chart<'a> {
     pub x_range: Option<(f64, f64)>,
     /// Tick spacing of the horizontal axis, or `None` for automatic spacing.
     pub x_step: Option<f64>,
-    /// Value that the vertical axis always includes.
+    /// Value that is always visible on the vertical axis.
     pub y_floor: Option<f64>,
     /// Labels at individual points such as peaks.
     pub marks: &'a [(f64, f64, String)],
@@ -43,7 +43,7 @@ pub struct Trace {
     pub dashed: bool,
 }
 
-/// Total width of the bars at a position, as a fraction of the distance between positions.
+/// Total width of the bars at one position, as a fraction of the distance between positions.
 const BARS: f64 = 0.7;
 
 /// Draws a chart. If there are several series, a legend is drawn above it.
@@ -153,7 +153,7 @@ fn paint_bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace])
     }
 }
 
-/// Returns the alignment with which a label fits beside a point.
+/// Returns the alignment at which a label fits next to a point.
 fn label_side(traces: &[Trace], x: f64) -> Align2 {
     let ends = traces.iter().flat_map(|trace| trace.points.first().into_iter().chain(trace.points.last()));
     let (least, most) = ends.fold((x, x), |(least, most), (end, _)| (least.min(*end), most.max(*end)));
@@ -164,7 +164,7 @@ fn label_side(traces: &[Trace], x: f64) -> Align2 {
     }
 }
 
-/// Returns an axis with a label at each tick, provided that ticks are at least `least` points apart.
+/// Returns an axis whose ticks are all labelled if they are at least `least` points apart.
 fn with_label_spacing(hints: AxisHints<'static>, theme: Theme, least: f32) -> AxisHints<'static> {
     hints.formatter(move |mark, _| tick_label(&theme, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
 }

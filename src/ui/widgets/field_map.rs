@@ -1,4 +1,4 @@
-//! A map of a memory as a strip of blocks, which shows the data fields and the free space.
+//! A map of a memory as a strip of blocks, showing the data fields and the free space.
 //!
 //! * **Size**: the available width. The blocks are as large as possible on two lines; more blocks wrap to further
 //!   lines.
@@ -34,7 +34,7 @@ pub struct MapField {
     /// Colour index, one of eight colours.
     pub colour: usize,
     pub locked: bool,
-    /// Whether the field's access code is unknown.
+    /// Whether the field cannot be read because its access code is unknown.
     pub unreadable: bool,
     /// Whether the field has edits that have not been written.
     pub edited: bool,

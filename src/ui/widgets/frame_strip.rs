@@ -29,9 +29,9 @@ pub struct StripField {
     pub value: String,
     /// Number of bits, at least 1.
     pub bits: usize,
-    /// Colour index, one of eight colours, or `None` if the field only encloses other fields.
+    /// Colour index, one of eight colours, or `None` if the field only groups other fields.
     pub colour: Option<usize>,
-    /// Verdict that the field reports, or `None` if it does not report one.
+    /// Verdict given by the field's value, if any.
     pub lit: Option<Verdict>,
     pub tooltip: String,
 }
@@ -136,7 +136,7 @@ impl Words {
     }
 }
 
-/// Draws the bits of a piece, and a bar below that joins them.
+/// Draws the bits of a piece of a field, and a bar below that joins them.
 fn paint_cells(
     painter: &Painter,
     theme: &Theme,

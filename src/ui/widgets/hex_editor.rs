@@ -1,4 +1,4 @@
-//! An editor for bytes, with sixteen bytes per line, shown as hexadecimal digits and as text.
+//! A byte editor with sixteen bytes per line, shown as hexadecimal digits and as text.
 //!
 //! * **Size**: the width of its columns and the height of its lines. It scrolls if there are more than
 //!   [`HexModel::lines`] lines. A line below shows the cursor position, or the reason why an action was rejected.
@@ -36,9 +36,9 @@ pub use view::HexView;
 
 #[derive(Clone, Copy, Debug)]
 pub struct HexModel<'a> {
-    /// Bytes read from the device. Displayed bytes beyond their end count as changed.
+    /// Bytes read from the device. If `wanted` is longer, the additional bytes count as changed.
     pub device: &'a [u8],
-    /// Displayed bytes, including the user's edits.
+    /// Bytes shown, including the user's edits.
     pub wanted: &'a [u8],
     pub marks: &'a [HexMark<'a>],
     /// Reason why the bytes cannot be edited, or `None` if they can.
@@ -56,7 +56,7 @@ pub struct HexMark<'a> {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HexEdit {
-    /// Writes bytes starting at an address. They always fit.
+    /// Writes bytes starting at an address. They never exceed the end.
     Put {
         address: usize,
         /// New bytes, at least one.
@@ -71,7 +71,7 @@ pub enum HexEdit {
 }
 
 impl<'a> HexModel<'a> {
-    /// Creates a model of editable bytes without marks.
+    /// Creates a model of editable bytes without any marks.
     pub fn new(device: &'a [u8], wanted: &'a [u8]) -> Self {
         HexModel { device, wanted, marks: &[], read_only: None, lines: 16, addresses: HexAddresses::Counted }
     }
@@ -91,13 +91,13 @@ impl<'a> HexModel<'a> {
 
 /// Height of a line, in points.
 const LINE_HEIGHT: f32 = 20.0;
-/// Height of the area around the lines, in points.
+/// Height in points of everything around the lines.
 const SURROUNDING_HEIGHT: f32 = 60.0;
-/// Height of the typed view below the editor, in points.
+/// Height of the table of typed values below the editor, in points.
 const TYPED_VIEW_WIDTH: f32 = 240.0;
 
-/// Returns the number of lines that an editor shows in the given height. If the typed view is beside the editor, the
-/// editor fills the height. Otherwise, it leaves space for the typed view below but shows at least sixteen lines.
+/// Returns the number of lines that fit in the given height. If the table of typed values is next to the editor, the
+/// editor fills the height. Otherwise, it leaves space for the table below but has at least sixteen lines.
 pub fn hex_lines(height: f32, beside: bool) -> usize {
     if beside {
         ((height - SURROUNDING_HEIGHT) / LINE_HEIGHT).clamp(4.0, 64.0) as usize

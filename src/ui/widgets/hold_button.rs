@@ -1,4 +1,4 @@
-//! A button that is active while it is held, for motion that ends when the finger leaves it.
+//! A button that acts while it is held, for motion that must end when the finger leaves it.
 //!
 //! * **Size**: as given, at least 56 points high, for use with gloves.
 //! * **Keyboard**: Space or Enter, held while the button has the keyboard focus. A key works only after its release on
@@ -26,14 +26,14 @@ pub struct HoldButton<'a> {
     pub caption: &'a str,
     pub label: &'a str,
     pub enabled: bool,
-    /// Whether the action of the hold has ended without a release. In this case, the button looks released.
+    /// Whether the action has already ended although the button is still held. The button then looks released.
     pub has_ended: bool,
 }
 
-/// The context of all hold buttons. The window sets it before they are drawn.
+/// State shared by all hold buttons. The window sets it before they are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::ui) struct HoldButtonContext {
-    /// Whether the window is covered, so that no hold button can be pressed.
+    /// Whether the window is covered by a dialog, so no hold button can be pressed.
     pub(in crate::ui) covered: bool,
     pub(in crate::ui) moving: bool,
 }
@@ -41,12 +41,12 @@ pub(in crate::ui) struct HoldButtonContext {
 #[derive(Clone, Copy, Default)]
 struct HoldButtonState {
     state: HoldState,
-    /// Number of the pass in which the button was last drawn.
+    /// Number of the egui pass in which the button was last drawn.
     pass: u64,
     modifiers: Modifiers,
 }
 
-/// The state of the hold buttons in the previous frame, from the perspective of the window.
+/// The hold buttons that had the keyboard focus or the pointer in the previous frame.
 #[derive(Clone, Copy, Default)]
 struct HoldButtonFrame {
     /// Button with the keyboard focus, and the last pass in which it had the focus.

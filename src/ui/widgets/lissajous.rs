@@ -1,4 +1,4 @@
-//! The Lissajous figure of sine against cosine, with the ring in which the amplitude vector should lie.
+//! A plot of sine against cosine with a ring that marks the allowed amplitude.
 //!
 //! * **Size**: a square of the given width.
 //! * **Keyboard**: none. Tab skips the figure.
@@ -22,9 +22,9 @@ use crate::ui::widgets::series_colour;
 #[derive(Clone, Debug, Default)]
 pub struct Lissajous<'a> {
     pub figures: &'a [LissajousFigure],
-    /// Limits of the good range for the length of the amplitude vector, in volts.
+    /// Amplitude range of a good signal, in volts.
     pub ok_v: (f64, f64),
-    /// Limits of the length of the amplitude vector, in volts, outside which the signal is faulty.
+    /// Amplitude range in volts outside which the signal is faulty.
     pub fault_v: (f64, f64),
     pub label: &'a str,
     pub value: &'a str,
@@ -32,7 +32,7 @@ pub struct Lissajous<'a> {
 
 #[derive(Clone, Debug, Default)]
 pub struct LissajousFigure {
-    /// Picture of the samples in the colour of the series, and the square that it covers.
+    /// Texture of the samples, and the square that it covers.
     pub picture: Option<(TextureId, PlotSquare)>,
     /// Fitted closed curve as (cosine, sine) points, in volts.
     pub curve: Vec<(f64, f64)>,
@@ -45,7 +45,7 @@ const CIRCLE: usize = 120;
 /// Label steps of an axis in volts. The axis uses the finest step at which the labels fit.
 const STEPS: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
-/// The square on the screen in which the figure is drawn, and the voltage at its edge.
+/// The square in which the figure is drawn, and the voltage at its edge.
 #[derive(Clone, Copy)]
 struct PlotArea {
     rect: Rect,
@@ -96,8 +96,8 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
     }
 }
 
-/// Returns a single-colour picture of a sample density. It is brighter where there are more samples, and even a single
-/// sample is visible.
+/// Returns a density of samples as an image of one colour. Denser areas are brighter, and even a single sample is
+/// visible.
 pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
     /// Brightness of a single sample, as a fraction of full brightness.
     const MIN_BRIGHTNESS: f32 = 0.4;
@@ -113,8 +113,7 @@ pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
     ColorImage::new([side, side], pixels)
 }
 
-/// Returns the voltage at the edge of the square. The range includes all samples and curves, and at least the ring of
-/// the good range.
+/// Returns the voltage at the edge of the square. It is large enough for all samples and curves, and for the ring.
 fn voltage_range(figure: &Lissajous<'_>) -> f64 {
     let curves = figure.figures.iter().flat_map(|own| &own.curve).map(|(x, y)| x.abs().max(y.abs()));
     let pictures = figure.figures.iter().filter_map(|own| Some(own.picture?.1.half_v));

@@ -1,6 +1,5 @@
-//! Widgets that egui does not provide. Each widget draws its input, stores only its selection, and returns the user's
-//! request. The widgets do not depend on the devices. They share the appearance of keyboard focus, hatching and series
-//! colours.
+//! Widgets that egui does not provide. Each widget draws its input, stores only its selection and returns the user's
+//! request. The widgets do not depend on any device, and share the style of focus, hatching and series colours.
 
 mod bit_cell;
 mod chart;

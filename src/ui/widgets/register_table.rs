@@ -1,6 +1,6 @@
-//! Registers as a table, grouped by bank: address, name, value in hex, decimal and decoded, access and default. Or
-//! numeric parameters: number, name, value, unit, range and factory setting. Thousands of rows scroll as easily as ten:
-//! a register is requested only while it is visible.
+//! Registers as a table, grouped by bank: address, name, value, meaning, access and default. A variant for numeric
+//! parameters has number, name, value, unit, range and factory setting. Thousands of rows scroll as easily as ten: a
+//! register is requested only while it is visible.
 //!
 //! * **Size**: the available width and the given height. The least important columns are hidden if space is short, and
 //!   their values are shown in the tooltip. [`RegisterView::problem`] contains the reason why a value was rejected,
@@ -52,12 +52,12 @@ pub struct RegisterTable<'a> {
     pub kind: RegisterKind,
 }
 
-/// The value type of a table, which determines the columns.
+/// The kind of values in a table, which determines its columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
     /// Bytes, shown as hexadecimal digits and as numbers.
     Bytes {
-        /// Number of bytes of the widest register. All of them must be visible.
+        /// Number of bytes of the widest register. The value column fits all of them.
         widest: usize,
     },
     Numbers,
@@ -72,28 +72,27 @@ pub struct RegisterGroup {
 
 #[derive(Clone, Debug, Default)]
 pub struct RegisterRow {
-    /// Register address such as `0x04:0x1F`, or a number.
+    /// Register address such as `0x04:0x1F`, or a parameter number.
     pub address: String,
     pub name: String,
-    /// Value in the form in which it is entered: bytes as hexadecimal digits, or a number. The string is empty if the
-    /// register has not been read.
+    /// Value as the user would type it: hexadecimal bytes or a number. Empty if the register has not been read.
     pub value: String,
     pub decimal: String,
     pub meaning: String,
     /// Access: `R`, `W` or `RW`.
     pub access: String,
-    /// Factory setting in the same form as the value. The string is empty if it is unknown.
+    /// Factory setting in the same format as the value. Empty if unknown.
     pub default: String,
     pub range: String,
     pub differs: bool,
     pub changed: bool,
-    /// Previous value. The string is empty if it is unknown.
+    /// Previous value. Empty if unknown.
     pub before: String,
     /// Whether the value has been edited but not written.
     pub edited: bool,
-    /// Description of the cost of writing the register, if any.
+    /// Cost of writing the register, if any.
     pub cost: Option<String>,
-    /// Details of the non-volatile storage, or `None` if the register loses its value without power.
+    /// Details of the non-volatile storage, or `None` if the value is lost without power.
     pub kept: Option<String>,
     /// Reason why the value cannot be edited, or `None` if it can.
     pub read_only: Option<String>,
@@ -119,14 +118,14 @@ pub enum RegisterEvent {
 pub struct RegisterTableOutput {
     pub event: Option<RegisterEvent>,
     pub groups: Range<usize>,
-    /// Whether columns are hidden or narrower than usual. In this case, parts of a row may be cut off.
+    /// Whether columns are hidden or narrower than usual. Parts of a row may then be cut off.
     pub is_narrow: bool,
 }
 
 const LINE_HEIGHT: f32 = 16.0;
 /// Margin in points between the edge of the table and its lines.
 const MARGIN: i8 = 4;
-/// Number of characters reserved for the longest number. −2³¹ has eleven.
+/// Number of characters reserved for a number. The longest one, −2³¹, has eleven.
 const NUMBER: usize = 11;
 
 /// Returns the width of a value, including the gap to the next column.
@@ -154,8 +153,8 @@ impl RegisterRow {
     }
 }
 
-/// Draws the table with the given height and returns the user's actions. `take` receives the text entered for a
-/// register and returns the reason if it rejects the text.
+/// Draws the table at the given height and returns the user's actions. `take` receives the text typed for a register
+/// and returns a reason if it is invalid.
 pub fn register_table(
     ui: &mut Ui,
     theme: &Theme,

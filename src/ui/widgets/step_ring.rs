@@ -1,4 +1,4 @@
-//! One period as a ring of 32 steps, with the absolute and the analogue position.
+//! A sine period as a ring of 32 steps, with the absolute and the analogue position.
 //!
 //! * **Size**: a square of the given width.
 //! * **Keyboard**: none. Tab skips the ring.
@@ -21,7 +21,7 @@ pub struct StepRing<'a> {
     pub step: u64,
     /// Analogue position in periods, 0 to 1.
     pub phase: f64,
-    /// Offset in periods from the analogue to the absolute position, or `None` if its direction is ambiguous.
+    /// Offset of the analogue position from the absolute one in periods, or `None` if its direction is ambiguous.
     pub apart: Option<f64>,
     pub colour: Color32,
     pub label: &'a str,
@@ -31,10 +31,10 @@ pub struct StepRing<'a> {
 const STEPS: u8 = 32;
 /// Width of the ring, as a fraction of the radius.
 const RING_WIDTH: f32 = 0.14;
-/// Fraction of a step that is left empty at each end of its segment.
+/// Gap at each end of a segment, as a fraction of a step.
 const GAP: f64 = 0.08;
 
-/// A circle, given by its centre and radius.
+/// A circle with its centre and radius.
 #[derive(Clone, Copy)]
 struct Dial {
     middle: Pos2,
@@ -88,7 +88,7 @@ fn paint_segments(painter: &Painter, theme: &Theme, dial: Dial, own: u64) {
     }
 }
 
-/// Writes the number of every eighth step.
+/// Draws the number of every eighth step.
 fn paint_quarters(painter: &Painter, theme: &Theme, dial: Dial) {
     let font = FontId::monospace(theme.sizes.caption);
     for (step, align) in

@@ -1,5 +1,4 @@
-//! A guided procedure as a list of completed, current and future steps, with measured values compared with their
-//! limits.
+//! A guided procedure as a list of completed, current and future steps, with measured values and their limits.
 //!
 //! * **Size**: the available width, with one line per step. The current step is as high as its content.
 //! * **Keyboard**: Tab moves from button to button.
@@ -26,10 +25,10 @@ pub struct StepRow {
     pub title: String,
     pub state: StepState,
     pub word: String,
-    /// Current task, result, or reason for failure. It may be empty.
+    /// Current task, result or reason for failure. May be empty.
     pub note: String,
     pub gauges: Vec<Gauge>,
-    /// Completed fraction, 0 to 1, or `None` if the step is not running or the fraction is unknown.
+    /// Completed fraction, 0 to 1, or `None` if unknown or the step is not running.
     pub progress: Option<f32>,
 }
 
@@ -62,9 +61,9 @@ pub struct Gauge {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Steps<'a> {
     pub steps: &'a [StepRow],
-    /// Label of the waiting step's start button, and the reason if the button is disabled.
+    /// Label of the button that starts the waiting step, with the reason if the button is disabled.
     pub start: Option<(&'a str, Result<(), &'a str>)>,
-    /// Label of the button that skips the waiting step, or `None` if it cannot be skipped.
+    /// Label of the button that skips the waiting step, or `None` if the step cannot be skipped.
     pub skip: Option<&'a str>,
 }
 
@@ -188,8 +187,8 @@ fn content_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> 
     buttons_ui(ui, theme, model)
 }
 
-/// Draws the buttons. Start is at the end of the text, followed by Skip and the obstacle, so the start button does not
-/// move while the speed of the motor changes.
+/// Draws the buttons. Start comes first, followed by Skip and the obstacle, so the start button does not move while the
+/// motor speed changes.
 fn buttons_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     if model.start.is_none() && model.skip.is_none() {

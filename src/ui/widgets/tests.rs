@@ -1,4 +1,4 @@
-//! Tests that operate the widgets like a user: through accessible labels, keys and the pointer.
+//! Tests that operate the widgets as a user does: through accessible labels, keys and the pointer.
 
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
@@ -19,7 +19,7 @@ pub(crate) fn theme() -> Theme {
     Theme::new(ThemeData::built_in().unwrap(), ColorScheme::Dark, Language::English)
 }
 
-/// Creates a window that contains a widget and its state between two buttons.
+/// Creates a window with a widget between two buttons.
 pub(crate) fn window<State>(
     state: State,
     draw: impl Fn(&mut egui::Ui, &mut State) + 'static,

@@ -1,4 +1,4 @@
-//! Bytes interpreted as numbers and text, little-endian and big-endian.
+//! A table of bytes interpreted as numbers and text, little-endian and big-endian.
 //!
 //! * **Size**: three columns of fixed width, so changing values do not move; one line per type.
 //! * **Keyboard**: Tab and arrows move from value to value; Enter copies one.

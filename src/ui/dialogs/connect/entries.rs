@@ -88,7 +88,7 @@ pub(crate) fn parity(ui: &mut Ui, theme: &Theme, own: &mut Parity) {
     dropdown(ui, &theme.translate("settings_card.parity"), own, parities);
 }
 
-/// Draws the heading of rarely needed entries. Returns whether these entries are expanded.
+/// Draws the heading that expands the rarely needed entries. Returns whether they are expanded.
 pub(crate) fn expandable_ui(ui: &mut Ui, theme: &Theme, open: &mut bool) -> bool {
     disclosure(ui, RichText::new(theme.translate("connect.more")), open);
     *open
@@ -103,7 +103,7 @@ pub(crate) fn echo_ui(ui: &mut Ui, theme: &Theme, echo: &mut Echo) {
     });
 }
 
-/// A function that returns a device message in the language of the window.
+/// A function that translates a device message into the language of the window.
 type TranslateFn = fn(&Theme, &'static str) -> String;
 
 pub(crate) fn entries_ui(
@@ -150,7 +150,7 @@ pub(crate) fn field(ui: &mut Ui, theme: &Theme, word: &str, own: &Entry, typed: 
     }
 }
 
-/// Draws the choice whether to leave the encoder's supply on when the adapter is closed.
+/// Draws the checkbox for leaving the encoder's supply on when the adapter is closed.
 pub(crate) fn supply_choice_ui(ui: &mut Ui, theme: &Theme, leave_on: &mut bool) {
     ui.checkbox(leave_on, theme.translate("connect.leave_supply"));
     paragraph(ui, theme.caption(theme.translate("connect.leave_supply_words")));

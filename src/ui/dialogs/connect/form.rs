@@ -1,5 +1,5 @@
-//! The form for a kind of device in the connection dialog. The folder of the device implements a typed trait, and the
-//! dialog uses an object-safe one. An adapter connects the two.
+//! The connection form for one kind of device. Each device module implements a typed trait, which an adapter turns into
+//! the object-safe trait used by the dialog.
 
 use egui::Ui;
 
@@ -13,7 +13,7 @@ pub trait TypedConnectForm: 'static {
     /// Selections in the form that are not part of the link.
     type Memory: Default;
 
-    /// Draws the form. `more` states whether the rarely needed entries are expanded. All kinds share this state.
+    /// Draws the form. `more` states whether the rarely needed entries are expanded. The state is shared by all kinds.
     fn form_ui(
         ui: &mut Ui,
         theme: &Theme,
@@ -24,9 +24,9 @@ pub trait TypedConnectForm: 'static {
     );
 }
 
-/// The connection form for a kind of device with its selections, as used by the dialog.
+/// Object-safe connection form for one kind of device, including its selections.
 pub trait ConnectForm {
-    /// Draws the form. `more` states whether the rarely needed entries are expanded. All kinds share this state.
+    /// Draws the form. `more` states whether the rarely needed entries are expanded. The state is shared by all kinds.
     fn form_ui(&mut self, ui: &mut Ui, theme: &Theme, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>);
 }
 

@@ -1,4 +1,4 @@
-//! The details of a selected frame: all of its bytes, and its meaning line by line.
+//! The details of a selected frame: all of its bytes and its decoded content.
 
 use egui::text::LayoutJob;
 use egui::{FontId, Label, RichText, ScrollArea, TextFormat, Ui};
@@ -40,7 +40,7 @@ pub(super) fn frame_ui(ui: &mut Ui, theme: &Theme, log: &TraceLog, line: &TraceL
     closes
 }
 
-/// Returns the bytes in lines with their offsets. The transport header is muted.
+/// Returns the bytes in lines with their offsets. The bytes of the transport header are muted.
 fn hex_dump(theme: &Theme, line: &TraceLine) -> LayoutJob {
     let font = FontId::monospace(theme.sizes.body);
     let format = |muted: bool| {

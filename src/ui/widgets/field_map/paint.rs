@@ -14,8 +14,8 @@ pub(super) struct State {
     pub(super) hovered: bool,
 }
 
-/// Returns the outline of a run, inset by half a gap. Corners are rounded at the ends of the field. They are square
-/// where the field continues on another line.
+/// Returns the outline of one line of a field, inset by half a gap. Corners are rounded at the ends of the field and
+/// square where it continues on another line.
 fn run_outline(theme: &Theme, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
     let Some(run) = runs.get(number) else { return (Rect::NOTHING, CornerRadius::ZERO) };
     let (begins, ends) = (number == 0, number + 1 == runs.len());
@@ -102,7 +102,7 @@ fn draw_label(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     }
 }
 
-/// Returns as much of a caption as fits. Parts separated by ` · ` are omitted from the end.
+/// Returns as much of a caption as fits. Parts separated by ` · ` are dropped from the end.
 fn fitting_caption(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync::Arc<egui::Galley>> {
     let mut rest = caption;
     while !rest.is_empty() {

@@ -20,8 +20,8 @@ impl Strip {
     /// Possible block widths in grid steps, largest first.
     const STEPS: [f32; 6] = [12.0, 10.0, 8.0, 6.0, 5.0, 4.0];
 
-    /// Creates a strip with the largest blocks with which `count` blocks fit on two lines. If even the smallest blocks
-    /// do not fit, the strip has more lines.
+    /// Creates a strip with the largest blocks that fit `count` blocks on two lines. If even the smallest blocks do not
+    /// fit, the strip has more lines.
     pub(super) fn new(theme: &Theme, room: f32, count: usize) -> Self {
         let (margin, gap) = (theme.space.inside, theme.space.between);
         let columns_of = |width: f32| ((room / width).floor() as usize).max(1);
@@ -42,7 +42,7 @@ impl Strip {
         Strip { origin, ..self }
     }
 
-    /// Returns the rectangles, one per line, that cover the blocks from `first` up to but excluding `end`.
+    /// Returns the rectangles, one per line, that cover the blocks from `first` to `end` (exclusive).
     pub(super) fn range_rects(&self, first: usize, end: usize) -> Vec<Rect> {
         let mut runs = Vec::new();
         let mut at = first;
@@ -68,7 +68,7 @@ impl Strip {
     }
 }
 
-/// Returns the index of a field's widest run, or of the first one if several are equally wide.
+/// Returns the index of the widest of a field's rectangles, or of the first one if several are equally wide.
 pub(super) fn widest_run(runs: &[Rect]) -> usize {
     let widths = runs.iter().enumerate().rev();
     widths.max_by(|(_, a), (_, b)| a.width().total_cmp(&b.width())).map_or(0, |(number, _)| number)

@@ -1,4 +1,4 @@
-//! The layout of the fields of a frame. All bits have cells of the same width, on as few lines as possible.
+//! The layout of the fields of a frame. All cells have the same width and take as few lines as possible.
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RequiredSpace {
@@ -10,7 +10,7 @@ pub(super) struct RequiredSpace {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PlacedPiece {
     pub(super) field: usize,
-    /// Index within the field of the first bit of the piece.
+    /// Index of the piece's first bit within the field.
     pub(super) first: usize,
     pub(super) bits: usize,
     pub(super) line: usize,
@@ -23,7 +23,7 @@ pub(super) struct StripPlacement {
     pub(super) pieces: Vec<PlacedPiece>,
     pub(super) lines: usize,
     pub(super) width: f32,
-    /// Width in points of a cell, including the gap after it.
+    /// Cell width in points, including the gap after the cell.
     pub(super) cell: f32,
 }
 
@@ -32,13 +32,14 @@ const CELLS: [f32; 10] = [20.0, 19.0, 18.0, 17.0, 16.0, 15.0, 14.0, 13.0, 12.0, 
 const GROUP_GAP: f32 = 3.0;
 
 impl PlacedPiece {
-    /// Returns the left edge of bit `at` of the piece. Groups of four bits start at the end of the field.
+    /// Returns the left edge of the cell at index `at` in the piece. Groups of four bits are counted from the end of
+    /// the field.
     pub(super) fn offset(&self, at: usize, field_bits: usize, cell: f32) -> f32 {
         at as f32 * cell + groups_between(self.first, self.first + at, field_bits) as f32 * GROUP_GAP
     }
 }
 
-/// Returns the number of four-bit groups that end between two bits of a field.
+/// Returns the number of boundaries between four-bit groups from one bit of a field to another.
 fn groups_between(from: usize, to: usize, field_bits: usize) -> usize {
     let behind = |bit: usize| field_bits.saturating_sub(bit).div_ceil(4);
     behind(from).saturating_sub(behind(to))
@@ -78,7 +79,7 @@ fn place_with_cell(wants: &[RequiredSpace], width: f32, gap: f32, cell: f32) -> 
     placing
 }
 
-/// Returns the width of `bits` bits of a field, starting at `first`.
+/// Returns the width of the cells for `bits` bits of a field, starting at bit `first`.
 fn cells_width(first: usize, bits: usize, field_bits: usize, cell: f32) -> f32 {
     bits as f32 * cell + groups_between(first, (first + bits).saturating_sub(1), field_bits) as f32 * GROUP_GAP
 }

@@ -1,4 +1,4 @@
-//! The addresses in a hex editor, as text.
+//! The display format of addresses in a hex editor.
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HexAddresses {
@@ -14,8 +14,7 @@ pub enum HexAddresses {
 }
 
 impl HexAddresses {
-    /// Formats an address in a range of `len` bytes in upper-case hexadecimal, with as many digits as the last address
-    /// needs and at least two.
+    /// Formats an address in hexadecimal. It has as many digits as the last of `len` addresses needs, but at least two.
     pub(super) fn text(self, at: usize, len: usize) -> String {
         match self.bank_and_offset(at) {
             (None, at) => format!("0x{at:0digits$X}", digits = digit_count(len)),

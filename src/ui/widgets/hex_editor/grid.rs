@@ -80,8 +80,7 @@ impl Grid {
         (at < self.len && self.cell_rect(origin, column, at).contains(pos)).then_some((column, at))
     }
 
-    /// Returns the byte nearest to the pointer. If `free` is set, it may be in either column. Otherwise, it is in the
-    /// given column.
+    /// Returns the byte nearest to the pointer, in the given column. If `free` is set, it may be in either column.
     pub(super) fn nearest_byte(&self, origin: Pos2, pos: Pos2, column: Column, free: bool) -> (Column, usize) {
         let right = pos.x >= origin.x + self.text_left - self.gap;
         let column = match (free, right) {

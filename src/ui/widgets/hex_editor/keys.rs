@@ -1,4 +1,4 @@
-//! Keyboard input of a hex editor. Keys handled here are consumed and have no other effect.
+//! Keyboard input of a hex editor. Handled keys are consumed, so no other widget receives them.
 
 use egui::{Event, FocusDirection, Key, Modifiers, Ui};
 
@@ -15,8 +15,8 @@ struct KeyReaction {
     leave: Option<FocusDirection>,
 }
 
-/// Handles the keys of the current frame. This function must be called before the widget is announced. Otherwise, Tab
-/// could not leave the widget.
+/// Handles the keys of the current frame. Must be called before the widget is registered, or else Tab could not leave
+/// it.
 pub(super) fn handle_keys(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let mut reaction = KeyReaction::default();
     ui.input_mut(|input| input.events.retain(|event| !handle_input(event, model, view, &mut reaction)));
@@ -206,7 +206,7 @@ fn ascii_bytes(text: &str) -> Result<Vec<u8>, Text> {
     text.chars().map(byte).collect()
 }
 
-/// Writes bytes at the start of the selection. Afterwards, they are selected, or the cursor is placed after them.
+/// Writes bytes at the start of the selection. Then either selects them or moves the cursor behind them.
 fn write_bytes(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction, select: bool) {
     let address = view.selection().start;
     let room = model.wanted.len().saturating_sub(address);

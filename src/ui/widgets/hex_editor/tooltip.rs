@@ -6,7 +6,7 @@ use super::HexModel;
 use crate::bits;
 use crate::ui::{Theme, icons};
 
-/// Draws a byte in every representation, with the byte of the device and the mark that contains it.
+/// Draws the tooltip with every representation of a byte, its value on the device, and the mark that contains it.
 pub(super) fn byte(ui: &mut Ui, theme: &Theme, model: &HexModel<'_>, at: usize) {
     let Some(byte) = model.wanted.get(at).copied() else { return };
     ui.spacing_mut().item_spacing = egui::vec2(theme.space.groups, theme.space.inside);

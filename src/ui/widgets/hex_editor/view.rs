@@ -1,4 +1,4 @@
-//! Cursor and selection of a hex editor, independent of the byte values.
+//! The cursor and selection of a hex editor, independent of its bytes.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ pub struct HexView {
     pub(super) problem: Option<Text>,
     pub(super) reveal: bool,
     pub(super) page: usize,
-    /// Copy of the bytes from before the last undo or redo, if any.
+    /// The bytes before the last undo or redo, if any.
     before: Option<Vec<u8>>,
 }
 
@@ -31,8 +31,8 @@ impl HexView {
         self.cursor
     }
 
-    /// Returns the selected addresses. The selection contains at least the byte at the cursor, unless the editor has no
-    /// bytes.
+    /// Returns the range of selected addresses. It contains at least the byte at the cursor, unless the editor is
+    /// empty.
     pub fn selection(&self) -> Range<usize> {
         let (first, last) = (self.anchor.min(self.cursor), self.anchor.max(self.cursor));
         first..(last + 1).min(self.len.max(first))
@@ -47,8 +47,8 @@ impl HexView {
         self.reveal = true;
     }
 
-    /// Returns the bytes to interpret as numbers: the selection, or all bytes from the cursor onward if only one byte
-    /// is selected.
+    /// Returns the range of bytes to interpret as numbers: the selection, or everything from the cursor onward if only
+    /// one byte is selected.
     pub fn to_read<'a>(&self, bytes: &'a [u8]) -> &'a [u8] {
         let selected = self.selection();
         let range = if selected.len() > 1 { selected } else { self.cursor..bytes.len() };
@@ -75,7 +75,7 @@ impl HexView {
         self.problem.as_ref()
     }
 
-    /// Adapts the cursor and selection to a new number of bytes, which may be smaller.
+    /// Clamps the cursor and selection to a new number of bytes, which may be smaller.
     pub(super) fn adapt_to_len(&mut self, len: usize) {
         self.len = len;
         let last = len.saturating_sub(1);

@@ -1,4 +1,4 @@
-//! The columns of a register table. The least important ones are hidden if they do not fit, and two columns share the
+//! The columns of a register table. The least important ones are hidden if space is short, and two columns share the
 //! remaining width.
 
 use egui::Rangef;
@@ -21,7 +21,7 @@ pub(super) enum Column {
 /// A column with its preferred and minimum width.
 type ColumnWidth = (Column, f32, f32);
 
-/// Columns of a byte table in display order. The width of the value column depends on its kind.
+/// Columns of a byte table in display order. The width of the value column depends on the register kind.
 const BYTES: [ColumnWidth; 8] = [
     (Column::Marks, 38.0, 34.0),
     (Column::Address, 80.0, 76.0),
@@ -41,7 +41,7 @@ const NUMBERS: [ColumnWidth; 7] = [
     (Column::Range, 146.0, 88.0),
     (Column::Default, 84.0, 78.0),
 ];
-/// Columns in the order in which they are hidden if space is short. The tooltip shows hidden values.
+/// Columns in the order in which they are hidden if space is short. The tooltip shows the hidden values.
 const HIDING_ORDER: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
 /// Fraction of the remaining width for the name column. The meaning column receives the rest.
 const NAME_SHARE: f32 = 0.45;
@@ -52,12 +52,12 @@ pub(super) struct Columns {
     ranges: Vec<(Column, Rangef)>,
     /// Whether columns are hidden or narrower than usual.
     is_narrow: bool,
-    /// Whether names are drawn in the small size because one of them does not fit otherwise.
+    /// Whether names are drawn in the small font because one of them does not fit otherwise.
     pub(super) has_small_names: bool,
 }
 
 impl Columns {
-    /// Lays out the columns within `width`, with `value` as the width of the value column.
+    /// Lays out the columns within `width`. `value` is the width of the value column.
     pub(super) fn new(kind: RegisterKind, width: f32, value: f32) -> Self {
         let mut shown = all_columns(kind).to_vec();
         for (column, usual, least) in &mut shown {
@@ -149,7 +149,7 @@ mod tests {
         assert!(!is_narrow(720.0) && is_narrow(719.0) && is_narrow(500.0));
     }
 
-    /// The usual width is 694 and the minimum width is 550. At 622, each column has half of its spare width.
+    /// At 622, halfway between the usual width of 694 and the minimum of 550, each column has lost half of what it can.
     #[test]
     fn columns_are_narrowed_before_one_is_hidden() {
         let columns = Columns::new(BYTES, 622.0, 100.0);

@@ -65,8 +65,8 @@ pub(super) fn editor_ui(
     }
 }
 
-/// Selects the whole value, so typing replaces it. If the edit began with a typed character, places the cursor after
-/// that character instead.
+/// Selects the whole value so that typing replaces it. If the edit began with a typed character, the cursor is placed
+/// after it instead.
 fn select(ui: &Ui, response: &egui::Response, text: &str, typed: bool) {
     use egui::text::{CCursor, CCursorRange};
     let end = CCursor::new(text.chars().count());

@@ -1,4 +1,4 @@
-//! Keyboard input of a register table. Keys handled here are consumed and have no other effect.
+//! Keyboard input of a register table. Handled keys are consumed, so no other widget receives them.
 
 use egui::{Event, EventFilter, FocusDirection, Id, Key, Modifiers, Ui};
 
@@ -25,8 +25,8 @@ pub(super) fn entry_id(table: Id) -> Id {
     table.with("entry")
 }
 
-/// Holds back everything typed in the current frame after a key that ends an edit. This is Enter, or an up or down
-/// arrow, which acts as Enter and then moves to another line.
+/// Holds back everything typed in the current frame after a key that ends an edit: Enter, or an up or down arrow, which
+/// then also moves to another line.
 pub(super) fn defer_keys(ui: &Ui, view: &mut RegisterView) {
     ui.input_mut(|input| {
         let mut ended = false;
@@ -62,8 +62,8 @@ pub(super) fn is_vertical(event: &Event) -> bool {
     matches!(event, Event::Key { key: Key::ArrowUp | Key::ArrowDown, pressed: true, modifiers, .. } if is_plain(modifiers))
 }
 
-/// Returns whether an event is typing for the table or its editor. Keys that stop a drive or belong to the window are
-/// not typing and are never held back.
+/// Returns whether an event is typing for the table or its editor. Keys that stop a drive or control the window are
+/// never held back.
 fn is_typing_event(event: &Event) -> bool {
     use Key::{ArrowDown, ArrowLeft, ArrowRight, ArrowUp, Backspace, Delete, End, Enter, Home};
     match event {
@@ -153,8 +153,8 @@ fn move_selection(at: usize, lines: &Lines, view: &mut RegisterView, next: impl 
     true
 }
 
-/// Folds with the left arrow and unfolds with the right arrow. On a folded register, the left arrow moves to the
-/// heading of its group.
+/// Folds with the left arrow and unfolds with the right arrow. On a folded register, the left arrow moves to the group
+/// heading.
 fn handle_fold_key(key: Key, modifiers: Modifiers, table: &RegisterTable<'_>, view: &mut RegisterView) -> bool {
     let open = match key {
         Key::ArrowLeft => false,

@@ -1,5 +1,5 @@
-//! The lines of a register table: group headings, registers, and the bit fields of unfolded registers. The lines are
-//! not stored, so the computing time depends on the number of groups rather than registers.
+//! The lines of a register table: group headings, registers, and the bit fields of unfolded registers. They are not
+//! stored, so the computing time depends on the number of groups rather than registers.
 
 use super::view::SelectedRow;
 use super::{RegisterLocation, RegisterTable, RegisterView};
@@ -70,7 +70,7 @@ impl Lines {
         self.sections.partition_point(|section| section.start <= line).checked_sub(1)
     }
 
-    /// Returns the line of an item, or `None` if the item is not shown.
+    /// Returns the line on which an item is shown, or `None` if it is hidden.
     pub(super) fn line_index(&self, what: SelectedRow) -> Option<usize> {
         match what {
             SelectedRow::Group(group) => self.sections.get(group).map(|section| section.start),

@@ -10,7 +10,7 @@ use crate::app::Text;
 use crate::ui::{Theme, icons};
 
 pub(super) const HEADER_HEIGHT: f32 = 20.0;
-/// Position of the right edge of the caret, which is drawn for registers with bit fields.
+/// Right edge of the caret, which is drawn for registers with bit fields.
 pub(super) const CARET_OFFSET: f32 = 16.0;
 /// Spacing between marks.
 const MARK_SPACING: f32 = 13.0;
@@ -63,7 +63,7 @@ pub(super) fn header(ui: &mut Ui, theme: &Theme, kind: RegisterKind, columns: &C
     ui.painter().hline(rect.x_range(), rect.bottom() - 2.5, Stroke::new(1.0, theme.palette.line));
 }
 
-/// Draws the heading of a group. Returns whether its note fits.
+/// Draws a group heading. Returns whether its note fits.
 pub(super) fn paint_heading(
     ui: &Ui,
     theme: &Theme,
@@ -89,7 +89,7 @@ pub(super) fn paint_heading(
     !is_too_long(ui, theme, room, &note)
 }
 
-/// Draws a register. Its value is left out while it is being edited. Returns whether its name fits in the usual size.
+/// Draws a register, without its value while that is being edited. Returns whether its name fits in the normal font.
 pub(super) fn row(
     ui: &Ui,
     theme: &Theme,
@@ -163,8 +163,8 @@ pub(super) fn value_edit_rect(theme: &Theme, rect: Rect, value: Rangef) -> Rect 
     Rect::from_x_y_ranges(x, rect.top() + 0.5..=rect.bottom() - 0.5)
 }
 
-/// Draws the marks of a register: a caret for bit fields, a dot for a change, a pencil for an edit, a flash for a write
-/// cost, and a disk for storage.
+/// Draws the marks of a register: a caret if it has bit fields, a dot for a change, a pencil for an edit, a flash for a
+/// write cost, and a disk for non-volatile storage.
 fn paint_marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
     let palette = theme.palette;
     let caret = if open { icons::CARET_DOWN } else { icons::CARET_RIGHT };

@@ -17,15 +17,15 @@ pub struct RegisterView {
     pub(super) open: BTreeSet<RegisterLocation>,
     pub(super) edit: Option<Edit>,
     pub(super) wanted: Option<RegisterLocation>,
-    /// Reason why the last attempt to edit the value was rejected.
+    /// Reason why the last edit was rejected.
     pub(super) refused: Option<String>,
-    /// Whether the selection has moved and must be scrolled into view.
+    /// Whether the selection has moved and has to be scrolled into view.
     pub(super) reveal: bool,
     pub(super) page: usize,
-    /// Width of the table at which a name did not fit. At this width, all names are drawn in the small size.
+    /// Width of the table at which a name did not fit. At this width, all names use the small font.
     pub(super) small_names_at: Option<f32>,
-    /// Events typed in the previous frame after a key that moves the focus to or from the editor. The next frame
-    /// determines whether the table or the editor receives them.
+    /// Events typed in the previous frame after a key that moves the focus to or from the editor. The table or the
+    /// editor receives them in the next frame.
     pub(super) late: Vec<Event>,
 }
 
@@ -40,9 +40,9 @@ pub(super) struct Edit {
     pub(super) place: RegisterLocation,
     pub(super) text: String,
     pub(super) problem: Option<Text>,
-    /// Whether the edit has just begun and must receive the keyboard focus.
+    /// Whether the edit has just begun and the editor must receive the keyboard focus.
     pub(super) begins: bool,
-    /// Whether the edit began with a typed character rather than the existing value.
+    /// Whether the edit began with a typed character instead of the existing value.
     pub(super) typed: bool,
 }
 
@@ -61,7 +61,7 @@ impl RegisterView {
         }
     }
 
-    /// Returns the reason why the edited value was rejected, or why the value cannot be edited.
+    /// Returns the reason why the typed value was rejected or the value cannot be edited.
     pub fn problem(&self, theme: &Theme) -> Option<String> {
         let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| theme.format_text(problem));
         typed.or_else(|| self.refused.clone())
@@ -95,8 +95,8 @@ impl RegisterView {
         self.folded.contains(&group)
     }
 
-    /// Adapts to a changed set of registers. The selection and the edit follow their register and end if it no longer
-    /// exists.
+    /// Adapts to a changed set of registers. The selection and the edit stay with their register, or end if it no
+    /// longer exists.
     pub fn follow_registers(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
             Some(SelectedRow::Row(place)) => now(place).map(SelectedRow::Row),

@@ -1,4 +1,4 @@
-//! A gauge, which shows a value on a scale with the allowed band.
+//! A gauge that shows a value on a scale with the allowed range.
 
 use egui::accesskit::Role;
 use egui::{Color32, FontId, Rect, RichText, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2};
@@ -13,7 +13,7 @@ const NAME_WIDTH: f32 = 112.0;
 const VALUE_WIDTH: f32 = 96.0;
 const ROW_HEIGHT: f32 = 20.0;
 
-/// Draws each gauge's name, value, scale and limits on one line. Limits that do not fit are drawn below.
+/// Draws each gauge on one line: name, value, scale and limits. Limits that do not fit are drawn below.
 pub(super) fn gauges_ui(ui: &mut Ui, theme: &Theme, gauges: &[Gauge]) {
     let width = |gauge: &Gauge| {
         let font = FontId::proportional(theme.sizes.caption);
@@ -65,7 +65,7 @@ fn column_ui(ui: &mut Ui, width: f32, words: RichText) {
     });
 }
 
-/// Draws the allowed band with a pointer at the value, or an arrow at the end of the scale if the value lies beyond it.
+/// Draws the allowed range with a pointer at the value, or an arrow at the end of the scale if the value is beyond it.
 fn scale_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, ROW_HEIGHT), Sense::hover());
     response.widget_info(|| {

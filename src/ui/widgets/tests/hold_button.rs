@@ -117,14 +117,14 @@ fn disabling_the_button_or_losing_focus_ends_a_hold() {
     assert_eq!(step(&mut harness, []), []);
 }
 
-/// Waits for the minimum time between the release of a key and a fresh press.
+/// Waits for the minimum time between the release of a key and a new press.
 fn wait(harness: &mut Harness<'_, Jog>) {
     for _ in 0..4 {
         assert_eq!(step(harness, []), []);
     }
 }
 
-/// Creates a focused button, after Space has been released.
+/// Creates a focused button that is ready for a key press, because Space has been released.
 fn armed() -> Harness<'static, Jog> {
     let mut harness = jog();
     focus(&mut harness, "Jog up");
@@ -160,7 +160,7 @@ fn step_after(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) 
     events
 }
 
-/// A key repeat may be reported as a release and an immediate press in two frames, however far apart (issue 21.2).
+/// A key repeat may be reported as a release and a new press in two frames, however far apart they are (issue 21.2).
 #[test]
 fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
@@ -174,7 +174,7 @@ fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     }
 }
 
-/// A user presses the key a tenth of a second after releasing it, with no other event in between (issue 21.2).
+/// The user presses the key 0.1 s after its release, with no other event in between (issue 21.2).
 #[test]
 fn a_release_requests_the_frame_that_rearms_the_key() {
     let mut harness = armed();
@@ -197,8 +197,8 @@ fn a_release_requests_the_frame_that_rearms_the_key() {
     }
 }
 
-/// These are the events that the window system reports when Space is held while the user switches to another window and
-/// back. The event that egui reports as a first press is a key repeat (issue 21.2).
+/// If Space is held while the user switches to another window and back, egui reports a key repeat as the first press
+/// (issue 21.2).
 #[test]
 fn a_key_held_during_a_window_change_starts_no_hold() {
     for held_before in [false, true] {
@@ -228,7 +228,8 @@ fn a_key_held_during_a_window_change_starts_no_hold() {
     }
 }
 
-/// A button that was not drawn, was locked, or was covered by a dialog cannot know whether a key is up (issue 21.2).
+/// A button that was not drawn, was locked or was covered by a dialog cannot detect whether a key has been released
+/// (issue 21.2).
 #[test]
 fn a_key_down_before_the_button_was_enabled_starts_no_hold() {
     type Change = fn(&mut Jog, bool);
@@ -259,8 +260,7 @@ fn a_key_down_before_the_button_was_enabled_starts_no_hold() {
     assert_eq!(step(&mut harness, [key(true, true)]), []);
 }
 
-/// Under a dialog, the pointer cannot hold the button either. A press that began there has no effect after the dialog
-/// is closed (issue 21.2).
+/// A pointer press that began under a dialog has no effect after the dialog is closed either (issue 21.2).
 #[test]
 fn a_press_under_a_dialog_starts_no_hold() {
     let mut harness = jog();

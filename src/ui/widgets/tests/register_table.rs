@@ -1,4 +1,4 @@
-//! Tests of a register table as large as that of the kit encoder, with keys, the pointer and accessible labels.
+//! Tests of a register table as large as the kit encoder's, with keys, the pointer and accessible labels.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -234,7 +234,7 @@ fn one_click_edits_a_number_box() {
     }
 }
 
-/// Text typed into a box takes effect when another box is clicked.
+/// A click on another box takes the keyboard focus from the one being edited.
 #[test]
 fn typed_text_is_accepted_when_another_box_is_clicked() {
     let mut harness = table_harness(RegisterKind::Numbers);
@@ -276,8 +276,8 @@ fn typed_text_stays_with_its_register_when_lines_change() {
     assert_eq!((typed(&harness), harness.state().view.selected()), (None, None));
 }
 
-/// A window that is drawn slowly receives several keys at once, 10 ms apart. No key is lost or handled twice, whether
-/// the table still has the keyboard focus or regains it (issue 26.4).
+/// A slowly drawn window receives several keys in one frame. None may be lost or handled twice, whether the table has
+/// the keyboard focus or is about to regain it (issue 26.4).
 #[test]
 fn text_typed_in_a_single_frame_is_complete() {
     let mut harness = table();
