@@ -1,5 +1,5 @@
-//! Backups of devices, which are taken before a write. Each backup is a file in the folder of its device and serial
-//! number, and is never overwritten or removed. The caller supplies the text, which must not contain access codes.
+//! Device backups, taken before each write. Each backup is a file in a folder for its device and serial number, and is
+//! never overwritten or removed. The caller supplies the text, which must not contain access codes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use super::files::{create_folder, write_new};
 const TIME: &str = "%Y-%m-%dT%H-%M-%SZ";
 const EXTENSION: &str = "ron";
 
-/// Maximum number of backups of a device per second. A greater number indicates a runaway loop.
+/// Maximum number of backups of a device per second. More would indicate a runaway loop.
 const MAX_BACKUPS_PER_SECOND: u32 = 1000;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub struct Backups(PathBuf);
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Backup {
     pub path: PathBuf,
-    /// Time of the backup, to the second.
+    /// Time of the backup, in whole seconds.
     pub taken: Timestamp,
 }
 
@@ -55,7 +55,7 @@ impl Backups {
             .into_error(FileOperation::Write, &folder.join(file_name(&time, MAX_BACKUPS_PER_SECOND))))
     }
 
-    /// Returns the backups of a device, newest first. Other files in the folder are ignored.
+    /// Returns the backups of a device, newest first. Any other files in the folder are ignored.
     ///
     /// # Errors
     /// Returns an error if the folder exists but cannot be read.
@@ -92,7 +92,8 @@ fn file_name(time: &str, number: u32) -> String {
     }
 }
 
-/// Parses the time and number in the name of a backup. Returns `None` for names that [`file_name`] does not create.
+/// Parses the time and number in the file name of a backup. Returns `None` for names that [`file_name`] does not
+/// create.
 fn parse_file_name(path: &Path) -> Option<(Timestamp, u32)> {
     let name = path.file_name()?.to_str()?;
     let (time, number) = name.strip_suffix(EXTENSION)?.strip_suffix('.')?.split_once('Z')?;

@@ -1,4 +1,4 @@
-//! Reading of captures from files in chunks, with progress and cancellation.
+//! Reads captures from files in chunks, with progress and cancellation.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -12,7 +12,7 @@ use crate::analysis::capture::{Capture, CaptureError, HEAD_BYTES, Layout, TableH
 pub enum ReadCaptureError {
     #[error(transparent)]
     File(#[from] FileError),
-    /// The file contains no capture.
+    /// The file is not a valid capture.
     #[error(transparent)]
     Capture(#[from] CaptureError),
     #[error("cancelled")]
@@ -25,7 +25,7 @@ pub type OnProgress<'a> = &'a mut dyn FnMut(u64, u64);
 /// Number of bytes read at a time. Progress is reported and cancellation is checked after each read.
 const CHUNK_BYTES: usize = 1 << 20;
 
-/// Reads a capture. Also returns the layout of the table in the file.
+/// Reads a capture and the layout of the table in its file.
 ///
 /// # Errors
 /// Returns a [`ReadCaptureError`] if the file is missing or is not a capture, or if `cancel` was set.

@@ -1,5 +1,4 @@
-//! User-defined device descriptions. Each file of a folder is read independently, so an unreadable file does not affect
-//! the others.
+//! User-defined device descriptions, one per file. An unreadable file does not affect the others.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,8 +6,8 @@ use std::path::{Path, PathBuf};
 use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::files::read_file;
 
-/// Reads the files in a folder that have the given extension. Returns their paths and contents, ordered by name, and
-/// the errors of unreadable files. A missing folder yields no files.
+/// Reads all files in a folder with the given extension. Returns their paths and contents, sorted by name, and the
+/// errors of unreadable files. A missing folder counts as empty.
 pub fn read_folder(folder: &Path, ending: &str) -> (Vec<(String, String)>, Vec<FileError>) {
     let (mut texts, mut errors) = (Vec::new(), Vec::new());
     match list_files(folder, ending) {

@@ -1,5 +1,5 @@
-//! Drafts, which preserve edits that have not been written to a device if the program crashes or a cable is unplugged.
-//! Each draft is a file. The caller supplies the text, which must not contain access codes.
+//! Drafts, which preserve unwritten edits if the program crashes or a cable is unplugged. Each draft is a file. The
+//! caller supplies the text, which must not contain access codes.
 
 use std::fs;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use super::files::{create_folder, read_text, write_atomically};
 
 const EXTENSION: &str = "ron";
 
-/// The exclusive right to save a draft, held until the value is dropped. The system also releases it when the program
+/// The exclusive right to save a draft, held until the value is dropped. The system also releases it when the process
 /// ends.
 #[derive(Debug)]
 pub struct Claim {

@@ -40,7 +40,7 @@ pub enum FileErrorKind {
     /// The folder of the new file does not exist.
     #[error("its folder does not exist")]
     NoFolder,
-    /// A component of the path is a file instead of a folder.
+    /// A component of the path is a file rather than a folder.
     #[error("a part of the path is a file, not a folder")]
     NotFolder,
     #[error("it is a folder")]
@@ -48,7 +48,7 @@ pub enum FileErrorKind {
     /// The path refers to a pipe or a device.
     #[error("it is a pipe or a device, not a file")]
     NotAFile,
-    /// The file exists and must not be replaced.
+    /// The file already exists and must not be replaced.
     #[error("it already exists")]
     Exists,
     #[error("permission denied")]
@@ -99,7 +99,7 @@ impl FileErrorKind {
         FileError { path: path.to_owned(), task, problem: self }
     }
 
-    /// Converts an error that occurred while creating a file. Because the file is new, only its folder can be missing.
+    /// Converts an error from creating a file. Only the folder can be missing, because the file is new.
     pub(super) fn from_create_error(error: io::Error) -> Self {
         match error.into() {
             FileErrorKind::NotFound => FileErrorKind::NoFolder,

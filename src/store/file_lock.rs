@@ -1,5 +1,4 @@
-//! File locks between programs that use the same files. The system releases the locks of a program that ends for any
-//! reason.
+//! Locks on files that several programs use. The system releases the locks of a program when it ends for any reason.
 
 use std::fs::{File, TryLockError};
 use std::io;
@@ -14,15 +13,14 @@ use super::files::{create_folder, read_text, write_atomically};
 const LOCK_TIMEOUT: Duration = Duration::from_secs(2);
 const RETRY: Duration = Duration::from_millis(5);
 
-/// A lock that excludes all other programs while it exists.
+/// A lock that excludes all other programs until it is dropped.
 #[derive(Debug)]
 pub(super) struct FileLock {
     _locked: File,
 }
 
 impl FileLock {
-    /// Locks a lock file and creates it if it is missing. Returns `None` if this or another program already holds the
-    /// lock.
+    /// Locks a lock file, creating it if missing. Returns `None` if this or another program already holds the lock.
     pub(super) fn try_lock_at(path: &Path) -> Result<Option<Self>, FileError> {
         let failed = |error: io::Error| FileErrorKind::from(error).into_error(FileOperation::Write, path);
         let file = open(path).map_err(failed)?;
@@ -46,8 +44,8 @@ fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Replaces the text of a file with the result of `make`. Meanwhile, other programs that use this function wait. The
-/// folder is created if it is missing, and the text is written with [`write_atomically`].
+/// Replaces the text of a file with the result of `make`, while other callers in any program wait. Creates the folder
+/// if it is missing, and writes the text with [`write_atomically`].
 ///
 /// `make` receives the current text, or the error if it cannot be read. It returns `None` to leave the file unchanged.
 ///
@@ -69,7 +67,7 @@ pub fn update_text<T>(
     Ok(made)
 }
 
-/// Waits for the lock of a file.
+/// Waits until a file can be locked.
 pub(super) fn wait_for(path: &Path) -> Result<FileLock, FileError> {
     let beside = lock_path(path);
     let began = Instant::now();
@@ -86,7 +84,7 @@ pub(super) fn wait_for(path: &Path) -> Result<FileLock, FileError> {
     }
 }
 
-/// Returns the path of the lock file. The lock is a separate file, because each write replaces the file itself.
+/// Returns the path of the lock file. It is a separate file, because each write replaces the file itself.
 fn lock_path(path: &Path) -> PathBuf {
     let mut beside = path.to_owned().into_os_string();
     beside.push(".lock");

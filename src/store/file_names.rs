@@ -1,6 +1,6 @@
 //! Folder and file names derived from external strings such as serial numbers and item names.
 
-/// The treatment of letter case in file names. Windows and macOS ignore the case of file names.
+/// How letter case is encoded in file names, given that Windows and macOS ignore it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum LetterCase {
     /// Case is not encoded, because no two names differ only in case.

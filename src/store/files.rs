@@ -1,5 +1,5 @@
-//! Reading and writing of whole files. New content is written to a temporary file in the same folder, flushed, and
-//! renamed. A file therefore contains either all of the old content or all of the new content.
+//! Reads and writes whole files. New content is written to a temporary file in the same folder, flushed, and renamed. A
+//! file therefore contains either all of the old content or all of the new content.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
@@ -35,7 +35,7 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_atomically_with(path, |file| file.write_all(content))
 }
 
-/// Writes a text like [`write_atomically`], preserving an existing byte order mark.
+/// Writes a text like [`write_atomically`], but keeps an existing byte order mark.
 ///
 /// # Errors
 /// Returns an error from [`write_atomically`].
@@ -46,8 +46,8 @@ pub fn overwrite_text(path: &Path, text: &str) -> Result<(), FileError> {
     write_atomically(path, [mark, text].concat().as_bytes())
 }
 
-/// Writes a file like [`write_atomically`], with content that `write` produces in portions. If `write` fails, the old
-/// file stays unchanged.
+/// Writes a file like [`write_atomically`], with content that `write` produces piece by piece. If `write` fails, the
+/// old file stays unchanged.
 ///
 /// # Errors
 /// Returns an error from [`write_atomically`] or `write`, or an error if the path refers to a device or a pipe.
@@ -95,7 +95,7 @@ pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
     })
 }
 
-/// Writes a file of the program like [`write_atomically`]. The folder is created if it is missing.
+/// Writes one of the program's own files like [`write_atomically`], creating the folder if it is missing.
 ///
 /// # Errors
 /// Returns an error if the folder cannot be created, or an error from [`write_atomically`].
@@ -119,7 +119,7 @@ pub fn read_file(path: &Path) -> Result<String, FileError> {
     }
 }
 
-/// Reads a text of at most [`MAX_TEXT`] bytes. A leading byte order mark is removed.
+/// Reads a text of at most [`MAX_TEXT`] bytes and removes a leading byte order mark.
 ///
 /// # Errors
 /// Returns an error if the file is missing, is a folder, is too large or is not UTF-8.
@@ -156,7 +156,7 @@ fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes directly to a file. A pipe without a reader would block forever, so the write is aborted after a time limit.
+/// Writes directly to a file. A pipe without a reader would block forever, so the write is aborted after a timeout.
 fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     const WRITE_TIMEOUT: Duration = Duration::from_secs(8);
     let (sender, written) = mpsc::channel();
@@ -173,7 +173,7 @@ fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
 
 /// Follows a chain of symbolic links and returns the path at its end, which need not exist.
 fn resolve_links(path: &Path) -> io::Result<PathBuf> {
-    /// Maximum number of links to follow, as in Linux.
+    /// Maximum number of links to follow, the same as in Linux.
     const MAX_LINKS: usize = 40;
     let mut target = path.to_owned();
     for _ in 0..MAX_LINKS {
@@ -194,7 +194,7 @@ fn parent_folder(path: &Path) -> Result<&Path, FileErrorKind> {
     }
 }
 
-/// Writes a temporary file to the folder of the target and flushes it. The file is removed when the value is dropped.
+/// Writes a temporary file to the folder of the target and flushes it. Dropping the value removes the file.
 fn write_temp_file(
     folder: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,

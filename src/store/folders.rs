@@ -1,4 +1,4 @@
-//! The base folders of relative paths. The same rule applies to the command line and to typed and dropped paths.
+//! The base folders of relative paths. Command-line, typed and dropped paths follow the same rule.
 
 use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
@@ -50,7 +50,6 @@ impl BaseFolders {
 mod tests {
     use super::*;
 
-    /// The same rule applies to every path entered by the user.
     #[test]
     fn paths_resolve_the_same_everywhere() {
         let root = std::env::temp_dir();

@@ -12,7 +12,7 @@ pub(super) const SUFFIX: &str = ".tmp";
 /// Minimum age of a leftover temporary file. A write takes only seconds.
 const STALE_AGE: Duration = Duration::from_secs(3600);
 
-/// Number of nested folders in the data of the program, as in `backups/biss/77`.
+/// Depth of nested folders in the program's data, as in `backups/biss/77`.
 const DEPTH: usize = 3;
 
 /// Removes leftover temporary files from one folder. Files that cannot be removed are kept.

@@ -1,7 +1,6 @@
 //! The log file, which preserves the content of the log panel after the window closes. A separate thread writes the
-//! file, so a disk that hangs does not block other threads. Lines that do not fit into the queue are dropped and
-//! counted, and the count is written when the disk responds again. A file that has grown large is renamed, and a new
-//! one is started.
+//! file, so a slow disk does not block other threads. Lines that do not fit into the queue are dropped, and their
+//! number is written when the disk responds again. A file that has grown large is renamed, and a new one is started.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -26,7 +25,7 @@ const QUEUE: usize = 1024;
 /// Maximum time to wait for the last lines when the program ends.
 const FLUSH_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// A handle that accepts lines for the log file without blocking. All clones write to the same file.
+/// A handle that queues lines for the log file without blocking. All clones write to the same file.
 #[derive(Clone, Debug)]
 pub struct LogFile {
     queue: Sender<LogRequest>,
@@ -77,7 +76,7 @@ impl LogFile {
         }
     }
 
-    /// Waits until everything has been written to the file, or until a time limit has passed if the disk hangs.
+    /// Waits until everything has been written to the file, or until a timeout if the disk hangs.
     pub fn wait_until_written(&self) {
         let (done, waited) = bounded(1);
         if self.queue.send_timeout(LogRequest::Flush(done), FLUSH_TIMEOUT).is_ok() {
@@ -108,7 +107,7 @@ fn write_all(mut file: impl Write, orders: &Receiver<LogRequest>, dropped: &Atom
     }
 }
 
-/// Queues each write as one line.
+/// Queues each call of `write` as one line.
 impl Write for LogFile {
     fn write(&mut self, line: &[u8]) -> io::Result<usize> {
         self.write_line(line);
@@ -120,7 +119,7 @@ impl Write for LogFile {
     }
 }
 
-/// A log file that is renamed and replaced once it has grown large.
+/// A log file that is renamed and replaced when it becomes too large.
 struct RotatingFile {
     path: PathBuf,
     large: u64,

@@ -1,5 +1,5 @@
-//! The files of the program. Backups, drafts, the logbook and the log are data. Settings and user-defined device tables
-//! are configuration. Folders are created when the first file is written. Access codes are never stored.
+//! The files of the program. Backups, drafts, the logbook and the log file are data. Settings and user-defined device
+//! tables are configuration. A folder is created when its first file is written. Access codes are never stored.
 
 mod backups;
 mod captures;
@@ -53,13 +53,13 @@ pub enum StoreError {
     NoHome,
     #[error(transparent)]
     File(#[from] FileError),
-    /// A device file of the user is invalid. The cause is specific to the kind of device.
+    /// A user-defined device file is invalid. The cause is specific to the kind of device.
     #[error("{0}")]
     Refused(Cause),
 }
 
 impl Store {
-    /// Returns the store in the system's folders for this user and program.
+    /// Returns the store in the system's data and configuration folders for this user.
     ///
     /// # Errors
     /// Returns [`StoreError::NoHome`] if the system does not report such folders.
@@ -87,12 +87,12 @@ impl Store {
         Backups::in_folder(self.data.join("backups"))
     }
 
-    /// Returns the drafts, which are edits that have not been written to a device.
+    /// Returns the drafts: edits that have not been written to a device.
     pub fn drafts(&self) -> Drafts {
         Drafts::in_folder(self.data.join("drafts"))
     }
 
-    /// Returns the device modes that must be restored after a job, one text per device.
+    /// Returns the drafts of the device modes to restore after a job, one per device.
     pub fn pending_mode_restores(&self) -> Drafts {
         Drafts::in_folder(self.data.join("excursions"))
     }

@@ -1,5 +1,5 @@
-//! Damaged files of the logbook. Such a file is renamed, and the new file that replaces it contains a record of this,
-//! because the write cycles in the damaged file are no longer counted.
+//! Damaged logbook files. Such a file is renamed, and the new file that replaces it records this, because the write
+//! cycles in the damaged file are no longer counted.
 
 use std::ffi::OsString;
 use std::fs;
@@ -15,13 +15,13 @@ use super::error::LogbookErrorKind;
 use super::schema;
 use crate::store::file_lock::wait_for;
 
-/// Suffixes of the additional files of a database.
+/// Suffixes of the additional files that SQLite creates.
 const ENDINGS: [&str; 2] = ["-wal", "-shm"];
 /// Suffix of the new file before it replaces the damaged one.
 const NEW: &str = "-new";
 
-/// Renames a damaged file and creates a new one. Returns the new name of the damaged file, or `None` if the file is
-/// intact because another program has already replaced it.
+/// Renames a damaged file and creates a new one. Returns the new name of the damaged file, or `None` if another program
+/// has already replaced it.
 pub(super) fn set_aside(path: &Path, patience: Duration) -> Result<Option<PathBuf>, LogbookErrorKind> {
     let _lock = wait_for(path).map_err(LogbookErrorKind::Folder)?;
     if !is_damaged(path) {

@@ -1,5 +1,5 @@
-//! Names of assets. An asset is the motor or axis on which a device is mounted, and stays the same when its encoder is
-//! exchanged.
+//! Asset names. An asset is the motor or axis on which a device is mounted. It stays the same when the encoder is
+//! replaced.
 
 use std::fmt;
 use std::str::FromStr;

@@ -1,4 +1,4 @@
-//! Entries of the logbook.
+//! Logbook entries.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ impl DeviceKey {
 pub struct EntryId(pub(super) i64);
 
 impl EntryId {
-    /// Parses the number as `log` prints it. Returns `None` if the text is not a number from 1.
+    /// Parses the number as printed by the `log` command. Returns `None` if the text is not a number of at least 1.
     pub fn parse(text: &str) -> Option<Self> {
         text.parse().ok().filter(|number| *number > 0).map(EntryId)
     }
@@ -45,7 +45,7 @@ impl fmt::Display for EntryId {
     }
 }
 
-/// Identifier of an entry, which is the same on every computer that shares the logbook.
+/// Identifier of an entry that is the same on every computer sharing the logbook.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct EntryUid(pub(super) String);
 
@@ -71,9 +71,9 @@ pub enum EntryKind {
     Restore,
     /// The position was set, or a preset was stored or fired.
     Preset,
-    /// A procedure or a service of the device was executed, such as a calibration.
+    /// A device procedure or service was executed, such as a calibration.
     Procedure,
-    /// A profile of the device was saved. A backup before a write is recorded in the entry of the write instead.
+    /// A profile of the device was saved. A backup taken before a write is part of the entry for that write instead.
     Backup,
     /// The device was checked.
     Check,
@@ -95,7 +95,7 @@ impl EntryKind {
         EntryKind::Note,
     ];
 
-    /// Returns the word for this value in the database and on the command line.
+    /// Returns the keyword for this value in the database and on the command line.
     pub const fn keyword(self) -> &'static str {
         match self {
             EntryKind::Connected => "connected",
@@ -152,7 +152,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Returns the word for this value in the database and on the command line.
+    /// Returns the keyword for this value in the database and on the command line.
     pub const fn keyword(&self) -> &'static str {
         match self {
             Outcome::Done => "done",
@@ -162,12 +162,12 @@ impl Outcome {
     }
 }
 
-/// Computer, user and program version with which an entry was made.
+/// The computer, user and program version that made an entry.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Origin {
     /// Name of the computer. Empty in entries of older logbooks.
     pub bench: String,
-    /// Name of the user, if it is known and the settings allow it to be recorded.
+    /// Name of the user, if known and if the settings allow it to be recorded.
     pub user: Option<String>,
     /// Version of the program. Empty in entries of older logbooks.
     pub version: String,
@@ -183,8 +183,7 @@ impl Origin {
         }
     }
 
-    /// Returns the computer on which the entry was made, or `None` if it was made on this computer or the computer is
-    /// unknown.
+    /// Returns the computer that made the entry, or `None` if it was this computer or is unknown.
     pub fn other_bench(&self) -> Option<&str> {
         Some(self.bench.as_str()).filter(|bench| !bench.is_empty() && *bench != this_bench())
     }
@@ -196,7 +195,7 @@ fn this_bench() -> &'static str {
     NAME.get_or_init(|| whoami::hostname().unwrap_or_default())
 }
 
-/// A write that is about to begin.
+/// A write to a device that is about to begin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Intent {
     pub kind: EntryKind,
@@ -220,12 +219,12 @@ pub struct Event {
 }
 
 impl Event {
-    /// Creates an event that has a description but no items and no profile.
+    /// Creates an event with a description, but without items or a profile.
     pub fn new(kind: EntryKind, description: impl Into<String>) -> Self {
         Event { kind, description: description.into(), items: Vec::new(), backup: None }
     }
 
-    /// Creates an event for saving a profile of the device to a file.
+    /// Creates the event that a profile of the device was saved to a file.
     pub fn saved_profile(path: &Path) -> Self {
         let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let saved = Event::new(EntryKind::Backup, format!("saved to {}", full.display()));
@@ -233,7 +232,7 @@ impl Event {
     }
 }
 
-/// A logbook entry. An entry of a write contains the result of the write.
+/// A logbook entry. The entry for a write also contains the result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// Identifier of the entry. Later entries have greater identifiers.
@@ -255,9 +254,9 @@ pub struct Entry {
     pub origin: Origin,
     /// The entry that this write undoes, if any.
     pub undoes: Option<LinkedEntry>,
-    /// The last write that undid this entry completely and has not been undone itself, if any.
+    /// The last write that undid this entry completely, unless it was itself undone.
     pub undone_by: Option<LinkedEntry>,
-    /// Result of the write. `None` means that the write is still running or that the program ended during the write.
+    /// Result of the write, or `None` if the write is still running or the program ended during the write.
     pub conclusion: Option<WriteResult>,
 }
 
@@ -289,8 +288,8 @@ impl Entry {
         }
     }
 
-    /// Returns the number of write cycles that this entry has used. For a write without a result, this is the planned
-    /// number, because the program may have ended after the last byte was sent.
+    /// Returns the number of write cycles used by this entry. For a write without a result, this is the planned number,
+    /// because the program may have ended after the last byte was sent.
     pub fn write_cycles(&self) -> u64 {
         self.conclusion.as_ref().map_or(self.planned_cycles, |end| end.cycles_spent)
     }
@@ -312,7 +311,7 @@ pub struct EntryFilter {
     /// Kind of device.
     pub kind: Option<String>,
     pub serial_number: Option<String>,
-    /// Asset to which the device was assigned at the time of the entry.
+    /// Asset to which the device was assigned when the entry was made.
     pub asset: Option<String>,
     /// Time of the oldest entry.
     pub since: Option<Timestamp>,

@@ -18,13 +18,13 @@ pub struct LogbookError {
 pub enum LogbookErrorKind {
     #[error(transparent)]
     Folder(FileError),
-    /// The file cannot be opened because its path refers to a folder or permission is missing.
+    /// The file cannot be opened, because its path is a folder or permission is missing.
     #[error("the file cannot be opened")]
     NoAccess,
     /// The file can be read but not written.
     #[error("the file is write-protected")]
     WriteProtected,
-    /// Another program held the lock on the file for longer than the time limit.
+    /// Another program held the lock on the file until the timeout.
     #[error("the file is in use by another program")]
     Locked,
     #[error("the disk is full")]

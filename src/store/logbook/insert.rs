@@ -1,4 +1,4 @@
-//! Insertion of events into the logbook.
+//! Inserts events into the logbook.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use super::entry::{DeviceKey, EntryId, EntryKind, EntryUid, Event, Origin};
 use super::{AssetName, query};
 use crate::profile::ChangedItem;
 
-/// Values that only some kinds of events have.
+/// Values that only some kinds of event have.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Further<'e> {
     pub planned_cycles: u64,
@@ -54,7 +54,7 @@ pub(super) fn event(
     Ok(EntryId(database.last_insert_rowid()))
 }
 
-/// Adds an assignment, unless the device is assigned to this asset already.
+/// Adds an assignment, unless the device is already assigned to this asset.
 pub(super) fn assignment(
     database: &mut Connection,
     origin: &Origin,

@@ -51,8 +51,7 @@ pub struct Logbook {
 }
 
 impl Logbook {
-    /// Opens the logbook, creating it and its folder if missing. A damaged file is kept under another name, and a new
-    /// file is created.
+    /// Opens the logbook, creating it and its folder if missing. A damaged file is renamed and replaced with a new one.
     ///
     /// # Errors
     /// Returns an error if the file is in use for longer than two seconds, not writable, or created by a newer version
@@ -61,7 +60,7 @@ impl Logbook {
         Self::open_with_timeout(path, LOCK_TIMEOUT)
     }
 
-    /// Opens the logbook like [`open`](Self::open), but waits for another window no longer than the given time.
+    /// Opens the logbook like [`open`](Self::open), but waits for other windows no longer than the given time.
     ///
     /// # Errors
     /// Returns the errors of [`open`](Self::open).
@@ -153,8 +152,8 @@ impl Logbook {
         }
     }
 
-    /// Returns the number of write cycles that this program has used on a device. For an intent without a result, the
-    /// planned cycles are counted, because the program may have ended after the last byte was sent. Writes by other
+    /// Returns the number of write cycles that this program has used on a device. An intent without a result counts
+    /// with its planned cycles, because the program may have ended after the last byte was sent. Writes by other
     /// programs are not included, so the count is a minimum.
     ///
     /// # Errors
@@ -233,7 +232,7 @@ impl Logbook {
         query::status_entries(&self.database, device, limit).map_err(|error| self.database_error(error))
     }
 
-    /// Returns the number of entries that have not been transferred to the logbook server yet.
+    /// Returns the number of entries that have not been sent to the logbook server yet.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
@@ -241,8 +240,8 @@ impl Logbook {
         outbox::count_waiting(&self.database).map_err(|error| self.database_error(error))
     }
 
-    /// Returns the path of the damaged file that this logbook replaced, if any. The entries and write cycles of that
-    /// file are missing from this logbook.
+    /// Returns the path of the damaged file that this logbook replaced, if any. Its entries and write cycles are
+    /// missing from this logbook.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
@@ -250,8 +249,7 @@ impl Logbook {
         aside::last_damaged(&self.database).map_err(|error| self.database_error(error))
     }
 
-    /// Converts a database error to the error to report. If the file is damaged, a new file is created for the next
-    /// use.
+    /// Converts a database error to the one reported. If the file is damaged, a new file is created for the next use.
     fn database_error(&self, error: rusqlite::Error) -> LogbookError {
         let problem = match aside::is_damage(&error).then(|| aside::set_aside(&self.path, LOCK_TIMEOUT)) {
             Some(Ok(Some(kept))) => LogbookErrorKind::SetAside { kept },

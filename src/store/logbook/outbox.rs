@@ -1,5 +1,5 @@
-//! The local side of a shared logbook: which rows the server does not have yet, and up to which number the rows of the
-//! server are in the local file.
+//! The local state of a shared logbook: the rows that have yet to be sent to the server, and the last rows received
+//! from it.
 
 use std::collections::HashSet;
 
@@ -9,7 +9,7 @@ use rusqlite::{Connection, OptionalExtension, TransactionBehavior, named_params}
 use super::entry::EntryKind;
 use crate::profile::ChangedItem;
 
-/// A row of the table `event`, with the values as they are stored.
+/// A row of the `event` table, with the values as stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct EventRow {
     pub uid: String,
@@ -30,7 +30,7 @@ pub(super) struct EventRow {
     pub undoes: Option<String>,
 }
 
-/// A row of the table `result`.
+/// A row of the `result` table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ResultRow {
     pub event: String,
@@ -46,19 +46,20 @@ pub(super) struct Rows {
     pub results: Vec<ResultRow>,
 }
 
-/// The last event and the last result of the server that are in the local file.
+/// The last event and the last result received from the server.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Marks {
     pub event: Mark,
     pub result: Mark,
 }
 
-/// A row of the server. The default stands for the place before the first row.
+/// A row on the server. The default is the position before the first row.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Mark {
     /// Number of the row on the server.
     pub number: i64,
-    /// Uid of the event. A server that was restored from a backup gives the numbers of lost rows to other rows.
+    /// Uid of the event. It tells rows apart if a server was restored from a backup and reuses the numbers of lost
+    /// rows.
     pub uid: String,
 }
 
@@ -67,13 +68,13 @@ impl Rows {
         self.events.is_empty() && self.results.is_empty()
     }
 
-    /// Returns the number of events or of results, whichever is greater.
+    /// Returns the number of events or the number of results, whichever is greater.
     pub(super) fn largest_count(&self) -> usize {
         self.events.len().max(self.results.len())
     }
 }
 
-/// Returns up to where the rows of a server are in the local file, or `None` if it was used with another server.
+/// Returns the last rows received from a server, or `None` if the local file was used with another server.
 pub(super) fn marks(database: &Connection, identity: &str) -> rusqlite::Result<Option<Marks>> {
     let sql = "SELECT event, event_uid, result, result_uid FROM server WHERE identity = ?1";
     let read = |row: &rusqlite::Row<'_>| {
@@ -83,8 +84,8 @@ pub(super) fn marks(database: &Connection, identity: &str) -> rusqlite::Result<O
     database.query_row(sql, [identity], read).optional()
 }
 
-/// Prepares the local file for another server, or for one that has lost rows: all local rows are to be sent, and those
-/// that the server has are ignored there.
+/// Prepares the local file for another server, or for one that has lost rows. All local rows are sent, and the server
+/// ignores those that it already has.
 pub(super) fn begin(database: &mut Connection, identity: &str) -> rusqlite::Result<()> {
     let transaction = database.transaction_with_behavior(TransactionBehavior::Immediate)?;
     let sql = "INSERT OR REPLACE INTO server (id, identity, event, result) VALUES (1, ?1, 0, 0)";
@@ -97,14 +98,15 @@ pub(super) fn begin(database: &mut Connection, identity: &str) -> rusqlite::Resu
     transaction.commit()
 }
 
-/// Returns the number of entries that the server does not have yet. Before the first contact, these are all entries.
+/// Returns the number of entries that have yet to be sent. Before the first contact with a server, these are all
+/// entries.
 pub(super) fn count_waiting(database: &Connection) -> rusqlite::Result<u64> {
     let sql = "SELECT CASE WHEN EXISTS (SELECT 1 FROM server) THEN (SELECT count(DISTINCT uid) FROM outbox)
                ELSE (SELECT count(*) FROM event) END";
     database.query_row(sql, [], |row| row.get(0).and_then(super::schema::parse_cycles))
 }
 
-/// Returns the first rows that wait. A result comes with its event, which the server may have lost.
+/// Returns the first rows to send. A result is sent with its event, because the server may have lost the event.
 pub(super) fn first_waiting(database: &Connection, limit: usize) -> rusqlite::Result<Rows> {
     let mut waiting = Rows::default();
     let mut outbox = database.prepare_cached("SELECT uid, is_result FROM outbox ORDER BY id LIMIT ?1")?;
@@ -128,9 +130,9 @@ pub(super) fn first_waiting(database: &Connection, limit: usize) -> rusqlite::Re
     Ok(waiting)
 }
 
-/// Adds the rows of the server between two marks to the local file, removes from the outbox what the server has, and
-/// records the new marks unless another program has begun again meanwhile. Returns how many events and results are new.
-/// If another program has begun to use another server with this file, nothing is changed and `None` is returned.
+/// Adds the server's rows between two marks to the local file, and removes the rows that the server has from the
+/// outbox. Records the new marks, unless another program has reset them meanwhile. Returns the number of new events and
+/// results. If another program has switched this file to another server, changes nothing and returns `None`.
 pub(super) fn adopt(
     database: &mut Connection,
     identity: &str,
@@ -177,7 +179,7 @@ pub(super) fn adopt(
     Ok(Some(new))
 }
 
-/// Returns whether the local logbook can show a row.
+/// Returns whether the local logbook can display a row.
 fn is_valid(row: &EventRow) -> bool {
     EntryKind::parse(&row.what).is_some()
         && row.at.parse::<Timestamp>().is_ok()
@@ -258,7 +260,7 @@ mod tests {
 
     const SERVER: &str = "server";
 
-    /// Two programs with the same local file.
+    /// Two programs that use the same local file.
     struct TwoPrograms {
         _root: tempfile::TempDir,
         logbook: Logbook,
@@ -312,7 +314,7 @@ mod tests {
         assert_eq!(count_waiting(&two), Ok(1));
     }
 
-    /// One program finds that the server has lost rows, while another one is receiving.
+    /// One program resets the marks because the server has lost rows, while another one is still receiving.
     #[test]
     fn rows_after_a_new_beginning_are_received_from_the_first_one() {
         let TwoPrograms { _root, mut one, mut two, .. } = two_programs();
@@ -332,7 +334,7 @@ mod tests {
         assert_eq!(marks(&one, "another server").unwrap(), None);
     }
 
-    /// Its write cycles count as planned, and the entry can be read.
+    /// The entry stays readable, and its planned write cycles are counted.
     #[test]
     fn an_invalid_result_of_the_server_is_left_out() {
         let TwoPrograms { _root, mut logbook, mut one, .. } = two_programs();

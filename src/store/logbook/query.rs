@@ -1,4 +1,4 @@
-//! Reading of the logbook.
+//! Reads the logbook.
 
 use std::path::PathBuf;
 
@@ -17,11 +17,11 @@ const COLUMNS: &str =
     planned_cycles, backup, bench, user, version, result.at AS concluded_at, outcome, failure, cycles_spent";
 const TABLES: &str = "event LEFT JOIN result ON result.event = event.uid";
 
-/// Order of entries: by time, because entries of other benches arrive later than they were made. Without the Z, times
-/// with and without a fraction can be compared as text.
+/// Order of entries: by time, because entries from other computers arrive later than they were made. Without the Z,
+/// times with and without a fraction can be compared as text.
 const NEWEST_FIRST: &str = "rtrim(event.at, 'Z') DESC, event.id DESC";
 
-/// Asset of an entry: the last assignment of its device up to the entry.
+/// Asset of an entry: the most recent assignment of its device at the time of the entry.
 const ASSET: &str = "(SELECT assigned.asset FROM event AS assigned
     WHERE assigned.asset IS NOT NULL AND assigned.kind = event.kind AND assigned.serial_number = event.serial_number
         AND assigned.device_type = event.device_type AND assigned.is_virtual = event.is_virtual
@@ -70,14 +70,14 @@ pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -
     select(database, &found, ":limit", parameters)
 }
 
-/// Returns all devices that have entries, in the order of their kinds and serial numbers.
+/// Returns all devices that have entries, sorted by kind and serial number.
 pub(super) fn devices(database: &Connection) -> rusqlite::Result<Vec<DeviceKey>> {
     let sql = "SELECT DISTINCT kind, serial_number, device_type, is_virtual FROM event
         ORDER BY kind, serial_number, device_type, is_virtual";
     database.prepare(sql)?.query_map([], read_device)?.collect()
 }
 
-/// Returns the names of all assets, in their order.
+/// Returns the names of all assets, sorted by name.
 pub(super) fn assets(database: &Connection) -> rusqlite::Result<Vec<String>> {
     let sql = "SELECT DISTINCT asset FROM event WHERE asset IS NOT NULL ORDER BY asset";
     database.prepare(sql)?.query_map([], |row| row.get(0))?.collect()
@@ -95,7 +95,7 @@ pub(super) fn entry(database: &Connection, id: EntryId) -> rusqlite::Result<Opti
     Ok(select(database, "id = ?1", "1", [id.0])?.pop())
 }
 
-/// Returns the asset to which a device is assigned.
+/// Returns the asset to which a device is currently assigned.
 pub(super) fn present_asset(database: &Connection, device: &DeviceKey) -> rusqlite::Result<Option<String>> {
     let sql = "SELECT asset FROM event WHERE asset IS NOT NULL AND kind = ?1 AND serial_number = ?2
         AND device_type = ?3 AND is_virtual = ?4 ORDER BY rtrim(at, 'Z') DESC, id DESC LIMIT 1";
@@ -122,10 +122,10 @@ fn select(
     database.prepare(&sql)?.query_map(parameters, |row| read_entry(database, row))?.collect()
 }
 
-/// Maximum number of undos of undos that are looked at.
+/// Maximum number of successive undos to follow.
 const LONGEST_CHAIN: usize = 100;
 
-/// Returns the last complete undo of an entry, unless it was undone itself.
+/// Returns the last complete undo of an entry, unless it was itself undone.
 fn effective_undo(database: &Connection, undone: &EntryUid) -> rusqlite::Result<Option<LinkedEntry>> {
     let sql = format!(
         "SELECT event.uid, event.id, event.at FROM event JOIN result ON result.event = event.uid
@@ -159,7 +159,8 @@ pub(super) fn items_json(items: &[ChangedItem]) -> String {
     serde_json::to_string(items).unwrap_or_else(|_| "[]".to_owned())
 }
 
-/// Returns the entry in a row. An entry that this version cannot read says so, because it must not hide the others.
+/// Returns the entry in a row. An entry that this version cannot read contains the reason, so that it does not hide the
+/// others.
 fn read_entry(database: &Connection, row: &Row<'_>) -> rusqlite::Result<Entry> {
     read_valid_entry(database, row).or_else(|error| {
         let why = match error {
@@ -248,7 +249,7 @@ mod tests {
     use super::*;
     use crate::store::{Event, Intent, Logbook};
 
-    /// A row may have been changed by another tool, or received by a version that did not check it.
+    /// A row may have been changed by another tool, or received by a version that did not validate it.
     #[test]
     fn an_unreadable_row_does_not_hide_the_others() {
         for change in [

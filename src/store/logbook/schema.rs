@@ -1,4 +1,4 @@
-//! Tables of the logbook, and the migration of older logbooks. `user_version` holds the schema number.
+//! The tables of the logbook, and migration from older versions. `user_version` contains the schema number.
 
 use std::path::Path;
 use std::time::Duration;
@@ -175,8 +175,8 @@ pub(super) fn parse_cycles(count: i64) -> rusqlite::Result<u64> {
     u64::try_from(count).map_err(|_| rusqlite::Error::IntegralValueOutOfRange(0, count))
 }
 
-/// Selects a mode in which readers do not wait for a writer and every commit is flushed. An intent must survive a power
-/// failure.
+/// Selects a journal mode in which readers do not wait for a writer and every commit is flushed. An intent must survive
+/// a power failure.
 fn use_write_ahead_log(database: &Connection) -> rusqlite::Result<()> {
     // The query returns the resulting mode. A network disk without support for WAL keeps its old mode, which also
     // works.

@@ -1,4 +1,4 @@
-//! Tests of the logbook on a disk: counts, two windows, and every way in which its file can be unusable.
+//! Tests of the logbook on disk: counting, use by two windows, and everything that can make its file unusable.
 
 mod undo;
 
@@ -21,7 +21,7 @@ fn device(serial_number: &str) -> DeviceKey {
     }
 }
 
-/// Returns a folder, and the path of a logbook in it.
+/// Returns a folder, and the path of a logbook inside it.
 fn place() -> (tempfile::TempDir, PathBuf) {
     let root = tempfile::tempdir().unwrap();
     let path = Store::at_root(root.path()).logbook_path();
@@ -241,7 +241,7 @@ fn a_logbook_without_a_folder_is_an_error() {
     assert_eq!(error.problem, FileErrorKind::NotFolder);
 }
 
-/// A logbook of schema 2, made with the statements of that schema.
+/// Schema 2 is created with its original statements.
 #[test]
 fn an_older_logbook_keeps_its_entries() {
     let (_root, path) = place();
@@ -312,7 +312,7 @@ fn entries_are_filtered_and_searched() {
     assert_eq!(logbook.history(&device("GB2"), 10).unwrap(), []);
 }
 
-/// A logbook of schema 3, made with the statements of that schema and with rows as that version wrote them.
+/// Schema 3 is created with its original statements, and its rows are as that version wrote them.
 #[test]
 fn a_logbook_of_schema_3_keeps_its_entries_and_takes_new_kinds() {
     let (_root, path) = place();
@@ -346,7 +346,7 @@ fn a_logbook_of_schema_3_keeps_its_entries_and_takes_new_kinds() {
     assert_eq!(writes.len(), 1, "a connection is not a write");
 }
 
-/// An asset keeps its entries when its encoder is exchanged, and an encoder takes none of them along.
+/// Entries stay with the asset when its encoder is replaced, and do not move with the old encoder.
 #[test]
 fn an_asset_has_the_entries_of_its_assigned_devices() {
     let (_root, path) = place();
@@ -416,7 +416,7 @@ fn notes_are_entries_of_a_device_without_a_write() {
     assert_eq!(logbook.devices().unwrap(), [own, simulated]);
 }
 
-/// The server may have lost rows that this version did not notice.
+/// The server may have lost rows without that version noticing.
 #[test]
 fn a_logbook_of_schema_6_does_not_know_which_rows_the_server_has() {
     let (_root, path) = place();

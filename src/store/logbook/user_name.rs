@@ -1,11 +1,11 @@
-//! The form of the user's name in logbook entries: in full, as initials, or not at all. The rules of a plant may forbid
+//! How the user's name is recorded in logbook entries: in full, as initials, or not at all. Plant rules may forbid
 //! names.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-/// The form of the user's name in the entries of this process.
+/// How the user's name is recorded in the entries of this process.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UserName {
     /// The system user name.
@@ -16,12 +16,12 @@ pub enum UserName {
     Off,
 }
 
-/// The form for all entries of this process, which belong to a single user. The value is 0 until the settings have been
+/// The setting for all entries of this process, which belong to a single user. It is 0 until the settings have been
 /// read.
 static CHOICE: AtomicU8 = AtomicU8::new(0);
 
 impl UserName {
-    /// Applies this form to all further entries of this process.
+    /// Applies this setting to all further entries of this process.
     pub fn apply(self) {
         CHOICE.store(self as u8, Ordering::Relaxed);
     }
@@ -44,7 +44,7 @@ impl UserName {
     }
 }
 
-/// Returns the user's name for the entries of this process.
+/// Returns the user's name as recorded in the entries of this process.
 pub(super) fn of_this_process() -> Option<String> {
     UserName::applied().of(whoami::username().ok(), whoami::realname().ok())
 }

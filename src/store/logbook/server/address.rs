@@ -1,5 +1,5 @@
-//! The address of a server with a shared logbook, as a setting or an environment variable names it. The password is
-//! kept apart from the address and is never displayed.
+//! The address of a logbook server, as given in the settings or an environment variable. The password is stored
+//! separately and is never displayed.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -11,10 +11,11 @@ const DEFAULT_PORT: u16 = 5432;
 
 const PASSWORD: &str = "password";
 
-/// Parameters of TLS. The client knows only some modes and no file of certificates.
+/// TLS parameters of an address. They are handled here, because the client library supports only some modes and no
+/// certificate file.
 const TLS_PARAMETERS: [&str; 2] = ["sslmode", "sslrootcert"];
 
-/// Parameters of an address, apart from a password. Others could name another host or hide a password.
+/// Permitted parameters of an address. Others could redirect the connection or hide a password.
 const PARAMETERS: [&str; 9] = [
     "sslmode",
     "sslrootcert",
@@ -30,20 +31,20 @@ const PARAMETERS: [&str; 9] = [
 /// Address of a PostgreSQL database: `postgres://USER@HOST:PORT/DATABASE`, without a password.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ServerAddress {
-    /// Address as text, without a password.
+    /// Text of the address, without a password.
     text: String,
     pub(super) config: Config,
     pub(super) encryption: Encryption,
-    /// Password that an environment variable contains.
+    /// Password from the address in an environment variable.
     pub(super) password: Option<Password>,
 }
 
-/// Encryption of the connection to a server.
+/// Encryption of the connection to the server.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Encryption {
     Off,
-    /// TLS with a verified certificate. The file contains the certificates of the authorities to trust; without a file,
-    /// those of the system are trusted.
+    /// TLS with certificate verification. The file contains the trusted certificate authorities; without a file, the
+    /// system's are used.
     Verified(Option<PathBuf>),
 }
 
@@ -53,26 +54,26 @@ pub struct Password(String);
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ServerAddressError {
-    /// The text does not begin with `postgres://`, or does not name a host.
+    /// The text does not begin with `postgres://` or contains no host.
     #[error("the address is not of the form postgres://USER@HOST/DATABASE")]
     NotAnAddress,
-    /// A name or a password contains a character that separates the parts of an address.
+    /// A name or password contains a character that separates the parts of an address.
     #[error("the address contains one of the characters @ / ? within a name or a password")]
     Ambiguous,
     #[error("the parameter {name} is not supported")]
     UnknownParameter { name: String },
-    /// The address contains a password where it would be stored in a file.
+    /// An address in the settings contains a password, which would be stored in a file.
     #[error("the address contains a password")]
     ContainsPassword,
     #[error("sslmode={found} is not supported")]
     UnknownEncryption { found: String },
-    /// The settings cannot be read, so they may name a server.
+    /// The settings cannot be read. They may contain a server address.
     #[error("the settings cannot be read")]
     SettingsUnreadable,
 }
 
 impl ServerAddress {
-    /// Parses an address of the settings, which must not contain a password.
+    /// Parses an address from the settings, which must not contain a password.
     ///
     /// # Errors
     /// Returns an error if the text is not an address or contains a password.
@@ -84,7 +85,7 @@ impl ServerAddress {
         }
     }
 
-    /// Parses an address of an environment variable, which may contain a password.
+    /// Parses an address from an environment variable, which may contain a password.
     ///
     /// # Errors
     /// Returns an error if the text is not an address.
@@ -128,13 +129,13 @@ impl ServerAddress {
         Ok(ServerAddress { text, config, encryption, password })
     }
 
-    /// Returns the account on the server, under which the keyring has its password.
+    /// Returns the account under which the keyring stores the password for the server.
     pub(super) fn account(&self) -> String {
         let user = self.config.get_user().map(|user| format!("{user}@")).unwrap_or_default();
         format!("{user}{}", self.name())
     }
 
-    /// Returns this address with a password, or with its own one if `password` is `None`.
+    /// Returns this address with the given password. If `password` is `None`, the address keeps its own.
     #[must_use]
     pub fn with_password(self, password: Option<Password>) -> Self {
         ServerAddress { password: password.or(self.password), ..self }
@@ -144,7 +145,7 @@ impl ServerAddress {
         self.password.is_some()
     }
 
-    /// Returns host, port and database, for messages.
+    /// Returns the host, port and database for use in messages.
     pub fn name(&self) -> String {
         let host = match self.config.get_hosts().first() {
             Some(Host::Tcp(name)) => name.clone(),
@@ -166,7 +167,7 @@ impl fmt::Display for ServerAddress {
 }
 
 impl Password {
-    /// Returns the password in the environment variable that all clients of PostgreSQL use.
+    /// Returns the password from the environment variable that all PostgreSQL clients use.
     pub(super) fn from_environment() -> Option<Self> {
         Password::new(std::env::var("PGPASSWORD").ok()?)
     }
@@ -187,7 +188,7 @@ impl fmt::Debug for Password {
     }
 }
 
-/// Returns whether a host is this computer. Such a connection cannot be read from outside.
+/// Returns whether a host is this computer. Such a connection cannot be intercepted on the network.
 fn is_local_host(host: &Host) -> bool {
     match host {
         Host::Tcp(name) => {
@@ -236,7 +237,7 @@ mod tests {
         assert_eq!((plain.name().as_str(), plain.password), ("db.plant/logs", None));
     }
 
-    /// Any character in a password either has a clear meaning or makes the address invalid.
+    /// Any character in a password is either unambiguous or makes the address invalid.
     #[test]
     fn no_character_of_a_password_is_taken_for_another_part_of_the_address() {
         let printable = || (0x21..0x7fu8).map(char::from);

@@ -1,5 +1,5 @@
-//! A connection to the server of the logbook. Each request has a time limit, and all of them have a common one. A
-//! connection that fails is not used again.
+//! A connection to the logbook server. Each call has a time limit, and all calls share a deadline. A failed connection
+//! is not used again.
 
 use std::future::Future;
 use std::path::Path;
@@ -18,26 +18,26 @@ use super::error::{ServerErrorKind, UnreachableCause};
 
 const DEFAULT_PORT: u16 = 5432;
 
-/// Maximum time for a request, however long all of them may take.
+/// Maximum time for a call, regardless of the deadline for all of them.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Limits in the server, for a program that was suspended or lost its network and holds a lock. They are longer than
-/// any request of this program takes.
+/// Server-side timeouts, for a client that holds a lock while it is suspended or offline. They are longer than any call
+/// takes.
 const SESSION_OPTIONS: &str = "-c idle_in_transaction_session_timeout=6s -c statement_timeout=30s \
     -c tcp_keepalives_idle=30 -c tcp_keepalives_interval=10";
 
-/// A connection to a server.
+/// A connection to the logbook server.
 pub(super) struct Client {
     runtime: OwnRuntime,
     deadline: Instant,
     pub(super) postgres: tokio_postgres::Client,
 }
 
-/// A runtime whose end does not wait for the lookup of a host.
+/// A runtime that does not wait for a host name lookup when it is dropped.
 struct OwnRuntime(Option<Runtime>);
 
 impl Client {
-    /// Connects to a server. The deadline applies to the connection and to all later requests.
+    /// Connects to a server. The deadline applies to the connection and to all later calls.
     pub(super) fn connect(
         address: &ServerAddress,
         password: Option<&Password>,
@@ -74,7 +74,7 @@ impl Client {
         Ok(Client { runtime, deadline, postgres })
     }
 
-    /// Performs requests, all of them within the time limit of one.
+    /// Runs one or more requests within the time limit for a single call.
     pub(super) fn run<'c, T, F>(
         &'c mut self,
         requests: impl FnOnce(&'c mut tokio_postgres::Client) -> F,
@@ -121,7 +121,7 @@ impl Drop for OwnRuntime {
     }
 }
 
-/// Checks that the name of the host has an address.
+/// Checks that the host name resolves to an address.
 async fn check_host(config: &Config) -> Result<(), ServerErrorKind> {
     let port = config.get_ports().first().copied().unwrap_or(DEFAULT_PORT);
     match config.get_hosts().first() {
@@ -133,8 +133,8 @@ async fn check_host(config: &Config) -> Result<(), ServerErrorKind> {
     }
 }
 
-/// Returns the settings of TLS: the certificate must be valid for the host and signed by an authority of the file, or
-/// of the system.
+/// Returns the TLS settings: the certificate must be valid for the host and signed by an authority in the file or of
+/// the system.
 fn tls_config(authorities: Option<&Path>) -> Result<ClientConfig, ServerErrorKind> {
     let mut roots = RootCertStore::empty();
     match authorities {
@@ -159,7 +159,7 @@ fn tls_config(authorities: Option<&Path>) -> Result<ClientConfig, ServerErrorKin
     Ok(builder.with_root_certificates(roots).with_no_client_auth())
 }
 
-/// Returns the reason why an encrypted connection failed. A server without TLS reports a distinct error.
+/// Returns the reason why an encrypted connection failed. A server without TLS is reported as a distinct error.
 fn not_encrypted(error: tokio_postgres::Error) -> ServerErrorKind {
     match ServerErrorKind::from(error) {
         ServerErrorKind::Database { code: None, what } => ServerErrorKind::Encryption { why: what },

@@ -1,4 +1,4 @@
-//! Reasons why the server of the logbook cannot be used, grouped by what the user can do about them.
+//! Reasons why the logbook server cannot be used, grouped by what the user can do about them.
 
 use std::error::Error as _;
 use std::io;
@@ -9,7 +9,7 @@ use tokio_postgres::error::SqlState;
 use super::super::LogbookError;
 use super::address::ServerAddressError;
 
-/// An error of the server, with the name of the server.
+/// An error with the name of the server on which it occurred.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("logbook server {server}: {problem}")]
 pub struct ServerError {
@@ -20,34 +20,34 @@ pub struct ServerError {
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ServerErrorKind {
-    /// The setting or the environment variable does not name a server.
+    /// The setting or environment variable contains no valid server address.
     #[error(transparent)]
     Address(ServerAddressError),
-    /// The name of the host has no address.
+    /// The host name does not resolve to an address.
     #[error("the host is unknown")]
     UnknownHost,
-    /// Nothing accepts connections, or the connection was lost.
+    /// The server does not accept connections, or the connection was lost.
     #[error("the server cannot be reached: {why}")]
     Unreachable { why: UnreachableCause },
     #[error("the server did not reply in time")]
     NoReply,
-    /// The server asks for a password, and none is known.
+    /// The server requires a password, but none is known.
     #[error("the server requires a password")]
     PasswordMissing,
     #[error("the password or the user name is wrong")]
     WrongPassword,
-    /// The server does not admit this user, computer or kind of connection.
+    /// The server does not accept this user, computer or type of connection.
     #[error("the server rejects the connection: {why}")]
     Rejected { why: String },
     #[error("the database does not exist")]
     NoDatabase,
-    /// The certificate of the server is not trusted or is for another host.
+    /// The certificate of the server is not trusted or is not valid for the host.
     #[error("the encrypted connection failed: {why}")]
     Encryption { why: String },
-    /// A file with certificates cannot be used.
+    /// A certificate file cannot be used.
     #[error("{path} contains no usable certificate: {why}")]
     Certificates { path: PathBuf, why: String },
-    /// The user of the database may not do what is necessary.
+    /// The database user lacks a required permission.
     #[error("the user of the database lacks a right: {what}")]
     NoRights { what: String },
     #[error("the disk of the server is full")]
@@ -59,18 +59,18 @@ pub enum ServerErrorKind {
         /// Latest schema that this version of the program supports.
         known: i64,
     },
-    /// The tables are those of an older version, and this user may not change them.
+    /// The tables were created by an older version, and this user has no permission to update them.
     #[error("the server uses the older schema {found}, and the user of the database may not update it to {known}")]
     Older { found: i64, known: i64 },
-    /// Another program on this computer has begun to send the same entries to another server.
+    /// Another program on this computer has switched the local logbook to another server.
     #[error("another program on this computer uses another logbook server")]
     OtherServer,
-    /// The logbook of this computer cannot be used.
+    /// The logbook on this computer cannot be used.
     #[error(transparent)]
     Local(LogbookError),
     #[error("{what}")]
     Database {
-        /// Code of the SQL standard, or `None` if the error is not from the server.
+        /// Error code from the SQL standard, or `None` if the error is not from the server.
         code: Option<String>,
         what: String,
     },
@@ -79,16 +79,16 @@ pub enum ServerErrorKind {
 /// The reason why a server cannot be reached.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnreachableCause {
-    /// Nothing listens at the address.
+    /// The connection was refused.
     #[error("connection refused")]
     Refused,
-    /// The network has no path to the address.
+    /// There is no network route to the address.
     #[error("no route to the server")]
     NoRoute,
     /// The server or the network closed the connection.
     #[error("connection lost")]
     Lost,
-    /// The message of the server or of the system.
+    /// The message from the server or the system.
     #[error("{0}")]
     Other(String),
 }
@@ -153,7 +153,7 @@ impl From<tokio_postgres::Error> for ServerErrorKind {
     }
 }
 
-/// Codes of a server that shuts down, crashes, starts, or has no free connection.
+/// Codes of a server that is starting, shutting down, has crashed or has no free connection.
 const NOT_RUNNING: [&str; 5] = ["57P01", "57P02", "57P03", "53300", "08006"];
 
 fn from_io(error: &io::Error) -> ServerErrorKind {

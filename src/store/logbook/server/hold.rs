@@ -1,5 +1,5 @@
-//! Devices that are currently connected to a computer. If a device appears to be connected to several computers, each
-//! of them is notified about the others. This is only a warning and not a lock.
+//! Shows which devices are connected to which computer. If a device appears to be connected to several computers, each
+//! of them is warned about the others. This does not lock the device.
 
 use std::time::Duration;
 
@@ -19,7 +19,8 @@ pub struct OtherHolder {
     pub user: Option<String>,
 }
 
-/// A device that is connected to this program. Dropping the value releases the device.
+/// A device that is connected to this program, as announced to the server. Dropping the value withdraws the
+/// announcement.
 #[derive(Debug)]
 pub struct DeviceHold {
     server: LogbookServer,
@@ -27,8 +28,8 @@ pub struct DeviceHold {
 }
 
 impl LogbookServer {
-    /// Announces, starting with the next transfer, that a device is connected to this program. Virtual devices and
-    /// devices without a serial number cannot be told apart and are not announced.
+    /// Announces in the next transfer that a device is connected to this program. Virtual devices and devices without a
+    /// serial number are not announced, because they cannot be told apart.
     pub fn hold(&self, device: &DeviceKey) -> Option<DeviceHold> {
         if device.is_virtual || device.serial_number.is_empty() {
             return None;
@@ -47,7 +48,7 @@ impl Drop for DeviceHold {
     }
 }
 
-/// Renews the holds of a program and returns the other holders of the same devices.
+/// Renews a program's holds and returns the other holders of the same devices.
 pub(super) fn renew(
     client: &mut Client,
     program: &str,

@@ -1,5 +1,5 @@
-//! Passwords of servers in the keyring of the system: the secret service of the desktop, or the credential manager of
-//! Windows. A keyring may be locked and ask the user, so each access has a time limit.
+//! Server passwords in the system's keyring: the secret service of the desktop, or the credential manager of Windows. A
+//! locked keyring prompts the user, so each access has a time limit.
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
@@ -12,11 +12,12 @@ use super::address::{Password, ServerAddress};
 
 /// Name under which the keyring lists the passwords of this program.
 const SERVICE: &str = "encoder-studio";
-/// Maximum time to wait for the keyring. A user who is asked by it may take longer; the next attempt succeeds then.
+/// Maximum time to wait for the keyring. A user who is prompted may take longer, in which case the next attempt
+/// succeeds.
 const TIMEOUT: Duration = Duration::from_secs(3);
 
-/// The request of this process. A keyring that is locked asks the user, so there is only one request at a time, and
-/// another one only after an action of the user.
+/// The request of this process. A locked keyring prompts the user, so only one request runs at a time, and the next one
+/// requires a user action.
 static REQUEST: Mutex<Option<Request>> = Mutex::new(None);
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -32,11 +33,11 @@ type Reply = Result<Option<Password>, KeyringError>;
 struct Request {
     account: String,
     reply: Arc<OnceLock<Reply>>,
-    /// Disconnected when the thread has ended.
+    /// This channel is disconnected when the thread has ended.
     ended: Receiver<()>,
 }
 
-/// Returns the password of a server, or `None` if the keyring has none.
+/// Returns the password for a server, or `None` if the keyring does not contain it.
 ///
 /// # Errors
 /// Returns an error if there is no keyring, or if it does not reply in time.
@@ -53,14 +54,14 @@ pub(super) fn password(address: &ServerAddress, deadline: Instant) -> Reply {
     })
 }
 
-/// Returns the password that the keyring has returned for a server. The keyring is not asked.
+/// Returns the password for a server if the keyring has already returned it. Does not access the keyring.
 pub(super) fn known_password(address: &ServerAddress) -> Option<Password> {
     let request = REQUEST.lock().unwrap_or_else(PoisonError::into_inner);
     let own = request.as_ref().filter(|own| own.account == address.account())?;
     own.reply.get()?.clone().ok().flatten()
 }
 
-/// Allows to ask the keyring again, after an action of the user.
+/// Permits another request to the keyring after a user action.
 pub(super) fn allow_request() {
     allow(&REQUEST);
 }
@@ -70,7 +71,7 @@ fn allow(place: &Mutex<Option<Request>>) {
     request.take_if(|own| own.has_ended());
 }
 
-/// Returns the reply to the request of this process, and begins it if there was none for this account.
+/// Returns the reply to the process's keyring request, starting one if there is none for this account.
 fn request(
     place: &Mutex<Option<Request>>,
     account: String,
@@ -112,7 +113,7 @@ impl Request {
 }
 
 impl ServerAddress {
-    /// Saves the password of this address in the keyring of the system, if it has one.
+    /// Saves the password of this address in the system's keyring.
     ///
     /// # Errors
     /// Returns an error if there is no keyring, or if it does not reply in time.

@@ -1,5 +1,5 @@
-//! The server of a shared logbook. Several benches send their entries to one PostgreSQL database and receive those of
-//! the others. The local file comes first: a write is recorded there and never waits for the server.
+//! The server for a shared logbook. Several computers send their entries to one PostgreSQL database and receive those
+//! of the others. A write is always recorded in the local file first and never waits for the server.
 
 mod address;
 mod client;
@@ -28,18 +28,18 @@ use client::Client;
 
 /// Interval at which a thread checks whether another thread has finished its transfer.
 const RETRY: Duration = Duration::from_millis(5);
-/// How long a failed attempt stands for the next one, so that several steps of a command do not wait for a server
-/// that is away.
+/// Time for which a failed attempt is not repeated, so that the steps of a command do not all wait for an unreachable
+/// server.
 const FAILURE_VALID: Duration = Duration::from_secs(5);
 
-/// The server that this process uses, if any. Clones refer to the same server.
+/// The logbook server of this process, if any. Clones refer to the same server.
 #[derive(Clone, Default)]
 pub struct LogbookServer(Arc<Shared>);
 
 #[derive(Default)]
 struct Shared {
     state: Mutex<State>,
-    /// The connection, which only one thread uses at a time.
+    /// The connection. Only one thread uses it at a time.
     connection: Mutex<Option<Connection>>,
 }
 
@@ -50,7 +50,7 @@ struct State {
     failed: Option<(Instant, ServerError)>,
     /// Devices that are connected to this program.
     held: Vec<DeviceKey>,
-    /// Whether the server has a hold of this program.
+    /// Whether devices of this program are announced on the server.
     is_announced: bool,
 }
 
@@ -60,7 +60,7 @@ struct Connection {
     identity: String,
 }
 
-/// Whether the server could be used.
+/// The result of the last contact with the server.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Contact {
     /// Whether the last transfer was complete.
@@ -69,13 +69,13 @@ pub struct Contact {
     pub problem: Option<ServerError>,
     /// Time of the first failure since the last complete transfer.
     pub away_since: Option<Timestamp>,
-    /// Other programs that hold a device of this one.
+    /// Other programs that are connected to a device of this one.
     pub others: Vec<OtherHolder>,
 }
 
 impl LogbookServer {
-    /// Sets the server, or uses none. An invalid address counts as a server that is away. The keyring may be asked again,
-    /// because the user may have changed it.
+    /// Sets or removes the server. An invalid address is treated as an unreachable server. The keyring may be accessed
+    /// again, because the user may have changed it.
     pub fn set_address(&self, address: Option<Result<ServerAddress, ServerAddressError>>) {
         keyring::allow_request();
         let mut state = self.state();
@@ -84,8 +84,8 @@ impl LogbookServer {
         }
     }
 
-    /// Connects to a server once and changes nothing there. Returns the number of its entries, or `None` if it has no
-    /// logbook yet.
+    /// Tests the connection to a server without changing anything there. Returns the number of entries, or `None` if
+    /// the server has no logbook yet.
     ///
     /// # Errors
     /// Returns an error if the server cannot be used.
@@ -97,12 +97,12 @@ impl LogbookServer {
             .map_err(|problem| problem.into_error(&address.name()))
     }
 
-    /// Returns whether the entries are shared over a server, which may be away.
+    /// Returns whether the entries are shared over a server, even if it is unreachable.
     pub fn is_set(&self) -> bool {
         self.state().address.is_some()
     }
 
-    /// Returns whether the server has the announcement of a device that is connected to this program.
+    /// Returns whether a device connected to this program is announced on the server.
     pub fn is_announced(&self) -> bool {
         self.state().is_announced
     }
@@ -111,8 +111,8 @@ impl LogbookServer {
         self.state().contact.clone()
     }
 
-    /// Sends the entries of the local file to the server and receives those of other benches. This may take as long as
-    /// `limit`. Returns `None` if no server is set.
+    /// Sends the entries of the local file to the server and receives those of other computers. May take up to `limit`.
+    /// Returns `None` if no server is set.
     ///
     /// # Errors
     /// Returns an error if the server or the local file cannot be used. What was sent and received until then is kept, and
@@ -159,7 +159,8 @@ impl LogbookServer {
         Some(result)
     }
 
-    /// Like [`transfer`](Self::transfer), but a failure of the last seconds is returned at once.
+    /// Transfers entries like [`transfer`](Self::transfer), but immediately returns the error of an attempt that failed
+    /// a few seconds ago.
     ///
     /// # Errors
     /// Returns an error if the server or the local file cannot be used.
@@ -202,13 +203,13 @@ impl LogbookServer {
     }
 }
 
-/// Returns a name of this running program that no other one has.
+/// Returns a unique name for this running program.
 fn program() -> &'static str {
     static NAME: OnceLock<String> = OnceLock::new();
     NAME.get_or_init(|| format!("{:032x}", fastrand::u128(..)))
 }
 
-/// Transfers entries, and announces which devices this program holds unless this is `None`.
+/// Transfers entries and announces the devices in `held`, unless it is `None`.
 fn transfer_over(
     connection: &mut Option<Connection>,
     address: &ServerAddress,
@@ -235,7 +236,7 @@ impl Connection {
         Ok(Connection { client, address: address.clone(), identity })
     }
 
-    /// Connects with the password that is known. The keyring is asked only if the server requires one.
+    /// Connects with a known password. The keyring is accessed only if the server requires a password.
     fn connect(address: &ServerAddress, deadline: Instant) -> Result<Client, ServerErrorKind> {
         let known = address.password.clone().or_else(Password::from_environment);
         let known = known.or_else(|| keyring::known_password(address));

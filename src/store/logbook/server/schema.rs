@@ -1,5 +1,5 @@
-//! Tables of the logbook on a server. They correspond to the tables of the local file, but use the SQL dialect of
-//! PostgreSQL. The table `logbook` contains the schema number.
+//! The tables of the logbook on the server. They match the tables of the local file, but use the SQL dialect of
+//! PostgreSQL. The `logbook` table contains the schema number.
 
 use tokio_postgres::Transaction;
 
@@ -67,8 +67,8 @@ pub(super) const STEPS: [&str; 3] = [
 
 const SCHEMA_VERSION: i64 = STEPS.len() as i64;
 
-/// Key of the lock that is held while rows are added or tables are changed, so that the numbers of rows increase in the
-/// order in which the rows become visible.
+/// Key of the lock held while rows are added or tables are changed. It makes row numbers increase in the order in which
+/// the rows become visible.
 const LOCK: i64 = 0x656e_636f_6465_7273;
 
 /// Waits for the lock and holds it until the end of the transaction.
@@ -77,7 +77,7 @@ pub(super) async fn lock(transaction: &Transaction<'_>) -> Result<(), ServerErro
     Ok(())
 }
 
-/// Creates or updates the tables if necessary. Returns the identity of the logbook.
+/// Creates or updates the tables if necessary, and returns the identity of the logbook.
 pub(super) fn prepare(client: &mut Client) -> Result<String, ServerErrorKind> {
     client.run(async |postgres| {
         if let Some((identity, found)) = read(postgres).await?
@@ -100,8 +100,7 @@ pub(super) fn prepare(client: &mut Client) -> Result<String, ServerErrorKind> {
     })
 }
 
-/// Returns the number of entries, or `None` if the database has no logbook yet. This function does not change the
-/// database.
+/// Returns the number of entries, or `None` if the database has no logbook yet. Does not change the database.
 pub(super) fn count_entries(client: &mut Client) -> Result<Option<u64>, ServerErrorKind> {
     client.run(async |postgres| {
         match read(postgres).await? {
@@ -121,7 +120,7 @@ async fn migrate(transaction: &Transaction<'_>, done: usize) -> Result<(), Serve
     Ok(())
 }
 
-/// Returns the identity and the schema number of the logbook, or `None` if the database has no logbook.
+/// Returns the logbook's identity and schema number, or `None` if the database has no logbook.
 async fn read(client: &impl tokio_postgres::GenericClient) -> Result<Option<(String, i64)>, ServerErrorKind> {
     let exists = client.query_one("SELECT to_regclass('logbook') IS NOT NULL", &[]).await?;
     if !exists.try_get(0)? {

@@ -1,5 +1,6 @@
-//! Copies rows between the local file and the server, in both directions. The local file is complete at any time: rows
-//! are recorded there first, and rows of other benches are copied to it. So reading never waits for the server.
+//! Copies rows between the local file and the server in both directions. The local file is always complete, because
+//! rows are recorded there first and rows from other computers are copied to it. Reading therefore never waits for the
+//! server.
 //!
 //! A row that was sent twice, because the connection was lost before the reply, is ignored the second time: its `uid`
 //! is unique. Rows are sent in the order in which they were recorded.
@@ -19,24 +20,24 @@ use super::error::ServerErrorKind;
 use super::schema;
 use crate::store::logbook::LOCK_TIMEOUT;
 
-/// Number of rows in the first request of a transfer. A quick request is followed by one with twice as many rows.
+/// Number of rows in the first request of a transfer. After each quick request, the number is doubled.
 const FIRST: usize = 100;
 const QUICK: Duration = Duration::from_millis(300);
-/// Maximum number of rows that are received in one request.
+/// Maximum number of rows received in one request.
 const RECEIVED: usize = 5_000;
-/// Maximum number of rows that are sent in one transaction, during which other benches wait.
+/// Maximum number of rows sent in one transaction, during which other computers wait.
 const SENT: usize = 1_000;
 
 /// Number of rows that were copied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Transferred {
-    /// Events and results that the local file did not contain.
+    /// Events and results that were not in the local file yet.
     pub received: usize,
     /// Events and results that were sent.
     pub sent: usize,
 }
 
-/// Copies all rows that one side lacks.
+/// Copies all rows that are missing on either side.
 pub(super) fn transfer(client: &mut Client, identity: &str, path: &Path) -> Result<Transferred, ServerErrorKind> {
     let local = |problem: LogbookErrorKind| ServerErrorKind::Local(problem.into_error(path));
     let sqlite = |error: rusqlite::Error| local(error.into());
@@ -81,7 +82,7 @@ async fn has_rows(client: &impl GenericClient, marks: &Marks) -> Result<bool, Se
     Ok(is_there(&marks.event, row.try_get(0)?) && is_there(&marks.result, row.try_get(1)?))
 }
 
-/// Returns the last rows of the server.
+/// Returns the last rows on the server.
 async fn last_rows(client: &impl GenericClient) -> Result<Marks, ServerErrorKind> {
     let event = client.query_opt("SELECT id, uid FROM event ORDER BY id DESC LIMIT 1", &[]).await?;
     let result = client.query_opt("SELECT id, event FROM result ORDER BY id DESC LIMIT 1", &[]).await?;
@@ -89,7 +90,8 @@ async fn last_rows(client: &impl GenericClient) -> Result<Marks, ServerErrorKind
     Ok(Marks { event: mark(event)?, result: mark(result)? })
 }
 
-/// Receives the next rows of the server, at most `size` events and results. A result never comes before its event, because both are read at one moment.
+/// Receives the next rows from the server, at most `size` events and `size` results. A result never arrives before its
+/// event, because both are read in one transaction.
 async fn receive(postgres: &mut Postgres, after: &Marks, size: usize) -> Result<(Rows, Marks), ServerErrorKind> {
     let builder = postgres.build_transaction().isolation_level(IsolationLevel::RepeatableRead).read_only(true);
     let transaction = builder.start().await?;
@@ -119,7 +121,7 @@ async fn rows_after(client: &impl GenericClient, after: &Marks, size: usize) -> 
     Ok((rows, marks))
 }
 
-/// Adds rows, and receives the next rows of the server. Returns the marks after both.
+/// Sends rows and receives the next rows from the server. Returns the marks after both.
 async fn send(
     postgres: &mut Postgres,
     own: &Rows,
@@ -204,7 +206,7 @@ async fn add_results(client: &impl GenericClient, results: &[ResultRow]) -> Resu
     Ok(())
 }
 
-/// Returns a text in the form that PostgreSQL can store, which is without the character 0.
+/// Returns a text without NUL characters, which PostgreSQL cannot store.
 fn storable(text: impl AsRef<str>) -> String {
     text.as_ref().replace('\0', "\u{fffd}")
 }

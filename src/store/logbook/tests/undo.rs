@@ -2,8 +2,7 @@
 
 use super::*;
 
-/// A logbook of schema 5, made with the statements of that schema and with rows as that version wrote them, of which one
-/// waits for a server.
+/// Schema 5 is created with its original statements and rows. One row has yet to be sent to a server.
 #[test]
 fn a_logbook_of_schema_5_keeps_its_entries_and_links_new_ones() {
     let (_root, path) = place();
