@@ -1,4 +1,4 @@
-//! Encoders on the serial line of a foreign adapter: reading, writing, supply, and adapters that fail.
+//! Encoders on the serial line of an independent adapter: reading, writing, supply, and adapter faults.
 
 use serde_json::json;
 
@@ -27,8 +27,7 @@ fn an_encoder_at_an_adapter_is_read_and_written() {
     assert_eq!(stores, 1, "a store is never repeated without a check");
 }
 
-/// The encoder has executed the store although its reply is lost. The host reads the byte back and does not store it
-/// again.
+/// The encoder has executed the store, but its reply is lost. The host reads the byte back and does not store it again.
 #[test]
 fn a_store_whose_reply_is_lost_is_not_repeated() {
     let bench = Bench::new();
@@ -41,7 +40,7 @@ fn a_store_whose_reply_is_lost_is_not_repeated() {
     assert_eq!(run(&["read", "hiperface", "field:0@0+3"]).json()["value"], json!("08ABFF"));
 }
 
-/// The request of transfer 2 reaches the encoder, but the reply does not reach the host.
+/// In transfer 2, the request reaches the encoder, but the reply does not reach the host.
 #[test]
 fn a_lost_reply_is_requested_again() {
     let bench = Bench::new();
@@ -81,8 +80,7 @@ fn a_silent_encoder_or_adapter_is_named() {
     bench.run(&["identify", "hiperface", "--link", &other.url]).fails(1, &["bench adapter", "no serial line"]);
 }
 
-/// The kit encoder has a configuration pin. Its temperature of 30 °C is the value 80 in register 66h (BiSS reference
-/// 2).
+/// Register 66h contains 80, which is 30 °C (BiSS reference 2).
 #[test]
 fn a_configuration_pin_at_an_adapter_is_read_and_written() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Invalid input for a BiSS encoder and unusable profiles: each is reported in one sentence.
+//! Invalid input for a BiSS encoder, and unusable profiles. Each is reported in one sentence.
 
 use super::biss_profile::PROFILE;
 use super::support::Bench;
@@ -33,7 +33,7 @@ fn a_broken_profile_is_refused_with_its_name_and_error() {
     }
 }
 
-/// A profile with a newer schema can be compared, and the message says that it cannot be used for anything else (issue
+/// A profile with a newer schema can be compared. The message states that it cannot be used for anything else (issue
 /// 22.17).
 #[test]
 fn a_profile_of_a_newer_schema_is_read_only() {
@@ -120,7 +120,7 @@ fn invalid_arguments_are_usage_errors() {
     bench.run(&["identify", "bis", "--link", "sim:"]).fails(2, &["bis", "biss", "hiperface"]);
 }
 
-/// Each of the shipped profiles can be restored onto an encoder of its kind.
+/// Each shipped profile can be restored to an encoder of its type.
 #[test]
 fn the_ready_made_profiles_are_compared_with_an_encoder() {
     let bench = Bench::new();

@@ -1,5 +1,5 @@
-//! The procedures that need a turning motor, run without a terminal on a foreign encoder and on the virtual one. A run
-//! starts as soon as the measured values are suitable.
+//! The procedures that need a turning motor, run without a terminal on an independently written encoder and on the
+//! virtual one.
 
 use std::time::Duration;
 
@@ -16,8 +16,8 @@ fn written(encoder: &Foreign) -> Vec<String> {
     encoder.registers_written().into_iter().filter(|line| !line.starts_with("0x40 ")).collect()
 }
 
-/// The register writes of a calibration (reference 5.1 and 5.2), followed by the return to operation and the reset of
-/// the password.
+/// The register writes of a calibration (reference 5.1 and 5.2), including the return to operation and the password
+/// reset.
 const CALIBRATION: [&str; 6] = ["0x6B 2A", "0x6A 01", "0x00:0x00 01", "0x00:0x00 02", "0x6A 00", "0x6B 00"];
 
 #[test]
@@ -89,7 +89,7 @@ fn a_dynamic_filter_prevents_a_calibration() {
     assert!(!written(&encoder).contains(&"0x00:0x00 01".to_owned()));
 }
 
-/// If the second run fails, the encoder is returned to operation, but its calibration table is lost.
+/// The encoder is returned to operation, but its calibration table is lost.
 #[test]
 fn a_failed_run_returns_to_operation() {
     let bench = Bench::new();
@@ -102,8 +102,8 @@ fn a_failed_run_returns_to_operation() {
     }
 }
 
-/// One run covers temperature, calibration, Wiegand test, preset and data, in this order. The motor stands still while
-/// the data are read, then turns, and stops after the test.
+/// A mounting run covers temperature, calibration, Wiegand test, preset and data, in this order. The motor stands still
+/// until the data have been read, and stops after the test.
 #[test]
 fn a_mounting_run_performs_all_steps() {
     let bench = Bench::new();
@@ -140,8 +140,8 @@ fn invalid_mounting_steps_are_usage_errors() {
     bench.run(&["do", "biss", "mounting", "preset=16777216", "--yes", "--link", "sim:"]).fails(1, &["16777215"]);
 }
 
-/// The virtual encoder turns 515 revolutions in each direction, which takes 15.5 s at 2000 rpm. A failed test is not
-/// reported as a success (issue 22.19): 5.2 V are less than the required 5.3 V (reference 4).
+/// The virtual encoder turns 515 revolutions in each direction, which takes 15.5 s at 2000 rpm. A failed test must not
+/// be reported as a success (issue 22.19): 5.2 V is below the required 5.3 V (reference 4).
 #[test]
 fn the_virtual_encoder_passes_the_guided_procedures() {
     let bench = Bench::new();
@@ -157,7 +157,7 @@ fn the_virtual_encoder_passes_the_guided_procedures() {
     assert_eq!((&result["ok"], &result["lowest_cw_v"], &result["saved"]), (&json!(false), &json!(5.2), &json!(true)));
 }
 
-/// The first question asks what turns the motor. A motor whose control needs this encoder is rejected.
+/// The first question asks what drives the motor. A motor controlled with this encoder is rejected.
 #[test]
 fn on_a_terminal_the_user_names_the_motor_source() {
     let bench = Bench::new();

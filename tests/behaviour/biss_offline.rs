@@ -1,11 +1,11 @@
-//! BiSS without a device: decoding of captured bytes, comparison of profiles, and playback of recordings.
+//! BiSS commands without a device: decoding captured bytes, comparing profiles, and playing back recordings.
 
 use serde_json::{Value, json};
 
 use super::biss_profile::PROFILE;
 use super::support::Bench;
 
-/// Examples from ubicom.md 6, bridge.md 2 and biss.md 2.
+/// The examples are from ubicom.md 6, bridge.md 2 and biss.md 2.
 #[test]
 fn golden_bytes_are_explained() {
     let bench = Bench::new();
@@ -33,7 +33,7 @@ fn golden_bytes_are_explained() {
     }
 }
 
-/// Checks every frame of the table in BiSS reference 2, and a frame whose lowest data bit is inverted.
+/// Every frame of the table in BiSS reference 2 is decoded, and a frame with an inverted data bit is rejected.
 #[test]
 fn position_frames_are_checked() {
     let bench = Bench::new();
@@ -59,8 +59,8 @@ fn position_frames_are_checked() {
     assert_eq!(prefixed["frames"][0]["turns"], json!(0x1234));
 }
 
-/// The word that `position` prints for turn 1234h at 270° (UBICOM reference 6) can be decoded, both as a decimal and as
-/// a hexadecimal number.
+/// A word printed by `position` can be decoded in decimal and in hexadecimal. This one is turn 1234h at 270° (UBICOM
+/// reference 6).
 #[test]
 fn position_words_are_decoded_as_printed() {
     let bench = Bench::new();
@@ -148,8 +148,8 @@ fn two_profiles_are_compared_without_a_link() {
     bench.run(&["diff", &other, &left, "--json"]).fails(1, &["left.ron", "hiperface", "biss"]);
 }
 
-/// A misspelt name prevents a restore and is reported with its position. A profile with a newer schema can be compared
-/// but not restored (issue 22.17).
+/// A misspelt name prevents a restore, and the message states its position. A profile with a newer schema can be
+/// compared but not restored (issue 22.17).
 #[test]
 fn a_misspelt_name_is_reported_and_a_newer_schema_is_read_only() {
     let bench = Bench::new();

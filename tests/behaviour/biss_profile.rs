@@ -1,6 +1,6 @@
-//! A profile of the foreign kit encoder as a user might write it.
+//! A profile of a kit encoder as a user might write it.
 
-/// A profile in which bank 24h has the bytes 00h to 3Fh, bank 25h has three bytes, and the preset is 270°.
+/// A profile with 00h to 3Fh in bank 24h, three bytes in bank 25h, and a preset of 270°.
 pub(crate) const PROFILE: &str = r#"(
     schema: 1,
     device: "biss",

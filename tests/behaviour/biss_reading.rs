@@ -1,4 +1,4 @@
-//! Reading a foreign kit encoder over its configuration pin and over an adapter.
+//! Reads an independently written kit encoder over its configuration pin and over an adapter.
 
 use serde_json::{Value, json};
 
@@ -48,8 +48,8 @@ fn the_configuration_pin_may_echo_and_use_either_byte_order() {
     assert_eq!(ask(&bench, &noisy, &["identify", "biss", JSON]).json()["serial_number"], json!("12345678"));
 }
 
-/// Error register 12h reports the multiturn counter and a magnetic field that is too low. Warning 01h reports the
-/// temperature (BiSS reference 7).
+/// Error register 12h reports the multiturn counter and a weak magnetic field. Warning 01h reports the temperature
+/// (BiSS reference 7).
 #[test]
 fn status_names_the_set_bits() {
     let bench = Bench::new();
@@ -75,9 +75,9 @@ fn status_names_the_set_bits() {
     }
 }
 
-/// A check does not report a Wiegand sensor as good if its test was never saved (issue 22.19), and it gives one verdict
-/// per line. It is tested with an encoder with factory settings, and with one that has the errors of reference 7, is
-/// hotter than its data sheet allows (105 °C) and is on a noisy line of an adapter that measures its supply.
+/// A check must not report a Wiegand sensor as good if the result of its test was never saved (issue 22.19). One
+/// encoder has factory settings. The other has the errors of reference 7, is hotter than its data sheet allows (105
+/// °C), and is on a noisy line.
 #[test]
 fn a_check_judges_the_encoders_own_diagnostics() {
     let bench = Bench::new();
@@ -111,8 +111,8 @@ fn a_check_judges_the_encoders_own_diagnostics() {
     bench.run(&["do", "biss", "check", "restart", "--link", "sim:"]).fails(2, &["no argument"]);
 }
 
-/// If an encoder does not report its frame format, the position is only the raw word until the link gives the numbers
-/// of turns and steps (issue 22.20). The shaft is at turn 1234h and 270°.
+/// Without a frame format from the encoder or the link, the position is only a raw word (issue 22.20). The shaft is at
+/// turn 1234h and 270°.
 #[test]
 fn a_position_is_raw_until_the_link_gives_the_frame() {
     let bench = Bench::new();
@@ -130,7 +130,7 @@ fn a_position_is_raw_until_the_link_gives_the_frame() {
     assert_eq!((&told["turns"], &told["steps"], &told["degrees"]), (&json!(4660), &json!(98_304), &json!(270.0)));
 }
 
-/// Each connection returns the same word for turn 1234h and 270°. Over BiSS, the frame with its CRC is returned as
+/// Each connection returns the same word for turn 1234h and 270°. Over BiSS, the frame and its CRC are returned as
 /// well.
 #[test]
 fn the_position_has_turns_steps_and_degrees() {
@@ -231,7 +231,7 @@ fn a_value_without_a_meaning_has_no_meaning_key() {
     assert_eq!(read("0x66")["text"], json!("30 °C"));
 }
 
-/// Reading writes nothing except the bank selection.
+/// The only write is the bank selection.
 #[test]
 fn reading_writes_nothing() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! `simulate biss`, tested by hosts that are not part of this program with the frames and rules of the references.
+//! `simulate biss`, tested by independently written hosts with the frames and rules of the references.
 
 use std::io::Write;
 use std::net::TcpStream;
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::support::{Bench, Simulated, foreign_host, python};
 
-/// Checks the published exchanges of UBICOM reference 6 with an encoder at 25 °C and 270.0° of turn 1234h.
+/// Checks the published exchanges in UBICOM reference 6. The encoder is at 25 °C, turn 1234h and 270.0°.
 fn examine(path: &str) {
     let replies = foreign_host(
         "ubicom_host.py",
@@ -68,7 +68,7 @@ fn the_configuration_pin_answers_the_frames_of_the_reference() {
     port.end("TERM");
 }
 
-/// The encoder supports only one speed (UBICOM reference 1) and does not understand requests at another speed.
+/// Like the real encoder (UBICOM reference 1), the simulation does not understand requests at another speed.
 #[test]
 fn the_baud_rate_can_be_set_in_the_link() {
     let bench = Bench::new();
@@ -84,7 +84,7 @@ fn the_baud_rate_can_be_set_in_the_link() {
     terminal.end("INT");
 }
 
-/// Saving a preset restarts the encoder. It does not answer for half a second, and is in operation afterwards.
+/// Saving a preset restarts the encoder. It does not answer for half a second and then returns to operation.
 #[test]
 fn a_restart_is_silent_and_configured_faults_are_injected() {
     let bench = Bench::new();
@@ -118,7 +118,7 @@ fn host_replies(path: &str, actions: &[&str]) -> Vec<Value> {
     lines.iter().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// Checks a session with an adapter according to bridge reference 2 to 4.
+/// Checks the exchange with an adapter against bridge reference 2 to 4.
 fn examine_adapter(path: &str) {
     let said = host_replies(
         path,
@@ -172,8 +172,7 @@ fn the_adapter_reads_frames_and_registers_of_every_bank() {
     terminal.end("TERM");
 }
 
-/// A stream of 20 000 frames per second has no missing frame. Each frame has its time, its CRC, and its position on a
-/// shaft that turns ten times per second.
+/// Each frame has its time, its CRC, and the position of a shaft that turns ten times per second.
 #[test]
 fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
     let bench = Bench::new();
@@ -196,7 +195,7 @@ fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
     assert_eq!(said[3]["status"], json!(0), "single frames again when the stream has ended");
 }
 
-/// Faults of the line between host and adapter: both sides drop damaged bytes, and lost bytes are requested again.
+/// Between host and adapter, damaged bytes are dropped and lost bytes are requested again.
 #[test]
 fn configured_adapter_line_faults_are_injected() {
     let bench = Bench::new();
@@ -220,7 +219,7 @@ fn configured_adapter_line_faults_are_injected() {
     assert_eq!((&died[4]["error"], &died[5]["status"]), (&json!(4), &json!(1)), "{died:?}");
 }
 
-/// Ctrl-C ends the simulation even while a client has started a stream that it does not read.
+/// The client has started a stream that it does not read.
 #[test]
 fn an_interrupt_ends_the_simulation_with_a_busy_client() {
     let bench = Bench::new();

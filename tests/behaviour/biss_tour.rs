@@ -1,5 +1,4 @@
-//! The tour of the README: a virtual kit encoder and the commands that read it, change it and restore its original
-//! content.
+//! The tour in the README: commands that read and change a virtual kit encoder and then restore its original content.
 
 use serde_json::json;
 

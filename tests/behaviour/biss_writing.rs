@@ -1,4 +1,4 @@
-//! Writing to a foreign kit encoder over its configuration pin and over an adapter.
+//! Writes to an independently written kit encoder over its configuration pin and over an adapter.
 
 use encoder_studio::store::DeviceKey;
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::biss_profile::PROFILE;
 use super::support::{Bench, Foreign, Ran, run_on_terminal};
 
-/// The content of banks 24h and 25h in the profile, and its preset value of 270°.
+/// The profile's content of banks 24h and 25h.
 const AS_PROFILE: &str = r#"{"0x24:0x00": "000102030405060708090A0B0C0D0E0F101112131415161718191A1B1C1D1E1F202122232425262728292A2B2C2D2E2F303132333435363738393A3B3C3D3E3F", "0x25:0x00": "A1B2C3"}"#;
 /// The preset value of the profile: 270°.
 const PRESET: &str = "008001000000";
@@ -20,13 +20,13 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// Returns the registers written since the last call, without bank selections.
+/// Returns the registers written since the last call, except for bank selections.
 fn written(encoder: &Foreign) -> Vec<String> {
     encoder.registers_written().into_iter().filter(|line| !line.starts_with("0x40 ")).collect()
 }
 
-/// Returns the writes of a save as in reference 5.3: set password and mode, open the OEM data, write the registers,
-/// save, return to operation and reset the password.
+/// Returns the register writes of a save according to reference 5.3: set password and mode, open the OEM data, write
+/// the registers, save, return to operation and reset the password.
 fn saved(registers: &[&str]) -> Vec<String> {
     let around = (["0x6B 2A", "0x6A 04", "0x00:0x1A 02"], ["0x00:0x1A 03", "0x6A 00", "0x6B 00"]);
     [&around.0[..], registers, &around.1].concat().into_iter().map(str::to_owned).collect()
@@ -94,7 +94,7 @@ fn write_stores_exactly_these_bytes() {
     }
 }
 
-/// A restore stores the preset value and the filter but does not execute a preset (reference 5.4 and 5.5).
+/// A restore stores the filter and the preset value, but does not execute a preset (reference 5.4 and 5.5).
 #[test]
 fn filter_and_preset_value_are_restored_without_executing_the_preset() {
     let bench = Bench::new();
@@ -135,7 +135,7 @@ fn the_mounting_of_another_encoder_is_not_changed() {
     assert_eq!(value["value"], json!(PRESET));
 }
 
-/// An encoder of another type is named in the message, and rejected unless the user permits it explicitly (issue 22.9).
+/// The message names the other type, and the restore is rejected unless the user permits it explicitly (issue 22.9).
 #[test]
 fn an_encoder_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -218,7 +218,7 @@ fn data_is_not_written_while_the_shaft_turns() {
     assert_eq!(written(&encoder), [""; 0]);
 }
 
-/// The filter procedure of the reference, and presets of the whole position, the singleturn and the multiturn.
+/// The filter is set as in the reference. A preset sets the whole position, the singleturn or the multiturn.
 #[test]
 fn filter_and_preset_are_actions() {
     let bench = Bench::new();
@@ -250,8 +250,8 @@ fn filter_and_preset_are_actions() {
     }
 }
 
-/// The flash is rated for 1000 write cycles (manual 6.1). A warning is printed from 800 cycles. After 1000 cycles,
-/// nothing is written unless the write is forced.
+/// The flash is rated for 1000 write cycles (manual 6.1). A warning is printed from 800 cycles. Beyond 1000, a write
+/// must be forced.
 #[test]
 fn a_worn_flash_is_reported_and_written_only_if_forced() {
     let bench = Bench::new();
@@ -276,7 +276,7 @@ fn a_worn_flash_is_reported_and_written_only_if_forced() {
     assert_eq!(bench.logbook().write_cycles(&device).unwrap(), 1001);
 }
 
-/// The link is lost once while reading and at three points while writing.
+/// The connection is lost once while reading and at three points while writing.
 #[test]
 fn a_link_lost_during_a_write_is_reported_with_the_backup() {
     let bench = Bench::new();
@@ -296,8 +296,8 @@ fn a_link_lost_during_a_write_is_reported_with_the_backup() {
     }
 }
 
-/// Registers that were written but never saved are reported, and no comparison treats them as the encoder's content.
-/// Only `lead-back` restores the mode (issue 22.15).
+/// Registers that were written but never saved are reported, and a comparison does not show them as the encoder's
+/// content. Only `lead-back` restores the mode (issue 22.15).
 #[test]
 fn unsaved_registers_of_a_killed_write_are_not_compared() {
     let bench = Bench::new();
@@ -326,7 +326,7 @@ fn unsaved_registers_of_a_killed_write_are_not_compared() {
     }
 }
 
-/// The adapter's supply is restored when the program ends (issue 22.16).
+/// The adapter's supply is restored when the program exits (issue 22.16).
 #[test]
 fn the_adapters_supply_is_restored_on_exit() {
     let bench = Bench::new();
@@ -345,7 +345,7 @@ fn the_adapters_supply_is_restored_on_exit() {
     bench.run(&["read", "biss", "0x66", "--link", &url]).fails(2, &["leave-supply=no", "as-found, on or off"]);
 }
 
-/// The mode and the password that another host has set are reset (reference 5).
+/// The mode and password set by another host are reset (reference 5).
 #[test]
 fn an_encoder_left_in_a_mode_is_returned_to_operation() {
     let bench = Bench::new();
@@ -360,8 +360,8 @@ fn an_encoder_left_in_a_mode_is_returned_to_operation() {
     }
 }
 
-/// Restoring the mode discards unsaved changes. On a terminal, the program therefore asks for confirmation unless
-/// `--yes` was given. In a script, no `--yes` is needed because nothing is stored (issue 22.15).
+/// Restoring the mode discards unsaved changes, so the program asks for confirmation on a terminal unless `--yes` was
+/// given. Scripts need no `--yes`, because nothing is stored (issue 22.15).
 #[test]
 fn on_a_terminal_the_return_to_operation_needs_confirmation() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Actions on a foreign encoder, checked frame by frame, and encoders with unusual properties.
+//! Actions on an independently written encoder, checked frame by frame, and encoders with unusual properties.
 
 use serde_json::{Value, json};
 
@@ -111,7 +111,7 @@ fn a_reset_is_awaited() {
     assert_eq!(encoder.writes(), ["40 53 13"]);
 }
 
-/// The extended label from the reference: rotary, 16 periods, 4096 turns.
+/// The extended label of the reference encoder: rotary, 16 periods, 4096 turns.
 const LABEL: &str = "530000000010000010 0053454C33372D484642302D4B30322020202000030048 0073";
 
 #[test]
@@ -154,8 +154,8 @@ fn an_unknown_type_takes_periods_and_turns_from_the_link() {
     assert_eq!((&line["turns"], &line["steps"]), (&json!(2), &json!(0x131)));
 }
 
-/// Restoring a profile to another encoder creates data fields. Restoring the backup deletes these fields again, except
-/// for a field that was changed in the meantime, which the message names, and the fields before it (issue 22.12).
+/// Restoring a profile to another encoder creates data fields, and restoring the backup deletes them again. A field
+/// that was changed in the meantime is kept with those before it, and named in the message (issue 22.12).
 #[test]
 fn undoing_a_restore_deletes_only_the_fields_it_created() {
     let bench = Bench::new();

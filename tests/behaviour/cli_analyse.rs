@@ -1,5 +1,5 @@
-//! `analyse`: the analysis of synthetic captures returns the parameters with which they were made, and invalid captures
-//! are reported in one sentence.
+//! The `analyse` command: it returns the parameters used to make synthetic captures, and reports invalid captures in
+//! one sentence.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -23,7 +23,7 @@ struct Signal {
 const REFERENCE: Signal =
     Signal { amplitude: 0.5, offset_cosine: 0.02, offset_sine: -0.03, ratio: 1.05, phase_deg: 3.0 };
 
-/// Returns the sine and cosine at an angle, which is given in periods.
+/// Returns the sine and cosine at an angle given in periods.
 fn at(signal: &Signal, periods: f64) -> (f64, f64) {
     let (angle, phase) = (TAU * periods, signal.phase_deg.to_radians());
     let sine = (signal.amplitude * angle.sin() * phase.cos() - signal.amplitude * angle.cos() * phase.sin())
@@ -74,8 +74,8 @@ fn the_parameters_of_the_reference_signal_are_recovered() {
     }
 }
 
-/// 2 mV rms of noise in 0.5 V, with 1000 points per period over 7.25 periods. The standard deviation of a parameter is
-/// σ·√(2/n) = 33 µV. The limit is five standard deviations.
+/// The noise is 2 mV rms at an amplitude of 0.5 V, with 1000 points per period over 7.25 periods. The standard
+/// deviation of a parameter is σ·√(2/n) = 33 µV. The limit is five standard deviations.
 #[test]
 fn noise_moves_the_parameters_within_its_statistics() {
     let bench = Bench::new();
@@ -320,8 +320,8 @@ fn interference_and_a_broken_wire_are_reported() {
     bench.run(&["analyse", &file]).fails(1, &["cosine channel has no signal", "COS is at ground"]);
 }
 
-/// The frequency is 2 kHz at a sample interval of 2.5 µs. It is marked as uncertain if the recorder was slow, if the
-/// file contains a second recording, or if there are too few samples.
+/// The frequency is 2 kHz at a sample interval of 2.5 µs. It is uncertain if the recorder was slow, the file contains a
+/// second recording, or there are too few samples.
 #[test]
 fn the_frequency_is_reported_and_marked_if_uncertain() {
     let bench = Bench::new();
@@ -349,7 +349,7 @@ fn the_frequency_is_reported_and_marked_if_uncertain() {
     }
 }
 
-/// The virtual adapter turns its shaft once per second, and its sampled signals have no errors.
+/// The virtual adapter turns its shaft once per second. Its sampled signals are ideal.
 #[test]
 fn an_adapter_is_sampled_and_analysed() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Invalid input. Each case results in its exit status and one clear sentence.
+//! Invalid input. Each case ends with its exit status and one clear sentence.
 
 use std::fs;
 use std::process::Stdio;
@@ -64,7 +64,7 @@ fn a_broken_profile_is_refused_with_its_name_and_error() {
     }
 }
 
-/// A profile with a newer schema can be compared, and the message says that it cannot be used for anything else (issue
+/// A profile with a newer schema can be compared. The message states that it cannot be used for anything else (issue
 /// 22.17).
 #[test]
 fn a_profile_of_a_newer_schema_is_read_only() {
@@ -114,8 +114,8 @@ fn a_profile_of_another_encoder_is_refused_before_writing() {
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
 }
 
-/// If nothing answers on a line, a drive may still be connected to it. A search on a serial line therefore needs a
-/// confirmation from the user. Other commands run without it, as scripts expect (issue 22.30).
+/// A drive may be connected even if nothing answers on a serial line, so a search needs confirmation from the user.
+/// Other commands run without it, as scripts expect (issue 22.30).
 #[test]
 fn a_search_in_a_script_needs_only_master() {
     let bench = Bench::new();
@@ -134,7 +134,7 @@ fn ready_made(kind: &str, name: &str) -> String {
     format!("{}/profiles/{kind}/{name}.ron", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Options about data fields are rejected for devices without data fields before anything is opened (issue 22.8).
+/// Options for data fields are rejected for devices without data fields before the link is opened (issue 22.8).
 #[test]
 fn data_field_options_are_refused_for_other_devices() {
     let bench = Bench::new();
@@ -151,8 +151,7 @@ fn data_field_options_are_refused_for_other_devices() {
     }
 }
 
-/// A BiSS encoder of another type is named in the message, and rejected unless the user permits it explicitly (issue
-/// 22.9).
+/// The message names the other type, and the restore is rejected unless the user permits it explicitly (issue 22.9).
 #[test]
 fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -166,7 +165,7 @@ fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
     assert!(allowed.status == Some(0) && allowed.err.contains("may have a different meaning"), "{allowed:?}");
 }
 
-/// An encoder of another type is named in the message, and rejected unless the user permits it explicitly (issue 22.9).
+/// The message names the other type, and the restore is rejected unless the user permits it explicitly (issue 22.9).
 #[test]
 fn a_profile_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Access codes that differ from the factory codes: they are requested by number, used if given, and never shown.
+//! Access codes other than the factory codes. They are requested by number, used if given, and never shown.
 
 use serde_json::json;
 
@@ -6,7 +6,7 @@ use super::support::{Bench, Foreign, finish, frame};
 
 const FIELDS: &str = r#"[{"status":"C8","bytes":"0815"},{"status":"E8","bytes":"0102"}]"#;
 
-/// Starts an encoder whose access code 2 is A7h and protects field 1.
+/// Starts an encoder whose field 1 is protected by access code 2, which is A7h.
 fn run_guarded(bench: &Bench) -> Option<Foreign> {
     let encoder = bench.encoder(&["--fields", FIELDS])?;
     assert_eq!(encoder.host_address(&["40 4F 02 55 A7"]), [frame("40 4F 02")]);

@@ -1,4 +1,4 @@
-//! Consent to writes, and the values that depend on the mounting, which need an additional permission.
+//! Consent to writes, and the extra permission for values that depend on the mounting.
 
 use serde_json::json;
 
@@ -26,8 +26,7 @@ fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
     assert_eq!(encoder.writes(), [frame("40 4B 00 01 01 55 16")]);
 }
 
-/// On a terminal, the program asks whether a drive is on the line before it sends the first byte, and continues only if
-/// the answer is no (issue 22.30).
+/// Before the first byte is sent on a terminal, the user must confirm that no drive is on the line (issue 22.30).
 #[test]
 fn on_a_terminal_the_user_must_rule_out_a_drive_on_the_line() {
     let bench = Bench::new();
@@ -106,8 +105,8 @@ fn two_writes_in_one_second_keep_two_backups() {
     }
 }
 
-/// On a terminal, an existing file is replaced only after consent. Without a terminal it is replaced, and a message is
-/// printed (issue 22.28).
+/// On a terminal, an existing file is replaced only after confirmation. Without a terminal it is replaced, and a
+/// message is printed (issue 22.28).
 #[test]
 fn on_a_terminal_save_asks_before_replacing_a_file() {
     let bench = Bench::new();
@@ -145,8 +144,8 @@ fn on_a_terminal_save_asks_before_replacing_a_file() {
     assert_eq!(bench.read("layout.ron"), written);
 }
 
-/// If the write cycles cannot be read from the logbook, a write to any kind of device is rejected before the program
-/// asks for consent (issue 22.4).
+/// If the logbook's write cycles cannot be read, a write to any kind of device is rejected before the user is asked for
+/// consent (issue 22.4).
 #[test]
 fn a_write_refused_for_unknown_wear_needs_no_confirmation() {
     if python("master.py").is_none() {

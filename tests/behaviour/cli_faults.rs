@@ -135,7 +135,7 @@ fn an_unprotected_field_is_named_and_the_next_restore_protects_it() {
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
 }
 
-/// The encoders found before the interruption are printed. This encoder answers at the first format and address.
+/// Encoders found before the interruption are printed. This encoder answers at the first format and address.
 #[test]
 fn a_search_can_be_interrupted() {
     let bench = Bench::new();

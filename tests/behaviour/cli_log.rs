@@ -1,4 +1,4 @@
-//! The command `log`, which lists what was written, by whom and with which values.
+//! The `log` command, which lists what was written, by whom and with which values.
 
 use serde_json::{Value, json};
 
@@ -65,7 +65,7 @@ fn entries_are_selected_and_the_newest_is_first() {
     bench.run(&["log", "--device", "toaster"]).fails(2, &["toaster", "hiperface"]);
 }
 
-/// No entry contains an access code, neither the old one nor the new one.
+/// Neither the old nor the new access code appears in an entry.
 #[test]
 fn access_codes_are_not_in_the_logbook() {
     let bench = Bench::new();
@@ -133,7 +133,7 @@ fn each_kind_of_event_is_logged() {
     }
 }
 
-/// A command that only reads works without a logbook and reports on stderr that nothing was recorded.
+/// A command that only reads works without a logbook, but reports on stderr that nothing was recorded.
 #[test]
 fn reading_goes_on_without_a_logbook() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Commands without a device: recordings, captured frames and the virtual encoder.
+//! Commands without a real device: recordings, captured frames and the virtual encoder.
 
 use serde_json::{Value, json};
 

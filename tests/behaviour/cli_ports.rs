@@ -1,4 +1,4 @@
-//! Ports of this computer, device servers, and the folder of the program.
+//! The ports of this computer, device servers, and the program's folder.
 
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -29,7 +29,7 @@ fn a_port_in_use_is_refused() {
     second.fails(1, &["in use"]);
 }
 
-/// Starts a device server that serves one client and then ends.
+/// Starts a device server that serves one client and then exits.
 fn server(serve: impl FnOnce(TcpStream) + Send + 'static) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let url = format!("tcp:{}", listener.local_addr().unwrap());

@@ -1,4 +1,4 @@
-//! Settings that a command cannot read completely.
+//! Settings files that can be read only in part.
 
 use serde_json::Value;
 
@@ -6,7 +6,7 @@ use super::postgres::Postgres;
 use super::support::Bench;
 
 const IDENTIFY: [&str; 4] = ["identify", "hiperface", "--link", "sim:"];
-/// The memory of this encoder wears out quickly.
+/// A write to an encoder whose memory wears out quickly.
 const WRITE: [&str; 7] = ["write", "interbus", "preset", "7", "--yes", "--link", "sim:"];
 
 fn bench_with(settings: &str) -> Bench {
@@ -57,7 +57,7 @@ fn a_misspelt_setting_is_named_with_its_place() {
     assert!(ran.status == Some(0) && ran.err.contains("line 2, column 3: logbok is not a setting"), "{ran:?}");
 }
 
-/// A setting that does not concern the logbook is named and otherwise ignored.
+/// A broken setting is reported, but ignored if it does not concern the logbook.
 #[test]
 fn another_broken_setting_does_not_matter_to_a_write() {
     let bench = bench_with("(theme: Pink)");

@@ -1,4 +1,4 @@
-//! `simulate`, tested by a host that is not part of this program, with the frames of the reference.
+//! The `simulate` command, tested by an independently written host with the frames of the reference.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::support::{Bench, Simulated, frame, host_address, python};
 
-/// Compares an encoder at factory settings with the reference. An error frame may begin with 40 50 or with 40 D0.
+/// Compares an encoder at factory settings with the reference. An error frame may begin with 40 50 or 40 D0.
 fn examine(path: &str) {
     let replies = host_address(
         path,

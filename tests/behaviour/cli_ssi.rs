@@ -1,4 +1,4 @@
-//! The `ssi` command: frames without an encoder. The expected frames are those of section 8 of the reference.
+//! The `ssi` command: frames without an encoder. The expected values come from section 8 of the reference.
 
 use serde_json::{Value, json};
 
@@ -94,7 +94,7 @@ fn layouts_are_exported() {
     assert_eq!(told["position"], 0x2A5B);
 }
 
-/// Returns the path of a recording in `tests/vectors/ssi_find` (made with Python), its frames as text, and the intended
+/// Returns the path of a recording in `tests/vectors/ssi_find` (made with Python), its frames as text, and the expected
 /// positions.
 fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
     let path = format!("{}/tests/vectors/ssi_find/{name}.txt", env!("CARGO_MANIFEST_DIR"));
@@ -104,7 +104,7 @@ fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
     (path, rows)
 }
 
-/// The first layout that `ssi find` lists reads the frames as intended and can be used unchanged (issue 22.22).
+/// The first layout listed by `ssi find` decodes the frames correctly and can be used as printed (issue 22.22).
 #[test]
 fn layouts_of_recorded_frames_are_found() {
     let bench = Bench::new();
@@ -147,7 +147,7 @@ fn layouts_of_recorded_frames_are_found() {
     bench.run(&["ssi", "find", &hex, "--clocks", "65"]).fails(2, &["65"]);
 }
 
-/// The layout of any frame can be written as one word, in the form that `ssi find` prints (issue 22.22).
+/// The layout of any frame can be written as one word, in the notation printed by `ssi find` (issue 22.22).
 #[test]
 fn any_frame_has_a_one_word_specification() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Status codes: reading the complete queue, and the effect of codes on a value.
+//! Status codes: reading the whole queue, and codes that affect a value.
 
 use serde_json::{Value, json};
 
@@ -15,7 +15,7 @@ fn position(bench: &Bench, codes: &str) -> Option<(Ran, Value)> {
     Some((ran, line))
 }
 
-/// Reading status codes removes them from the encoder, so `status` writes them to the logbook (issue 22.10).
+/// Reading status codes removes them from the encoder, so `status` records them in the logbook (issue 22.10).
 #[test]
 fn status_codes_are_kept_in_the_logbook() {
     let bench = Bench::new();
@@ -42,8 +42,8 @@ fn status_reads_the_entire_queue_and_always_exits_with_success() {
     assert_eq!(told, json!({"ok": true, "errors": [], "warnings": []}));
 }
 
-/// Request 50h removes a code from the encoder. A reply that takes ten times as long as allowed (17.6 ms, reference 4)
-/// is still accepted, so that no code is lost by repeating the request (issue 22.10).
+/// Request 50h removes a code from the encoder, so repeating it would lose a code. A reply is therefore accepted even
+/// if it takes ten times as long as allowed (17.6 ms, reference 4, issue 22.10).
 #[test]
 fn codes_in_late_replies_are_not_lost() {
     let bench = Bench::new();
@@ -57,8 +57,7 @@ fn codes_in_late_replies_are_not_lost() {
     }
 }
 
-/// Whatever data arrive instead of a reply to 50h, including a repetition of an old reply, each code is printed once or
-/// reported as lost (issue 22.10).
+/// The reply to 50h is replaced with other data, including a repeated old reply (issue 22.10).
 #[test]
 fn each_code_is_reported_once_or_as_lost() {
     let bench = Bench::new();
@@ -86,7 +85,7 @@ fn each_code_is_reported_once_or_as_lost() {
     }
 }
 
-/// If a device server sends a reply twice, its codes are still read (issue 22.10).
+/// A device server sends a reply twice (issue 22.10).
 #[test]
 fn a_duplicated_reply_loses_no_code() {
     let bench = Bench::new();

@@ -1,11 +1,11 @@
-//! The command `undo`, and `diff` with a moment of the logbook. A separate virtual device keeps its memory between the
-//! commands.
+//! The `undo` command, and `diff` with an earlier logbook entry. A virtual device in a separate process keeps its
+//! memory between commands.
 
 use serde_json::{Value, json};
 
 use super::support::{Bench, Ran, Simulated};
 
-/// A virtual device with its commands.
+/// A virtual device and the program that uses it.
 struct Device {
     bench: Bench,
     kind: &'static str,
@@ -34,14 +34,14 @@ impl Device {
         self.run(&["read", self.kind, item]).json()["value"].clone()
     }
 
-    /// Writes an item, and returns the number of the entry.
+    /// Writes an item and returns the number of the logbook entry.
     fn write(&self, item: &str, value: &str) -> String {
         let ran = self.run(&["write", self.kind, item, value, "--yes"]);
         assert_eq!(ran.status, Some(0), "{ran:?}");
         self.last_entry()
     }
 
-    /// Returns the number of the newest entry that is not about reading.
+    /// Returns the number of the newest entry that is not a reading.
     fn last_entry(&self) -> String {
         let log = self.bench.run(&["log", "--json"]).out;
         let entries = log.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
@@ -105,7 +105,7 @@ fn what_changed_since_is_not_overwritten() {
     assert!(again.err.contains(&format!("Entry {first} was already undone by entry {undo}, on 20")), "{again:?}");
 }
 
-/// An undo names the entry that it undoes, in both directions, and in the text as well.
+/// The two entries refer to each other, in JSON and in text.
 #[test]
 fn an_undo_names_its_entry() {
     let device = Device::start("hiperface");
@@ -130,7 +130,7 @@ fn an_undo_names_its_entry() {
     assert_eq!(links(&undo), (json!(write), json!(device.last_entry())));
 }
 
-/// Other parameters than those of the write stay as they are.
+/// Only the parameters of the undone write are changed.
 #[test]
 fn an_undo_leaves_later_writes_to_other_parameters() {
     let device = Device::start("hiperdrive");
@@ -188,7 +188,7 @@ fn another_device_is_refused() {
     device.bench.run(&["undo", &entry, "--link", &device.link]).fails(2, &["--yes"]);
 }
 
-/// The backup of a write at another bench is not on this computer, even if a file has the same path.
+/// The backup was made on another computer. A file with the same path may exist here.
 #[test]
 fn the_bench_of_a_missing_backup_is_named() {
     let device = Device::start("hiperface");

@@ -1,10 +1,10 @@
-//! A foreign encoder on a real pseudo-terminal: reading, saving, comparing, restoring and verifying.
+//! An independently written encoder on a real pseudo-terminal: reading, saving, comparing, restoring and verifying.
 
 use serde_json::{Value, json};
 
 use super::support::{Bench, Foreign, frame};
 
-/// Two data fields: 32 writable bytes under code 0 and 16 protected ones under code 2.
+/// Two data fields: 32 writable bytes with code 0 and 16 protected ones with code 2.
 const FIELDS: &str = r#"[{"status":"C9","bytes":"0815"},{"status":"A8","bytes":"01"}]"#;
 
 fn save(bench: &Bench, encoder: &Foreign, file: &str) -> String {

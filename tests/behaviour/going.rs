@@ -1,4 +1,4 @@
-//! Support for programs that run until they are ended, with their output so far.
+//! Support for programs that run until they are stopped, with their output so far.
 
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStdout, Command};

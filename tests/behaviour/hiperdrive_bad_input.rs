@@ -1,4 +1,4 @@
-//! Invalid input and obstacles for HIPERDRIVE. Each case results in one clear sentence, and nothing is set.
+//! HIPERDRIVE commands that must fail. Each case ends with one clear sentence, and nothing is set.
 
 use super::hiperdrive_tap::Tapped;
 use super::support::Bench;

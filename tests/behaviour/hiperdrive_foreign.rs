@@ -1,5 +1,5 @@
-//! Tests of the EtherNet/IP host with a foreign HIPERDRIVE target that can inject faults. The target logs all sets and
-//! saves.
+//! Tests the EtherNet/IP host with an independently written HIPERDRIVE target, which logs all sets and saves and can
+//! simulate faults.
 
 use std::net::SocketAddrV4;
 use std::sync::Arc;
@@ -97,7 +97,7 @@ fn targets_of_any_behaviour_are_read_and_written() {
     }
 }
 
-/// Runs the commands that a user would type.
+/// Runs typical user commands.
 #[test]
 fn the_commands_work_with_a_foreign_target() {
     let bench = Bench::new();
@@ -178,8 +178,8 @@ fn services_settings_and_positions_are_written_as_planned() {
     assert!(done.backup.is_none() && foreign.requests().is_empty(), "what is so already is not set");
 }
 
-/// The program waits for replies as long as the manual allows, both after each value of parameter 47 and after a change
-/// of parameter 152 from 0 to 1. The limit of 8000 ms for a hub is handled in the same way (issue 21.8).
+/// The program waits as long as the manual allows, after each value of parameter 47 and after parameter 152 changes
+/// from 0 to 1. A hub may take 8000 ms, which is handled the same way (issue 21.8).
 #[test]
 fn slow_services_are_answered_late_and_executed_once() {
     let bench = Bench::new();
@@ -203,8 +203,8 @@ fn slow_services_are_answered_late_and_executed_once() {
     }
 }
 
-/// A number whose length differs from the manual is never printed, stored in a file or used in a write. The message
-/// states both lengths and a remedy (issue 21.9).
+/// A number whose length differs from the manual is never printed, saved or written. The message states both lengths
+/// and a remedy (issue 21.9).
 #[test]
 fn a_number_of_another_length_is_not_shown() {
     let bench = Bench::new();
@@ -412,8 +412,8 @@ fn dropping_a_session_stops_its_connection() {
     });
 }
 
-/// An action without effect is reported as a failure. Examples are a fault that remains after an acknowledgement, and
-/// drives that the presence test does not find (issue 22.19).
+/// An action without the intended effect is reported as a failure, such as a fault that remains after it was
+/// acknowledged, or drives that the presence test does not find (issue 22.19).
 #[test]
 fn an_action_with_a_bad_result_fails() {
     let bench = Bench::new();

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::support::{Bench, Simulated};
 
-/// A turn has 65536 steps (reference 3 and 5). The drive reaches its target and is off afterwards.
+/// A turn has 65536 steps (reference 3 and 5). The drive is off after it has reached its target.
 #[test]
 fn a_drive_moves_to_a_position() {
     let bench = Bench::new();
@@ -30,8 +30,8 @@ fn a_drive_moves_to_a_position() {
     simulated.end("INT");
 }
 
-/// Without consent, the command ends with status 2 for wrong usage. It does not open a connection, since there is no
-/// device at this address.
+/// The command ends with status 2, which means wrong usage. It does not open a connection: there is no device at this
+/// address.
 #[test]
 fn without_consent_nothing_moves() {
     let bench = Bench::new();
@@ -51,7 +51,7 @@ fn without_consent_nothing_moves() {
     assert_eq!(bench.run(&["move", "interbus", "1", "--yes", "--link", "sim:"]).status, Some(2));
 }
 
-/// The command ends with status 1 and a single sentence, and the drive does not move.
+/// The command ends with status 1 and one sentence, and the drive does not move.
 #[test]
 fn invalid_moves_are_refused() {
     let bench = Bench::new();
@@ -68,7 +68,7 @@ fn invalid_moves_are_refused() {
     }
 }
 
-/// If a motion does not reach its target, the position is printed, even for scripts.
+/// The position is printed even in the format for scripts.
 #[test]
 fn an_incomplete_move_reports_the_position() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! HIPERDRIVE without a device: decoding of words, process data and packets.
+//! HIPERDRIVE commands without a device: decoding words, process data and packets.
 
 use serde_json::json;
 

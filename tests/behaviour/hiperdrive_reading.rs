@@ -1,4 +1,4 @@
-//! Reading virtual HIPERDRIVE drives in the same process and over TCP. Reading sets nothing.
+//! Reads virtual HIPERDRIVE drives in the same process and over TCP, without setting anything.
 
 use serde_json::{Value, json};
 
@@ -73,7 +73,7 @@ fn current_errors_are_errors_and_past_ones_are_notes() {
     assert_eq!(notes, told["earlier"].as_array().unwrap().len(), "{text:?}");
 }
 
-/// The message about an error advises to write 0 to parameter 197, which acknowledges the error (issue 26.7).
+/// The error message recommends writing 0 to parameter 197 as an acknowledgement (issue 26.7).
 #[test]
 fn writing_0_to_197_acknowledges_one_drive() {
     let bench = Bench::new();
@@ -95,8 +95,8 @@ fn writing_0_to_197_acknowledges_one_drive() {
     assert!(device.sets().is_empty());
 }
 
-/// A device with the same serial number but another type, of the device or of its drive, is named in the message, and a
-/// restore onto it is rejected unless the user permits it explicitly (issue 22.9).
+/// A device or drive of another type may have the same serial number. The message names the type, and a restore is
+/// rejected unless the user permits it explicitly (issue 22.9).
 #[test]
 fn a_profile_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -124,8 +124,8 @@ fn a_check_reports_each_fact_once() {
     assert_eq!(line.matches("good").count(), 1, "{line}");
 }
 
-/// A speed is in tenths of rpm only with the factory scale (manual 6.2). Nominal data may be in tenths. At standstill
-/// the speed is 0 in any scale (issue 21.10).
+/// A speed is in tenths of rpm only at the factory scale (manual 6.2). Nominal data may be in tenths. At standstill,
+/// the speed is 0 at any scale (issue 21.10).
 #[test]
 fn units_are_those_of_the_manual() {
     let bench = Bench::new();
@@ -236,8 +236,8 @@ fn a_saved_profile_is_human_readable() {
     assert_eq!((&told["compared"], &told["missing"][0]), (&json!(23), &json!("152 drive 3")), "{told}");
 }
 
-/// Reading sends no set request and opens no cyclic connection. It sends only get attribute single (0E) and get
-/// attribute all (01).
+/// Only the services get attribute single (0E) and get attribute all (01) are requested, and no cyclic connection is
+/// opened.
 #[test]
 fn reading_writes_nothing() {
     let bench = Bench::new();
@@ -281,7 +281,7 @@ fn devices_are_found_by_address() {
     wrong.fails(2, &["enip:ADDRESS"]);
 }
 
-/// On a terminal, a progress bar and a notice about the network are shown. A script receives neither.
+/// A terminal shows a progress bar and a note about the network. A script receives neither.
 #[test]
 fn a_slow_device_causes_no_messages_in_a_script() {
     let bench = Bench::new();

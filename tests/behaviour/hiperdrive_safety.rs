@@ -1,5 +1,5 @@
-//! Drives stop and remain stopped after any failure of the host, its connections or its window during a motion. The
-//! drive is a separate process, and the test observes it over a separate connection. The time limits are the safety
+//! After any failure of the host, its connections or its window during a motion, drives stop and stay stopped. The
+//! drive runs in a separate process, and the test observes it over a second connection. The time limits are the safety
 //! limits plus one second for a busy computer.
 
 mod watched;
@@ -22,16 +22,16 @@ use wires::{Transport, Wires};
 
 /// Additional time allowed for a busy computer.
 const BUSY: Duration = Duration::from_secs(1);
-/// Time after which the user interface counts as frozen if it has not reported.
+/// Time without a report after which the user interface counts as frozen.
 const FROZEN: Duration = Duration::from_millis(300);
-/// The requested packet interval, long enough for a busy computer.
+/// The requested packet interval in milliseconds. It is long enough for a busy computer.
 const RPI: &str = "rpi=50";
 /// Eight packet intervals plus the braking time.
 const WATCHDOG: Duration = Duration::from_millis(500);
 const FAST: SpeedTorque = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
 const JOG: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FAST, outward: false };
 
-/// A virtual drive with a connection that observes it.
+/// A virtual drive, observed over a separate connection.
 struct Drive {
     bench: Bench,
     simulated: Simulated,
@@ -68,7 +68,7 @@ impl Drive {
         }
     }
 
-    /// Checks that the drive stops within the limit and is still at the same position half a second later.
+    /// Checks that the drive stops within the limit and has not moved half a second later.
     #[track_caller]
     fn stops_within(&mut self, limit: Duration) {
         let until = Instant::now() + limit + BUSY;
@@ -118,7 +118,7 @@ impl Host {
         }
     }
 
-    /// Jogs at full speed until the drive moves.
+    /// Holds the jog button at full speed until the drive moves.
     fn jogs(&self, drive: &mut Drive) {
         let until = Instant::now() + Duration::from_secs(20);
         let mut act = 0;
@@ -159,7 +159,7 @@ fn a_frozen_window_stops_the_drive() {
     assert_eq!(host.ended(), Some(ActionEnd::Stopped));
 }
 
-/// Closing the window drops the session, which stops the drive.
+/// Closing the window drops the session, which must stop the drive.
 #[test]
 fn closing_the_session_stops_the_drive() {
     let mut drive = Drive::start();
@@ -225,7 +225,7 @@ fn cut_packet_wires_stop_the_drive() {
     }
 }
 
-/// When garbage arrives in both directions at full speed, releasing the button still stops the drive.
+/// While random bytes arrive in both directions at full speed, releasing the button still stops the drive.
 #[test]
 fn a_release_stops_the_drive_during_a_flood() {
     let mut drive = Drive::start();
@@ -241,7 +241,7 @@ fn a_release_stops_the_drive_during_a_flood() {
     assert!(figures.malformed > 0, "{figures:?}");
 }
 
-/// Starts the command `move` in a separate process.
+/// Starts the `move` command in a separate process.
 fn moving(drive: &mut Drive) -> Child {
     let link = format!("enip:{}?{RPI}", drive.simulated.place);
     let arguments = ["move", "hiperdrive", "30000000", "--yes", "--link", &link];
@@ -284,8 +284,8 @@ fn an_interrupt_stops_the_drive() {
     assert_eq!(drive.actual().status.to_u16() & 0x000F, 0, "off, and no fault");
 }
 
-/// After any signal that ends a command, even if it is sent twice, the drive is at standstill and off, and its watchdog
-/// does not report a fault (issue 21.1).
+/// Whichever signal ends a command, even twice, the drive is stopped and off, and its watchdog reports no fault (issue
+/// 21.1).
 #[test]
 fn terminating_signals_stop_the_drive() {
     for (name, times) in [("TERM", 1), ("HUP", 1), ("TERM", 2), ("INT", 2)] {

@@ -1,4 +1,4 @@
-//! `simulate hiperdrive`, checked by foreign clients: one was written from the reference, the other is pycomm3.
+//! `simulate hiperdrive`, checked by two independent clients: one written from the reference, and pycomm3.
 
 use super::support::{Bench, Simulated, foreign_host, foreign_host_with, pycomm3, python};
 
@@ -10,7 +10,7 @@ fn drives(bench: &Bench, arguments: &[&str]) -> Simulated {
     Simulated::start(bench, &[&["hiperdrive", "--listen", "127.0.0.1:0"], arguments].concat())
 }
 
-/// Runs the steps of the foreign client and checks its output after each step.
+/// Runs the steps of the independent client and checks its output after each step.
 #[track_caller]
 fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
     let (things, expected): (Vec<&str>, Vec<&str>) = walk.iter().copied().unzip();
@@ -19,7 +19,7 @@ fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
     assert_eq!(said, expected, "{pairs:?}");
 }
 
-/// Checks the limits of 511 turns of 65536 steps, or 33488896, the category, and the rejections with their codes
+/// Checks the limits of 511 turns of 65536 steps (33488896), the category, and the codes of rejected requests
 /// (reference 4 and 7).
 #[test]
 fn parameters_are_read_and_written() {
@@ -83,7 +83,7 @@ fn a_drive_is_enabled_moved_and_jogged() {
     port.end("TERM");
 }
 
-/// Moves the eighth drive of a hub, which parameter 852 requests, with process data that contain no parameter words.
+/// Parameter 852 selects the eighth drive of a hub. The process data contain no parameter words.
 #[test]
 fn a_drive_of_a_hub_moves_alone() {
     let bench = Bench::new();
@@ -102,7 +102,7 @@ fn a_drive_of_a_hub_moves_alone() {
     port.end("INT");
 }
 
-/// If the master is lost, the motion ends within its time-out, and fault 8601 (34305) reports it (reference 7).
+/// If the master is lost, the motion ends within the watchdog time and fault 8601 (34305) reports it (reference 7).
 #[test]
 fn a_drive_stops_when_its_master_falls_silent() {
     let bench = Bench::new();
@@ -118,7 +118,7 @@ fn a_drive_stops_when_its_master_falls_silent() {
     port.end("INT");
 }
 
-/// Garbage in both directions affects neither the motion nor other requests.
+/// Random bytes in both directions affect neither the motion nor other requests.
 #[test]
 fn garbage_is_ignored() {
     let bench = Bench::new();
@@ -140,7 +140,7 @@ fn garbage_is_ignored() {
     port.end("INT");
 }
 
-/// After a loss of power, the next client finds the saved values. If the save was interrupted, it finds half of them.
+/// After a loss of power, the next client finds the saved values, or half of them if the save was interrupted.
 #[test]
 fn a_save_is_interrupted_where_configured() {
     let bench = Bench::new();
@@ -160,8 +160,8 @@ fn a_save_is_interrupted_where_configured() {
     port.end("INT");
 }
 
-/// A third-party client reads and writes unconnected, wrapped, and over an explicit connection, for which it first
-/// tries the large ForwardOpen.
+/// The third-party client sends unconnected and wrapped requests, and opens an explicit connection after trying the
+/// large ForwardOpen.
 #[test]
 fn pycomm3_reads_and_writes() {
     let bench = Bench::new();

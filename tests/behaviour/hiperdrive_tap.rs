@@ -1,4 +1,4 @@
-//! A recorder for the requests to a device over TCP. Each CIP request is recorded in hexadecimal digits as sent.
+//! A proxy that records the requests to a device over TCP. Each CIP request is recorded in hexadecimal.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -16,7 +16,7 @@ pub(crate) struct Tapped {
 
 /// Length of a frame header in bytes (reference 7).
 const HEADER: usize = 24;
-/// Length in bytes of the part before a request in SendRRData.
+/// Number of bytes before a request in SendRRData.
 const BEFORE_REQUEST: usize = 16;
 
 impl Tapped {
@@ -49,12 +49,12 @@ impl Tapped {
         self.heard().into_iter().filter(|request| request.starts_with("10 ")).collect()
     }
 
-    /// Runs the program with a link to the device and JSON output.
+    /// Runs a command with a link to the device and JSON output.
     pub(crate) fn ask(&self, bench: &Bench, words: &[&str]) -> Ran {
         bench.run(&[words, &["--link", &self.url, "--json"]].concat())
     }
 
-    /// Sends a request as another host that bypasses the proxy, and returns the reply.
+    /// Sends a request directly to the device, as another host would, and returns the reply.
     pub(crate) fn request(&self, request: &[u8]) -> Vec<u8> {
         let mut device = TcpStream::connect(&self.device.place).unwrap();
         let mut send = |command: u16, session: [u8; 4], data: &[u8]| {

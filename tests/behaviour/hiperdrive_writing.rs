@@ -1,4 +1,4 @@
-//! Writing to virtual HIPERDRIVE drives: a proxy checks each request and each save.
+//! Writes to virtual HIPERDRIVE drives, with a proxy that records each request and each save.
 
 use serde_json::{Value, json};
 
@@ -45,8 +45,8 @@ fn volatile_parameters_are_not_saved() {
     assert_eq!(device.sets(), ["10 03 20 66 24 01 30 AA 64 00 00 00"]);
 }
 
-/// A spindle of 4 mm in steps of 0.01 mm has 400 steps per turn, which is 400/256 (reference 5). At 2.5 turns, the
-/// drive is at 1000.
+/// A spindle with a pitch of 4 mm in steps of 0.01 mm has 400 steps per turn, which is 400/256 (reference 5). At 2.5
+/// turns, the position is 1000.
 #[test]
 fn a_restore_writes_scale_then_limits_and_saves_once() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Faults of the input, the gateway and the encoder. Each case results in one clear sentence.
+//! Faults in the input, the gateway and the encoder. Each case ends with one clear sentence.
 
 use super::support::{Bench, Foreign, Ran};
 
@@ -40,8 +40,8 @@ fn invalid_arguments_are_usage_errors() {
     bench.run(&["identify", "biss", "--link", "modbus:127.0.0.1:1"]).fails(2, &["modbus"]);
 }
 
-/// The value is rejected before anything is sent if it can be checked without reading, otherwise before anything is
-/// set. The message names both limits.
+/// The value is rejected before anything is sent, or before anything is set if a reading is needed to check it. The
+/// message states both limits.
 #[test]
 fn out_of_range_values_name_both_limits() {
     let bench = Bench::new();
@@ -75,7 +75,7 @@ fn out_of_range_values_name_both_limits() {
     assert!(told.iter().all(|line| !line.starts_with("STORE") && !line.starts_with("W 4")), "{told:?}");
 }
 
-/// If the encoder rejects a value (reference 2), its error word is reported and the encoder is returned to its mode.
+/// The encoder rejects a value with an error word (reference 2) and is then returned to its mode.
 #[test]
 fn a_refusal_is_reported_with_its_word_and_the_mode_restored() {
     let bench = Bench::new();
@@ -173,7 +173,7 @@ fn an_invalid_or_foreign_profile_is_refused() {
     bench.run(&["diff", &file, biss]).fails(1, &["biss", "interbus"]);
 }
 
-/// The ready-made profiles are for INTERBUS encoders and can be restored to a virtual one.
+/// The shipped profiles are for INTERBUS encoders and can be restored to a virtual one.
 #[test]
 fn the_ready_made_profiles_are_planned_for_an_encoder() {
     let bench = Bench::new();

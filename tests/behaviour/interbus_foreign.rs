@@ -1,5 +1,5 @@
-//! Tests of the host's side of the handshake with a foreign gateway and a foreign K3 encoder that can inject faults.
-//! The encoder's log shows what it stored.
+//! Tests the host's side of the handshake with an independently written gateway and K3 encoder, which can simulate
+//! faults. The encoder logs what it stores.
 
 use encoder_studio::devices::interbus::jobs::{
     Change, Commit, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, open,
@@ -15,7 +15,7 @@ use super::support::{Bench, Foreign};
 
 const ENCODER: [&str; 6] =
     ["--steps=3600", "--serial-number=4001", "--mode=4", "--shift=2", "--preset=7", "--programs"];
-/// Cam programs 2 and 5 of the encoder, as JSON. Depending on the test, program 5 is running.
+/// Cam programs 2 and 5 of the encoder, as JSON. Some tests run program 5.
 const PROGRAMS: &str = r#"{"2": {"mask": 129, "cams": {"0": [10, 20], "7": [3000, 100]}}, "5": {"mask": 8}}"#;
 
 fn session(bench: &Bench, foreign: &Foreign, query: &str) -> Session<Interbus> {
@@ -47,7 +47,7 @@ fn commit(session: &mut Session<Interbus>, prepared: Prepared) -> Result<u64, Jo
     }
 }
 
-/// Returns the log of the encoder: the words that it received and the values that it stored.
+/// Returns the log of the encoder: the words received and the values stored.
 fn log(foreign: &Foreign) -> Vec<String> {
     foreign.requests().into_iter().filter(|line| line != "R").collect()
 }
@@ -116,7 +116,7 @@ fn faults_of_the_encoder_or_another_master_are_reported() {
     assert_eq!(error.to_string(), expected);
 }
 
-/// Prepares a write of all eight cams, including cam 0, in the first `programs` cam programs.
+/// Prepares a write of all eight cams in the first `programs` cam programs.
 fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Interbus>, Prepared) {
     let mut session = session(bench, foreign, "?cycle=1");
     let parameters = match session.run_inline(InterbusJob::Survey).unwrap() {
@@ -139,9 +139,8 @@ fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Int
     }
 }
 
-/// The processing word may contain any data, either from the current word or from the previous one. A word that is
-/// replaced during processing is not accepted. Eight programs of eight cams are written, and each program is stored
-/// once (issue 22.1).
+/// While it is busy, the gateway may return any data, from the current or the previous word. A word that is replaced
+/// during processing is not accepted (issue 22.1).
 #[test]
 fn cam_0_is_written_through_a_busy_gateway() {
     let bench = Bench::new();
@@ -159,8 +158,8 @@ fn cam_0_is_written_through_a_busy_gateway() {
     }
 }
 
-/// An echo that arrives 0.4 to 0.8 s late, or that was never requested, does not interrupt a write. C2000100h is the
-/// example in the manual (5.3, issue 22.2).
+/// An echo that is 0.4 to 0.8 s late, or that was never requested, must not interrupt a write. C2000100h is the example
+/// in the manual (5.3, issue 22.2).
 #[test]
 fn stale_echoes_are_skipped() {
     let bench = Bench::new();
@@ -173,8 +172,8 @@ fn stale_echoes_are_skipped() {
     }
 }
 
-/// Each change of OUT is delayed once by the lag of the gateway. Writing a parameter takes four changes: it is set,
-/// stored, read back and left (issue 22.2).
+/// The gateway delays each change of OUT. Writing a parameter takes four changes: set, store, read back and leave
+/// (issue 22.2).
 #[test]
 fn a_parameter_takes_four_times_the_lag() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! INTERBUS without a device: decoding words of the process data.
+//! INTERBUS commands without a device: decoding words of the process data.
 
 use serde_json::{Value, json};
 

@@ -1,10 +1,10 @@
-//! Tests of reading a foreign K3 encoder behind a foreign gateway. Reading does not change anything in the encoder.
+//! Reads an independently written K3 encoder behind a gateway, without changing anything in the encoder.
 
 use serde_json::{Value, json};
 
 use super::support::{Bench, Foreign, Ran, run_on_terminal};
 
-/// Two cam programs of a foreign encoder, as JSON.
+/// Two cam programs of the encoder, as JSON.
 const PROGRAMS: &str =
     r#"{"1": {"mask": 9, "cams": {"0": [3000, 200], "3": [21, 531]}}, "3": {"mask": 128, "cams": {"7": [100, 100]}}}"#;
 
@@ -12,13 +12,13 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// Returns the OUT words, stores and presets that were logged since the last call.
+/// Returns the OUT words, stores and presets logged since the last call.
 fn done(encoder: &Foreign) -> Vec<String> {
     encoder.requests().into_iter().filter(|line| line != "R").collect()
 }
 
-/// Checks that the host has sent only commands that read (reference 3 and 5), select a program, run it or return to
-/// normal operation, and that nothing was stored.
+/// Checks that the host has only read (reference 3 and 5), selected or run a program, or returned to normal operation,
+/// and has not stored anything.
 #[track_caller]
 fn only_read(encoder: &Foreign) {
     for line in done(encoder) {
@@ -86,7 +86,7 @@ fn encoder_mode(bench: &Bench, encoder: &Foreign) -> String {
     ask(bench, encoder, &["identify", "interbus"]).json()["mode"].as_str().unwrap().to_owned()
 }
 
-/// 12345 steps of the disc are 542 steps at 360 per turn, which is turn 1 and step 182, or 182° (reference 7).
+/// 12345 of the encoder's own steps are 542 steps at 360 per turn, which is turn 1 and step 182, or 182° (reference 7).
 #[test]
 fn a_position_is_within_the_programmed_turns() {
     let bench = Bench::new();
@@ -105,7 +105,7 @@ fn a_position_is_within_the_programmed_turns() {
     assert!(table.out.trim_end().ends_with(",542,1,182,182,true"), "{table:?}");
 }
 
-/// Words with cam states, a speed or an error are not printed as a position. In the first case, the position window
+/// Words with cam states, a speed or an error must not be printed as a position. In the first case, the position window
 /// shows 1000 of 3600, and cam 3 is on from 900 (reference 5).
 #[test]
 fn words_without_a_position_are_not_printed_as_one() {
@@ -182,7 +182,7 @@ fn a_saved_profile_matches_the_encoder() {
     assert_eq!((&told["compared"], told["missing"].as_array().map(Vec::len)), (&json!(5), Some(1 + 8 * 9)), "{told}");
 }
 
-/// A virtual encoder in this process and the same encoder over TCP return the same values.
+/// The same virtual encoder is read in this process and over TCP.
 #[test]
 fn the_virtual_encoder_is_read_directly_and_over_modbus() {
     use super::support::Simulated;
@@ -206,14 +206,14 @@ fn assert_help_warns(bench: &Bench, command: &str) {
     assert!(help.contains("live outputs") && help.contains("may cost one EEPROM write cycle"), "{command}: {help}");
 }
 
-/// A report of a device reads the cam programs as `save` does.
+/// A report reads the cam programs, as `save` does.
 #[test]
 fn the_help_of_a_report_warns_of_reading_cam_programs() {
     assert_help_warns(&Bench::new(), "report");
 }
 
-/// Reading cam programs switches live outputs. On a terminal, the program asks for confirmation first. Without a
-/// terminal, it continues, because the help of these commands warns of the effect (issue 22.31).
+/// Reading cam programs switches live outputs, so the program asks for confirmation on a terminal. Without a terminal
+/// it continues, because the help of these commands warns of the effect (issue 22.31).
 #[test]
 fn reading_cam_programs_needs_confirmation() {
     let bench = Bench::new();

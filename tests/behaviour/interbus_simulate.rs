@@ -1,5 +1,5 @@
-//! The `simulate interbus` command, checked by an independent master with the words of the reference. The foreign
-//! encoder has to answer that master in the same way.
+//! The `simulate interbus` command, checked by an independently written master with the words of the reference. An
+//! independent encoder has to answer that master in the same way.
 
 use super::support::{Bench, Simulated, foreign_host, python};
 
@@ -7,7 +7,7 @@ fn host_replies(place: &str, things: &[&str]) -> Vec<String> {
     foreign_host("interbus_master.py", place, things)
 }
 
-/// The worked example of reference 4: 5000 of 8192 steps of the disc become 155 of 255 steps. The preset follows.
+/// The worked example of reference 4: 5000 of 8192 steps become 155 of 255 steps, followed by the preset.
 const WORKED: [(&str, &str); 9] = [
     ("in", "00001388"),
     ("020000FF", "C20000FF"),
@@ -20,8 +20,8 @@ const WORKED: [(&str, &str); 9] = [
     ("00000000", "00000000"),
 ];
 
-/// Cams at 4096 steps per turn (reference 5). The position window shows position 2500. At first, cam 3 reaches from 21
-/// to 531 and is off there. Then it reaches from 2001 past the end of the range to 531.
+/// Cams at 4096 steps per turn (reference 5). The position window shows 2500. Cam 3 first covers 21 to 531 and is off,
+/// then 2001 past the end of the range to 531.
 const CAMS: [(&str, &str); 21] = [
     ("20800001", "E0800001"),
     ("46000015", "C6000015"),
@@ -76,7 +76,7 @@ fn the_worked_and_cam_examples_match_the_reference() {
     port.end("TERM");
 }
 
-/// The virtual encoder and the foreign one were written independently from the reference.
+/// Both encoders were written from the reference, independently of each other.
 #[test]
 fn the_foreign_encoder_matches_the_reference() {
     let bench = Bench::new();
@@ -131,8 +131,7 @@ fn registers_unit_and_order_are_configurable_and_errors_are_exceptions() {
     port.end("INT");
 }
 
-/// An encoder that has lost its power starts again with the next client, and does not have the value that it was
-/// storing.
+/// After a loss of power, the encoder restarts with the next client and without the value that it was storing.
 #[test]
 fn configured_faults_are_injected() {
     let bench = Bench::new();

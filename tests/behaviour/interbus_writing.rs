@@ -1,4 +1,4 @@
-//! Writing to a foreign K3 encoder: each word and each store is checked.
+//! Writes to an independently written K3 encoder. Each word and each store is checked.
 
 use std::fmt::Write as _;
 
@@ -11,19 +11,19 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// Returns the words that set a value, with their effects, since the previous call.
+/// Returns the words that set a value, with their effects, since the last call.
 fn written(encoder: &Foreign) -> Vec<String> {
     let reads = ["R", "W 2021", "W 2020", "W 2080", "W 80000000", "W 00000000"];
     encoder.requests().into_iter().filter(|line| !reads.iter().any(|begin| line.starts_with(begin))).collect()
 }
 
-/// Returns the default start and stop of a cam of a program.
+/// Returns the default start and stop of a cam.
 fn edges(program: u32, cam: u32) -> (u32, u32) {
     (100 * cam + program, 100 * cam + program + 49)
 }
 
-/// Returns all 64 cams with mask FFh, in the notations of the foreign encoder and of a profile. `other` changes
-/// individual cams.
+/// Returns all 64 cams with mask FFh, as JSON for the encoder and as RON for a profile. `other` changes individual
+/// cams.
 fn cams(other: impl Fn(u32, u32) -> Option<(u32, u32)>) -> (String, String) {
     let (mut json, mut ron) = (String::new(), String::new());
     for program in 1..=8 {
@@ -49,7 +49,7 @@ fn profile(serial_number: &str, parameters: &str, programs: &str) -> String {
 
 const PARAMETERS: &str = r#"steps: 3600, revolutions: 1, direction: "cw", preset: 0, zero_shift: 0"#;
 
-/// Restores 64 cams and 8 masks onto an encoder that already has 60 of the cams.
+/// Restores 64 cams and 8 masks to an encoder that already has 60 of the cams.
 #[test]
 fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
     let bench = Bench::new();
@@ -110,8 +110,8 @@ fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
     assert_eq!(written(&encoder).len(), 8);
 }
 
-/// All parameters are set in one parameterisation, in an order in which each intermediate value is valid. The preset is
-/// stored but not applied (reference 3).
+/// All parameters are set in a single visit to the parameter mode, in an order that keeps each intermediate value
+/// valid. The preset is stored but not triggered (reference 3).
 #[test]
 fn parameters_need_one_store_and_a_restore_triggers_no_preset() {
     let bench = Bench::new();
@@ -154,8 +154,8 @@ fn each_item_is_written_by_name() {
     assert!(written(&encoder).is_empty());
 }
 
-/// Triggering a preset sends 00000000, then 40000000 until IN shows the preset, then 00000000. It does so once for each
-/// time that the preset was programmed (reference 4).
+/// Triggering a preset sends 00000000, then 40000000 until IN shows the preset, then 00000000. This happens once for
+/// each time the preset was programmed (reference 4).
 #[test]
 fn a_preset_is_programmed_and_triggered_at_standstill() {
     let bench = Bench::new();
@@ -185,7 +185,7 @@ fn the_default_is_experimental() {
     assert_eq!(written(&encoder)[..1], ["W 0E000000"]);
 }
 
-/// If the encoder sends an error word after the return to its mode, the mode is not reported as restored (issue 22.19).
+/// The mode is not reported as restored if the encoder then sends an error word (issue 22.19).
 #[test]
 fn restoring_the_mode_fails_if_the_encoder_sends_an_error() {
     let bench = Bench::new();
@@ -197,7 +197,7 @@ fn restoring_the_mode_fails_if_the_encoder_sends_an_error() {
     assert_eq!(ask(&bench, &encoder, &["do", "interbus", "lead-back"]).json()["done"], json!("lead-back"));
 }
 
-/// A profile of a multiturn encoder is rejected for an encoder that counts no turns unless the user permits it
+/// The profile of a multiturn encoder is rejected for an encoder that does not count turns, unless the user permits it
 /// explicitly. The message names the difference (issue 22.9).
 #[test]
 fn an_encoder_of_another_type_needs_a_separate_permission() {
@@ -255,8 +255,7 @@ fn nothing_is_written_without_consent_or_to_another_encoder() {
     assert_eq!(ask(&bench, &encoder, &["identify", "interbus"]).json()["mode"], json!("K3"));
 }
 
-/// A warning is printed from 150 stores on, beyond 200 the program asks again, and from 450 a write is rejected unless
-/// it is forced.
+/// From 150 stores, a warning is printed. Beyond 200, the program asks again. From 450, a write must be forced.
 #[test]
 fn the_stores_of_an_eeprom_are_counted() {
     let bench = Bench::new();
@@ -303,7 +302,7 @@ fn the_stores_of_an_eeprom_are_counted() {
     assert_eq!(bench.logbook().write_cycles(&device).unwrap(), 450);
 }
 
-/// If the gateway is lost, the written values and the backup are reported within the time-out.
+/// The message states the written values and the backup within the timeout.
 #[test]
 fn a_gateway_lost_during_a_write_is_reported_with_the_backup() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Several benches share a logbook on a PostgreSQL server, which may be away, be killed, or refuse them.
+//! Several computers share a logbook on a PostgreSQL server, which may be unreachable, crash or reject them.
 
 use std::net::TcpListener;
 use std::os::unix::net::UnixListener;
@@ -14,12 +14,12 @@ use super::support::{Bench, Ran, Simulated};
 const WRITE: [&str; 7] = ["write", "hiperface", "field:0@3+2", "C0FF", "--yes", "--link", "sim:"];
 pub(crate) const LIMIT: Duration = Duration::from_secs(5);
 
-/// A device that is not virtual.
+/// Returns the key of a device that is not virtual.
 pub(crate) fn device() -> DeviceKey {
     DeviceKey::new("hiperface", "37h", "GB1", false)
 }
 
-/// Returns the entries that `log` prints, oldest first.
+/// Returns the entries printed by `log`, oldest first.
 fn entries(ran: &Ran) -> Vec<Value> {
     assert_eq!(ran.status, Some(0), "{ran:?}");
     ran.out.lines().rev().map(|line| serde_json::from_str(line).unwrap()).collect()
@@ -49,7 +49,7 @@ fn benches_see_the_entries_of_each_other_and_their_wear_adds_up() {
     assert_eq!(entries(&one.run(&["log", "--json"])).len(), 4);
 }
 
-/// The undo of one bench marks the write in the logbook of another one.
+/// The undo on one computer marks the write in the logbook of another.
 #[test]
 fn an_undo_names_its_entry_on_every_bench() {
     let Some(server) = Postgres::start() else { return };
@@ -69,7 +69,7 @@ fn an_undo_names_its_entry_on_every_bench() {
     assert_eq!(of("write")["undone_by"], of("restore")["entry"]);
 }
 
-/// The setting does the same as the environment variable.
+/// The setting has the same effect as the environment variable.
 #[test]
 fn the_setting_names_the_server() {
     let Some(server) = Postgres::start() else { return };
@@ -104,7 +104,7 @@ fn entries_wait_while_the_server_is_away() {
     assert_eq!(server.sql("SELECT what FROM event ORDER BY id"), ["connected", "write"]);
 }
 
-/// The unknown writes of other benches may have used up a memory that wears out quickly; others have plenty left.
+/// Unknown writes by other computers could wear out a memory with few write cycles, but not one with many.
 #[test]
 fn quickly_wearing_memories_need_a_permit_while_the_server_is_unreachable() {
     let bench = Bench::new();
@@ -174,7 +174,7 @@ fn a_command_announces_its_device_and_is_told_of_other_programs() {
     }
 }
 
-/// A locked keyring asks the user, who may not be there.
+/// A locked keyring prompts the user, who may be absent.
 #[test]
 fn the_keyring_is_asked_once_and_only_for_a_password_that_the_server_requires() {
     let Some(server) = Postgres::start() else { return };
@@ -198,7 +198,7 @@ fn the_keyring_is_asked_once_and_only_for_a_password_that_the_server_requires() 
     assert_eq!(run("postgres://bench@127.0.0.1:1/logs", None).0, 0, "the server is away");
 }
 
-/// A server that accepts connections but says nothing delays a command by seconds, not for ever.
+/// The server accepts connections but does not reply. It delays a command by seconds, not forever.
 #[test]
 fn a_silent_server_delays_a_command_only_for_a_moment() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -281,7 +281,7 @@ fn each_problem_of_the_server_is_explained_and_work_goes_on() {
     assert!(!kept.contains("k3y") && !kept.contains("wr0ng"), "{kept}");
 }
 
-/// A password in the setting is refused, and neither used nor repeated.
+/// The password is neither used nor repeated in a message.
 #[test]
 fn a_password_in_the_setting_is_refused() {
     let bench = Bench::new();
@@ -292,7 +292,7 @@ fn a_password_in_the_setting_is_refused() {
     assert!(ran.err.contains("must not contain a password") && !ran.err.contains("0pen"), "{ran:?}");
 }
 
-/// The server is replaced by an empty one, as after a loss of its disk: all entries are sent again.
+/// An empty server replaces the old one, as after a disk failure. All entries are sent again.
 #[test]
 fn an_empty_server_receives_all_entries_again() {
     let Some(server) = Postgres::start() else { return };

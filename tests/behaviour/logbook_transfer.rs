@@ -1,4 +1,4 @@
-//! Programs that exchange entries with a PostgreSQL server at the same time, on several computers and on one.
+//! Programs that exchange entries with a PostgreSQL server at the same time, on one computer and on several.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -18,8 +18,8 @@ use super::support::signal;
 
 const WRITES: usize = 500;
 
-/// The part of the next test that runs in a separate process: it records entries as fast as it can, prints each one
-/// that is acknowledged, and sends them at the same time.
+/// The part of the next test that runs in a separate process. It records entries as fast as possible, prints each
+/// acknowledged one, and sends them at the same time.
 #[test]
 #[ignore = "is started by another test"]
 fn writer() {
@@ -65,14 +65,14 @@ fn start_writer(root: &Path, name: &str, server: &Postgres) -> Child {
         .unwrap()
 }
 
-/// Issue 30: PostgreSQL is killed in the middle of 1,000 writes of two programs at once, and restarted.
+/// PostgreSQL is killed and restarted while two programs make 1,000 writes (issue 30).
 #[test]
 fn every_acknowledged_entry_arrives_exactly_once_and_in_order() {
     let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     check_two_writers([one.path(), two.path()]);
 }
 
-/// The same with two programs on one computer, which both send what is in their common file.
+/// Both programs run on one computer and send the entries in their common file.
 #[test]
 fn two_programs_with_one_file_send_every_entry() {
     let root = tempfile::tempdir().unwrap();
@@ -120,7 +120,7 @@ fn check_two_writers(roots: [&Path; 2]) {
     }
 }
 
-/// The thread of the window may be waiting for a server that has stopped to reply, when a plan is made.
+/// A plan is made while the window's thread is waiting for a server that has stopped replying.
 #[test]
 fn write_cycles_are_incomplete_while_another_thread_waits_for_the_server() {
     let Some(server) = Postgres::start() else { return };
@@ -140,7 +140,7 @@ fn write_cycles_are_incomplete_while_another_thread_waits_for_the_server() {
     assert!(thread.join().unwrap().unwrap().is_err());
 }
 
-/// A computer that goes to sleep in the middle of a transfer keeps its connection open.
+/// A computer that is suspended during a transfer keeps its connection open.
 #[test]
 fn a_suspended_program_does_not_keep_others_from_the_server() {
     let Some(server) = Postgres::start() else { return };
@@ -167,7 +167,7 @@ fn a_suspended_program_does_not_keep_others_from_the_server() {
     writer.wait().unwrap();
 }
 
-/// Starts a network between the programs and a server, through which this many bytes a second are received.
+/// Starts a network through which programs receive the given number of bytes per second from a server.
 fn slow_network(server: &Postgres, bytes_per_second: usize) -> u16 {
     let (listener, port) = (TcpListener::bind("127.0.0.1:0").unwrap(), server.port);
     let own_port = listener.local_addr().unwrap().port();

@@ -1,5 +1,5 @@
-//! The built program against its description: foreign encoders on real pseudo-terminals, the virtual encoder checked by
-//! a foreign host, and invalid input.
+//! Tests of the built program: independently written encoders on real pseudo-terminals, the virtual encoder checked by
+//! an independent host, and invalid input.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]

@@ -1,4 +1,4 @@
-//! A PostgreSQL server of Debian's package, in a separate folder and on a free port.
+//! A PostgreSQL server from the Debian package, in a temporary folder and on a free port.
 
 use std::fs;
 use std::net::TcpListener;
@@ -24,8 +24,8 @@ pub(crate) struct Postgres {
 }
 
 impl Postgres {
-    /// Starts a server with the database `logs` of the user `bench`. Prints a line and returns `None` if it is not
-    /// installed.
+    /// Starts a server with the database `logs` and the user `bench`. If PostgreSQL is not installed, prints a line and
+    /// returns `None`.
     pub(crate) fn start() -> Option<Self> {
         Self::start_with(&[])
     }
@@ -98,7 +98,7 @@ impl Postgres {
         format!("postgres://bench@127.0.0.1:{}/logs", self.port)
     }
 
-    /// Returns a store that shares its logbook over this server.
+    /// Returns a store that shares its logbook through this server.
     pub(crate) fn store_at(&self, root: &Path) -> Store {
         let store = Store::at_root(root);
         let address = self.url().replace('@', &format!(":{PASSWORD}@"));
@@ -106,12 +106,12 @@ impl Postgres {
         store
     }
 
-    /// Starts SQL as the administrator.
+    /// Starts an SQL command as the administrator.
     pub(crate) fn start_sql(&self, sql: &str) -> Child {
         self.psql("logs", sql).spawn().unwrap()
     }
 
-    /// Waits until a query returns one row with this text.
+    /// Waits until a query returns one row with the given text.
     #[track_caller]
     pub(crate) fn until(&self, sql: &str, expected: &str) {
         let deadline = Instant::now() + Duration::from_secs(30);
@@ -121,7 +121,7 @@ impl Postgres {
         }
     }
 
-    /// Executes SQL as the administrator, and returns a line for each row.
+    /// Executes SQL as the administrator and returns one line per row.
     #[track_caller]
     pub(crate) fn sql(&self, sql: &str) -> Vec<String> {
         self.sql_in("logs", sql)
@@ -142,7 +142,7 @@ impl Postgres {
         psql
     }
 
-    /// Returns a program of the server. The server refuses to run as root.
+    /// Returns a command for one of PostgreSQL's programs. The server refuses to run as root.
     fn program(&self, name: &str) -> Command {
         let path = self.programs.join(name);
         let mut command = if is_root() {
@@ -164,7 +164,7 @@ impl Drop for Postgres {
 }
 
 impl Bench {
-    /// Runs the program with a server of the logbook.
+    /// Runs the program with a logbook server.
     pub(crate) fn run_with_server(&self, url: &str, arguments: &[&str]) -> super::support::Ran {
         let mut command = self.program(arguments);
         command.env("ENCODER_STUDIO_LOGBOOK", url).env("PGPASSWORD", PASSWORD);
@@ -172,7 +172,7 @@ impl Bench {
     }
 }
 
-/// Returns the folder with the programs of the newest version.
+/// Returns the folder with the programs of the newest installed version.
 fn newest_programs() -> Option<PathBuf> {
     let versions = fs::read_dir("/usr/lib/postgresql").ok()?.flatten();
     let number = |path: &Path| path.file_name()?.to_str()?.parse::<u32>().ok();

@@ -1,6 +1,6 @@
-//! The interface that scripts rely on: the exit status and JSON output of every command, compared with the recordings
-//! under `tests/fixtures/cli`, one file per kind of device. A recording also lists the commands: a line with `$` begins
-//! one, `=` gives its exit status, and its JSON follows. Text for users is not recorded.
+//! The interface that scripts rely on: the exit status and JSON output of every command. They are compared with the
+//! recordings under `tests/fixtures/cli`, one file per kind of device. A recording also lists the commands: a line with
+//! `$` begins one, `=` gives its exit status, and its JSON follows. Text for users is not recorded.
 //!
 //! `ENCODER_STUDIO_RECORD=1` rewrites the files. Use it only if the contract is meant to grow.
 
@@ -15,7 +15,7 @@ fn fixtures() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/cli")
 }
 
-/// Runs the commands of a recording in sequence in a separate folder and compares their output.
+/// Runs the commands of a recording in a separate folder and compares their output.
 fn assert_recorded(kind: &str) {
     let path = fixtures().join(format!("{kind}.txt"));
     let recorded = std::fs::read_to_string(&path).unwrap();
@@ -49,7 +49,7 @@ fn assert_recorded(kind: &str) {
     assert_eq!(text, recorded, "{kind}");
 }
 
-/// Removes values that differ between runs, such as times and names of backups.
+/// Replaces values that differ between runs, such as times and names of backups.
 fn steady(value: Value) -> Value {
     match value {
         Value::Object(entries) => entries.into_iter().map(|(key, value)| steady_entry(key, value)).collect(),
@@ -60,7 +60,7 @@ fn steady(value: Value) -> Value {
     }
 }
 
-/// Replaces each number with a placeholder, because the measured times depend on the load of the computer.
+/// Replaces each number with a placeholder, because measured times depend on the load of the computer.
 fn without_numbers(text: &str) -> String {
     let mut signs = String::new();
     for sign in text.chars() {
@@ -113,7 +113,7 @@ fn common_commands_are_as_recorded() {
     assert_recorded("common");
 }
 
-/// Every type of connection to a device, as the kind of device and the beginning of a link.
+/// Every type of connection, as the kind of device and the beginning of a link.
 const LINKS: [&str; 18] = [
     "hiperface sim:",
     "hiperface serial:none",
@@ -135,8 +135,7 @@ const LINKS: [&str; 18] = [
     "hiperdrive enip:none",
 ];
 
-/// The recorded parameters of links and settings of virtual devices remain valid, because users have them in scripts
-/// and settings.
+/// Recorded link parameters and virtual device settings must stay valid, because users have them in scripts.
 #[test]
 fn links_accept_the_recorded_parameters() {
     let (path, bench) = (fixtures().join("links.txt"), Bench::new());

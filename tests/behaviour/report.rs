@@ -1,4 +1,4 @@
-//! The command `report`: one self-contained page set with values, meaning, history and differences.
+//! The `report` command: a self-contained page with values, their meaning, history and differences.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::process::Command;
 
 use super::support::{Bench, skip};
 
-/// Values as recorded in the virtual encoder: its first field begins with the text EMD71K.
+/// Values written to the virtual encoder. Its first field begins with the text EMD71K.
 const FIELD: &str = "45 4D 44 37 31 4B";
 
 fn profiles() -> Vec<PathBuf> {
@@ -18,7 +18,7 @@ fn profiles() -> Vec<PathBuf> {
     files
 }
 
-/// Returns the page without the time of printing, which is in one element.
+/// Returns the page without the element that contains the creation time.
 fn without_time(page: &str) -> String {
     let (before, rest) = page.split_once("class=\"printed\">").unwrap();
     let (time, after) = rest.split_once('<').unwrap();
@@ -26,7 +26,7 @@ fn without_time(page: &str) -> String {
     format!("{before}{after}")
 }
 
-/// Returns the texts of the page's body, one for each element.
+/// Returns the text of each element in the page's body.
 fn texts(page: &str) -> Vec<String> {
     let body = page.split_once("<body>").unwrap().1;
     let outside = body.split('<').filter_map(|part| Some(part.split_once('>')?.1.trim()));
@@ -65,7 +65,7 @@ fn each_profile_has_a_report_without_foreign_resources() {
     }
 }
 
-/// Everything that was done to the encoder is on the page, with times and with old and new values.
+/// The page lists everything that was done to the encoder, with times and with old and new values.
 #[test]
 fn the_page_shows_the_history_of_a_device() {
     let bench = Bench::new();
@@ -109,7 +109,7 @@ fn the_page_shows_the_history_of_a_device() {
     assert!(made["sha256"].as_str().unwrap().to_uppercase().starts_with(number));
 }
 
-/// The virtual encoder has the serial number of the real one.
+/// The virtual encoder has the same serial number as the real one.
 #[test]
 fn write_cycles_of_virtual_devices_are_counted_separately() {
     let bench = Bench::new();
@@ -180,7 +180,7 @@ fn a_report_that_cannot_be_made_leaves_no_file() {
     assert_ne!(bench.read("r.html"), "before");
 }
 
-/// An access code is used to read the field, and is not in the report.
+/// The access code is used to read the field but must not appear in the report.
 #[test]
 fn access_codes_are_in_no_report() {
     let bench = Bench::new();
@@ -200,7 +200,7 @@ fn access_codes_are_in_no_report() {
     assert!(document.contains("SKM36") && !document.split_whitespace().any(is_code), "{document}");
 }
 
-/// The PDF document has the same texts as the page.
+/// The PDF document contains the same text as the page.
 #[test]
 fn the_pdf_document_has_the_texts_of_the_page() {
     if Command::new("pdftotext").arg("-v").output().is_err() {
@@ -227,7 +227,7 @@ fn the_pdf_document_has_the_texts_of_the_page() {
     }
 }
 
-/// Steps of 0.1 degree, 3600 a turn, with limits at half a turn either way.
+/// The scale is 0.1°, 3600 steps per turn. The limits are half a turn in either direction.
 #[test]
 fn the_limits_of_a_drive_are_in_turns() {
     let bench = Bench::new();
@@ -244,7 +244,7 @@ fn the_limits_of_a_drive_are_in_turns() {
     }
 }
 
-/// The numbers of `analyse` stand beside their limits, with a verdict.
+/// The report shows the values of `analyse` next to their limits, with a verdict.
 #[test]
 fn a_capture_has_a_report_with_limits() {
     let bench = Bench::new();

@@ -1,5 +1,4 @@
-//! The virtual sine/cosine source together with the analysis: the analysis returns the values to which the source was
-//! set.
+//! The virtual sine/cosine source and the analysis: the analysis must return the values set on the source.
 
 use encoder_studio::analysis::SampleTime;
 use encoder_studio::analysis::diagnosis::{Diagnosis, FindingKind, Record, diagnose};
@@ -10,7 +9,7 @@ use encoder_studio::analysis::signal_analysis::{Analysis, AnalysisError};
 use encoder_studio::analysis::wiring::{Wire, Wires};
 use encoder_studio::sim::sine_cosine::{ReferenceLevel, Settings, Source};
 
-/// Returns 1.5 s of one revolution per second with 512 periods per revolution, sampled at 50 kHz.
+/// Returns 1.5 s of a shaft that turns once per second, with 512 periods per revolution, sampled at 50 kHz.
 fn recorded(settings: Settings) -> (Vec<f64>, Wires) {
     let settings = Settings { periods: 512.0, rate_hz: 50_000.0, ..settings };
     let source = Source::new(settings.validate().unwrap(), SampleTime::ORIGIN);

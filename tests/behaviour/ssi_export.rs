@@ -1,5 +1,5 @@
-//! Comparison of exported decoders with the program's own: C is compiled and run, and structured text is compared with
-//! a reviewed file.
+//! Compares exported decoders with the program's own. C is compiled and run, and structured text is compared with a
+//! reviewed file.
 
 use std::io::Write;
 use std::process::{Command, Stdio};
@@ -32,7 +32,7 @@ fn family(text: &str) -> Layout {
 }
 
 /// Returns an unusual layout: Gray code that includes the error bits, parity, a repeated word, swapped wires, and an
-/// error bit that is active at 0.
+/// error bit that is active low.
 fn unusual_step_cost() -> Layout {
     Layout::new(FrameDescriptor {
         clocks: 51,
@@ -76,7 +76,7 @@ fn layouts() -> Vec<(String, Layout)> {
     all
 }
 
-/// Returns frames with valid positions of the layout, damaged frames, and frames of random bits.
+/// Returns frames with valid positions, damaged frames, and frames of random bits for a layout.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut rng = fastrand::Rng::with_seed(11);
     let mut frames = vec![0, u64::MAX, 0xFF_FFFE, 0x0F_FFFE];
@@ -133,7 +133,7 @@ fn the_exported_c_code_decodes_like_the_program() {
     }
 }
 
-/// With `EXPECT=write`, the test writes the file again. Review it before committing it.
+/// With `EXPECT=write`, the test updates the file, which must be reviewed before it is committed.
 #[test]
 fn the_exported_structured_text_matches_the_reviewed_file() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vectors/ssi_ahs36.st");
@@ -144,7 +144,7 @@ fn the_exported_structured_text_matches_the_reviewed_file() {
     assert_eq!(text, std::fs::read_to_string(path).unwrap());
 }
 
-/// Frames of section 8 of the reference, with their position, turns, steps, and whether the position is valid. Each
+/// Frames from section 8 of the reference with their position, turns, steps, and whether the position is valid. Each
 /// position combines the turns and steps of the table in one number.
 const REFERENCE: [(&str, u64, &str); 12] = [
     ("ahs36", 0x54B6, "10843 0 10843 1"),
@@ -167,7 +167,7 @@ fn decoders_of_32_bits(layout: &Layout) -> [(&'static str, Result<String, TooWid
     [("st", structured_text_32(layout, "title")), ("scl", scl_source(layout, "title"))]
 }
 
-/// Runs an exported 32-bit decoder in Python on the frames and returns its results, or `None` if Python is missing.
+/// Runs an exported 32-bit decoder on the frames in Python and returns its results, or `None` if Python is missing.
 fn run_32(text: &str, frames: &[u64]) -> Option<Vec<String>> {
     let folder = tempfile::tempdir().unwrap();
     let source = folder.path().join("decoder.txt");
@@ -222,7 +222,7 @@ fn layouts_too_wide_for_32_bits_are_refused() {
     }
 }
 
-/// TIA Portal requires a quoted name, a version, local variables with `#`, and named parameters in an external source.
+/// In an external source, TIA Portal requires a quoted name, a version, local variables with `#`, and named parameters.
 #[test]
 fn scl_has_the_form_of_an_external_source() {
     let text = scl_source(&family("afm60,code=gray"), "Zuführung\n(* 2 *)").unwrap();

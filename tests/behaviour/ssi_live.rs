@@ -1,4 +1,4 @@
-//! An SSI encoder at a foreign adapter: position, status, and invalid input for both.
+//! An SSI encoder on an adapter: position, status, and invalid input for both.
 
 use std::io::{BufRead, BufReader, Read};
 use std::time::{Duration, Instant};
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::support::{Bench, Foreign, Ran, ended, signal};
 
-/// Starts a foreign adapter that supports only SSI, with an encoder of the given format.
+/// Starts an independently written adapter that supports only SSI, with an encoder of the given format.
 fn adapter(bench: &Bench, format: &str, more: &[&str]) -> Option<Foreign> {
     bench.adapter(&[&["--capabilities", "1", "--ssi", format], more].concat())
 }
@@ -21,7 +21,7 @@ fn lines(ran: &Ran) -> Vec<Value> {
     ran.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// The shaft is at turn 1234h, 270°. For the ATM60, this is turn 234h of 4096, step 1800h of 8192.
+/// The shaft is at turn 1234h and 270°. For the ATM60, this is turn 234h of 4096 and step 1800h of 8192.
 #[test]
 fn the_position_has_turns_steps_and_degrees() {
     let bench = Bench::new();
@@ -59,7 +59,7 @@ fn a_linear_encoder_reports_millimetres() {
     assert!(table.out.contains(",12582912,,12582912,,1258291.2,true"), "{table:?}");
 }
 
-/// The AFS60 has ERRDIG, ERRSI and ERRSYNC on clocks 19 to 21. A transfer clears the last one.
+/// The AFS60 has ERRDIG, ERRSI and ERRSYNC on clocks 19 to 21. A transfer clears ERRSYNC.
 #[test]
 fn error_bits_are_reported_on_appearance_and_counted() {
     let bench = Bench::new();
@@ -82,8 +82,8 @@ fn error_bits_are_reported_on_appearance_and_counted() {
     assert!(good.out.contains("errors    none") && good.out.contains("step 196608"), "{good:?}");
 }
 
-/// If all bits are ones, a safety encoder has a fault, and another encoder has a broken wire. If all bits are zeros,
-/// the line is stuck (reference 6.7).
+/// All ones mean a fault of a safety encoder, or a broken wire with other encoders. All zeros mean that the line is
+/// stuck (reference 6.7).
 #[test]
 fn a_stuck_line_is_reported() {
     let bench = Bench::new();
@@ -105,8 +105,8 @@ fn a_stuck_line_is_reported() {
     assert!(said.contains("line stuck low: 1 time"), "{said}");
 }
 
-/// Words are read with the clock and pause of the link. If it has none, those of the profile are used, and otherwise
-/// slow ones. The values are checked against the times of the encoder.
+/// Clock and pause are those of the link, then those of the profile, then slow defaults. They are checked against the
+/// limits of the encoder.
 #[test]
 fn clock_and_pause_are_those_of_the_link_or_the_profile() {
     let bench = Bench::new();
@@ -137,7 +137,7 @@ fn an_unsuitable_adapter_is_reported() {
     position(&bench, "atm60", &gone.url, &[]).fails(1, &["Cannot reach"]);
 }
 
-/// If the cable is unplugged or the user cancels during the measurement, the counts so far are printed.
+/// The counts so far are printed if the cable is unplugged or the user cancels during the measurement.
 #[test]
 fn an_interrupted_stream_reports_its_counts() {
     let bench = Bench::new();

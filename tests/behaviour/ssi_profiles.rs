@@ -1,5 +1,4 @@
-//! Layouts of SSI encoders in files: saving and comparing them, using them wherever a layout can be named, and families
-//! that the user defines.
+//! SSI layouts in files: saving and comparing them, using them in place of a layout name, and user-defined families.
 
 use std::fs;
 
@@ -78,7 +77,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     assert!(faster.out.contains("13 clocks, 13.00 µs"), "{faster:?}");
 }
 
-/// Each entry of a layout that the help names can be used in a file.
+/// Each layout entry listed in the help can be used in a file.
 #[test]
 fn the_help_names_valid_entries() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Recordings that are converted to frames: the program's own table, and the clock and data lines of logic analysers.
+//! Recordings that are converted to frames: the program's own table, and the clock and data lines from logic analysers.
 //! Python generates them from the frames of `tests/vectors/ssi_find`.
 
 use std::io::Write;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::support::{Bench, Ran, finish, python};
 
-/// Returns a recording of an AHM36 in Gray code with 27 clocks: its frames and the intended positions.
+/// Returns a recording of an AHM36 in Gray code with 27 clocks: its frames and the expected positions.
 fn recording() -> Vec<(String, Option<u64>)> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vectors/ssi_find/ahm36_gray.txt");
     let text = std::fs::read_to_string(path).unwrap();
@@ -16,7 +16,7 @@ fn recording() -> Vec<(String, Option<u64>)> {
     lines.map(|(frame, meant)| (frame.to_owned(), meant.parse().ok())).collect()
 }
 
-/// Returns the frames as an export of a logic analyser, or `None` if Python is missing.
+/// Converts the frames to a logic analyser export, or returns `None` if Python is missing.
 fn capture(analyser: &str, frames: &[(String, Option<u64>)]) -> Option<String> {
     let mut child =
         python("ssi_capture.py")?.arg(analyser).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
@@ -119,7 +119,7 @@ fn invalid_recordings_are_refused_with_line_and_remedy() {
     bench.run(&["ssi", "find", &huge]).fails(1, &["huge.csv", "16 MB", "shorter section"]);
 }
 
-/// An export is passed on to other people, so it names a profile by its file name without the folder on this computer.
+/// Exports are passed on to other people, so they contain the file name of a profile without its folder.
 #[test]
 fn exports_have_no_path_of_this_computer() {
     let bench = Bench::new();

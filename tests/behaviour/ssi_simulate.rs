@@ -1,4 +1,4 @@
-//! `simulate ssi`, tested by a host that is not part of this program, and by the program's own host.
+//! `simulate ssi`, tested by an independently written host and by the program's own host.
 
 use serde_json::{Value, json};
 
@@ -41,8 +41,8 @@ fn words_are_served_on_a_pseudoterminal_and_a_tcp_port() {
     assert!(!bench.path("adapter").is_symlink());
 }
 
-/// A stream of 20 000 words per second has no missing word. Each word has its time, and its position on a shaft that
-/// turns ten times per second: 81 920 steps per second are 4.096 steps per word.
+/// Each word has its time and the position of a shaft that turns ten times per second: 81 920 steps per second are
+/// 4.096 steps per word.
 #[test]
 fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
     let bench = Bench::new();
@@ -67,7 +67,7 @@ fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
     assert_eq!((&slower[2]["period_us"], &slower[2]["gaps"]), (&json!(263), &json!(0)), "{}", slower[2]);
 }
 
-/// Another family with its error bits, and a profile as the layout.
+/// Another encoder family with its error bits, and a layout from a profile.
 #[test]
 fn the_encoder_follows_its_layout() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Test support: runs the built program in a separate folder, with foreign encoders and hosts (`tests/foreign`).
+//! Test support: runs the built program in a separate folder, with independent encoders and hosts (`tests/foreign`).
 
 use std::ffi::OsStr;
 use std::fs;
@@ -17,16 +17,16 @@ use jiff::Timestamp;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Time limit that exceeds the run time of any program that ends normally. A program that runs longer has hung.
+/// Time limit that is longer than any program takes. A program that runs longer has hung.
 const HANGS: Duration = Duration::from_secs(60);
 
-/// A temporary folder for all files of a test.
+/// A temporary folder that contains all files of a test.
 pub(crate) struct Bench {
     folder: TempDir,
     encoders: AtomicU32,
 }
 
-/// Exit status and output of a program that has ended.
+/// Exit status and output of a finished program.
 #[derive(Debug)]
 pub(crate) struct Ran {
     pub(crate) status: Option<i32>,
@@ -63,7 +63,7 @@ impl Bench {
         Logbook::open(&self.path("data").join("encoder-studio").join("logbook.sqlite")).unwrap()
     }
 
-    /// Adds an old write to the logbook, so that the device has the given number of write cycles.
+    /// Adds an old write to the logbook so that the device has the given number of write cycles.
     pub(crate) fn wear_to(&self, device: &DeviceKey, cycles: u64) {
         let mut logbook = self.logbook();
         let spent = cycles - logbook.write_cycles(device).unwrap();
@@ -100,48 +100,48 @@ impl Bench {
         text
     }
 
-    /// Returns a text without the folder's random name.
+    /// Returns the text without the random folder name.
     pub(crate) fn without_folder(&self, text: &str) -> String {
         text.replace(self.folder.path().to_str().unwrap(), "")
     }
 
-    /// Starts a foreign HIPERFACE encoder. If this is not possible, prints a line and returns `None`.
+    /// Starts an independent HIPERFACE encoder. If this is not possible, prints a line and returns `None`.
     pub(crate) fn encoder(&self, arguments: &[&str]) -> Option<Foreign> {
         self.on_terminal("encoder.py", "serial:", arguments)
     }
 
-    /// Starts a foreign kit encoder with UBICOM. If this is not possible, prints a line and returns `None`.
+    /// Starts an independent kit encoder with UBICOM. If this is not possible, prints a line and returns `None`.
     pub(crate) fn kit(&self, arguments: &[&str]) -> Option<Foreign> {
         self.on_terminal("ubicom_encoder.py", "serial:", arguments)
     }
 
-    /// Starts a foreign adapter on a pseudo-terminal, with the kit encoder connected to it.
+    /// Starts an independent adapter on a pseudo-terminal, with the kit encoder connected to it.
     pub(crate) fn adapter_on_terminal(&self, arguments: &[&str]) -> Option<Foreign> {
         self.on_terminal("bridge_adapter.py", "bridge:", arguments)
     }
 
-    /// Starts a foreign adapter on a TCP port, with the kit encoder connected to it.
+    /// Starts an independent adapter on a TCP port, with the kit encoder connected to it.
     pub(crate) fn adapter(&self, arguments: &[&str]) -> Option<Foreign> {
         let mut foreign = self.foreign("bridge_adapter.py", arguments)?;
         foreign.url = format!("bridge:tcp:{}", foreign.place);
         Some(foreign)
     }
 
-    /// Starts a foreign adapter with a HIPERFACE encoder at its serial line.
+    /// Starts an independent adapter with a HIPERFACE encoder on its serial line.
     pub(crate) fn serial_adapter(&self, arguments: &[&str]) -> Option<Foreign> {
         let mut foreign = self.foreign("bridge_serial.py", arguments)?;
         foreign.url = format!("bridge:tcp:{}", foreign.place);
         Some(foreign)
     }
 
-    /// Starts a foreign gateway with a K3 encoder connected to it.
+    /// Starts an independent gateway with a K3 encoder connected to it.
     pub(crate) fn gateway(&self, arguments: &[&str]) -> Option<Foreign> {
         let mut foreign = self.foreign("interbus_gateway.py", arguments)?;
         foreign.url = format!("modbus:{}", foreign.place);
         Some(foreign)
     }
 
-    /// Starts a foreign EtherNet/IP target with HIPERDRIVE parameters.
+    /// Starts an independent EtherNet/IP target with HIPERDRIVE parameters.
     pub(crate) fn target(&self, arguments: &[&str]) -> Option<Foreign> {
         python("enip_target.py")?;
         let mut foreign = self.foreign("enip_target.py", arguments).unwrap();
@@ -149,7 +149,7 @@ impl Bench {
         Some(foreign)
     }
 
-    /// Starts an EtherNet/IP target whose drives take time to move, receive faults at run time, and record packets.
+    /// Starts an EtherNet/IP target that records packets and accepts faults. Its drives take time to move.
     pub(crate) fn moving_target(&self, arguments: &[&str]) -> Option<Foreign> {
         let record = self.file("record");
         self.foreign("moving_target.py", &[&["--record", &record], arguments].concat())
@@ -196,14 +196,14 @@ fn collect(folder: &Path, text: &mut String) {
     }
 }
 
-/// Runs a program to its end.
+/// Runs a program until it exits.
 pub(crate) fn finish(mut command: Command) -> Ran {
     let begun = Instant::now();
     let child = command.spawn().unwrap();
     ended(child, begun)
 }
 
-/// Waits until a program ends and returns its output.
+/// Waits until a program exits and returns its output.
 pub(crate) fn ended(mut child: Child, begun: Instant) -> Ran {
     // The output may exceed the buffers of the pipes if a test polls for a long time, so threads read it.
     let reader = |pipe: Option<Box<dyn std::io::Read + Send>>| {
@@ -231,21 +231,21 @@ pub(crate) fn ended(mut child: Child, begun: Instant) -> Ran {
 }
 
 impl Ran {
-    /// Checks that the program succeeded, and returns the JSON object that it printed.
+    /// Checks that the program succeeded, and returns the JSON object it printed.
     #[track_caller]
     pub(crate) fn json(&self) -> Value {
         assert_eq!(self.status, Some(0), "{self:?}");
         self.json_with(0)
     }
 
-    /// Checks the exit status, and returns the JSON object that the program printed.
+    /// Checks the exit status, and returns the JSON object the program printed.
     #[track_caller]
     pub(crate) fn json_with(&self, status: i32) -> Value {
         assert_eq!(self.status, Some(status), "{self:?}");
         serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {self:?}"))
     }
 
-    /// Checks that the program ended with the given status, printed nothing to stdout, and printed one to four lines
+    /// Checks that the program failed with the given status, printed nothing to stdout, and printed one to four lines
     /// with all the given words to stderr.
     #[track_caller]
     pub(crate) fn fails(&self, status: i32, words: &[&str]) {
@@ -254,7 +254,7 @@ impl Ran {
         self.assert_stderr(words);
     }
 
-    /// Checks that stderr, apart from log warnings, has one to four lines with all the given words.
+    /// Checks that stderr has one to four lines with all the given words, not counting log warnings.
     #[track_caller]
     pub(crate) fn assert_stderr(&self, words: &[&str]) {
         let lines: Vec<&str> = self.err.lines().filter(|line| !line.trim_start().starts_with("WARN")).collect();
@@ -267,7 +267,7 @@ impl Ran {
     }
 }
 
-/// A foreign encoder that runs in a separate process.
+/// An independently written encoder that runs in a separate process.
 pub(crate) struct Foreign {
     child: Child,
     said: BufReader<ChildStdout>,
@@ -279,8 +279,8 @@ pub(crate) struct Foreign {
 }
 
 impl Foreign {
-    /// Returns the requests since the last call, one per line: frames in hexadecimal for HIPERFACE, registers for BiSS,
-    /// and words for INTERBUS.
+    /// Returns the requests since the last call, one per line: frames for HIPERFACE, registers for BiSS, and words for
+    /// INTERBUS.
     pub(crate) fn requests(&self) -> Vec<String> {
         let text = fs::read_to_string(&self.log).unwrap_or_default();
         fs::write(&self.log, "").unwrap();
@@ -298,14 +298,14 @@ impl Foreign {
         self.requests().into_iter().filter(|frame| !reads.contains(&frame.get(3..5).unwrap_or_default())).collect()
     }
 
-    /// Extends the time to wait for replies, because the computer may be busy. The reply to a request that removes data
-    /// must not arrive too late.
+    /// Extends the time to wait for replies on a busy computer. A reply that comes too late would lose the data that it
+    /// removed from the encoder.
     pub(crate) fn waited_for(mut self) -> Self {
         self.url.push_str("?margin=1500");
         self
     }
 
-    /// Sends a command to the encoder, if it accepts commands.
+    /// Sends a control command to the simulated encoder, if it accepts any.
     pub(crate) fn command(&mut self, line: &str) {
         writeln!(self.child.stdin.as_mut().unwrap(), "{line}").unwrap();
         let mut done = String::new();
@@ -313,13 +313,13 @@ impl Foreign {
         assert!(done.starts_with("done"), "{line}: {done}");
     }
 
-    /// Kills the process of the encoder, which simulates a loss of power.
+    /// Kills the process of the encoder, to simulate a loss of power.
     pub(crate) fn kill(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 
-    /// Sends frames like another host, with checksums added. Returns the replies.
+    /// Sends frames as another host would, adding checksums, and returns the replies.
     pub(crate) fn host_address(&self, frames: &[&str]) -> Vec<String> {
         host_address(&self.place, &[&["--sum"], frames].concat())
     }
@@ -331,17 +331,17 @@ impl Drop for Foreign {
     }
 }
 
-/// Runs a foreign HIPERFACE host at a path or `tcp:HOST:PORT`. Returns the replies, `-` for none.
+/// Runs an independent HIPERFACE host on a path or `tcp:HOST:PORT`. Returns the replies, with `-` for a missing one.
 pub(crate) fn host_address(path: &str, arguments: &[&str]) -> Vec<String> {
     foreign_host("master.py", path, arguments)
 }
 
-/// Runs a foreign host. Returns one line for each action.
+/// Runs an independent host and returns one line per action.
 pub(crate) fn foreign_host(script: &str, path: &str, arguments: &[&str]) -> Vec<String> {
     foreign_host_with(python(script).unwrap(), path, arguments)
 }
 
-/// Runs a foreign host with a specific Python interpreter. Returns one line for each action.
+/// Runs an independent host with a specific Python interpreter and returns one line per action.
 pub(crate) fn foreign_host_with(mut command: Command, path: &str, arguments: &[&str]) -> Vec<String> {
     let options: Vec<&str> = arguments.iter().copied().filter(|argument| argument.starts_with("--")).collect();
     let frames: Vec<&str> = arguments.iter().copied().filter(|argument| !argument.starts_with("--")).collect();
@@ -354,7 +354,7 @@ pub(crate) fn foreign_host_with(mut command: Command, path: &str, arguments: &[&
 /// A virtual device in a separate process.
 pub(crate) struct Simulated {
     child: Option<Child>,
-    /// The word after `ready KIND`.
+    /// The address, which is the word after `ready KIND`.
     pub(crate) place: String,
 }
 
@@ -369,7 +369,7 @@ impl Simulated {
         Simulated { child: Some(child), place }
     }
 
-    /// Sends a signal to the process and waits until it ends.
+    /// Sends a signal to the process and waits until it exits.
     pub(crate) fn end(mut self, signal_name: &str) {
         let child = self.child.take().unwrap();
         signal(&child, signal_name);
@@ -389,10 +389,10 @@ impl Drop for Simulated {
     }
 }
 
-/// Python code that runs its arguments as a command on a separate terminal, with the typed input from stdin.
+/// Python code that runs its arguments as a command on a pseudo-terminal, with stdin as the typed input.
 const ON_A_TERMINAL: &str = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))";
 
-/// Runs the program on a terminal and types an answer.
+/// Runs the program on a pseudo-terminal and types an answer.
 pub(crate) fn run_on_terminal(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
     let program = bench.program(arguments);
     let mut command = Command::new(interpreter().unwrap());
@@ -403,14 +403,14 @@ pub(crate) fn run_on_terminal(bench: &Bench, arguments: &[&str], answer: &str) -
     ended(child, Instant::now())
 }
 
-/// Prints that a test is skipped. If everything must be available (`ENCODER_STUDIO_NO_SKIP`), it fails instead.
+/// Prints that a test is skipped, or fails if no test may be skipped (`ENCODER_STUDIO_NO_SKIP`).
 pub(crate) fn skip(why: &str) {
     assert!(std::env::var_os("ENCODER_STUDIO_NO_SKIP").is_none(), "may not be skipped: {why}");
     println!("skipped: {why}");
 }
 
-/// Returns the path of the Python interpreter, or `None` if Python is not installed. The command `python3` may be a
-/// script that searches for the interpreter, which takes much longer than to start the interpreter.
+/// Returns the path of the Python interpreter, or `None` if Python is not installed. `python3` may be a script that
+/// searches for the interpreter, which is much slower than starting it directly.
 fn interpreter() -> Option<&'static Path> {
     static PATH: OnceLock<Option<PathBuf>> = OnceLock::new();
     let find = || {
@@ -420,7 +420,7 @@ fn interpreter() -> Option<&'static Path> {
     PATH.get_or_init(find).as_deref()
 }
 
-/// Returns the command for a foreign program in Python. Prints a line and returns `None` if Python is missing.
+/// Returns the command for a Python program. Prints a line and returns `None` if Python is missing.
 pub(crate) fn python(script: &str) -> Option<Command> {
     let Some(interpreter) = interpreter() else {
         skip("python3 is not installed");
@@ -429,7 +429,7 @@ pub(crate) fn python(script: &str) -> Option<Command> {
     Some(python_command(interpreter.as_os_str(), script))
 }
 
-/// Returns the command for a program in `tests/foreign`. Its compiled modules are kept outside the source folder.
+/// Returns the command for a program in `tests/foreign`. Its compiled modules are stored outside the source folder.
 fn python_command(interpreter: &OsStr, script: &str) -> Command {
     let mut command = Command::new(interpreter);
     command.env_remove("PYTHONDONTWRITEBYTECODE");
@@ -438,7 +438,7 @@ fn python_command(interpreter: &OsStr, script: &str) -> Command {
     command
 }
 
-/// Returns the command for a foreign program that uses pycomm3. Prints a line and returns `None` if pycomm3 is missing.
+/// Returns the command for a program that uses pycomm3. Prints a line and returns `None` if pycomm3 is missing.
 /// `.ci/run` passes the path of a Python interpreter with pycomm3 in `ENCODER_STUDIO_PYCOMM3`.
 pub(crate) fn pycomm3(script: &str) -> Option<Command> {
     let Some(interpreter) = std::env::var_os("ENCODER_STUDIO_PYCOMM3") else {
@@ -448,7 +448,7 @@ pub(crate) fn pycomm3(script: &str) -> Option<Command> {
     Some(python_command(&interpreter, script))
 }
 
-/// Returns a frame in the format of the foreign encoder's log, with a checksum that is the XOR of all bytes.
+/// Returns a frame as logged by the encoder, with a checksum that is the XOR of all bytes.
 pub(crate) fn frame(bytes: &str) -> String {
     let sum = bytes.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).fold(0, |sum, byte| sum ^ byte);
     format!("{bytes} {sum:02X}")

@@ -1,6 +1,5 @@
-//! Drives of a hub that do not obey the commands of the cyclic connection: they ignore their limits, a target or a
-//! pause, or turn the wrong way. The device is written in Python, and its record contains the commands. The other drive
-//! of the hub is never moved.
+//! Drives of a hub that disobey the commands of the cyclic connection: they ignore their limits, a target or a pause,
+//! or turn the wrong way. The hub is simulated in Python and records the commands. Its other drive must never be moved.
 
 use std::fs;
 use std::path::PathBuf;
@@ -17,14 +16,14 @@ use super::{FAST, Host, JOG};
 const TURN: i32 = 65_536;
 /// Steps per degree, rounded up.
 const DEGREE: i32 = 183;
-/// Maximum number of packets that are already in transit when the first report shows the defect.
+/// Maximum number of packets already sent when the first report shows the defect.
 const UNDER_WAY: usize = 2;
 
 fn third() -> DriveNumber {
     DriveNumber::new(3).unwrap()
 }
 
-/// A packet that the device received for a drive.
+/// A packet for a drive, as received by the hub.
 #[derive(Debug)]
 struct Packet {
     position: i32,
@@ -32,7 +31,7 @@ struct Packet {
     drive: u8,
 }
 
-/// A hub whose third drive has a defect, and a host that moves it.
+/// A hub whose third drive has a defect, and the host that moves it.
 struct Hub {
     host: Host,
     foreign: Foreign,
@@ -53,7 +52,7 @@ impl Hub {
         self.host.motion.snapshot().drives.iter().find(|own| own.number == third()).unwrap().phase
     }
 
-    /// Waits for the end of an action and returns how it ended.
+    /// Waits for an action to end and returns the outcome.
     #[track_caller]
     fn until_over(&self, act: u64) -> ActionEnd {
         let until = Instant::now() + Duration::from_secs(20);
@@ -68,7 +67,7 @@ impl Hub {
         }
     }
 
-    /// Waits until the drive is at standstill. Returns its recorded packets, and how many of them came before the
+    /// Waits until the drive is at standstill. Returns its recorded packets and the number of those received before the
     /// defect was first reported.
     fn record(&mut self) -> (Vec<Packet>, usize) {
         let until = Instant::now() + Duration::from_secs(20);
@@ -102,8 +101,7 @@ fn moving(packets: &[Packet]) -> Vec<&Packet> {
     packets.iter().filter(|packet| packet.moves).collect()
 }
 
-/// A drive of a hub that ignores its limits gets no further motion command after the report that shows the defect
-/// (issue 21.4).
+/// The drive receives no motion command after the report that shows the defect (issue 21.4).
 #[test]
 fn a_hub_drive_ignoring_its_limits_is_stopped() {
     let bench = Bench::new();
@@ -120,7 +118,6 @@ fn a_hub_drive_ignoring_its_limits_is_stopped() {
     assert!(after.len() <= UNDER_WAY, "{after:?}");
 }
 
-/// A drive of a hub that turns the wrong way is stopped (issues 21.4 and 21.5).
 #[test]
 fn a_hub_drive_turning_the_wrong_way_is_stopped() {
     for wish in [JOG, MotionRequest::Move { target: 3 * TURN, effort: FAST }] {
@@ -135,7 +132,6 @@ fn a_hub_drive_turning_the_wrong_way_is_stopped() {
     }
 }
 
-/// A drive of a hub that does not stop at its target is stopped (issue 21.5).
 #[test]
 fn a_hub_drive_passing_its_target_is_stopped() {
     let bench = Bench::new();
@@ -149,7 +145,7 @@ fn a_hub_drive_passing_its_target_is_stopped() {
     assert!(past.len() <= UNDER_WAY + 1, "{past:?}");
 }
 
-/// A drive of a hub that ignores a pause is stopped once it has moved for longer than it needs to brake (issue 21.4).
+/// The drive is stopped when it has moved for longer than it needs to brake (issue 21.4).
 #[test]
 fn a_hub_drive_ignoring_a_pause_is_stopped() {
     let bench = Bench::new();

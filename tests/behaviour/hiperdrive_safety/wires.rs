@@ -1,5 +1,5 @@
-//! A proxy between a host and a target, whose connections can be cut. It passes on the stream and the packets. When a
-//! connection is opened, the proxy replaces the packets' ports with its own.
+//! A proxy between a host and a target whose connections can be cut. It forwards the TCP stream and the UDP packets.
+//! When a connection is opened, it replaces the packets' ports with its own.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream, UdpSocket};
@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{JoinHandle, spawn};
 use std::time::Duration;
 
-/// A direction in which packets are sent.
+/// The direction of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Transport {
     ToTarget,
@@ -21,9 +21,9 @@ pub(super) struct Wires {
 }
 
 struct Shared {
-    /// Both ends of the stream.
+    /// Both ends of the TCP stream.
     streams: Mutex<Vec<TcpStream>>,
-    /// Receive the packets of the host and those of the target.
+    /// Sockets that receive the packets of the host and those of the target.
     sockets: [UdpSocket; 2],
     cut: [AtomicBool; 2],
     /// Port at which the host receives packets.
@@ -32,7 +32,7 @@ struct Shared {
     end: AtomicBool,
 }
 
-/// A guard for garbage that is sent in both directions.
+/// A guard that sends random bytes in both directions until it is ended.
 pub(super) struct Flood {
     end: Arc<AtomicBool>,
     sent: Arc<AtomicU64>,
@@ -93,7 +93,7 @@ impl Wires {
         self.shared.cut[way as usize].store(false, Ordering::SeqCst);
     }
 
-    /// Sends garbage to both ports until it is stopped.
+    /// Sends random bytes to both ports until it is stopped.
     pub(super) fn flood(&self) -> Flood {
         let (end, sent) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
         let ports = [self.shared.target, self.shared.host.load(Ordering::SeqCst)];
@@ -134,8 +134,8 @@ impl Drop for Wires {
 }
 
 impl Shared {
-    /// Passes on a stream in which each frame arrives in one piece. The port in an address item of type `item` is
-    /// replaced with that of one of the proxy's sockets.
+    /// Forwards a stream, with each frame in one piece. The port in an address item of type `item` is replaced with
+    /// that of one of the proxy's sockets.
     fn pass_stream(&self, mut from: TcpStream, mut to: TcpStream, item: u16, ours: usize) {
         let mut buffer = [0; 4096];
         while let Ok(count) = from.read(&mut buffer) {
