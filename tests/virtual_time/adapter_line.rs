@@ -28,8 +28,8 @@ fn session(settings: &[(&str, &str)]) -> (Session<Hiperface>, Arc<VirtualClock>,
     (session, clock, folder)
 }
 
-/// At one revolution per second, the shaft turns 4096 steps per second. The adapter measures the time of the reply's
-/// first start bit, so the transmission of the reply over USB does not affect the time of a position.
+/// At one revolution per second, the shaft turns 4096 steps per second. The adapter timestamps the first start bit of a
+/// reply, so the delay over USB does not affect the time of a position.
 #[test]
 fn a_position_has_the_time_that_the_adapter_measures() {
     let (mut session, clock, _folder) = session(&[("uart", "hiperface"), ("rpm", "60")]);

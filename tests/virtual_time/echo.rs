@@ -1,4 +1,4 @@
-//! Converters that echo the bytes sent by the host. Echoes are detected where possible and never mistaken for a value.
+//! Converters that echo the bytes sent by the host. An echo is detected where possible and never mistaken for a value.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Value};
 use encoder_studio::devices::hiperface::procedures::{Echo, Station};
@@ -31,7 +31,7 @@ fn echo_is_detected_and_stripped() {
     }
 }
 
-/// With a wrong echo setting, every reply is rejected, and none of its bytes is shown as a value.
+/// With the wrong echo setting, every reply is rejected, and none of its bytes is shown as a value.
 #[test]
 fn a_wrong_echo_setting_yields_errors_and_no_values() {
     for (echoes, setting) in [(true, Echo::Off), (false, Echo::On)] {
@@ -55,7 +55,7 @@ fn a_wrong_echo_setting_yields_errors_and_no_values() {
     }
 }
 
-/// The replies to 47h and 67h equal their requests, so they do not show whether there is an echo.
+/// The replies to 47h and 67h equal their requests, so they do not prove that there is an echo.
 #[test]
 fn echo_is_not_detected_from_a_reply_equal_to_its_request() {
     for echoes in [true, false] {
@@ -71,7 +71,7 @@ fn echo_is_not_detected_from_a_reply_equal_to_its_request() {
     assert_eq!(desk.tap().count(Command::ConfigureLineTemporarily), 0);
 }
 
-/// If a byte has the value of the access code, the reply equals its request.
+/// The reply to a read request equals the request if the byte has the value of the access code.
 #[test]
 fn a_byte_equal_to_its_access_code_is_read() {
     for echoes in [true, false] {

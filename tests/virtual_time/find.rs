@@ -1,4 +1,4 @@
-//! The search for encoders with unknown settings: all are found, only 52h is sent, and no byte is sent on a busy line.
+//! The search for encoders with unknown settings: all are found, only 52h is sent, and never on a busy line.
 
 use std::time::Duration;
 
@@ -82,8 +82,7 @@ fn no_encoder_is_found_on_an_empty_line() {
     assert_eq!(desk.tap().sent.len(), 7 * 3 * 32);
 }
 
-/// An encoder that is switched on while the search waits is found in the time during which it uses its factory
-/// settings.
+/// The encoder is switched on during the search and found while it still uses its factory settings.
 #[test]
 fn a_power_cycle_opens_the_factory_settings_window() {
     for (settings, one_encoder) in [(0xB5, true), (0x80, true), (0xE6, false)] {
@@ -107,8 +106,8 @@ fn a_power_cycle_opens_the_factory_settings_window() {
     }
 }
 
-/// A device server has a fixed speed, which the program cannot change. Trying other speeds would find the same encoder
-/// 21 times.
+/// The program cannot change the fixed speed of a device server. Trying other speeds would find the same encoder 21
+/// times.
 #[test]
 fn through_a_device_server_each_encoder_is_found_once() {
     let mut desk = Desk::new("address=0x43&encoders=2");
@@ -118,7 +117,7 @@ fn through_a_device_server_each_encoder_is_found_once() {
     assert_eq!(desk.tap().sent.len(), 32, "each address once");
 }
 
-/// A cancelled search returns the encoders found so far and restores the line format of the computer.
+/// A cancelled search returns the encoders found so far and restores the serial settings of the port.
 #[test]
 fn an_interrupted_search_reports_its_findings() {
     // The search begins at the encoders' own settings, where address 40h is requested first.

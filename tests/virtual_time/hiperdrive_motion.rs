@@ -1,4 +1,4 @@
-//! The dead-man control with virtual drives: user actions, faults, and the stop of the drive after each of them.
+//! The dead-man control with virtual drives: user actions and faults, each followed by the stop of the drive.
 
 mod any;
 mod bench;
@@ -29,14 +29,14 @@ fn to(target: i32) -> MotionRequest {
     MotionRequest::Move { target, effort: FULL }
 }
 
-/// Returns the control words that were sent, each once, in the order in which they were sent.
+/// Returns the control words in the order sent, without repetitions.
 fn words(bench: &mut Bench) -> String {
     let words: Vec<String> = bench.take_words().iter().map(|word| format!("{word:04X}")).collect();
     words.join(" ")
 }
 
-/// The words to a target are 0000, 0400, 0401, 0409, 0439 and 0479, and for the next move 0439. At rest, bits 4 and 5
-/// are clear (reference 3).
+/// A move sends the words 0000, 0400, 0401, 0409, 0439 and 0479, and the next move 0439. At rest, bits 4 and 5 are
+/// clear (reference 3).
 #[test]
 fn the_published_words_move_to_a_target() {
     let mut bench = Bench::new();
@@ -56,8 +56,8 @@ fn the_published_words_move_to_a_target() {
     assert_eq!((words(&mut bench).as_str(), bench.status()), ("0409 0000", 0x2A30));
 }
 
-/// The words of a clockwise jog are 1459 and 1419, those of a counterclockwise one 1449 and 1409. Speed mode is left
-/// through 0400 (reference 3).
+/// A clockwise jog sends 1459 and 1419, and a counterclockwise one 1449 and 1409. Speed mode ends with 0400 (reference
+/// 3).
 #[test]
 fn a_jog_runs_while_it_is_held() {
     let mut bench = Bench::new();
@@ -93,7 +93,7 @@ fn a_jog_runs_while_it_is_held() {
     }
 }
 
-/// However often the button is pressed and released in quick succession, a jog never starts a move.
+/// The button is pressed and released in quick succession. A jog must not turn into a move.
 #[test]
 fn repeated_jogs_never_start_a_job() {
     let mut bench = Bench::new();
@@ -150,7 +150,7 @@ fn a_job_can_be_paused_and_resumed() {
     assert_eq!(bench.man.phase(), Phase::Idle);
 }
 
-/// A request that the dead-man control rejects never reaches the drive.
+/// A request rejected by the dead-man control never reaches the drive.
 #[test]
 fn invalid_requests_are_refused() {
     let none = SpeedTorque { speed: Percent::NONE, ..FULL };
@@ -198,8 +198,7 @@ fn invalid_requests_are_refused() {
     assert_eq!(words(&mut bench), "0400 0401 0409 1439 1479");
 }
 
-/// A fault ends the motion. Nothing moves until the user has acknowledged the fault, and the acknowledgement itself
-/// does not move anything.
+/// Nothing moves until the user has acknowledged the fault, and the acknowledgement does not move anything either.
 #[test]
 fn a_fault_is_acknowledged_before_anything_moves() {
     let mut bench = Bench::new();
@@ -225,7 +224,6 @@ fn a_fault_is_acknowledged_before_anything_moves() {
     assert_eq!(bench.until_over(), ActionEnd::Arrived);
 }
 
-/// If an obstacle blocks the drive, the motion ends.
 #[test]
 fn a_blocked_drive_ends_the_motion() {
     let mut bench = Bench::new();
@@ -235,7 +233,7 @@ fn a_blocked_drive_ends_the_motion() {
     assert_eq!(bench.position(), TURN);
 }
 
-/// A run ends at the end of the range, and so does its action.
+/// The action ends with the run.
 #[test]
 fn a_run_ends_at_the_end_of_the_range() {
     let mut bench = Bench::new();
@@ -249,7 +247,7 @@ fn a_run_ends_at_the_end_of_the_range() {
     assert_eq!(bench.until_over(), ActionEnd::RangeEnd);
 }
 
-/// While switch S3 points to a drive, commands on the bus have no effect.
+/// While switch S3 selects a drive, bus commands have no effect.
 #[test]
 fn an_unresponsive_drive_is_reported() {
     let mut bench = Bench::new();
@@ -262,7 +260,7 @@ fn an_unresponsive_drive_is_reported() {
     assert_eq!((bench.status(), bench.position()), (0x2A30, 0));
 }
 
-/// A drive that loses its supply for a moment restarts while the earlier words are still being sent.
+/// A drive that briefly loses its supply restarts while the earlier words are still being sent.
 #[test]
 fn a_restarted_drive_does_not_resume_its_job() {
     for after in [100, 110, 500, 1500] {

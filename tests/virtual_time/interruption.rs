@@ -1,4 +1,4 @@
-//! A restore that is cancelled, cut off, or interrupted by a power loss at each transaction. The report describes the
+//! A restore that is cancelled, cut off, or interrupted by a power loss at each transaction. The report matches the
 //! content of the encoder, nothing else has changed, and a second run completes the restore.
 
 use encoder_studio::devices::hiperface::jobs::{Change, Committed, JobError, Prepared};
@@ -11,8 +11,7 @@ use encoder_studio::link::CancelToken;
 use crate::support::{Desk, Fields, backup, bytes, restore_of};
 
 /// Returns an encoder with a write-protected field guarded by its own code, and the profile to restore. The profile
-/// changes several byte ranges in field 0, the protected field and a plain field, and creates a field that is to be
-/// protected.
+/// changes several byte ranges in three fields, one of them protected, and creates a field that is to be protected.
 fn scene() -> (Desk, HiperfaceProfile) {
     let mut desk = Desk::new("codes=2:66");
     desk.remember_code(2, 0x66);
@@ -33,7 +32,7 @@ fn scene() -> (Desk, HiperfaceProfile) {
     (desk, wanted)
 }
 
-/// Returns the memory that results from the first operations of the plan.
+/// Returns the memory after the first operations of the plan.
 fn applied(before: &Fields, ops: &[Op]) -> Fields {
     let mut fields = before.clone();
     for op in ops {
@@ -111,8 +110,8 @@ impl Ending<'_> {
         assert_eq!(interrupted.done.write_cycles, self.desk.wear() - self.worn_before, "{context}");
     }
 
-    /// Checks after a lost connection that the counted operations were executed and the one in progress either was or
-    /// was not. A field that remains unlocked must be named.
+    /// Checks the result of a lost connection: the counted operations were executed, and the one in progress either was
+    /// or was not. A field that stays unlocked must be named.
     fn assert_cut_off_and_reported(&self, interrupted: &InterruptedWrite) {
         let Ending { context, .. } = self;
         let ops = &self.prepared.plan.ops;
@@ -140,7 +139,7 @@ impl Ending<'_> {
     }
 }
 
-/// Checks that the profile can be restored from any state, and that the backup restores the previous content.
+/// Checks that the profile can be restored from any state and that the backup restores the previous content.
 fn assert_can_be_completed(desk: &Desk, wanted: &HiperfaceProfile, before: &Fields, kept: Option<&HiperfaceProfile>) {
     let mut forwards = desk.copied();
     forwards.remember_code(2, 0x66);
@@ -155,7 +154,7 @@ fn assert_can_be_completed(desk: &Desk, wanted: &HiperfaceProfile, before: &Fiel
     assert_eq!(backwards.memory()[..before.len()], before[..]);
 }
 
-/// Executes the restore on a new copy of the scene. `disturb` is called once the plan is complete.
+/// Executes the restore on a new copy of the scene. `disturb` is called when the plan is complete.
 fn disturbed(
     scene: &(Desk, HiperfaceProfile),
     context: String,
@@ -210,8 +209,7 @@ fn cancelling_at_any_transaction_ends_cleanly() {
     assert!(steps > 12, "each operation is a transaction at least: {steps}");
 }
 
-/// If a status code waits in the encoder's queue, the reply to a write announces it. The write was executed
-/// nevertheless.
+/// A reply to a write announces a waiting status code, but the write was executed nevertheless.
 #[test]
 fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
     let scene = scene();
@@ -231,8 +229,7 @@ fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
     }
 }
 
-/// The reply to a write announces a warning, and the user cancels immediately afterwards. The write still counts as
-/// executed.
+/// The user cancels right after the reply that announces a warning. The write still counts as executed.
 #[test]
 fn a_warning_during_a_write_hides_no_operation() {
     let (original, wanted) = scene();
@@ -292,8 +289,8 @@ fn a_cut_at_any_transaction_is_reported() {
     }
 }
 
-/// Returns the number of frames that an encoder has received. It is the lowest number for which the fault "silent after
-/// this number of frames" has occurred.
+/// Returns the number of frames that an encoder has received: the lowest number for which the fault "silent after this
+/// number of frames" has occurred.
 fn frames_so_far(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
     let is_silent = |frames: usize| {
         let mut probe = bus.clone();

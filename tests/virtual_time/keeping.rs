@@ -1,4 +1,4 @@
-//! The files of a write, and disks that cannot store them.
+//! The files created by a write, and disks that cannot store them.
 
 use std::fs;
 
@@ -33,8 +33,8 @@ fn without_a_backup_nothing_is_written() {
     }
 }
 
-/// If the logbook cannot be read, the previous write cycles are not known. Only a forced write begins, and the missing
-/// records are reported (issue 22.4).
+/// Without the logbook, the previous write cycles are unknown. A write must be forced, and the missing records are
+/// reported (issue 22.4).
 #[test]
 fn a_broken_logbook_stops_an_unforced_write() {
     for garbage in [true, false] {
@@ -74,7 +74,7 @@ fn a_backup_is_a_profile_of_the_previous_state() {
     assert_eq!(desk.memory(), before);
 }
 
-/// No file contains an access code. The codes used here do not occur in any form.
+/// The codes used here do not appear in any file in any form.
 #[test]
 fn no_access_code_is_stored() {
     let mut desk = Desk::new("codes=0:9D,2:66");

@@ -1,4 +1,4 @@
-//! A connection that is slower than its margin. The reply to one request must never be taken for the reply to the next.
+//! A connection that is slower than expected. A reply must never be taken for the reply to the next request.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};

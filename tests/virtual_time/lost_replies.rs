@@ -1,5 +1,4 @@
-//! Each request and each reply is lost in turn. Requests that read are repeated, and those that change the encoder are
-//! never executed twice.
+//! Loses each request and each reply in turn. Reads are repeated, and changes are never executed twice.
 
 use std::time::Duration;
 
@@ -10,7 +9,7 @@ use encoder_studio::worker::{Event, JobId};
 
 use crate::support::Desk;
 
-/// Executes a change repeatedly while each request and then each reply is lost in turn. `judge` checks the result.
+/// Executes a change repeatedly, losing each request and then each reply in turn. `judge` checks the result.
 fn robbed(query: &str, change: &Change, setup: impl Fn(&mut Desk), judge: impl Fn(&mut Desk, &str)) {
     let mut frames = 0;
     for at in 0.. {
@@ -102,8 +101,8 @@ fn the_position_is_set_despite_lost_replies() {
     );
 }
 
-/// If the position equals the previous one, this does not prove that the tracks were aligned, so the alignment must not
-/// be reported.
+/// A position that equals the previous one does not prove that the tracks were aligned, so the alignment must not be
+/// reported.
 #[test]
 fn synchronising_in_place_is_not_assumed_done() {
     let mut desk = Desk::new("model=sel37");
@@ -119,7 +118,7 @@ fn synchronising_in_place_is_not_assumed_done() {
     }
 }
 
-/// After a failed job, the next one can again try five times.
+/// After a failed job, the next one again has five tries.
 #[test]
 fn each_job_has_its_full_number_of_tries() {
     let mut desk = Desk::new("");

@@ -1,5 +1,5 @@
-//! The worker, the procedures and the virtual encoder together in virtual time. The code is the same as with real
-//! hardware, and the test controls every moment on the line. There is one module per behaviour.
+//! Tests of the worker, the procedures and the virtual devices in virtual time. The code is the same as with real
+//! hardware, but the test controls the timing of every byte. There is one module per behaviour.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod adapter_line;

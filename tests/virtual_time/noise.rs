@@ -1,5 +1,5 @@
-//! Noise on the line: a value that is shown is right, or an error is reported. A wrong value may only result from a
-//! frame whose damage cannot be detected, and the trace then contains that frame.
+//! Noise on the line. A displayed value must be correct, or an error is reported. Only undetectable damage may lead to
+//! a wrong value, and the trace then contains the damaged frame.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, JobError, Value};
 use encoder_studio::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item};
@@ -9,7 +9,7 @@ use crate::support::{Desk, backup, bytes, exchanges, xor};
 
 const NOISE: [&str; 5] = ["drop:0.02", "flip:0.02", "drop:0.02,flip:0.02", "garbage:0.02", "flip:0.02,garbage:0.02"];
 
-/// Returns an encoder on a noisy line. Besides the name plate, it has three data fields with varied content.
+/// Returns an encoder on a noisy line. It has a name plate and three data fields with varied content.
 fn noisy_desk(seed: u8, noise: &str) -> Desk {
     let mut desk = Desk::new(&format!("seed={seed}&codes=2:66&position={}", u32::from(seed) * 64_123));
     desk.remember_code(2, 0x66);
@@ -29,7 +29,7 @@ fn set_noise(desk: &Desk, noise: &str) {
     desk.bus().set_faults(&noise.parse::<SimulatedFaults>().unwrap());
 }
 
-/// Returns whether the bytes are a valid reply to 42h with this position.
+/// Returns whether the bytes are a valid reply to 42h that contains this position.
 fn is_position_reply(reply: &[u8], position: u32) -> bool {
     let [a, b, c, d] = position.to_be_bytes();
     reply.len() == 7 && reply[0] == 0x40 && reply[1] & 0x7F == 0x42 && reply[2..6] == [a, b, c, d] && xor(reply) == 0
@@ -72,7 +72,7 @@ fn a_position_is_correct_or_an_error_or_its_frame_was_valid() {
     assert!(wrong * 100 < read, "{wrong} of {read} wrong");
 }
 
-/// Returns byte `at` of the field from a valid reply to 4Ah.
+/// Returns byte `at` of the field, as contained in a valid reply to 4Ah.
 fn byte_of_reply(reply: &[u8], field: u8, at: usize) -> Option<u8> {
     let [0x40, command, f, start, count, data @ .., _] = reply else { return None };
     let right = command & 0x7F == 0x4A && *f == field && data.len() == usize::from(*count) && xor(reply) == 0;

@@ -1,5 +1,5 @@
-//! The rules for writing: only the planned changes are written, only values that differ, and only to the base for which
-//! the plan was made.
+//! The rules for writing: only planned changes and only differing values are written, and only if the encoder still has
+//! the content for which the plan was made.
 
 use encoder_studio::devices::hiperface::jobs::{Change, Commit, HiperfaceJob, JobError};
 use encoder_studio::devices::hiperface::procedures::Error;
@@ -94,8 +94,7 @@ fn an_empty_plan_sends_nothing() {
     assert!(!desk.folder.path().join("data/backups").exists(), "no backup");
 }
 
-/// Every byte that a request 4Bh writes differs from the byte that it replaces, and only places in the plan are
-/// written.
+/// Every byte written by request 4Bh differs from the byte it replaces, and only planned addresses are written.
 #[test]
 fn only_differences_are_written_and_every_write_is_counted() {
     for seed in 0..20_u8 {
@@ -170,8 +169,8 @@ fn writes_to_protected_or_out_of_range_fields_are_refused() {
     assert!(matches!(ops[..], [Op::Define { field: 0, to, .. }] if !to.exists()));
 }
 
-/// Edits of several fields result in one plan and one backup. Each field is read once, and no byte is sent that is
-/// already stored.
+/// Edits to several fields result in one plan and one backup. Each field is read once, and only differing bytes are
+/// sent.
 #[test]
 fn several_edits_are_written_in_one_plan() {
     let mut desk = Desk::new("");

@@ -1,5 +1,5 @@
-//! Polling on the thread of a session: samples are taken while there is no job, jobs come first, and an end is reported
-//! once.
+//! Polling on a session's thread: samples are taken while there is no job, jobs come first, and the end of polling is
+//! reported once.
 
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -29,7 +29,7 @@ pub(crate) fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<PolledSam
     samples
 }
 
-/// Checks that no samples arrive after those that are already in progress.
+/// Checks that no further samples arrive, except for any in progress.
 pub(crate) fn nothing_comes(bench: &Bench) {
     let started = Instant::now();
     loop {
@@ -115,8 +115,7 @@ fn failed_polling_ends_and_is_reported_once() {
     assert!(matches!(bench.worker.events().recv_timeout(LONG), Ok(Event::PollFailed(_))), "once each time");
 }
 
-/// If the encoder does not answer, a job does not wait until a sample has been tried five times. Polling continues
-/// after the job.
+/// A job does not have to wait for all five tries of a sample. Polling continues after the job.
 #[test]
 fn a_job_interrupts_the_retries_of_a_sample() {
     let mut bench = in_real_time("fault=silent-after:0");
@@ -134,7 +133,7 @@ fn a_job_interrupts_the_retries_of_a_sample() {
     assert!(matches!(told, Event::PollFailed(_)), "the sample that was due is tried again: {told:?}");
 }
 
-/// The report that there is no position is also a sample. Any other rejection is not.
+/// A reply without a position also counts as a sample. Any other rejection does not.
 #[test]
 fn polling_continues_without_a_position() {
     let mut desk = Desk::new("rpm=9000");

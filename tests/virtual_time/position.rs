@@ -1,4 +1,4 @@
-//! Setting the position: only at standstill, in phase unless requested otherwise, and reversible.
+//! Setting the position: only at standstill, in phase unless otherwise requested, and reversible.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, JobError};
 use encoder_studio::devices::hiperface::procedures::{Error, Station};
@@ -59,7 +59,7 @@ fn the_previous_position_is_recorded() {
     assert_eq!(entries[0].conclusion.as_ref().unwrap().cycles_spent, 1);
 }
 
-/// The position of a shaft at rest varies by a step. At zero, that is the complete range of positions.
+/// The position of a shaft at rest may vary by one step. Around zero, it then jumps over the entire range.
 #[test]
 fn setting_zero_may_dither() {
     for tenths in 1..=600 {
@@ -107,8 +107,7 @@ fn a_position_has_its_sampling_time() {
     }
 }
 
-/// A complete cycle consists of request, time-out, processing, reply and dead time. The goal is 95 % of the resulting
-/// rate.
+/// A full cycle consists of request, timeout, processing, reply and dead time. The goal is 95 % of the resulting rate.
 #[test]
 fn polling_is_as_fast_as_the_protocol_allows() {
     for byte in [0xE0, 0xE4, 0xE5, 0xE6, 0xA6] {
@@ -132,8 +131,7 @@ fn polling_is_as_fast_as_the_protocol_allows() {
     }
 }
 
-/// Bytes that arrive between requests are not part of the next reply. They neither count as a try nor lower the line
-/// quality.
+/// Stray bytes between requests are not part of the next reply. They do not count as a try or lower the line quality.
 #[test]
 fn bytes_received_in_a_pause_are_not_part_of_a_reply() {
     let mut desk = Desk::new("");

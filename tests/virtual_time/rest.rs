@@ -1,4 +1,4 @@
-//! The shaft at standstill: position, sine and cosine are read together, and only at standstill.
+//! Sine and cosine at standstill: they are read together with the position, and only while the shaft does not move.
 
 use encoder_studio::devices::hiperface::jobs::{HiperfaceJob, HiperfaceOutput, JobError};
 use encoder_studio::devices::hiperface::procedures::{Error, RestPosition, Signals};
@@ -14,7 +14,7 @@ fn rest(desk: &mut Desk) -> Result<RestPosition, JobError> {
     }
 }
 
-/// At three quarters of a period, the counts are 409 and 511. The scale has 511.5 at 0 V and 1023 at 5 V.
+/// At three quarters of a period, the counts are 409 and 511. On the scale, 511.5 is 0 V and 1023 is 5 V.
 #[test]
 fn both_channels_are_read_between_two_position_readings() {
     let mut desk = Desk::new("position=3224");
@@ -37,7 +37,7 @@ fn a_moving_shaft_or_a_missing_position_is_refused() {
     assert!(matches!(&error, JobError::Device(error) if error.is_rejection(StatusCode::TOO_FAST)), "{error:?}");
 }
 
-/// The shaft turns so slowly that it seems to be at rest for 0.2 s, but not during the complete reading.
+/// The shaft turns so slowly that it appears to be at rest for 0.2 s, but not for the whole reading.
 #[test]
 fn a_creeping_shaft_is_detected_at_the_end() {
     let mut desk = Desk::new("position=100");

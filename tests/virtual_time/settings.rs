@@ -1,4 +1,4 @@
-//! Restarts, temporary and permanent interface settings, and addresses.
+//! Encoder restarts, temporary and permanent interface settings, and addresses.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
 use encoder_studio::devices::hiperface::procedures::Station;
@@ -72,8 +72,7 @@ fn temporary_settings_apply_immediately_until_the_restart() {
     }
 }
 
-/// If a status code waits in the encoder's queue, the replies to 55h and 67h announce it. The encoder has the new
-/// settings nevertheless.
+/// The replies to 55h and 67h announce a waiting status code. The encoder has accepted the new settings nevertheless.
 #[test]
 fn an_encoder_that_warns_while_changing_settings_is_followed() {
     let warn = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().queue_code(StatusCode::TEMPERATURE);
@@ -123,7 +122,7 @@ fn all_codes_of_the_start_are_read() {
     assert_eq!(codes, []);
 }
 
-/// Two encoders at the same address could no longer be addressed separately.
+/// Two encoders with the same address could no longer be addressed separately.
 #[test]
 fn an_address_in_use_is_refused() {
     let mut desk = Desk::new("encoders=3");

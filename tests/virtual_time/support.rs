@@ -1,4 +1,4 @@
-//! Test support in virtual time: a session on a virtual line, a link with configurable faults between them, and a
+//! Test support in virtual time: a session on a simulated line, a link between them with configurable faults, and a
 //! record of the transmitted data.
 
 use std::collections::VecDeque;
@@ -28,29 +28,29 @@ pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 /// The faults of a link, and a record of its bytes.
 #[derive(Default)]
 pub(crate) struct Tap {
-    /// Every frame that was sent over the link.
+    /// Every frame sent over the link.
     pub(crate) sent: Vec<Vec<u8>>,
-    /// Number of the frame, counted from 0, at which the link is lost.
+    /// Number of the frame, counted from 0, from which the link is lost.
     pub(crate) lost_from: Option<usize>,
-    /// Number of the first frame that no longer reaches the encoder.
+    /// Number of the first frame that does not reach the encoder any more.
     pub(crate) deaf_from: Option<usize>,
-    /// Number of the frame from which on no reply arrives.
+    /// Number of the first frame that no longer receives a reply.
     pub(crate) mute_from: Option<usize>,
-    /// Number of a frame that does not reach the encoder.
+    /// Number of a single frame that does not reach the encoder.
     pub(crate) swallow_request: Option<usize>,
-    /// Number of a frame whose reply is lost.
+    /// Number of a single frame whose reply is lost.
     pub(crate) swallow_reply: Option<usize>,
-    /// Every reply to a request that begins with these bytes is damaged.
+    /// Start of the requests whose replies are damaged.
     pub(crate) broken_to: Option<Vec<u8>>,
-    /// Every reply to a request that begins with these bytes is lost.
+    /// Start of the requests whose replies are lost.
     pub(crate) mute_to: Option<Vec<u8>>,
     /// Bytes from another sender on the line.
     pub(crate) foreign: VecDeque<u8>,
     /// Whether the link has a fixed speed, as with a device server.
     pub(crate) formatless: bool,
-    /// Whether the link reports that it is lost when it is checked.
+    /// Whether the next check of the link reports that it is lost.
     pub(crate) unplugged: bool,
-    /// Number of the frame at which the job is cancelled, and its token.
+    /// Number of the frame at which the job is cancelled, and its cancel token.
     pub(crate) cancel_at: Option<(usize, CancelToken)>,
 }
 
@@ -160,7 +160,7 @@ pub(crate) struct Desk {
     pub(crate) session: Session<Hiperface>,
 }
 
-/// Returns a folder for backups and the logbook. It is in memory if possible, because thousands of them are created.
+/// Returns a folder for backups and the logbook, in memory if possible, because tests create thousands.
 pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap()
 }
@@ -181,7 +181,7 @@ impl Desk {
         Self::at(bus(query), &VirtualClock::default(), station)
     }
 
-    /// Creates a test set-up with the given line. Its time is the time of `clock` or later.
+    /// Creates a test bench with the given line. Its time is that of `clock` or later.
     pub(crate) fn at(bus: Bus, clock: &VirtualClock, station: Station) -> Self {
         let own = Arc::new(VirtualClock::default());
         own.sleep_until(clock.now());
@@ -209,7 +209,7 @@ impl Desk {
         Desk { bus, clock, tap, trace, folder, session }
     }
 
-    /// Returns the same line at the same time with a new session, as after a cable was plugged in again.
+    /// Returns the same line at the same time with a new session, as after a cable was reconnected.
     pub(crate) fn reconnected(&self) -> Desk {
         let mut desk =
             Self::plugged(self.bus.clone(), self.clock.clone(), self.folder.clone(), self.session.station().clone());
@@ -217,7 +217,7 @@ impl Desk {
         desk
     }
 
-    /// Returns a copy, including the line and the time but not the files on disk.
+    /// Returns a copy that includes the line and the time but not the files on disk.
     pub(crate) fn copied(&self) -> Desk {
         let bus = self.bus.lock().unwrap().clone();
         Self::at(bus, &self.clock, self.session.station().clone())
@@ -281,7 +281,7 @@ impl Desk {
         }
     }
 
-    /// Returns the status byte and content of every data field, read directly from the encoder.
+    /// Returns the status byte and content of every data field, read directly from the simulated encoder.
     pub(crate) fn memory(&self) -> Fields {
         let bus = self.bus();
         let memory = bus.encoders()[0].memory();
@@ -302,7 +302,7 @@ pub(crate) fn restore_of(profile: &HiperfaceProfile) -> Change {
     Change::Restore { profile: Box::new(profile.clone()), options: RestoreOptions::default() }
 }
 
-/// Returns the profile that a backup file contains.
+/// Returns the profile in a backup file.
 pub(crate) fn backup(path: &std::path::Path) -> HiperfaceProfile {
     ProfileDocument::parse(&read_text(path).unwrap(), program().studio.formats).unwrap().body.into_profile().unwrap()
 }
@@ -317,7 +317,7 @@ pub(crate) fn xor(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)
 }
 
-/// Returns the positions of access codes in a request according to the reference, counted after the two head bytes.
+/// Returns the positions of access codes in a request according to the reference, not counting the two head bytes.
 fn places_of_codes(command: u8) -> &'static [usize] {
     match command {
         0x43 | 0x63 => &[6],
@@ -330,8 +330,8 @@ fn places_of_codes(command: u8) -> &'static [usize] {
     }
 }
 
-/// Checks that the trace shows a request with an access code completely except for the code and the checksum, and that
-/// it does not show the request itself as an answer.
+/// Checks that the trace masks the code and the checksum of a request with an access code and shows the rest. It must
+/// not show the request itself as a reply.
 fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
     let shown = entry.bytes.to_string();
     let words: Vec<&str> = shown.split(' ').collect();
@@ -356,7 +356,7 @@ fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
     }
 }
 
-/// Checks that a text for users contains none of the codes used in these tests.
+/// Checks that a user-visible text does not contain any of the codes used in these tests.
 pub(crate) fn check_words(text: &str) {
     // A damaged reply may have any checksum.
     if text.contains("checksum") {
@@ -369,7 +369,7 @@ pub(crate) fn check_words(text: &str) {
     }
 }
 
-/// Returns the requests in a trace, each with the replies shown after it.
+/// Returns the requests in a trace, each with the replies that follow it.
 pub(crate) fn exchanges(trace: &[TraceEntry]) -> Vec<(String, Vec<Vec<u8>>)> {
     let mut exchanges: Vec<(String, Vec<Vec<u8>>)> = Vec::new();
     for entry in trace {

@@ -1,4 +1,4 @@
-//! One job that reads all data of an encoder, and access codes that the user enters later.
+//! The job that reads all data of an encoder, and access codes that the user enters later.
 
 use encoder_studio::analysis::check::Verdict;
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
@@ -63,7 +63,7 @@ fn a_noted_access_code_is_neither_sent_nor_printed() {
     assert!(open.fields.iter().all(|field| field.bytes.is_some()), "{:?}", open.fields);
 }
 
-/// Returns an encoder with two data fields: the name plate and another one.
+/// Returns an encoder with two data fields, one of which is the name plate.
 fn two_fields() -> Desk {
     let mut desk = Desk::new("");
     desk.change(Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xC8) }).unwrap();
@@ -77,7 +77,7 @@ fn check(desk: &mut Desk) -> Vec<HiperfaceStepResult> {
     }
 }
 
-/// If a field cannot be read, the rest is still usable, and the errors of the line are counted (issue 22.11).
+/// The other fields are still read, and line errors are counted (issue 22.11).
 #[test]
 fn one_unreadable_field_leaves_the_rest_usable() {
     // The reply to 4Ah on data field 0 is damaged or missing each time. In the third case it is the reply to 4Ch, so
@@ -116,7 +116,7 @@ fn one_unreadable_field_leaves_the_rest_usable() {
     }
 }
 
-/// If the encoder no longer answers, this is not reported as a field that cannot be read.
+/// An encoder that no longer answers must not be reported as a field that cannot be read.
 #[test]
 fn a_silent_encoder_ends_the_survey() {
     let mut desk = two_fields();
@@ -128,7 +128,7 @@ fn a_silent_encoder_ends_the_survey() {
     assert!(desk.run(HiperfaceJob::Survey).is_err());
 }
 
-/// Returns the status codes of the virtual encoder in the logbook, the latest reading first.
+/// Returns the status codes that the logbook contains for the virtual encoder, latest reading first.
 fn noted(desk: &Desk) -> Vec<String> {
     let path = Store::at_root(desk.folder.path()).logbook_path();
     let key = DeviceKey {
@@ -149,8 +149,8 @@ fn noted(desk: &Desk) -> Vec<String> {
     }
 }
 
-/// Request 50h removes a code from the encoder. The code is therefore in the logbook before it is shown, whichever
-/// command reads it, and even if the job that read it fails (issue 22.10).
+/// Request 50h removes a code from the encoder. The logbook must therefore contain it before it is shown, whichever
+/// command reads it, and even if that job fails (issue 22.10).
 #[test]
 fn a_status_code_that_was_read_is_logged() {
     let mut desk = Desk::new("");

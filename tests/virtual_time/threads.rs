@@ -1,4 +1,4 @@
-//! The worker on its thread, with a virtual encoder in real time.
+//! The worker on its own thread, with a virtual encoder in real time.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -14,7 +14,7 @@ use encoder_studio::worker::{Event, JobId, Session, SubmitError, Worker};
 
 use crate::support::{MARGIN, Tap, TestLink, bus};
 
-/// A time limit longer than any test takes, which reveals a hanging thread.
+/// A time limit longer than any test, to detect a hanging thread.
 pub(crate) const LONG: Duration = Duration::from_secs(20);
 
 pub(crate) struct Bench {
@@ -55,7 +55,7 @@ fn is_end(event: &Event<Hiperface>) -> Option<JobId> {
     }
 }
 
-/// Waits for a job to end and returns all events up to its end.
+/// Waits for a job to end and returns all events until then.
 pub(crate) fn until_end(worker: &Worker<Hiperface>) -> Vec<Event<Hiperface>> {
     let mut events = Vec::new();
     loop {
@@ -110,8 +110,7 @@ fn each_job_starts_once_and_ends_once() {
     assert!(bench.worker.events().recv_timeout(Duration::from_millis(50)).is_err(), "and nothing comes after the end");
 }
 
-/// The job reports 672 steps of progress that nothing reads. It ends nevertheless, and its result can be read
-/// afterwards.
+/// The job reports 672 steps of progress, which are never read. It still ends, and its result can be read afterwards.
 #[test]
 fn a_job_ends_without_a_reader() {
     let mut bench = in_virtual_time("settings=0xE0");
@@ -181,7 +180,7 @@ fn an_ending_worker_still_reports_the_end_of_its_job() {
     assert_eq!(ending.events().iter().filter_map(|event| is_end(&event)).collect::<Vec<_>>(), [id]);
 }
 
-/// A stop from any thread reaches the running job but no job that is submitted later.
+/// A stop from any thread ends the running job, but no job that is submitted later.
 #[test]
 fn a_stop_applies_to_one_job() {
     let mut bench = in_virtual_time("");

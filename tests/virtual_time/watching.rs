@@ -1,5 +1,5 @@
-//! Values that are watched while the position of an encoder is polled: their order, rejections, and jobs and ends in
-//! between. The tests of the scheduler itself check the times (`worker/poll_scheduler.rs`).
+//! Values that are read while an encoder's position is polled: their order, rejections, and interruptions by jobs. The
+//! times are tested with the scheduler (`worker/poll_scheduler.rs`).
 
 use std::time::{Duration, Instant};
 
@@ -15,7 +15,7 @@ use crate::threads::{LONG, identify, in_virtual_time, until_end};
 
 const TEMPERATURE: WatchedQuantity = WatchedQuantity::Analogue(0x48);
 const SINE: WatchedQuantity = WatchedQuantity::Analogue(0x00);
-/// A quantity that no encoder in these tests provides.
+/// A quantity that none of the encoders in these tests provides.
 const MISSING: WatchedQuantity = WatchedQuantity::Analogue(0x33);
 const ALWAYS: Duration = Duration::ZERO;
 
@@ -34,7 +34,7 @@ fn at(sample: &PolledSample) -> Moment {
     }
 }
 
-/// Sets a new list of watched values and returns `count` samples after it takes effect, beginning with a position.
+/// Sets a new list of watched values. Returns the first `count` samples with it, starting with a position.
 fn course(
     worker: &Worker<Hiperface>,
     wished: &[WatchedQuantity],

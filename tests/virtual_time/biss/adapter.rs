@@ -1,4 +1,4 @@
-//! Registers and position over an adapter: banks, checksums, stuck lines, and adapters that do not answer.
+//! Registers and position over an adapter: banks, checksums, a stuck line, and an adapter that does not answer.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use encoder_studio::units::Moment;
 
 use super::support::{Bus, at};
 
-/// The frame of 1234h turns and 18000h steps is 024698000CF (BiSS reference 2).
+/// At 1234h turns and 18000h steps, the frame is 024698000CF (BiSS reference 2).
 #[test]
 fn registers_and_position_are_read() {
     let mut bus = Bus::new("temperature=25");
@@ -30,7 +30,7 @@ fn registers_and_position_are_read() {
     assert_eq!(bus.station.to_string(), "BiSS at 1000000 Hz");
 }
 
-/// The adapter uses the nearest clock below the requested one that it can divide from its 60 MHz: 60/9 MHz.
+/// The clock is divided from 60 MHz: 60/9 MHz is the highest available clock below the requested one.
 #[test]
 fn the_clock_is_the_nearest_the_adapter_can_divide() {
     let mut bus = Bus::new("");
@@ -80,7 +80,7 @@ fn a_bank_is_selected_again_only_if_it_may_have_changed() {
     assert_eq!(bus.count(Operation::BissRegisterWrite), 5);
 }
 
-/// After a short loss of power, the encoder has bank 0 selected again.
+/// A short loss of power resets the selected bank to 0.
 #[test]
 fn a_restart_is_detected_by_its_silence() {
     let mut bus = Bus::new("");
@@ -215,7 +215,7 @@ fn the_supply_is_switched_on_if_requested() {
     assert_eq!(error.to_string(), "the adapter virtual adapter cannot supply an encoder");
 }
 
-/// The noise is on the line to the adapter, not on that of the encoder. Its packets have a CRC of 16 bits.
+/// The noise is between host and adapter, where packets have a 16-bit CRC, not between adapter and encoder.
 #[test]
 fn a_noisy_wire_to_the_adapter_yields_correct_values_or_errors() {
     let (mut right, mut failed) = (0, 0);

@@ -1,6 +1,6 @@
-//! Every procedure is interrupted at each exchange: the link is cut, the encoder loses its power, or the user cancels.
-//! The reported state of the encoder must be its real one. Afterwards, the encoder can be returned to operation with
-//! the password cleared, and the procedure can be executed.
+//! Interrupts every procedure at each exchange: the link is cut, the encoder loses its power, or the user cancels. The
+//! reported state of the encoder must be its actual state. Afterwards, the encoder can be returned to operation with
+//! the password cleared, and the procedure can be repeated.
 
 use encoder_studio::devices::biss::jobs::{Change, JobError, Prepared};
 use encoder_studio::devices::biss::procedures::Error;
@@ -19,7 +19,7 @@ use super::support::{Bench, Transport};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// A procedure and the check whether it has been completed.
+/// A procedure, and a function that checks whether it has been completed.
 struct Scene {
     name: &'static str,
     change: fn() -> Change,
@@ -76,7 +76,7 @@ enum Ended {
     Interrupted(Box<InterruptedWrite>),
 }
 
-/// Executes the change on a copy of the test set-up. `disturb` is called after the plan has been made.
+/// Executes the change on a copy of the test bench. `disturb` is called after the plan has been made.
 fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Bench)) -> (Bench, Ended) {
     let mut bench = original.copied();
     disturb(&mut bench);
@@ -92,8 +92,8 @@ fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Be
     (bench, ended)
 }
 
-/// Checks that the reconnected encoder can be returned to operation. Once for each step, also checks that the change
-/// can be repeated.
+/// Checks that the reconnected encoder can be returned to operation and, once per step, that the change can be
+/// repeated.
 fn assert_can_return_to_operation(
     bench: &Bench,
     scene: &Scene,
@@ -118,8 +118,8 @@ fn assert_can_return_to_operation(
     assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
 }
 
-/// Checks that the reported number of flash cycles is the real one, or one more if it is not known whether the last
-/// cycle took place.
+/// Checks that the reported number of flash cycles is correct, or one too high if it is unknown whether the last cycle
+/// took place.
 fn assert_cycles(told: &InterruptedWrite, spent: u32, context: &str) {
     let told = told.done.write_cycles;
     assert!(told == u64::from(spent) || told == u64::from(spent) + 1, "{context}: {told} told, {spent} spent");
@@ -163,7 +163,7 @@ fn cut_at_every_exchange(scene: &Scene, way: Transport) {
     }
 }
 
-/// Checks that the interruptions covered every step in which data are sent.
+/// Checks that the interruptions covered every step that sends data.
 fn assert_all_steps(prepared: &Prepared, hit: &[ProcedureStep], name: &str, context: &str) {
     let mut missed: Vec<ProcedureStep> = prepared.plan.ops.iter().flat_map(operation_steps).collect();
     if missed.contains(&ProcedureStep::Restart) && name != "lost" {
@@ -200,7 +200,7 @@ fn a_wiegand_test_cut_at_any_exchange_can_return_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[4], *way));
 }
 
-/// The encoder loses its power before an exchange. It starts in operation, and nothing is stored partially.
+/// The encoder restarts in operation, and nothing is partially stored.
 #[test]
 fn power_lost_before_any_exchange_leaves_operation_mode() {
     for scene in &SCENES {
@@ -243,7 +243,7 @@ fn power_lost_before_any_exchange_leaves_operation_mode() {
     }
 }
 
-/// The encoder loses its power while it writes to its flash.
+/// The encoder loses its power while writing to its flash.
 #[test]
 fn power_lost_in_any_store_is_reported_and_recovered() {
     for scene in &SCENES {
@@ -264,8 +264,7 @@ fn power_lost_in_any_store_is_reported_and_recovered() {
     }
 }
 
-/// After a cancellation at any exchange, the encoder is in operation, and the report names the values that were
-/// written.
+/// The encoder is in operation afterwards, and the report lists the values that were written.
 #[test]
 fn cancelling_at_any_exchange_returns_to_operation() {
     for scene in &SCENES {
@@ -297,7 +296,7 @@ fn cancelling_at_any_exchange_returns_to_operation() {
     }
 }
 
-/// The complete mounting is interrupted at some exchanges of each operation. Operations completed before are reported
+/// The mounting run is interrupted at some exchanges of each operation. Operations completed before that are reported
 /// as done.
 #[test]
 fn an_interrupted_mounting_reports_the_finished_operations() {

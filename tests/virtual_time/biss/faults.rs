@@ -1,4 +1,4 @@
-//! Surveys on a noisy line over both kinds of connection: the job ends, and its result is either right or an error.
+//! Reads an encoder over a noisy line on both kinds of connection. The job must end with a correct result or an error.
 
 use std::fs;
 use std::sync::{Arc, Mutex};
@@ -24,7 +24,7 @@ fn survey(bench: &mut Bench) -> Result<Survey, Error> {
     }
 }
 
-/// Returns the survey without the time of its position.
+/// Returns the result of the reading without the time of its position.
 fn timeless(survey: Survey) -> Survey {
     let mut survey = survey;
     if let Some(reading) = &mut survey.status.position {
@@ -82,7 +82,7 @@ fn echo_and_byte_order_do_not_change_read_values() {
     }
 }
 
-/// The line is cut at every hundredth exchange. The job reports within ten seconds that the encoder does not answer.
+/// The line is cut at every hundredth exchange. Within ten seconds, the job reports that the encoder does not answer.
 #[test]
 fn silence_ends_a_survey_within_ten_seconds() {
     for way in WAYS {
@@ -117,7 +117,7 @@ fn cancelling_takes_effect_between_two_exchanges() {
     }
 }
 
-/// A replayed recording gives the same answers as the encoder did.
+/// A replayed recording gives the same replies as the encoder did.
 #[test]
 fn a_recording_of_either_interface_can_be_replayed() {
     for way in WAYS {

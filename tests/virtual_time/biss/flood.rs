@@ -1,4 +1,4 @@
-//! When noise arrives at a high rate, the memory and time that a job uses remain limited.
+//! A job uses limited memory and time even if noise arrives at a high rate.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -46,8 +46,7 @@ impl ByteLink for Flood {
     }
 }
 
-/// The trace keeps a limited number of noise bytes from either connection, and a job ends even if the noise does not
-/// (issue 22.11).
+/// The trace keeps a limited number of noise bytes, and the job ends even if the noise does not (issue 22.11).
 #[test]
 fn a_flood_of_noise_takes_bounded_memory_and_time() {
     for (way, noise) in [

@@ -1,5 +1,5 @@
-//! A simulated user at the motor of a virtual encoder, who follows the requests and presses Start when possible. This
-//! module also provides the changes for the tests of procedures.
+//! A simulated user at the motor of a virtual encoder, who follows the prompts and presses Start when possible, and the
+//! changes for the tests of procedures.
 
 use std::time::Duration;
 
@@ -19,17 +19,17 @@ use encoder_studio::worker::commit::ApprovedPlan;
 
 use super::support::{Bench, at};
 
-/// A simulated user who follows the requests and records them.
+/// A simulated user who follows the prompts and records them.
 pub(crate) struct TestOperator {
     motor: Motor,
     pub(crate) seat: OperatorChannel,
-    /// Speed of the motor in the calibration and in the Wiegand test, in revolutions per minute.
+    /// Speeds of the motor in the calibration and in the Wiegand test, in revolutions per minute.
     pub(crate) rpm: (f64, f64),
-    /// Operations and steps in the order in which they began.
+    /// Operations and steps in the order in which they started.
     pub(crate) steps: Vec<(usize, ProcedureStep)>,
-    /// Last request for each task, in the order of the requests.
+    /// Last prompt for each task, in chronological order.
     pub(crate) demands: Vec<OperatorPrompt>,
-    /// Answers other than Start.
+    /// Answers other than Start, by task.
     pub(crate) instead: Vec<(OperatorTask, OperatorAnswer)>,
 }
 
@@ -53,7 +53,7 @@ impl TestOperator {
         }
     }
 
-    /// Returns the job that executes a plan with this user at the motor.
+    /// Returns the job that executes a plan with this user operating the motor.
     pub(crate) fn commit_of(&self, prepared: &Prepared) -> BissJob {
         let attendance = OperatorPresence::Attended(self.seat.clone());
         let consent = Consent::to(prepared.plan.id());
@@ -123,7 +123,7 @@ impl Bench {
         }
     }
 
-    /// Executes a plan with a simulated user at the motor.
+    /// Executes a plan with a simulated user operating the motor.
     pub(crate) fn commit(&mut self, prepared: &Prepared, hands: &mut TestOperator) -> Result<Committed, Box<JobError>> {
         match self.run_watched(hands.commit_of(prepared), &mut |news| hands.hear(news))? {
             BissOutput::Committed(committed) => Ok(*committed),
@@ -131,7 +131,7 @@ impl Bench {
         }
     }
 
-    /// Executes a plan without a user at the motor.
+    /// Executes a plan without a user.
     pub(crate) fn commit_alone(&mut self, prepared: &Prepared, patience: Duration) -> Result<Committed, JobError> {
         let attendance = OperatorPresence::Unattended(UnattendedOperator { patience });
         let consent = Consent::to(prepared.plan.id());
@@ -165,7 +165,7 @@ impl Bench {
         }
     }
 
-    /// Returns the device mode and the password, read directly from the simulated encoder.
+    /// Returns the mode and the password, read directly from the simulated encoder.
     pub(crate) fn mode_and_password(&self) -> (DeviceMode, u8) {
         (self.encoder(|encoder, _| encoder.mode()), self.encoder_reads(at("0x6B")).unwrap())
     }
@@ -182,9 +182,8 @@ impl Bench {
     }
 }
 
-/// Returns the indices of the exchanges at which the tests interrupt a run. Of the exchanges before the first
-/// operation, which only read, and of the repeated requests for the position or the status during a wait or a run, only
-/// every eighth is included.
+/// Returns the indices of the exchanges at which the tests interrupt a run. Readings before the first operation and
+/// repeated requests during a wait or a run are included only every eighth time.
 pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
     let mut bench = original.copied();
     let mut hands = TestOperator::on(&bench);

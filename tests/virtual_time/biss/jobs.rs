@@ -56,7 +56,7 @@ fn device_error(error: JobError) -> Error {
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// The expected values are those of appendix 9.1 of the manual. The serial number is that of the virtual encoder.
+/// The expected values are from appendix 9.1 of the manual. The serial number is that of the virtual encoder.
 #[test]
 fn a_survey_over_both_interfaces_is_complete() {
     for way in WAYS {
@@ -105,7 +105,7 @@ fn a_survey_over_both_interfaces_is_complete() {
     }
 }
 
-/// The manual lists errors and warnings since firmware 1.6.0, the filter since 1.1.0 and the preset since 1.2.0.
+/// Errors and warnings exist since firmware 1.6.0, the filter since 1.1.0, the preset since 1.2.0 (manual).
 #[test]
 fn features_missing_in_older_firmware_are_absent() {
     let mut bench = Bench::new(Transport::Adapter, "firmware=1.0.9&errors=0x10");
@@ -196,8 +196,8 @@ fn everything_restorable_is_saved_over_both_interfaces() {
     }
 }
 
-/// In mode 04, the data registers show values that were written but not saved (reference 5.3). They are reported,
-/// marked and not compared. Reading does not return to operation, which would discard them (issue 22.15).
+/// In mode 04, the data registers contain values that were written but not saved (reference 5.3). They are reported,
+/// marked and not compared. Reading must not return the encoder to operation, which would discard them (issue 22.15).
 #[test]
 fn unsaved_registers_are_marked_and_not_compared() {
     for way in WAYS {
@@ -244,7 +244,7 @@ fn a_save_reports_progress_and_can_be_cancelled() {
     assert_eq!(stopped.tap().sent.len(), 1000);
 }
 
-/// With any fault of the line, a saved profile is correct or there is an error.
+/// Whatever the fault of the line, a saved profile is correct or there is an error.
 #[test]
 fn a_save_over_a_noisy_line_is_correct_or_an_error() {
     let (mut saved, mut failed) = (0, 0);
@@ -266,8 +266,7 @@ fn a_save_over_a_noisy_line_is_correct_or_an_error() {
     assert!(saved > 9);
 }
 
-/// If the device ID belongs to another device of the same manufacturer, it is reported, and the data that every encoder
-/// has are shown.
+/// The device ID of another device by the same manufacturer is reported. The data common to all encoders are shown.
 #[test]
 fn a_device_id_without_a_description_is_reported() {
     let [(_, kit), (_, unknown)] = Descriptions::BUILT_IN;
@@ -318,8 +317,8 @@ fn samples_and_watched_registers_are_read_one_by_one() {
     }
 }
 
-/// The word over the configuration pin has no error and warning bits, so each of the two registers is read once per
-/// second (UBICOM reference 4). A frame has both bits. Every position includes them.
+/// A word from the configuration pin has no error and warning bits, so each of their registers is read once per second
+/// (UBICOM reference 4). A frame contains both bits. Every position includes them.
 #[test]
 fn an_error_during_polling_marks_the_positions() {
     for way in WAYS {
@@ -352,8 +351,7 @@ fn an_error_during_polling_marks_the_positions() {
     }
 }
 
-/// Some valid frames arrive between damaged ones. Damaged frames are counted with the next valid one or form a sample
-/// of their own.
+/// Some frames are valid. Damaged frames are counted in the sample of the next valid one or form their own sample.
 #[test]
 fn polling_survives_damaged_frames() {
     let mut bench = Bench::new(Transport::Adapter, "noise=0.6&seed=2");

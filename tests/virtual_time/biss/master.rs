@@ -1,5 +1,5 @@
-//! Registers and position over the configuration pin: echo, byte order, noise, silence, rejections, and writes whose
-//! reply is lost.
+//! Registers and position over the configuration pin: echo, byte order, noise, silence, rejected requests, and writes
+//! whose reply is lost.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use encoder_studio::link::{CancelToken, Clock, Direction};
 
 use super::support::{Pin, at};
 
-/// Temperature 75 is 25 °C, and the position is 1234h turns and 18000h steps (UBICOM reference 6).
+/// Temperature 75 is 25 °C. The position is 1234h turns and 18000h steps (UBICOM reference 6).
 #[test]
 fn registers_and_position_are_read_with_the_published_frames() {
     let mut pin = Pin::new("temperature=25");
@@ -88,8 +88,8 @@ fn silence_is_reported_after_five_tries_in_time() {
     assert!(matches!(error, Error::NoReply { echo_heard: true, .. }), "{error}");
 }
 
-/// An encoder that answers other requests is silent if it does not have the register. The kit encoder does not have
-/// bank 44h.
+/// An encoder does not answer a request for a missing register, but answers other requests. The kit encoder has no bank
+/// 44h.
 #[test]
 fn a_missing_register_is_distinguished_from_a_missing_encoder() {
     let mut pin = Pin::new("");
@@ -113,7 +113,7 @@ fn a_refused_write_is_reported_and_not_retried() {
     assert_eq!(pin.master().read(at("0x6A")), Ok(7));
 }
 
-/// The request or its answer is lost. A stored value is read back and sent again only if necessary.
+/// The request or its reply is lost. A stored value is read back, and written again only if necessary.
 #[test]
 fn a_write_with_a_lost_reply_is_read_back() {
     for request_lost in [false, true] {
@@ -128,8 +128,8 @@ fn a_write_with_a_lost_reply_is_read_back() {
     }
 }
 
-/// The command starts a Wiegand test. If its reply is lost, the encoder cannot report whether it received the command,
-/// so the command is not repeated.
+/// The command starts a Wiegand test. The encoder cannot report whether it received the command, so it must not be
+/// repeated.
 #[test]
 fn a_command_with_a_lost_reply_is_unclear_and_never_repeated() {
     for request_lost in [false, true] {
@@ -145,7 +145,7 @@ fn a_command_with_a_lost_reply_is_unclear_and_never_repeated() {
     }
 }
 
-/// If the connection is lost during a write, the result is not known.
+/// If the connection is lost during a write, the result is unknown.
 #[test]
 fn a_write_that_lost_its_wire_is_unclear() {
     let mut pin = Pin::new("");
@@ -179,7 +179,7 @@ fn cancelling_takes_effect_between_exchanges_and_not_in_a_shield() {
     assert_eq!(master.read(at("0x41")), Err(Error::Cancelled), "the shield ends");
 }
 
-/// An encoder is silent for five seconds while it calibrates. A normal request returns an error, and one with a longer
+/// The encoder is silent for five seconds during calibration. A normal request returns an error, and one with a longer
 /// time limit returns the status.
 #[test]
 fn a_long_silence_is_tolerated_with_patience() {
@@ -200,8 +200,8 @@ fn a_long_silence_is_tolerated_with_patience() {
     assert!((9.0..10.5).contains(&(dead.now() - from).as_secs_f64()), "patience has an end");
 }
 
-/// A wrong value is returned only if two damaged frames have matching checksums. With confirmation, no value in these
-/// runs is wrong.
+/// Two damaged frames with matching checksums would give a wrong value. Because values are confirmed, none is wrong in
+/// these runs.
 #[test]
 fn a_noisy_line_yields_correct_values_or_errors() {
     let (mut right, mut failed) = (0, 0);
@@ -243,8 +243,8 @@ fn writes_over_a_noisy_line_report_their_true_result() {
     }
 }
 
-/// A false beginning of a frame hides the following bytes until that frame ends. Both sides end it after 20 ms of
-/// silence.
+/// Noise that looks like the start of a frame hides the following bytes until that frame ends. Both sides end it after
+/// 20 ms of silence.
 #[test]
 fn replies_are_read_again_after_garbage() {
     let mut pin = Pin::new("temperature=25");

@@ -1,4 +1,4 @@
-//! The five procedures and the mounting run on the virtual encoder: their steps, measurements, rejections and failures.
+//! The five procedures and the mounting run on the virtual encoder: steps, measurements, rejections and failures.
 //! However a procedure ends, the encoder returns to operation with the password cleared.
 
 use std::time::Duration;
@@ -21,8 +21,7 @@ use super::support::{Bench, Transport, at};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// Checks that the reported steps match the previously listed ones in order, including the return to operation if one
-/// is listed.
+/// Checks that the reported steps match the listed ones in order, including the return to operation if listed.
 #[track_caller]
 fn assert_steps(bench: &mut Bench, change: Change) -> TestOperator {
     let prepared = bench.prepare(change).unwrap();
@@ -40,7 +39,7 @@ fn assert_steps(bench: &mut Bench, change: Change) -> TestOperator {
     hands
 }
 
-/// Counterclockwise comes first. Each direction takes about 5 s, and the result is saved automatically (manual 6.4).
+/// The counterclockwise run comes first. Each run takes about 5 s, and the result is saved automatically (manual 6.4).
 #[test]
 fn a_calibration_runs_both_ways_and_costs_one_flash_cycle() {
     for way in WAYS {
@@ -74,7 +73,7 @@ fn a_calibration_runs_both_ways_and_costs_one_flash_cycle() {
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), calibration());
 }
 
-/// The test takes 515 revolutions, which are 30.9 s at 1000 rpm (manual 6.3).
+/// The test takes 515 revolutions, which is 30.9 s at 1000 rpm (manual 6.3).
 #[test]
 fn a_wiegand_test_returns_results_and_saves_them_on_request() {
     for way in WAYS {
@@ -142,7 +141,7 @@ fn a_filter_is_selected_with_a_restart() {
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), filter());
 }
 
-/// 270° are 18000h, stored in the registers as 00 80 01 (manual 6.7).
+/// 270° is 18000h, which the registers store as 00 80 01 (manual 6.7).
 #[test]
 fn a_preset_is_stored_and_executed_with_two_restarts() {
     for way in WAYS {
@@ -170,7 +169,7 @@ fn a_preset_is_stored_and_executed_with_two_restarts() {
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), preset(1, 1));
 }
 
-/// Temperature, calibration, Wiegand test, preset and OEM data. The motor is turned and stopped in between.
+/// The run covers temperature, calibration, Wiegand test, preset and OEM data. The motor turns and stops in between.
 #[test]
 fn a_mounting_is_one_run_with_a_report() {
     let mut bench = Bench::new(Transport::ConfigPin, "temperature=33");
@@ -259,7 +258,7 @@ fn cancelling_at_the_motor_leaves_the_encoder_in_operation() {
     }
 }
 
-/// Without a user, values that remain unsuitable are reported after the waiting time, and nothing is started.
+/// After the waiting time, the program reports the values that are still unsuitable and starts nothing.
 #[test]
 fn an_unattended_start_happens_when_ready_or_not_at_all() {
     let cases = [
@@ -303,7 +302,7 @@ fn an_unattended_start_happens_when_ready_or_not_at_all() {
     }
 }
 
-/// The possible errors in the calibration's status (manual 6.4). The second run loses the table.
+/// These are the possible errors in the calibration status (manual 6.4). An error in the second run loses the table.
 #[test]
 fn a_failed_calibration_reports_the_reason() {
     // Speed and direction change after the start of the run. Variation and temperature are set from the beginning.
@@ -351,7 +350,7 @@ fn a_failed_calibration_reports_the_reason() {
     }
 }
 
-/// The encoder itself detects these errors although the measured values were suitable just before.
+/// The encoder detects these errors itself, although the measured values were suitable just before.
 #[test]
 fn the_encoder_decides_on_direction_speed_and_temperature() {
     type Spoil = fn(&mut encoder_studio::devices::biss::sim::Encoder, encoder_studio::units::Moment);
@@ -423,7 +422,7 @@ fn a_run_that_never_ends_times_out() {
     assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, IN_OPERATION));
 }
 
-/// Obstacles that are known before a procedure begins are reported before anything is written.
+/// Obstacles known in advance are reported before anything is written.
 #[test]
 fn impossible_procedures_are_refused_beforehand() {
     let run = |calibrate, wiegand| MountingSteps { calibrate, wiegand, ..MountingSteps::default() };
@@ -452,7 +451,7 @@ fn impossible_procedures_are_refused_beforehand() {
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
 }
 
-/// Old firmware has only one filter, and the filter register has no meaning. Calibration works nevertheless.
+/// With old firmware, the filter register has no meaning because there is only one filter. Calibration still works.
 #[test]
 fn an_encoder_without_a_choice_of_filter_is_calibrated() {
     let mut bench = Bench::new(Transport::ConfigPin, "firmware=1.0.0");
@@ -486,7 +485,7 @@ fn an_encoder_left_in_a_mode_is_first_returned_to_operation() {
     assert_eq!(bench.return_to_operation().unwrap(), DeviceMode::OPERATION);
 }
 
-/// A clockwise calibration run that another host has started may finish, because ending it would lose the table.
+/// Another host has started a clockwise calibration run. Ending it would lose the table, so it may finish.
 #[test]
 fn the_return_to_operation_waits_for_a_calibration() {
     for silent in ["on", "off"] {
@@ -507,7 +506,7 @@ fn the_return_to_operation_waits_for_a_calibration() {
     }
 }
 
-/// If the start of the motor data is confirmed twice, the second answer does not start the OEM data.
+/// The second confirmation of the motor data does not start the OEM data.
 #[test]
 fn a_duplicated_answer_does_not_start_the_next_operation() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -539,7 +538,7 @@ fn a_duplicated_answer_does_not_start_the_next_operation() {
     assert_eq!((bench.flash_bank(0x04)[0x10], bench.flash_bank(0x24)[0x10]), (0x5A, 0));
 }
 
-/// The status left by an earlier run is not taken for the end or failure of this one.
+/// An old status must not be mistaken for the end or failure of the current run.
 #[test]
 fn the_status_of_an_earlier_run_is_ignored() {
     for silent in ["on", "off"] {

@@ -1,5 +1,5 @@
-//! Positions at a higher rate than single requests allow. The adapter streams them, and the stream is ended before any
-//! other request.
+//! Positions at a higher rate than single requests allow. The adapter streams them, and the stream is stopped before
+//! any other request.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -30,12 +30,12 @@ struct Stand {
     _folder: tempfile::TempDir,
 }
 
-/// Returns an encoder at an adapter with a bus clock that is fast enough for 20 000 frames per second.
+/// Returns an encoder on an adapter whose bus clock allows 20 000 frames per second.
 fn stand(query: &str) -> Stand {
     stand_with(query, None)
 }
 
-/// Returns the same as [`stand`], but the adapter supplies the encoder.
+/// Returns the same as [`stand`], but with the encoder supplied by the adapter.
 fn stand_with(query: &str, supply: Option<Supply>) -> Stand {
     stand_at(query, supply, 2_000_000)
 }
@@ -81,7 +81,7 @@ impl Stand {
         (0..1000).map(|_| bytes(1)).sum()
     }
 
-    /// Returns the number of requests of an operation that were sent.
+    /// Returns how many requests for an operation were sent.
     fn count(&self, operation: Operation) -> usize {
         let mut receiver = Receiver::default();
         self.tap.lock().unwrap().sent.iter().for_each(|bytes| receiver.push(bytes));
@@ -89,7 +89,7 @@ impl Stand {
     }
 }
 
-/// Checks that numbers and times are continuous, and that the position follows the shaft: 50 revolutions per second are
+/// Checks that numbers and times have no gaps, and that the position follows the shaft: 50 revolutions per second are
 /// 327.68 steps per frame.
 fn check(runs: &[ConsecutiveFrames]) {
     let first = &runs[0];
@@ -181,7 +181,7 @@ fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
     assert!(matches!(stand.session.take_sample(), Err(JobError::Device(Error::Link(error))) if error.is_lost()));
 }
 
-/// At 1 MHz, 43 bits, 7 µs for the acknowledgement and 20 µs for the time-out add up to 70 µs.
+/// At 1 MHz, 43 bits, 7 µs for the acknowledgement and 20 µs for the timeout add up to 70 µs.
 #[test]
 fn a_clock_too_slow_for_the_interval_is_reported() {
     for (clock_hz, period_ns, is_limited) in [(1_000_000, 70_000, true), (2_000_000, 50_000, false)] {
@@ -192,7 +192,7 @@ fn a_clock_too_slow_for_the_interval_is_reported() {
     }
 }
 
-/// A reset ends the stream and clears supply and clock. The next job or sample detects it and continues.
+/// A reset stops the stream and clears supply and clock. The next job or sample detects this and continues.
 #[test]
 fn an_adapter_reset_while_streaming_is_configured_again() {
     let query = "supply=switched&rpm=60";
@@ -217,7 +217,7 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
 }
 
 /// An adapter that falls silent may have been reset, which switches the supply off. The supply is switched on again,
-/// and the encoder gets its start-up time.
+/// and the encoder is given time to start.
 #[test]
 fn a_supplied_encoder_is_powered_again_after_a_reset() {
     let supply = Supply { millivolt: 5_000, measured: None };

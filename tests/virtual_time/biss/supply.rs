@@ -1,4 +1,4 @@
-//! The supply that an adapter provides for the encoder: whether it is on or off after a session (issue 22.16).
+//! The encoder supply provided by an adapter, and whether it is on or off after a session (issue 22.16).
 
 use std::time::Duration;
 
@@ -29,8 +29,7 @@ fn the_supply_is_switched_off_unless_found_on_or_kept() {
     }
 }
 
-/// A supply that was switched on to stream signals is switched off again, and one that was on before stays on (issue
-/// 22.16).
+/// A supply that streaming has switched on is switched off again. One that was already on stays on (issue 22.16).
 #[test]
 fn streaming_signals_restores_the_supply() {
     let volts = SupplyVoltage { least: 4_750, given: 5_000, greatest: 12_500 };
@@ -57,7 +56,7 @@ fn a_session_switches_off_only_its_own_supply() {
     assert!(has_power(&bench));
 }
 
-/// The power is switched off only after a store is complete. An encoder that another host has put into a mode keeps its
+/// Power is switched off only when a store is complete. An encoder that another host has put into a mode keeps its
 /// power.
 #[test]
 fn power_is_not_cut_during_a_store_or_a_mode() {
@@ -75,8 +74,8 @@ fn power_is_not_cut_during_a_store_or_a_mode() {
     assert!(has_power(&bench), "it may calibrate");
 }
 
-/// An encoder that never answers keeps its power, because it may still perform a calibration that an earlier session
-/// started (issue 22.16).
+/// An encoder that never answers keeps its power, because it may still be calibrating for an earlier session (issue
+/// 22.16).
 #[test]
 fn an_encoder_that_never_answers_keeps_its_power() {
     let mut bench = Bench::supplied_at("line=open", AsFound);
@@ -89,8 +88,8 @@ fn an_encoder_that_never_answers_keeps_its_power() {
     assert!(has_power(&bench), "that it may be cut off is not said by a link");
 }
 
-/// If a write is interrupted at any point and the encoder cannot be returned to operation, it keeps its power until the
-/// return succeeds.
+/// If an interrupted write leaves the encoder unable to return to operation, it keeps its power until the return
+/// succeeds.
 #[test]
 fn an_encoder_that_could_not_be_returned_to_operation_keeps_its_power() {
     let mut whole = Bench::supplied(AsFound);

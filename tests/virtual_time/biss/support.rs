@@ -1,5 +1,4 @@
-//! Test support: a virtual kit encoder in virtual time, a link to it with configurable faults, and a record of the
-//! data.
+//! Test support: a kit encoder in virtual time, a link to it with configurable faults, and a record of the data.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
@@ -24,12 +23,12 @@ use encoder_studio::worker::{Event, JobId, Progress, Session};
 use crate::faults::{FaultyLink, Schedule};
 use crate::support::{MARGIN, Tap, TestLink, folder};
 
-/// An encoder at its configuration pin, together with its host.
+/// A simulated encoder at its configuration pin, including the host's end of the line.
 pub(crate) type Pin = Rig<UbicomPort>;
-/// An encoder at an adapter, together with its host.
+/// A simulated encoder on an adapter, including the host's end of the line.
 pub(crate) type Bus = Rig<Adapter>;
 
-/// A virtual device, together with the host side of its line.
+/// A virtual device and the host's end of its line.
 pub(crate) struct Rig<D> {
     pub(crate) device: Arc<Mutex<D>>,
     pub(crate) clock: Arc<VirtualClock>,
@@ -63,7 +62,7 @@ impl Bus {
         Self::with(Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap(), Transport::Adapter)
     }
 
-    /// Returns the number of requests of an operation that were sent.
+    /// Returns how many requests for an operation were sent.
     pub(crate) fn count(&self, operation: Operation) -> usize {
         let mut receiver = Receiver::default();
         self.tap().sent.iter().for_each(|bytes| receiver.push(bytes));
@@ -92,7 +91,7 @@ impl<D: ByteDevice + 'static> Rig<D> {
         Master::new(ctx, &mut self.station)
     }
 
-    /// Sends bytes of another sender on the line.
+    /// Sends bytes on the line as another sender would.
     pub(crate) fn link_send(&mut self, bytes: &[u8]) {
         self.link.send(bytes).unwrap();
     }
@@ -109,14 +108,14 @@ impl<D: ByteDevice + 'static> Rig<D> {
         self.clock.now().since_start()
     }
 
-    /// Returns the frames on the line in hexadecimal digits.
+    /// Returns the frames on the line in hexadecimal.
     pub(crate) fn shown(&self, direction: Direction) -> Vec<String> {
         let entries = self.entries.lock().unwrap();
         entries.iter().filter(|entry| entry.direction == direction).map(|entry| entry.bytes.to_string()).collect()
     }
 }
 
-/// Access to the encoder of a test set-up while a job runs.
+/// Access to the encoder of a test bench while a job runs.
 pub(crate) struct Handle {
     end: End,
     clock: Arc<VirtualClock>,
@@ -132,7 +131,7 @@ impl Handle {
     }
 }
 
-/// A virtual encoder with a session, over either kind of connection.
+/// A virtual encoder with a session over either kind of connection.
 pub(crate) struct Bench {
     pub(crate) clock: Arc<VirtualClock>,
     pub(crate) session: Session<Biss>,
@@ -155,7 +154,7 @@ impl Bench {
         Self::made(way, query, store, folder)
     }
 
-    /// Creates a test set-up whose session uses the given store.
+    /// Creates a test bench whose session uses the given store.
     pub(crate) fn in_store(way: Transport, query: &str, store: Store) -> Self {
         Self::made(way, query, store, folder())
     }
@@ -204,18 +203,18 @@ impl Bench {
         Bench { clock, session, tap, end, folder }
     }
 
-    /// Returns the same device at the same time with a new session, as after a cable was plugged in again.
+    /// Returns the same device at the same time with a new session, as after a cable was reconnected.
     pub(crate) fn reconnected(&self) -> Bench {
         let (store, folder) = (Store::at_root(self.folder.path()), self.folder.clone());
         Self::plugged(self.end.clone(), self.session.station().transport, self.clock.clone(), store, folder)
     }
 
-    /// Creates a test set-up with an adapter that can switch the encoder's supply. The supply is off at first.
+    /// Creates a test bench with an adapter that can switch the encoder's supply, which is initially off.
     pub(crate) fn supplied(after: SupplyAfterSession) -> Self {
         Self::supplied_at("", after)
     }
 
-    /// Like [`supplied`](Self::supplied), but with additional settings of the adapter.
+    /// Like [`supplied`](Self::supplied), but with additional adapter settings.
     pub(crate) fn supplied_at(query: &str, after: SupplyAfterSession) -> Self {
         let query = format!("supply=switched&{query}");
         let adapter = Adapter::from_pairs(&pairs(&query), attachable_kinds()).unwrap();
@@ -223,8 +222,7 @@ impl Bench {
         Self::with_supply(End::Bus(Arc::new(Mutex::new(adapter))), after, Arc::default(), folder)
     }
 
-    /// Streams sine and cosine over the adapter, like the Signals tab. Returns whether the encoder had power during
-    /// this time.
+    /// Streams sine and cosine over the adapter, like the Signals tab. Returns whether the encoder had power meanwhile.
     pub(crate) fn stream_signals(&self, supply: Option<SupplyVoltage>) -> bool {
         let End::Bus(adapter) = &self.end else { panic!("no adapter") };
         let mut link = TestLink::new(adapter.clone(), self.clock.clone(), Arc::default());
@@ -303,7 +301,7 @@ impl Bench {
         self.tap.clone()
     }
 
-    /// Returns a function that counts the sent frames, also while a job runs.
+    /// Returns a function that counts the sent frames, even while a job runs.
     pub(crate) fn counter(&self) -> impl Fn() -> usize + use<> {
         let tap = self.tap.clone();
         move || tap.lock().unwrap().sent.len()
@@ -314,7 +312,7 @@ impl Bench {
         Handle { end: self.end.clone(), clock: self.clock.clone() }
     }
 
-    /// Advances the clock to the given time since the start.
+    /// Advances the clock to the given time after the start.
     pub(crate) fn clock_to(&self, elapsed: Duration) {
         self.clock.sleep_until(Moment::from_elapsed(elapsed));
     }
@@ -357,7 +355,7 @@ impl Bench {
         self.session.motor().unwrap()
     }
 
-    /// Returns the value of a register, read directly in the encoder.
+    /// Returns the value of a register, read directly from the simulated encoder.
     pub(crate) fn encoder_reads(&self, address: RegisterAddress) -> Option<u8> {
         self.encoder(|encoder, now| encoder.read(now, address))
     }

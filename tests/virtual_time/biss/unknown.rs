@@ -1,5 +1,4 @@
-//! An encoder at an adapter that the program has no description of: it has no data sheet, and its frames have other
-//! widths.
+//! An unknown encoder on an adapter: the program has no description of it, and its frames have other widths.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +16,7 @@ use crate::support::MARGIN;
 /// An adapter with a 14-bit singleturn encoder, which replies immediately.
 struct Stranger {
     layout: Layout,
-    /// Steps from one frame to the next.
+    /// Number of steps between two frames.
     step: u32,
     place: u32,
     clocked: u8,
@@ -128,8 +127,8 @@ fn at_rest_no_frame_is_found_and_the_survey_still_works() {
     assert!(matches!(error, Error::WrongWidths { data_bits: 35, crc_bits: 6, .. }), "{error}");
 }
 
-/// The user gives the numbers of turns and steps, also for a shaft at rest. 14 bits of steps are 16384 steps per turn
-/// (issue 22.20).
+/// The user enters the numbers of turns and steps, even for a shaft at rest. 14 bits are 16384 steps per turn (issue
+/// 22.20).
 #[test]
 fn a_given_frame_converts_positions_to_angles() {
     let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);

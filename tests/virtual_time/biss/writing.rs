@@ -1,5 +1,5 @@
-//! Tests of restoring and writing. A write uses as few registers and saves as possible, is planned before and recorded
-//! afterwards, and is rejected if the base values have changed. The tests also cover lost replies and wear.
+//! Tests of restoring and writing. A write uses as few registers and saves as possible, is planned first and recorded
+//! afterwards, and is rejected if the base values have changed. Lost replies and wear are also tested.
 
 use std::time::Duration;
 
@@ -135,7 +135,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
     assert_eq!(bench.prepare(restore(true)).unwrap().plan.write_cycles(), 2);
 }
 
-/// Nothing is written if the values read for the plan have changed before the plan is executed.
+/// The values read for the plan change before the plan is executed. Nothing is written.
 #[test]
 fn a_plan_with_a_changed_base_is_not_executed() {
     type Case = (fn() -> Change, fn(&mut Bench), &'static str);
@@ -175,7 +175,7 @@ fn a_consent_covers_only_its_plan() {
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
 }
 
-/// An unknown number of write cycles is not treated as 0 (issue 22.4).
+/// An unknown number of write cycles must not count as 0 (issue 22.4).
 #[test]
 fn an_encoder_with_unknown_wear_is_written_only_by_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -201,8 +201,8 @@ fn an_encoder_with_unknown_wear_is_written_only_by_force() {
     assert_eq!(bench.flash_cycles() - before, 1);
 }
 
-/// The manual allows 1000 write cycles (6.1), which are counted in the logbook. A plan that would exceed this limit is
-/// rejected unless it is forced.
+/// The manual allows 1000 write cycles (6.1), which are counted in the logbook. A plan beyond this limit must be
+/// forced.
 #[test]
 fn a_worn_encoder_is_written_only_by_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -240,8 +240,8 @@ fn a_worn_encoder_is_written_only_by_force() {
     assert_eq!(bench.flash_cycles() - before, 3);
 }
 
-/// At each exchange in turn, one reply or one request is lost. A write is never repeated if this would use a write
-/// cycle, and the report describes the actual result.
+/// At each exchange in turn, a reply or request is lost. A write is never repeated if that would use a write cycle, and
+/// the report describes the actual result.
 #[test]
 fn one_lost_request_or_reply_at_any_exchange_is_tolerated() {
     type Scene = (&'static str, fn() -> Change, u32);
@@ -284,7 +284,7 @@ fn one_lost_request_or_reply_at_any_exchange_is_tolerated() {
     }
 }
 
-/// A Wiegand result that may not have been saved cannot be read back, so it is reported as unclear.
+/// A Wiegand result cannot be read back, so it is reported as unclear if it may not have been saved.
 #[test]
 fn unverifiable_results_are_reported_as_unclear() {
     let mut original = Bench::new(Transport::ConfigPin, "");
@@ -342,7 +342,7 @@ fn writes_over_a_noisy_line_are_correct_or_fail() {
     assert!(right >= 12, "{right} right, {told} told");
 }
 
-/// Registers that no procedure uses are written one by one. The register description defines the cost.
+/// Registers that no procedure uses are written one by one, at the cost given in the register description.
 #[test]
 fn a_single_register_is_written_and_read_back() {
     let mut bench = Bench::new(Transport::ConfigPin, "");

@@ -1,5 +1,5 @@
-//! BiSS: changes of data, filter and preset, calibration and Wiegand test, over the configuration pin and over an
-//! adapter, with a user who controls the motor.
+//! BiSS faults: changing data, filter and preset, calibration and Wiegand test, over the configuration pin and over an
+//! adapter, with a simulated user at the motor.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -15,7 +15,7 @@ use crate::biss::hands::{
 };
 use crate::biss::support::{Bench, Handle, Transport};
 
-/// The stored values of the encoder: OEM data other than 0, preset, filter, and whether it is calibrated.
+/// The stored values of the encoder: non-zero OEM data, preset, filter, and whether it is calibrated.
 type State = (Vec<(usize, u8)>, PresetValue, PositionFilter, bool);
 
 fn state(encoder: &Handle) -> State {
@@ -26,7 +26,7 @@ fn state(encoder: &Handle) -> State {
     })
 }
 
-/// A planned change of an encoder with the states that it passes through.
+/// A planned change to an encoder, with the states it passes through.
 struct Case {
     name: String,
     change: fn() -> Change,
@@ -77,7 +77,7 @@ fn case(name: &str, way: Transport, change: fn() -> Change) -> Case {
     }
 }
 
-/// Returns whether each byte of a preset equals the byte of the old or of the new preset.
+/// Returns whether each byte of a preset is from the old or the new preset.
 fn consists_of(preset: PresetValue, old: PresetValue, new: PresetValue) -> bool {
     let bytes = |own: PresetValue| [own.singleturn().to_le_bytes(), own.multiturn().to_le_bytes()].concat();
     bytes(preset).iter().zip(bytes(old).iter().zip(bytes(new))).all(|(own, (old, new))| own == old || *own == new)

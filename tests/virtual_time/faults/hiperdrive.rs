@@ -1,4 +1,4 @@
-//! HIPERDRIVE over EtherNet/IP: parameters with and without a save, a scale with its limits, the position, and
+//! HIPERDRIVE faults over EtherNet/IP: parameters with and without a save, a scale with its limits, the position, and
 //! services. TCP neither damages nor inserts bytes.
 
 use std::sync::{Arc, Mutex};
@@ -14,7 +14,7 @@ use fastrand::Rng;
 use super::{End, Fault, Schedule, any_faults, campaign};
 use crate::hiperdrive::support::{Stand, drive, image, number};
 
-/// Numbers of the parameters that the tested changes write.
+/// Numbers of the parameters written by the tests.
 const WRITTEN: [u16; 8] = [24, 154, 156, 158, 160, 166, 186, 198];
 
 type State = Vec<Value>;
@@ -36,7 +36,7 @@ fn state(stand: &Stand) -> State {
     WRITTEN.iter().map(|own| stand.target.with_station(|station| station.read(now, number(*own))).unwrap()).collect()
 }
 
-/// Returns a session over a link that has no faults yet, and the faults to be scheduled for it.
+/// Returns a session over a link without faults, and the schedule for adding them.
 fn session() -> (Stand, Arc<Mutex<Schedule>>) {
     let (target, clock) = device();
     let schedule = Arc::<Mutex<Schedule>>::default();

@@ -1,4 +1,4 @@
-//! HIPERFACE: every change of data fields, codes, settings, address, counter and position, and complete restores.
+//! HIPERFACE faults: changes to data fields, codes, settings, address, counter and position, and restores.
 
 use std::fmt;
 use std::sync::{Arc, Mutex};
@@ -58,7 +58,7 @@ impl State {
     }
 }
 
-/// A planned change of an encoder with the states that it passes through.
+/// A planned change to an encoder, with the states it passes through.
 struct Case {
     name: &'static str,
     bus: Bus,
@@ -112,7 +112,7 @@ impl Rig {
         State::of(&self.bus.lock().unwrap(), &self.clock)
     }
 
-    /// Returns the state after the encoder has executed everything that was sent.
+    /// Returns the state after the encoder has executed everything it received.
     fn settled_state(&self) -> State {
         self.clock.sleep_until(self.clock.now() + Duration::from_secs(2));
         self.bus.lock().unwrap().poll(self.clock.now());
@@ -133,7 +133,7 @@ impl Rig {
     }
 }
 
-/// Returns an encoder with a plain field, a protected field and an empty field at the end.
+/// Returns an encoder with a plain field, a protected field, and an empty field at the end.
 fn encoder() -> Desk {
     let mut desk = Desk::new("codes=2:66&position=123456");
     desk.remember_code(2, 0x66);
@@ -171,7 +171,7 @@ fn changes(desk: &mut Desk) -> Vec<(&'static str, Change)> {
     ]
 }
 
-/// Plans a change, and executes it without faults to record its states.
+/// Plans a change and executes it without faults to record the states.
 fn case(desk: &mut Desk, name: &'static str, change: Change) -> Case {
     let prepared = desk.prepare(change.clone()).unwrap();
     let (bus, station) = (desk.bus().clone(), desk.session.station().clone());

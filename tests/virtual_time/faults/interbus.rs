@@ -1,5 +1,5 @@
-//! INTERBUS: parameters, cams and masks, start-up mode and preset, over a gateway. Modbus/TCP neither damages nor
-//! inserts bytes. Replies are therefore lost or late, the link falls silent or ends, and the encoder loses its power.
+//! INTERBUS faults: parameters, cams and masks, start-up mode and preset, over a gateway. Modbus/TCP neither damages
+//! nor inserts bytes, so replies are lost or late, the link ends, and the encoder loses power.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -22,7 +22,7 @@ use crate::support::folder;
 
 const QUERY: &str = "steps=3600&revolutions=1&serial=77&cams=demo&program=2&position=100";
 
-/// The stored and the active values of the encoder.
+/// The encoder's stored values, active values and start-up mode.
 type State = (Memory, Memory, StartupMode);
 
 struct Rig {
@@ -41,7 +41,7 @@ impl Rig {
         Rig { gateway, clock, schedule, folder, session }
     }
 
-    /// Opens a new session over a link without faults, like another run of the program.
+    /// Opens a new session over a link without faults, as a new run of the program would.
     fn reconnect(&mut self) {
         self.schedule = Arc::default();
         self.session = session(&self.gateway, &self.clock, &self.schedule, &self.folder);
@@ -90,7 +90,7 @@ fn session(
     Session::for_gateway(Box::new(link), clock.clone(), station(""), store, Some(gateway.shaft_motor()))
 }
 
-/// A change with the states that it passes through and the number of its requests.
+/// A change with the states it passes through and the number of requests.
 struct Case {
     name: &'static str,
     change: Change,
@@ -122,8 +122,8 @@ fn changes() -> Vec<(&'static str, Change)> {
     ]
 }
 
-/// Executes a change without faults to record its states. At each request, the connection to the encoder may be cut, or
-/// the encoder may lose its power and with it the values that are not stored.
+/// Executes a change without faults to record the states in which an interruption can leave the encoder. A loss of
+/// power discards the values that are not stored.
 fn case(name: &'static str, change: Change) -> Case {
     let mut rig = Rig::new();
     let job = rig.commit_job(change.clone()).unwrap();
@@ -149,9 +149,8 @@ fn case(name: &'static str, change: Change) -> Case {
     Case { name, change, requests, course }
 }
 
-/// Asserts that the encoder stored a state of the plan. After a loss of power, it may have stored only some of the
-/// values that were set. Each value is then an old or a new one, and the error names a value that differs from the
-/// planned one.
+/// Asserts that the encoder stored a state of the plan. After a loss of power, some values may be old and some new, and
+/// the error must name one that differs from the plan.
 fn assert_partly_stored(stored: &Memory, case: &Case, interrupted: &InterruptedWrite, context: &str) {
     if case.course.iter().any(|(state, ..)| state == stored) {
         return;

@@ -1,4 +1,4 @@
-//! A link between a session and a virtual line that has faults at chosen requests.
+//! A link between a session and a virtual line, with faults at chosen requests.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex};
@@ -23,25 +23,25 @@ pub(crate) enum Fault {
     FlipRequest { byte: usize, bit: u8 },
     /// One bit of the reply is inverted.
     FlipReply { byte: usize, bit: u8 },
-    /// The reply ends after this number of bytes.
+    /// The reply is cut off after this number of bytes.
     CutReply(usize),
     /// These bytes arrive before the reply.
     Garbage(Vec<u8>),
-    /// The reply to the preceding request arrives again before the reply to this one.
+    /// The previous reply arrives again before the reply to this request.
     StaleReply,
-    /// The request itself arrives before the reply.
+    /// The request is echoed before the reply.
     Echo,
-    /// The reply arrives later by this time.
+    /// The reply is delayed by this time.
     LateReply(Duration),
-    /// Nothing arrives in either direction, starting with this request.
+    /// From this request on, nothing arrives in either direction.
     Silence,
-    /// The link is lost, starting with this request.
+    /// From this request on, the link is lost.
     Lost,
-    /// The device briefly loses its power before the request arrives.
+    /// The device briefly loses power before the request arrives.
     PowerLoss,
 }
 
-/// The faults of a link by request number, counted from 0, and the number of requests so far.
+/// The faults of a link by request number, starting at 0, and the number of requests so far.
 #[derive(Default)]
 pub(crate) struct Schedule {
     pub(crate) faults: BTreeMap<usize, Fault>,
@@ -92,7 +92,7 @@ impl FaultyLink {
         self.arriving.extend(bytes.iter().map(|byte| (at, *byte)));
     }
 
-    /// Passes on one byte of the reply.
+    /// Passes one byte of the reply on.
     fn pass(&mut self, now: Moment, mut byte: u8) {
         let place = self.reply.len();
         self.reply.push(byte);

@@ -1,6 +1,6 @@
-//! A fault campaign: in each run, one or two pseudo-random faults occur on the line at any request of any operation
-//! that writes. After the run, no value is wrong, the device has one of the states of the plan, and a second run
-//! completes the change.
+//! A fault campaign: in each run, one or two pseudo-random faults occur at any request of any operation that writes.
+//! Afterwards no value is wrong, the device is in a state that the plan passes through, and a second run completes the
+//! change.
 //!
 //! `ENCODER_STUDIO_FAULT_RUNS` sets the total number of runs of all kinds. `ENCODER_STUDIO_FAULT_SEED` repeats a single
 //! run of each kind.
@@ -24,7 +24,7 @@ pub(crate) use self::link::{Fault, FaultyLink, Schedule};
 /// Total number of runs of all kinds if no number is given.
 const RUNS: u64 = 4_000;
 
-/// The way in which a run ended.
+/// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
     /// The operation was completed in spite of the faults.
@@ -35,8 +35,8 @@ pub(crate) enum End {
     NotStarted,
 }
 
-/// Executes seeded runs in all threads and prints how they ended. `share` is the fraction of all runs, in thousandths.
-/// If a run panics, the seed that repeats it is printed.
+/// Executes seeded runs on all threads and prints how they ended. `share` is the fraction of all runs, in thousandths.
+/// If a run panics, the seed for repeating it is printed.
 pub(crate) fn campaign(kind: &str, share: u64, run: impl Fn(&mut Rng) -> End + Sync) {
     let setting = |name| std::env::var(name).ok().map(|text: String| text.parse::<u64>().expect(name));
     let (first, runs) = match setting("ENCODER_STUDIO_FAULT_SEED") {
@@ -80,8 +80,8 @@ impl Drop for Named<'_> {
     }
 }
 
-/// Returns one or two faults at random requests below `requests`. `usual` is the usual time of a reply, and a late
-/// reply takes about ten times as long. On a stream, bytes are neither damaged nor inserted.
+/// Returns one or two faults at random requests below `requests`. A late reply takes about ten times the usual time,
+/// `usual`. On a stream, bytes are neither damaged nor inserted.
 pub(crate) fn any_faults(rng: &mut Rng, requests: usize, usual: Duration, is_stream: bool) -> BTreeMap<usize, Fault> {
     let count = rng.usize(1..=2);
     (0..count).map(|_| (rng.usize(0..requests.max(1)), any_fault(rng, usual, is_stream))).collect()

@@ -1,4 +1,4 @@
-//! The connection is cut at every request: the report and the written values are checked, and every job ends within the
+//! Cuts the connection at every request. The report and the written values are checked, and every job ends within the
 //! time limit.
 
 use std::collections::BTreeSet;
@@ -13,7 +13,7 @@ use encoder_studio::link::CancelToken;
 use super::support::{Stand, drive, image};
 use crate::support::Tap;
 
-/// Maximum time until a command gives up waiting for a device.
+/// Maximum time that a command waits for a device before it gives up.
 const LIMIT: Duration = Duration::from_secs(10);
 
 /// A fault of the connection at a request.
@@ -25,7 +25,7 @@ const DEAF: Cut = |tap, at| tap.deaf_from = Some(at);
 const REQUEST: Cut = |tap, at| tap.swallow_request = Some(at);
 const REPLY: Cut = |tap, at| tap.swallow_reply = Some(at);
 
-/// Returns a change that writes three parameters and saves them.
+/// Returns a change that writes and saves three parameters.
 fn write() -> Change {
     Change::Write(image(&[(24, 7), (166, 200), (186, 30)]))
 }
@@ -105,7 +105,7 @@ fn an_interrupted_write_ends_in_time_and_reports_progress() {
     }
 }
 
-/// Executes a change with a cancellation at each of its requests in turn, and passes each result to `look`.
+/// Cancels a change at each of its requests in turn and passes each result to `look`.
 fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &str, &InterruptedWrite)) {
     for at in 0.. {
         let mut stand = Stand::new("");
@@ -144,8 +144,8 @@ fn cancelling_takes_effect_between_two_operations() {
     assert_eq!(seen.into_iter().collect::<Vec<_>>(), [1, 2, 3]);
 }
 
-/// The change sets 400 steps per turn instead of 65536 (reference 5), and limits of ten turns. If only the scale or
-/// only the limits were written, the limits would be at other positions. The maximum speed is written between them.
+/// The change sets 400 steps per turn instead of 65536 (reference 5) and limits of ten turns. Writing only the scale or
+/// only the limits would move the limits. The maximum speed is written between them.
 #[test]
 fn cancelling_never_separates_a_scale_from_its_limits() {
     const PLACE: [(u16, i64); 4] = [(154, 400), (156, 256), (158, -4_000), (160, 4_000)];

@@ -1,4 +1,4 @@
-//! Reading all data of a device. Nothing is set, and no cyclic connection is opened.
+//! Reading all data of a device, without setting anything or opening a cyclic connection.
 
 use encoder_studio::devices::hiperdrive::procedures::check::{CheckFinding, CheckStep, Verdict};
 use encoder_studio::devices::hiperdrive::procedures::{Error, LateReplyError, PolledSample, Temperature};
@@ -99,7 +99,7 @@ fn status_reports_states_errors_and_temperatures_of_all_drives() {
     assert!(first.requested && second.faults == 1);
 }
 
-/// The same jobs can be run on a recording, whatever numbers the sessions and requests have.
+/// The jobs also run on a recording, even if sessions and requests are numbered differently.
 #[test]
 fn a_recorded_trace_replays_the_devices_replies() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&serial=4711");
@@ -140,7 +140,7 @@ fn positions_of_the_watched_drive_are_read() {
     assert_eq!(position(&mut stand).drive, drive(2));
 }
 
-/// Parameters 11 and 119 (reference 4) are each read by one request. A drive that does not exist has no temperature.
+/// Parameters 11 and 119 (reference 4) take one request each. A missing drive has no temperature.
 #[test]
 fn temperatures_are_watched_by_one_request_each() {
     let mut stand = Stand::new("hub=4&drives=1,1");
@@ -192,8 +192,8 @@ fn the_check_has_a_line_for_each_possible_fault() {
     assert!(of(CheckStep::Range(drive(1))).findings.contains(&CheckFinding::Within(65536)));
 }
 
-/// Reading the parameters one by one takes seconds if replies are slow, so progress is reported for each of them. Empty
-/// slots count as done.
+/// With slow replies, reading the parameters one by one takes seconds, so each request counts as progress. Empty slots
+/// count as done.
 #[test]
 fn progress_is_reported_for_each_request() {
     let mut stand = Stand::new("hub=4&drives=1,0,1");

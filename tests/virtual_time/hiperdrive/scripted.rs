@@ -1,4 +1,4 @@
-//! A target scripted by the test: published bytes of the reference (section 9), and every fault of an answer.
+//! A target with scripted replies: published bytes of the reference (section 9), and every possible error in a reply.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
@@ -18,15 +18,15 @@ enum Act {
     Reply(&'static str),
     /// An empty frame with this status.
     Status(u32),
-    /// A reply whose number differs from that of the request, like a reply to an earlier one.
+    /// A reply with the wrong request number, like a reply to an earlier request.
     Stale(&'static str),
-    /// No answer is sent.
+    /// No reply is sent.
     Silence,
     /// These bytes are sent unchanged.
     Bytes(&'static str),
 }
 
-/// A target whose reactions are given by a list.
+/// A target that reacts according to a list.
 #[derive(Default)]
 struct Script {
     acts: VecDeque<Act>,
@@ -107,7 +107,7 @@ impl ByteLink for Wire {
     }
 }
 
-/// A session with a target that follows a script.
+/// A session with a scripted target.
 struct Desk {
     script: Arc<Mutex<Script>>,
     wire: Box<dyn ByteLink>,
@@ -146,7 +146,7 @@ impl Desk {
     }
 }
 
-/// Returns a frame in which the context is set to 0.
+/// Returns a frame with its context set to 0.
 fn without_context(frame: &[u8]) -> Vec<u8> {
     let mut frame = frame.to_vec();
     frame[12..20].fill(0);
@@ -219,7 +219,7 @@ fn values_have_their_type_and_sign() {
     }
 }
 
-/// A number of the wrong length is rejected in every reply, and the message states both lengths (issue 21.9).
+/// The value is rejected in every reply, and the message states both lengths (issue 21.9).
 #[test]
 fn a_number_of_another_length_is_refused_with_both_lengths() {
     const REPLIES: [&str; 5] =
@@ -302,7 +302,7 @@ fn damaged_frames_are_retried_and_silence_times_out() {
     assert!(error.is_lost() && desk.clock.now() < Moment::from_elapsed(Duration::from_secs(10)));
 }
 
-/// Repeated requests to a device that does not answer do not delay other work.
+/// Repeated requests to a device that does not answer must not delay other work.
 #[test]
 fn reading_the_limits_of_a_drive_can_be_cancelled() {
     let mut desk = Desk::with([]);
@@ -315,13 +315,12 @@ fn reading_the_limits_of_a_drive_can_be_cancelled() {
     assert!(matches!(ended, Err(Error::NoReply { .. })), "{ended:?}");
 }
 
-/// ForwardOpen as in the reference, except for the parts that differ between connections: the numbers of both
-/// directions, of the connection and of its originator.
+/// The ForwardOpen request from the reference, except for the numbers that differ between connections.
 const OPEN: &str = "54 02 20 06 24 01 03 FA 00 00 00 00 .. .. .. .. .. .. 34 12 .. .. .. .. 01 00 00 00 \
     10 27 00 00 16 48 10 27 00 00 12 48 01 04 20 04 24 68 2C 64 2C 65";
 const OPENED: &str = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 10 27 00 00 10 27 00 00 00 00";
 
-/// Returns the CIP part of a frame and the part after it. Two dots in `pattern` stand for ignored bytes.
+/// Returns the CIP part of a frame and the part after it. Two dots in `pattern` stand for a byte to ignore.
 fn cip(frame: &[u8], pattern: &str) -> (String, Vec<u8>) {
     let pattern: Vec<&str> = pattern.split_whitespace().collect();
     let (own, beside) = frame[40..].split_at(pattern.len());

@@ -1,4 +1,4 @@
-//! Test support: a virtual adapter or hub in virtual time, with a session and a record of the data.
+//! Test support: an adapter or hub in virtual time, with a session and a record of the data.
 
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -58,7 +58,7 @@ impl Stand {
         Self::over(wire, tap, target, clock)
     }
 
-    /// Creates another session with a device over a link with the given faults.
+    /// Creates another session with the same device, over a link with the given faults.
     pub(crate) fn with_faults(target: Target, clock: Arc<VirtualClock>, schedule: Arc<Mutex<Schedule>>) -> Self {
         let connection = Arc::new(Mutex::new(target.connect_from(Ipv4Addr::UNSPECIFIED)));
         let supplied = target.clone();
@@ -125,7 +125,7 @@ impl Stand {
         std::fs::create_dir_all(path).unwrap();
     }
 
-    /// Returns the value of a parameter, read directly from the device.
+    /// Returns the value of a parameter, read directly from the simulated device.
     pub(crate) fn value(&self, own: u16) -> i64 {
         let now = self.clock.now();
         match self.target.with_station(|station| station.read(now, number(own))).unwrap() {
@@ -134,7 +134,7 @@ impl Stand {
         }
     }
 
-    /// Returns the requests to objects in the order in which they were sent.
+    /// Returns the requests to objects in the order sent.
     pub(crate) fn requests(&self) -> Vec<Request> {
         let tap = self.tap();
         let frames = tap.sent.iter().map(|bytes| Frame::parse(bytes).unwrap());
@@ -146,7 +146,7 @@ impl Stand {
         .collect()
     }
 
-    /// Returns the values that were set, each as parameter number and data.
+    /// Returns the values set, each as parameter number and data.
     pub(crate) fn sets(&self) -> Vec<(u16, Vec<u8>)> {
         use encoder_studio::buses::ethernet_ip::protocol::{LogicalKind, Service};
         let of_parameter = |request: &Request| {

@@ -1,4 +1,4 @@
-//! Writing: exactly the planned values are set, each is read back, and one save follows. Rejections name their reasons.
+//! Writing: exactly the planned values are set and read back, followed by one save. Rejections state their reasons.
 
 use encoder_studio::devices::hiperdrive::jobs::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
@@ -46,8 +46,7 @@ fn differences_are_written_read_back_and_saved_once() {
     );
 }
 
-/// The number of saves has no known limit, but saves are counted. If they cannot be counted, a write is executed only
-/// if it is forced (issue 22.4).
+/// The number of saves has no known limit but is counted. If it cannot be counted, a write must be forced (issue 22.4).
 #[test]
 fn a_device_with_uncountable_saves_is_written_only_by_force() {
     let mut stand = Stand::new("serial=42");
@@ -177,9 +176,9 @@ fn services_wait_for_completion() {
     assert_eq!((prepared.kind, prepared.plan.write_cycles()), (ChangeKind::Service(Service::FactoryAll), 1));
 }
 
-/// The manual allows a device to take 2 s with an adapter and 8 s with a hub before it answers 47 = −4 (6.2). The
-/// program waits for that time, sends the request once, and does not use it to measure the speed of the network (issue
-/// 21.8).
+/// A device may take 2 s with an adapter and 8 s with a hub to answer when parameter 47 is set to −4 (manual 6.2). The
+/// program waits that long, sends the request once, and does not use this time to estimate the speed of the network
+/// (issue 21.8).
 #[test]
 fn a_presence_test_may_take_the_time_of_the_manual() {
     for (query, ms) in [("reset=2000", 2000), ("hub=4&reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
@@ -194,9 +193,8 @@ fn a_presence_test_may_take_the_time_of_the_manual() {
     }
 }
 
-/// If the reply takes longer than the manual allows, or the connection falls silent in the meantime, the job ends
-/// within the 10 s that CLI.md specifies. The request is sent once, and the report states that the result is unknown
-/// (issue 21.8).
+/// If the reply takes longer than the manual allows or the connection falls silent, the job ends within 10 s (CLI.md).
+/// The request is sent once, and the report states that the result is unknown (issue 21.8).
 #[test]
 fn an_unanswered_presence_test_times_out() {
     // The number of frames that are sent before the request.

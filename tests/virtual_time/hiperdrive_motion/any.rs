@@ -1,5 +1,5 @@
-//! Random sessions of a user with a drive, thousands of steps long, with all faults in between: the drive fails,
-//! ignores its limits, turns the wrong way or is turned by hand, another master writes limits, and connections are cut.
+//! Random sessions of thousands of steps with every kind of fault: the drive fails, ignores its limits, turns the wrong
+//! way or is turned by hand, another master writes limits, and connections are cut.
 //!
 //! A word that commands motion may be sent only after a new action of the user, in its direction and within the
 //! limits. A model that is independent of the dead-man control checks this ([`Model`]).
@@ -74,9 +74,8 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
     }
 }
 
-/// Each control word is checked by the test set-up and by the model. This test checks that, after the last motion
-/// request, the drive stops within the time for the escalating stop words and for braking, and that it remains stopped
-/// (issue 21.14).
+/// The test bench and the model check each control word. This test checks that, after the last motion request, the
+/// drive stops within the time for stronger stop words and braking, and does not move again (issue 21.14).
 #[test]
 fn any_session_ends_at_a_standstill() {
     let mut moved = 0u64;

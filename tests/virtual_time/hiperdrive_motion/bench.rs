@@ -1,4 +1,4 @@
-//! A virtual drive, its dead-man control and the connection between them, cycle by cycle.
+//! A test bench for a virtual drive with its dead-man control, run cycle by cycle.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -13,25 +13,25 @@ use encoder_studio::devices::hiperdrive::sim::{SpindleLoad, Station, StationConf
 use encoder_studio::units::Moment;
 
 pub(super) const INTERVAL: Duration = Duration::from_millis(10);
-/// Watchdog time of the connection: eight intervals.
+/// Watchdog time of the connection, which is eight intervals.
 const TIMEOUT: Duration = Duration::from_millis(80);
 
-/// A drive with its dead-man control. The intent is refreshed unless `absent` is set.
+/// A drive with its dead-man control. The user's request is refreshed unless `absent` is set.
 pub(super) struct Bench {
     pub(super) station: Station,
     pub(super) man: DeadMan,
     pub(super) now: Moment,
     pub(super) intent: MotionIntent,
     pub(super) permit: Permit,
-    /// Whether the user's intent is no longer refreshed.
+    /// Whether the user's request is no longer refreshed.
     pub(super) absent: bool,
-    /// Whether no words reach the drive.
+    /// Whether control words do not reach the drive.
     pub(super) cut_out: bool,
-    /// Whether no reports of the drive arrive.
+    /// Whether the drive's reports do not arrive.
     pub(super) cut_back: bool,
     /// Delay of reports in cycles.
     pub(super) late: usize,
-    /// Reports that replace those of the drive, as if it moved without a command, as in a jog.
+    /// Reports that replace the drive's, as if it were jogging without a command.
     pub(super) heard: Option<ActualValues>,
     reports: VecDeque<ActualValues>,
     words: Vec<u16>,
@@ -60,14 +60,14 @@ impl Bench {
         }
     }
 
-    /// Makes a request as the user and returns the number of the action.
+    /// Makes a request as the user would and returns the number of the action.
     pub(super) fn act(&mut self, wish: MotionRequest) -> u64 {
         let number = self.intent.number + 1;
         self.intent = MotionIntent { drive: DriveNumber::FIRST, request: wish, number, refreshed: self.now };
         number
     }
 
-    /// Runs one interval, then checks and returns the set-point that is sent.
+    /// Runs one interval, then checks and returns the set-point sent.
     pub(super) fn cycle(&mut self) -> Setpoint {
         if !self.absent {
             self.intent.refreshed = self.now;
@@ -104,7 +104,7 @@ impl Bench {
         });
     }
 
-    /// Runs until the last action has ended and returns how it ended.
+    /// Runs until the last action has ended and returns the outcome.
     pub(super) fn until_over(&mut self) -> ActionEnd {
         for _ in 0..6000 {
             self.cycle();
@@ -135,7 +135,7 @@ impl Bench {
         actual.speed != 0 || actual.status.state() == State::Moving
     }
 
-    /// Returns the words sent since the previous call, each once, beginning with the word that was in effect at that
+    /// Returns the words sent since the previous call without repetitions, starting with the word in effect at that
     /// call.
     pub(super) fn take_words(&mut self) -> Vec<u16> {
         let last = self.words.last().copied();
@@ -157,12 +157,12 @@ impl Bench {
         self.station.write(self.now, number, &Value::Number(value)).unwrap();
     }
 
-    /// Restarts the drives with 47 = −4 while the connection remains open. Words are rejected during the restart.
+    /// Restarts the drives with 47 = −4 while the connection stays open. Words are rejected meanwhile.
     pub(super) fn reset(&mut self) {
         let _ = self.station.write(self.now, ParameterNumber::SAVE, &Value::Number(-4));
     }
 
-    /// Reopens the connection without an action of the user.
+    /// Reopens the connection without any user action.
     pub(super) fn reconnect(&mut self) {
         self.station.close(self.now);
         self.station.open(self.now, TIMEOUT);

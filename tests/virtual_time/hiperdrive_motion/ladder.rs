@@ -1,5 +1,5 @@
-//! Every event that ends a motion: the stop word is sent by the same call, and stronger stop words follow while the
-//! drive still moves.
+//! Every event that ends a motion. The same call sends the stop word, and stronger ones follow while the drive still
+//! moves.
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
     ActionEnd, MotionLock, MotionRequest, Phase, StopLevel, TargetState,
@@ -73,7 +73,7 @@ fn each_cause_stops_in_the_same_way() {
     }
 }
 
-/// The intent is not refreshed for 250 ms and one interval. When refreshes resume, the drive remains stopped.
+/// The request is not refreshed for 250 ms plus one interval. The drive stays stopped when refreshes resume.
 #[test]
 fn a_stale_intent_stops_the_drive() {
     for wish in [to(9 * TURN), jog(Direction::Clockwise)] {
@@ -107,7 +107,7 @@ fn a_stale_intent_stops_the_drive() {
     }
 }
 
-/// If the drive continues to report motion, the next stronger stop word follows after every 200 ms.
+/// While the drive still reports motion, the next stronger stop word follows every 200 ms.
 #[test]
 fn a_drive_that_does_not_stop_escalates_the_stop() {
     for (wish, stop) in [(to(9 * TURN), "0469"), (jog(Direction::Clockwise), "1419")] {
@@ -137,7 +137,7 @@ fn a_drive_that_does_not_stop_escalates_the_stop() {
     }
 }
 
-/// No further reports arrive, so the drive is treated as moving.
+/// Without further reports, the drive is assumed to be moving.
 #[test]
 fn a_drive_without_reports_is_stopped() {
     let mut bench = Bench::new();
@@ -151,7 +151,7 @@ fn a_drive_without_reports_is_stopped() {
     assert!(bench.man.has_exhausted_stop_levels() && !bench.moves());
 }
 
-/// A drive that turns although it should be at rest is disabled and then switched off.
+/// A drive that turns when it should be at rest is disabled and then switched off.
 #[test]
 fn an_uncommanded_motion_is_stopped() {
     let mut bench = Bench::new();
@@ -168,7 +168,7 @@ fn an_uncommanded_motion_is_stopped() {
     assert!(bench.man.has_exhausted_stop_levels());
 }
 
-/// After a connection is opened, nothing moves until the user acts, whatever was requested before.
+/// Earlier requests have no effect on a new connection.
 #[test]
 fn a_new_connection_moves_nothing() {
     let mut bench = Bench::new();
@@ -190,7 +190,7 @@ fn a_new_connection_moves_nothing() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Late reports never turn a stop into a start.
+    /// A late report must never turn a stop into a start.
     #[test]
     fn late_reports_do_not_start_motion(late in 0usize..6, before in 1u64..40, gap in 1u64..30, runs: bool) {
         let mut bench = Bench::new();

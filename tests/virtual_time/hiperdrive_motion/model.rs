@@ -1,5 +1,5 @@
-//! A record of the user's requests, independent of the dead-man control: every word that commands motion must belong to
-//! an action in it.
+//! A record of the user's requests that is independent of the dead-man control. Every word that commands motion must
+//! match an action in it.
 
 use std::time::Duration;
 
@@ -7,13 +7,13 @@ use encoder_studio::devices::hiperdrive::procedures::dead_man::{ActionEnd, Motio
 use encoder_studio::devices::hiperdrive::protocol::{ActualValues, Direction, RunEnd, Setpoint, StatusBit};
 use encoder_studio::units::Moment;
 
-/// The actions as the user made them, without the records of the dead-man control (issue 21.14).
+/// The user's actions, recorded without the dead-man control (issue 21.14).
 pub(super) struct Model {
     live: Option<Live>,
     limits: (i32, i32),
 }
 
-/// An action that may move the drive.
+/// An action that may currently move the drive.
 struct Live {
     number: u64,
     wish: MotionRequest,
@@ -24,21 +24,21 @@ struct Live {
     was_inside: bool,
 }
 
-/// What a word commands, according to its bits in reference 3: bit 3 enables, bit 12 selects speed mode.
+/// The motion that a word commands, according to its bits in reference 3: bit 3 enables, bit 12 selects speed mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Commands {
     Nothing,
-    /// Bits 12 and 6 are set. Bit 4 means clockwise, and bit 5 an endless run.
+    /// Bits 12 and 6 are set. Bit 4 selects clockwise, and bit 5 an endless run.
     Run {
         clockwise: bool,
         endless: bool,
     },
-    /// Bits 4 and 5 are set, and bit 6 differs from its acknowledgement, or a job is in progress.
+    /// Bits 4 and 5 are set, and bit 6 is not yet acknowledged or a move is in progress.
     Job,
 }
 
 const ENABLED: u16 = 0x0409;
-/// Time for which an action remains valid without a refresh.
+/// Time for which an action stays valid without a refresh.
 const FRESH: Duration = Duration::from_millis(250);
 /// Steps per degree, rounded up.
 const DEGREE: i64 = 183;
@@ -61,7 +61,7 @@ impl Model {
         Model { live: None, limits }
     }
 
-    /// Records an action of the user.
+    /// Records a user action.
     pub(super) fn act(&mut self, number: u64, wish: MotionRequest, now: Moment) {
         let is_job = |live: &Live| matches!(live.wish, MotionRequest::Move { .. } | MotionRequest::Step { .. });
         match wish {
@@ -95,14 +95,14 @@ impl Model {
         self.limits = limits;
     }
 
-    /// Returns the distance beyond the limits: positive above the upper limit, negative below the lower one.
+    /// Returns the distance beyond the limits: positive above the upper one, negative below the lower one.
     fn outside(&self, position: i32) -> i64 {
         let (low, high) = self.limits;
         let (position, low, high) = (i64::from(position), i64::from(low), i64::from(high));
         if position > high { position - high } else { (position - low).min(0) }
     }
 
-    /// Checks a set-point that was sent against the record. `heard` is the report before it.
+    /// Checks a set-point against the record. `heard` is the last report before it was sent.
     pub(super) fn look(&mut self, now: Moment, sent: Setpoint, heard: ActualValues, ended: Option<(u64, ActionEnd)>) {
         let out = self.outside(heard.position);
         let live = self.live.take().filter(|live| {
@@ -151,7 +151,7 @@ impl Model {
     }
 }
 
-/// Returns whether a move is within a degree of its target and the target lies within the limits.
+/// Returns whether a move is within one degree of its target and the target lies within the limits.
 fn is_arriving(commands: Commands, live: &Live, heard: ActualValues) -> bool {
     let near = |target: i32| (i64::from(heard.position) - i64::from(target)).abs() <= DEGREE;
     commands == Commands::Job && live.target.is_some_and(near)

@@ -1,5 +1,5 @@
-//! Drives that ignore their limits or turn the wrong way. The dead-man control detects this from their positions
-//! (issues 21.4 and 21.5).
+//! Drives that ignore their limits or turn the wrong way, as the dead-man control detects from their positions (issues
+//! 21.4 and 21.5).
 //!
 //! A turn has 65536 steps, and a degree 182.04. At 35 rpm, a drive makes 38.2 steps per millisecond, or 382 in an
 //! interval of 10 ms.
@@ -26,7 +26,7 @@ fn run(direction: Direction, end: RunEnd) -> MotionRequest {
     MotionRequest::Run { direction, end, effort: FULL }
 }
 
-/// Returns a drive with the given defect, whose limits are ±1 turn.
+/// Returns a drive with the given defect and limits of ±1 turn.
 fn bench(defect: Option<DriveDefect>) -> Bench {
     let mut bench = Bench::new();
     bench.write(158, LIMITS.0.into());
@@ -36,8 +36,8 @@ fn bench(defect: Option<DriveDefect>) -> Bench {
     bench
 }
 
-/// Returns a drive at rest outside its limits. `beyond` is the number of steps above the upper limit if it is positive,
-/// or below the lower one if it is negative.
+/// Returns a drive at rest outside its limits. `beyond` is the number of steps above the upper limit, or below the
+/// lower one if negative.
 fn bench_outside(beyond: i32, defect: Option<DriveDefect>) -> Bench {
     let mut bench = bench(None);
     bench.act(to(if beyond > 0 { TURN } else { -TURN }));
@@ -50,8 +50,8 @@ fn bench_outside(beyond: i32, defect: Option<DriveDefect>) -> Bench {
     bench
 }
 
-/// Runs until the word commands no motion. Returns the number of intervals after the report that first showed a
-/// position beyond `limit`, and the position at that time.
+/// Runs until the control word commands no motion. Returns the number of intervals since the first report of a position
+/// beyond `limit`, and the position at the end.
 fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
     let mut past = None;
     for _ in 0..6000 {
@@ -68,7 +68,7 @@ fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
     panic!("it is never stopped: {:?}", bench.man.phase());
 }
 
-/// The packet after the report that shows a position beyond a limit commands no motion, even though the drive continues
+/// The report shows a position beyond a limit. The next packet commands no motion, even though the drive continues
 /// (issue 21.4).
 #[test]
 fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
@@ -93,7 +93,7 @@ fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
     }
 }
 
-/// Status bit 15 also ends a run, even if the position is within the limits that the program read (issue 21.4).
+/// Status bit 15 also ends a run, even if the position is within the limits known to the program (issue 21.4).
 #[test]
 fn bit_15_ends_a_run() {
     let mut bench = bench(Some(DriveDefect::RunsOn));
@@ -113,7 +113,7 @@ fn an_endless_run_is_not_monitored() {
     assert!(bench.position() > 2 * TURN && matches!(bench.man.phase(), Phase::Moving(_)), "{:?}", bench.man.last_end());
 }
 
-/// If the limits become unknown, a motion is stopped with the next packet (issue 21.4, case *unread limits*).
+/// The next packet stops the motion (issue 21.4, case *unread limits*).
 #[test]
 fn a_run_ends_when_its_limits_become_unknown() {
     let mut bench = bench(None);
@@ -124,8 +124,7 @@ fn a_run_ends_when_its_limits_become_unknown() {
     assert!(matches!(bench.man.last_end(), Some((_, ActionEnd::Locked(_)))), "{:?}", bench.man.last_end());
 }
 
-/// From outside the limits, only inward motion is allowed. A request to move further outward is rejected before
-/// anything is sent (issue 21.4, case *already outside*).
+/// A request to move further outward is rejected before anything is sent (issue 21.4, case *already outside*).
 #[test]
 fn from_outside_only_inward_motion_is_allowed() {
     for (beyond, inward, outward) in [
@@ -160,8 +159,8 @@ fn from_outside_only_inward_motion_is_allowed() {
     }
 }
 
-/// If status bit 15 reports that a drive is outside its limits although its position is well inside, the inward
-/// direction is not known. Nothing moves except what the user permitted for one press of the button (issue 21.4).
+/// Status bit 15 reports a drive as outside its limits although its position is well inside, so the way back is
+/// unknown. Nothing moves unless the user permits it for one press of the button (issue 21.4).
 #[test]
 fn outside_by_bit_15_alone_only_permitted_motion_starts() {
     let ways = [Direction::Clockwise, Direction::Counterclockwise];
@@ -200,8 +199,7 @@ fn outside_by_bit_15_alone_only_permitted_motion_starts() {
     }
 }
 
-/// If the user permits outward motion for one press of the button, the motion is slow and weak, whatever is requested,
-/// and it ends with that press (issue 21.4).
+/// Permitted outward motion is slow and weak, whatever is requested, and ends with that press (issue 21.4).
 #[test]
 fn outward_motion_can_be_permitted_for_one_press() {
     let mut bench = bench_outside(5000, None);
@@ -222,8 +220,7 @@ fn outward_motion_can_be_permitted_for_one_press() {
     assert_eq!(intervals_past(&mut bench, TURN).0, 0);
 }
 
-/// A drive that counts in the opposite direction moves outward instead of inward, and is stopped within a degree (issue
-/// 21.4).
+/// The drive counts in the opposite direction, so it moves outward. It is stopped within a degree (issue 21.4).
 #[test]
 fn inward_motion_that_leads_outward_is_stopped() {
     let mut bench = bench_outside(5000, Some(DriveDefect::Reversed));
@@ -239,8 +236,8 @@ fn inward_motion_that_leads_outward_is_stopped() {
     assert!(bench.position() < stood);
 }
 
-/// If the drive passes a limit while it brakes, the stop continues and keeps its reason (issue 21.4, case *overrun
-/// while braking*).
+/// The drive passes a limit while it brakes. The stop continues and keeps its reason (issue 21.4, case *overrun while
+/// braking*).
 #[test]
 fn an_overrun_while_braking_keeps_the_stop_reason() {
     let mut bench = bench(Some(DriveDefect::RunsOn));
@@ -257,7 +254,7 @@ fn an_overrun_while_braking_keeps_the_stop_reason() {
     assert!(!bench.moves());
 }
 
-/// A move in the wrong direction is stopped with the report that shows more than a degree of it (issue 21.5).
+/// The drive is stopped at the first report that shows more than one degree in the wrong direction (issue 21.5).
 #[test]
 fn a_move_in_the_wrong_direction_is_stopped_immediately() {
     for target in [TURN / 2, -TURN / 2] {
@@ -270,7 +267,7 @@ fn a_move_in_the_wrong_direction_is_stopped_immediately() {
     }
 }
 
-/// A jog in the wrong direction is stopped with the report that shows more than a degree of it (issue 21.5).
+/// The drive is stopped at the first report that shows more than one degree in the wrong direction (issue 21.5).
 #[test]
 fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
     for (direction, sign) in [(Direction::Clockwise, 1), (Direction::Counterclockwise, -1)] {
@@ -283,8 +280,7 @@ fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
     }
 }
 
-/// A move that does not stop at its target is stopped there. If the target is a limit, it is stopped beyond that limit
-/// (issue 21.5).
+/// The drive is stopped at its target, or beyond the limit if the target is a limit (issue 21.5).
 #[test]
 fn a_move_that_passes_its_target_is_stopped() {
     for target in [TURN / 2, TURN, -TURN] {
@@ -303,7 +299,7 @@ fn a_move_that_passes_its_target_is_stopped() {
     }
 }
 
-/// A drive without a defect is never stopped by this check: at its limits, at any target, or with late reports.
+/// A drive without a defect is never stopped, even at its limits or with late reports.
 #[test]
 fn a_healthy_drive_reaches_every_target() {
     let mut dice = fastrand::Rng::with_seed(21);

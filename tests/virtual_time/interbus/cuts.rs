@@ -1,5 +1,5 @@
-//! The connection is cut at every request: the report and the state of the encoder are checked, and every job ends
-//! within the time limit.
+//! Cuts the connection at every request. The report and the state of the encoder are checked, and every job ends within
+//! the time limit.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use super::support::{Stand, program};
 use crate::support::Tap;
 
 const QUERY: &str = "steps=3600&revolutions=1&serial=5&cams=demo&program=2";
-/// Maximum time until a command gives up waiting for a gateway.
+/// Maximum time that a command waits for a gateway before it gives up.
 const LIMIT: Duration = Duration::from_secs(12);
 
 /// A fault of the connection at a request.
@@ -144,10 +144,10 @@ fn an_interrupted_write_ends_in_time_and_reports_the_possible_state() {
     }
 }
 
-/// Maximum time for the work before the cut.
+/// Maximum time for the exchange before the cut.
 const CONFIRMED: Duration = Duration::from_secs(8);
 
-/// The injected faults of the virtual gateway do not affect the results.
+/// The simulated faults of the gateway do not affect the results.
 #[test]
 fn a_faulty_gateway_is_tolerated() {
     for fault in ["drop:0.05", "garbage:0.03", "delay:40"] {
@@ -163,8 +163,8 @@ fn a_faulty_gateway_is_tolerated() {
     assert!(matches!(stand.run(InterbusJob::Survey), Ok(InterbusOutput::Surveyed(_))));
 }
 
-/// Reading is cut off while a cam program is selected, and nothing more can be sent. The next run returns the encoder
-/// to its earlier mode, not to the program in which it was left (issue 22.6).
+/// The connection is cut while a cam program is selected. The next run restores the mode from before the reading
+/// instead of keeping this program (issue 22.6).
 #[test]
 fn the_next_run_restores_the_mode_after_an_interrupted_cam_read() {
     let save = || InterbusJob::Save { programs: true };
@@ -202,7 +202,7 @@ fn the_next_run_restores_the_mode_after_an_interrupted_cam_read() {
     }
 }
 
-/// A mode that no run of the program has set is the choice of another master, and is kept (issue 22.6).
+/// A mode that this program has not set was chosen by another master and is kept (issue 22.6).
 #[test]
 fn a_mode_chosen_by_another_master_is_kept() {
     let query = "steps=3600&revolutions=1&serial=77&cams=demo";

@@ -1,5 +1,5 @@
-//! The handshake word by word, from the tables of reference 4 and 5: the expected answers, words that are not an
-//! answer, and all invalid ones.
+//! The handshake word by word, from the tables of reference 4 and 5: expected replies, words that are not a reply, and
+//! all invalid ones.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ use super::support::{program, station};
 const STEPS: u32 = 0x0200_00FF;
 const RUN: u32 = 0x8000_0000;
 
-/// Answers a read-out after the parameterisation with the values that were set: 255 steps, 1 turn, clockwise, preset 0.
+/// Adds the replies when the parameters are read back: 255 steps, 1 turn, clockwise, preset 0.
 fn reading_back(script: Script) -> Script {
     let value = |number: u32, value: u32| (0x2021_0000 + number, [0xA000_0000 | value]);
     [value(1, 255), value(2, 1), value(3, 3), value(4, 0)].iter().fold(script, |script, (out, words)| {
@@ -32,7 +32,7 @@ fn worked_example() -> Vec<Op> {
     parameters(&[(Steps, 255), (Turns, 1), (Direction, 3), (Preset, 0)])
 }
 
-/// In the worked example of reference 4, old echoes arrive first, and each word waits for its own echo.
+/// In the worked example of reference 4, old echoes arrive first. Each word waits for its own echo.
 #[test]
 fn the_worked_example_is_sent_word_by_word() {
     let script = Script::new()
@@ -48,8 +48,7 @@ fn the_worked_example_is_sent_word_by_word() {
     assert_eq!(sent.last(), Some(&0));
 }
 
-/// The first answers are echoes of the same code with other data, busy words, and an echo that disappears in the next
-/// cycle.
+/// The first replies are echoes with other data, busy words, and an echo that disappears in the next cycle.
 #[test]
 fn only_a_stable_exact_echo_counts() {
     let cases: [(&str, &[u32]); 6] = [
@@ -71,7 +70,7 @@ fn only_a_stable_exact_echo_counts() {
     }
 }
 
-/// Each error word of reference 2 occurs at each word of the worked example. The program then sends `80000000` and
+/// Each error word of reference 2 is returned at each word of the worked example. The program then sends `80000000` and
 /// `00000000`.
 #[test]
 fn an_error_at_any_step_is_reported_and_the_mode_restored() {
@@ -109,7 +108,7 @@ fn an_edge_beyond_the_range_is_refused_by_the_encoder() {
     assert!(sent.ends_with(&[0x2080_0000, RUN, 0, 0x2021_0009, 0]), "{sent:08X?}");
 }
 
-/// If the start of cam 0 is 0, its echo equals the busy word, so it must be stable for longer (reference 5).
+/// If cam 0 starts at 0, its echo equals the busy word and must be stable for longer (reference 5).
 #[test]
 fn an_echo_equal_to_the_busy_word_must_last_longer() {
     let (ended, steps, sent) = carry_out(Script::new(), cams(0, 0, 0, 1));
@@ -128,7 +127,7 @@ fn an_echo_equal_to_the_busy_word_must_last_longer() {
     assert!(matches!(interrupted.cause, Error::Refused { sent, .. } if sent.emit() == 0x4000_0000), "{interrupted}");
 }
 
-/// A gateway returns the same word until it has read the bus. Reading it more often does not make it more stable.
+/// A gateway returns the same word until its next bus cycle. Reading it more often does not prove that it is stable.
 #[test]
 fn a_word_is_stable_by_time_and_not_by_read_count() {
     let pace = Duration::from_millis(1);
@@ -141,9 +140,8 @@ fn a_word_is_stable_by_time_and_not_by_read_count() {
     }
 }
 
-/// An old confirmation may belong to an earlier word, have other data than those sent, have the manufacturer's bit, and
-/// arrive late (manual 5.3, "Encoder sends old confirmation"). It does not prove that there is another master (issue
-/// 22.2).
+/// An old confirmation may be for an earlier word, contain other data, have the manufacturer's bit set, and arrive late
+/// (manual 5.3, "Encoder sends old confirmation"). It does not prove that there is another master (issue 22.2).
 #[test]
 fn a_stale_echo_is_skipped() {
     // The old confirmation lasts 0.4 to 0.8 s at 5 ms per reading. The program never sent C2000100, the word of the
@@ -160,8 +158,7 @@ fn a_stale_echo_is_skipped() {
     }
 }
 
-/// After the time-out, the message names an echo that does not disappear, without claiming that another master sent it
-/// (issue 22.2).
+/// The message shows the echo but does not claim that another master sent it (issue 22.2).
 #[test]
 fn a_persistent_echo_is_named_after_the_timeout() {
     let (ended, ..) = carry_out(Script::new().on(STEPS, &[0xC600_0004]), worked_example());
@@ -171,8 +168,8 @@ fn a_persistent_echo_is_named_after_the_timeout() {
     assert_eq!(cause.to_string(), expected);
 }
 
-/// The processing word may contain the sent data (manual 10.4, X; reference 6.11a). An encoder that is busy for `busy`
-/// milliseconds and then rejects the word had not accepted it (issue 22.1).
+/// The busy word may contain the sent data (manual 10.4, X; reference 6.11a). An encoder that is busy for `busy`
+/// milliseconds and then rejects the word has never accepted it (issue 22.1).
 #[test]
 fn a_processing_word_with_the_data_sent_is_no_echo_of_cam_0() {
     for (word, echo) in
@@ -194,7 +191,7 @@ fn a_processing_word_with_the_data_sent_is_no_echo_of_cam_0() {
     }
 }
 
-/// Adds the answers for cam 0 of program 1, from 15h to 20h, when it is read before the program is left and again after
+/// Adds the replies for cam 0 of program 1 (15h to 20h), which is read before the program is left and again after
 /// `80000000`.
 fn reading_cams(script: Script) -> Script {
     [(0x2020_0010, 0xA000_0015), (0x2020_0020, 0xA000_0020)]
@@ -202,8 +199,8 @@ fn reading_cams(script: Script) -> Script {
         .fold(script, |script, (out, value)| script.on(*out, &[*value]).on(*out, &[*value]))
 }
 
-/// A word that was acknowledged but not accepted is sent again before `80000000` stores the program, and observed for
-/// longer each time. If it is never accepted, no operation is reported as done (issue 22.1).
+/// A word that was acknowledged but not accepted is sent again before `80000000` stores the program, and is observed
+/// for longer each time. If it is never accepted, no operation is reported as done (issue 22.1).
 #[test]
 fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
     let script = reading_cams(
@@ -232,7 +229,7 @@ fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
     assert_eq!((interrupted.done.ops, interrupted.done.write_cycles), (0, 1), "leading back may store what was set");
 }
 
-/// With exception codes 01 to 03, nothing was written. With any other code, the gateway may have passed the word on
+/// Exception codes 01 to 03 mean that nothing was written. With any other code, the gateway may have forwarded the word
 /// (Modbus application protocol 1.1b3, chapter 7).
 #[test]
 fn the_mode_is_restored_after_a_word_that_may_have_been_written() {
@@ -253,7 +250,7 @@ fn the_mode_is_restored_after_a_word_that_may_have_been_written() {
     assert_eq!(*sent.lock().unwrap(), [0x2021_0009, 0]);
 }
 
-/// A word that is already on OUT creates no edge.
+/// RUN is already on OUT, so 0 must be sent first.
 #[test]
 fn restoring_the_mode_creates_a_run_edge() {
     let script = Script { out: RUN, input: 0xC200_00FF, ..Script::new() };
@@ -262,7 +259,7 @@ fn restoring_the_mode_creates_a_run_edge() {
     assert_eq!(sent.lock().unwrap()[..2], [0, RUN]);
 }
 
-/// The shaft is already two steps from the preset. The preset counts as applied only when the position equals it.
+/// The shaft is two steps from the preset. The preset counts as applied only when the position equals it.
 #[test]
 fn a_preset_is_triggered_until_the_position_matches() {
     let fire = || vec![Op::FirePreset { value: POSITION + 2 }];
@@ -278,7 +275,7 @@ fn a_preset_is_triggered_until_the_position_matches() {
     assert_eq!(interrupted.cause, missing);
 }
 
-/// The program is selected first and confirmed before any word that has another meaning in position mode.
+/// Cam words have another meaning in position mode, so the program must be selected and confirmed first.
 #[test]
 fn cam_words_are_sent_only_in_a_confirmed_mode() {
     let (_, _, sent) = carry_out(Script::new(), cams(3, 15, 213, 8));
@@ -335,8 +332,8 @@ fn swapped_words_are_suspected() {
     assert_eq!(error.to_string(), "IN 12340000 is plausible only as 00001234: the word order may be swapped");
 }
 
-/// The manual does not define what ends a mode. An encoder that returns to its position with `00000000` is kept in its
-/// mode by the word that selects it.
+/// The manual does not define what ends a mode. If `00000000` would end it, the word that selects the mode is left on
+/// OUT.
 #[test]
 fn an_encoder_that_would_leave_its_mode_is_kept_in_it() {
     for (mode, holds) in [(5, RUN), (2, 0x2040_0001)] {
@@ -360,7 +357,7 @@ fn an_encoder_that_would_leave_its_mode_is_kept_in_it() {
     assert_eq!(sent.lock().unwrap().last(), Some(&RUN));
 }
 
-/// The value requested for a cam may remain after `00000000`. Bit 16 is also clear in the request.
+/// A requested cam value may remain after `00000000`. The request does not contain bit 16 either.
 #[test]
 fn cam_read_outs_are_ended_with_run_if_needed() {
     let script = Script { normal_keeps_values: true, ..Script::new() }
@@ -376,7 +373,7 @@ fn cam_read_outs_are_ended_with_run_if_needed() {
     assert!(sent.windows(4).any(|own| own == [0x2020_0013, 0, RUN, 0]), "{sent:08X?}");
 }
 
-/// Before the encoder has reported its mode, only the question about the mode is sent.
+/// Until the encoder has reported its mode, only the mode is requested.
 #[test]
 fn words_with_another_meaning_in_the_current_mode_are_not_sent() {
     let script = Script::in_mode(0x55);

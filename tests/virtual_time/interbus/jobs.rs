@@ -1,4 +1,4 @@
-//! Reading: the words that are sent, and the state of the encoder afterwards.
+//! Reading: the words sent, and the state of the encoder afterwards.
 
 use encoder_studio::devices::interbus::jobs::{InterbusJob, InterbusOutput, JobError, open};
 use encoder_studio::devices::interbus::procedures::check::{CheckFinding, CheckStep, InterbusStepResult, Verdict};
@@ -81,7 +81,7 @@ fn a_survey_reads_every_read_out() {
     assert_eq!(stand.left(), (0, K3));
 }
 
-/// The value of a read-out looks like the previous one, which must disappear first, however long it remains.
+/// The previous value must disappear before a new one counts, however long that takes.
 #[test]
 fn stale_values_and_busy_words_are_ignored() {
     for query in ["stale=3", "stale=30", "busy=200&stale=5", "stale=3&busy=900"] {
@@ -287,7 +287,7 @@ fn the_device_check_reports_faults() {
     }
 }
 
-/// The same jobs can be run on a recording, whatever numbers the requests have.
+/// The jobs also run on a recording, even if requests are numbered differently.
 #[test]
 fn a_recorded_trace_replays_the_encoders_replies() {
     let mut stand = Stand::new("steps=3600&revolutions=1&serial=4711");

@@ -1,4 +1,4 @@
-//! Process data whose answers a test defines word by word.
+//! An encoder whose replies a test defines word by word.
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex};
@@ -21,23 +21,23 @@ use encoder_studio::worker::commit::write_plan;
 
 use super::support::{program, station};
 
-/// The position that the encoder returns if the script defines nothing else.
+/// The position that the encoder returns unless the script defines another reply.
 pub(crate) const POSITION: u32 = 1234;
 
-/// An encoder that acknowledges every word immediately, except for the words in the script. For each of these, it
-/// returns the given IN words in consecutive cycles and then repeats the last one. The value of a read-out remains
-/// until `00000000` or `80000000`.
+/// An encoder that immediately acknowledges every word that is not in the script. For a word in the script, it returns
+/// the given IN words in consecutive cycles and then repeats the last one. A requested value stays on IN until
+/// `00000000` or `80000000`.
 #[derive(Default)]
 pub(crate) struct Script {
-    /// Answers by OUT word. If there are several lists, the first one is used the first time the word is written.
+    /// Replies by OUT word. If there are several lists, each write of the word uses the next one.
     pub(crate) answers: HashMap<u32, VecDeque<Vec<u32>>>,
-    /// The OUT word that the gateway returns if it is not the written one.
+    /// The OUT word that the gateway reports instead of the written one.
     pub(crate) output: Option<u32>,
     /// Whether `00000000` ends cam mode and velocity mode.
     pub(crate) normal_ends_modes: bool,
     /// Whether a requested cam value remains after `00000000`.
     pub(crate) normal_keeps_values: bool,
-    /// Every word that was written, without immediate repetitions.
+    /// Every word written, without immediate repetitions.
     pub(crate) sent: Arc<Mutex<Vec<u32>>>,
     pub(crate) mode: u32,
     pub(crate) out: u32,
@@ -46,8 +46,8 @@ pub(crate) struct Script {
     pub(crate) now: Duration,
     /// Interval between two reads of IN.
     pub(crate) pace: Duration,
-    /// A word that the gateway rejects with this exception code the first time that it is written, and whether the word
-    /// was written nevertheless.
+    /// A word that the gateway rejects the first time, the exception code, and whether the word is written
+    /// nevertheless.
     pub(crate) refuses: Option<(u32, u8, bool)>,
 }
 
@@ -60,7 +60,7 @@ impl Script {
         Script { mode, ..Script::new() }
     }
 
-    /// Adds the answers to a word.
+    /// Adds the replies to a word.
     pub(crate) fn on(mut self, out: u32, words: &[u32]) -> Self {
         self.answers.entry(out).or_default().push_back(words.to_vec());
         self
@@ -141,7 +141,7 @@ impl ProcessData for Script {
     }
 }
 
-/// Returns the identity of the encoder that a script represents.
+/// Returns the identity of the scripted encoder.
 pub(crate) fn identity() -> Identity {
     Identity {
         serial_number: "3".to_owned(),
@@ -154,7 +154,7 @@ pub(crate) fn identity() -> Identity {
     }
 }
 
-/// Executes operations with a script. Returns the result, each step, and all words that were written.
+/// Executes operations with a script. Returns the result, each step, and all words written.
 pub(crate) fn carry_out(
     script: Script,
     ops: Vec<Op>,
@@ -198,13 +198,13 @@ pub(crate) fn carry_out(
     (ended, steps, sent)
 }
 
-/// Returns the operations that set the parameters in one parameterisation.
+/// Returns the operations that set the parameters and store them once.
 pub(crate) fn parameters(changes: &[(Parameter, u32)]) -> Vec<Op> {
     let change = |(parameter, to): &(Parameter, u32)| ParameterChange { parameter: *parameter, from: 0, to: *to };
     vec![Op::Parameterise(changes.iter().map(change).collect())]
 }
 
-/// Returns the operations that set both edges of a cam of program 1, and the mask.
+/// Returns the operations that set the mask and both edges of a cam in program 1.
 pub(crate) fn cams(cam: u8, start: u32, stop: u32, mask: u8) -> Vec<Op> {
     let change = |edge, to: u32| CamChange {
         cam: CamNumber::new(cam).unwrap(),

@@ -1,4 +1,4 @@
-//! Test support: a virtual encoder at a virtual gateway in virtual time, with a session and a record of the data.
+//! Test support: an encoder and its gateway in virtual time, with a session and a record of the data.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
@@ -56,7 +56,7 @@ impl Stand {
         Stand { gateway, clock, tap, trace, folder, session }
     }
 
-    /// Starts another run of the program on the same gateway, with the files of the previous run.
+    /// Starts a new run of the program on the same gateway, with the files of the previous run.
     pub(crate) fn run_again(&mut self) {
         self.tap = Arc::default();
         let link =
@@ -65,7 +65,7 @@ impl Stand {
         self.session = Session::for_gateway(Box::new(link), self.clock.clone(), station(""), store, motor);
     }
 
-    /// Returns the number of stores recorded in the logbook for encoder 77.
+    /// Returns the number of stores that the logbook has recorded for encoder 77.
     pub(crate) fn counted(&self) -> u64 {
         let logbook = Logbook::open(&Store::at_root(self.folder.path()).logbook_path()).unwrap();
         let device = DeviceKey {
@@ -85,7 +85,7 @@ impl Stand {
         self.session.run_inline(job)
     }
 
-    /// Runs a job. Returns its result and each step of the handshake.
+    /// Runs a job. Returns its result and the steps of the handshake.
     pub(crate) fn follow(&mut self, job: InterbusJob) -> (Result<InterbusOutput, JobError>, Vec<Handshake>) {
         let mut steps = Vec::new();
         let ended = self.session.run(JobId::default(), job, &mut |event| {
@@ -125,7 +125,7 @@ impl Stand {
         }
     }
 
-    /// Returns the OUT words that were written, without repetitions.
+    /// Returns the OUT words written, without repetitions.
     pub(crate) fn sent(&self) -> Vec<u32> {
         let entries = self.trace.lock().unwrap();
         let sent = entries.iter().filter(|entry| entry.direction == Direction::Sent);
@@ -138,7 +138,7 @@ impl Stand {
             .collect()
     }
 
-    /// Returns the OUT word that the encoder has received and the mode in which it would start.
+    /// Returns the OUT word last received by the encoder and the mode in which it would start.
     pub(crate) fn left(&self) -> (u32, StartupMode) {
         self.gateway.with_encoder(|encoder| (encoder.out_word(), encoder.startup_mode()))
     }

@@ -1,5 +1,5 @@
-//! The bytes between the program and a gateway, written by hand from the Modbus application protocol: the requests, and
-//! the handling of every answer of a gateway.
+//! The bytes exchanged with a gateway, written by hand from the Modbus application protocol: the requests, and how each
+//! possible reply is handled.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,10 +13,10 @@ use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::support::station;
 
-/// The bytes sent after a request, each group with its delay in milliseconds.
+/// The bytes sent after a request, in groups with a delay in milliseconds.
 type Answer = Vec<(u64, Vec<u8>)>;
 
-/// A gateway whose answers are calculated by a function of the test from each request and its number, beginning with 0.
+/// A gateway whose replies come from a function of the test. It receives each request and its number, starting at 0.
 struct Gateway<F> {
     clock: Arc<VirtualClock>,
     answer: F,
@@ -61,7 +61,7 @@ impl<F: FnMut(usize, &[u8]) -> Answer + Send> ByteLink for Gateway<F> {
     }
 }
 
-/// Returns a reply to a request, with the number of that request.
+/// Returns a reply with the transaction number of the request.
 fn reply(request: &[u8], body: &[u8]) -> Vec<u8> {
     let length = u16::try_from(body.len()).unwrap().to_be_bytes();
     [&request[..2], &[0, 0], &length, body].concat()
@@ -72,7 +72,7 @@ fn registers(request: &[u8], word: u32) -> Vec<u8> {
     reply(request, &[&[request[6], request[7], 4][..], &word.to_be_bytes()].concat())
 }
 
-/// The result of a call, the requests that it sent, and the time that it took.
+/// The result of a call, the requests sent, and the time taken.
 type Seen<T> = (Result<T, Error>, Vec<Vec<u8>>, Duration);
 
 fn with<T>(
@@ -127,7 +127,7 @@ fn an_out_word_is_two_holding_registers_written_together() {
     assert_eq!(word_in_frame(true, &requests[0], WordOrder::HighFirst), None);
 }
 
-/// Every request has its own number. A reply to an earlier request is ignored, even if it is the only answer.
+/// A reply to an earlier request is ignored, even if it is the only reply.
 #[test]
 fn a_late_reply_is_not_mistaken_for_the_next() {
     let answer = |number: usize, request: &[u8]| match number {
@@ -236,7 +236,6 @@ fn a_silent_or_endless_gateway_times_out() {
     assert_eq!((ended.unwrap_err(), took < Duration::from_secs(12)), (Error::NeverSilent, true));
 }
 
-/// A recording answers with its own transaction numbers.
 #[test]
 fn a_recording_answers_any_transaction_number() {
     let mut station = station("");

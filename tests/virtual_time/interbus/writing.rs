@@ -1,4 +1,4 @@
-//! Only differences are written and read back, with one store per operation, unless the change is rejected first.
+//! Only differences are written and read back, with one store per operation, unless the change is rejected.
 
 use std::path::Path;
 use std::time::Duration;
@@ -41,7 +41,7 @@ fn edited(stand: &mut Stand, programs: &[u8], edit: impl FnOnce(&mut Image)) -> 
     Change::Write(Box::new(wanted))
 }
 
-/// Returns the words that set a value, without questions and the words of normal operation.
+/// Returns the words that set a value, excluding requests for values and words of normal operation.
 fn setting(stand: &Stand) -> Vec<u32> {
     let questions = |word: &u32| matches!(word >> 16, 0x2020 | 0x2021);
     stand.sent().into_iter().filter(|word| *word != 0 && !questions(word)).collect()
@@ -77,7 +77,7 @@ fn parameters_are_set_in_one_parameterisation_with_one_store() {
     }
 }
 
-/// Of 64 cams, four differ, in two programs. The number of words is the one that the issue demands.
+/// Four of 64 cams differ, in two programs. The issue specifies the number of words.
 #[test]
 fn only_changed_edges_are_sent_and_a_program_needs_one_store() {
     let all: Vec<u8> = (1..=8).collect();
@@ -280,7 +280,7 @@ fn the_logbook_counts_stores_by_serial_number() {
 }
 
 /// An encoder may store a program when it is left, changed or not (manual 5.4.4), so each program selected for reading
-/// counts as one store. The store of a changed one belongs to the write (issue 22.3).
+/// counts as one store. For a changed program, the store belongs to the write (issue 22.3).
 #[test]
 fn reading_programs_counts_as_stores() {
     let mut stand = Stand::new(SCALED);
@@ -310,7 +310,7 @@ fn reading_programs_counts_as_stores() {
     assert_eq!(stand.counted(), 3);
 }
 
-/// An encoder that stores the number of steps less one: 3599 means 3600 steps.
+/// This encoder stores the number of steps minus one: 3599 means 3600 steps.
 #[test]
 fn steps_less_one_are_read_and_written_unchanged() {
     let mut stand = Stand::new("steps=3600&revolutions=1&steps-minus-one=on");
@@ -327,7 +327,7 @@ fn steps_less_one_are_read_and_written_unchanged() {
     assert_eq!(stand.session.take_sample().unwrap().gear.map(|gear| gear.total_steps()), Some(720));
 }
 
-/// A cancellation takes effect between two words. Afterwards, the encoder runs again in its original mode.
+/// A cancellation takes effect between two words. The encoder then runs in its original mode again.
 #[test]
 fn cancelling_leaves_a_running_encoder() {
     let wanted = |stand: &mut Stand| {
@@ -386,7 +386,7 @@ fn an_operation_reports_its_changes() {
     assert_eq!(told, [(0, 2, "preset".to_owned()), (1, 2, "position".to_owned())]);
 }
 
-/// The position is already close to the preset. The encoder returns old words first, and the preset afterwards.
+/// The position is already close to the preset. The encoder first returns old words, then the preset.
 #[test]
 fn a_preset_near_the_shafts_position_is_set_to_the_step() {
     for (preset, faults) in [(102, "stale=6"), (98, "stale=6&busy=60"), (101, "stale=6"), (102, "stale=0")] {
@@ -399,7 +399,7 @@ fn a_preset_near_the_shafts_position_is_set_to_the_step() {
     }
 }
 
-/// IN is always 86000000, because the content was lost. The remedy in the message has to work.
+/// After the content is lost, IN is always 86000000. The remedy in the message has to work.
 #[test]
 fn an_encoder_with_lost_parameters_can_be_recovered_and_restored() {
     let mut stand = Stand::new("steps=360&revolutions=1&cams=demo&serial=5&fault=die-in-store:1");

@@ -1,4 +1,4 @@
-//! Recorded writes to a BiSS encoder, at its configuration pin and at an adapter.
+//! Recorded writes to a BiSS encoder over its configuration pin and over an adapter.
 
 use encoder_studio::devices::biss::jobs::{Change, JobError};
 use encoder_studio::devices::biss::procedures::Error;
@@ -10,7 +10,7 @@ use super::{Ready, compare, listen};
 use crate::biss::hands::{TestOperator, calibration, data, exchanges, filter, preset, restore_of, wiegand_test};
 use crate::biss::support::{Bench, Transport};
 
-/// Speed range in rpm with which the runs take the fewest exchanges.
+/// Speed range in rpm at which the runs need the fewest exchanges.
 const RPM: (f64, f64) = (500.0, 2000.0);
 
 fn recorded(name: &str, change: fn(&mut Bench) -> Change, every: usize) {

@@ -14,7 +14,7 @@ fn status(byte: u8) -> DataFieldStatus {
     DataFieldStatus::from_byte(byte)
 }
 
-/// Connects to an encoder with four data fields. One field is write-protected and has its own access code.
+/// Connects to an encoder with four data fields, one of which is write-protected and has its own access code.
 fn scene() -> Desk {
     let mut desk = Desk::new("codes=2:66&position=4096");
     desk.remember_code(2, 0x66);
@@ -27,8 +27,7 @@ fn scene() -> Desk {
     desk
 }
 
-/// Returns a profile that changes several byte ranges in field 0, the protected field and a plain field, and creates a
-/// new field.
+/// Returns a profile that changes several byte ranges in three fields, one of them protected, and creates a field.
 fn wanted(desk: &mut Desk) -> HiperfaceProfile {
     let mut wanted = desk.save().unwrap();
     for (field, places) in [(0, vec![2, 3, 9, 30]), (1, vec![0, 7, 15]), (2, vec![5])] {

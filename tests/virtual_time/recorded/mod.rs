@@ -1,5 +1,5 @@
-//! The bytes that each kind of write sends, and each interruption of that write, compared with the recordings under
-//! `tests/fixtures/wire`. Each file shows the complete write. For each interruption it has the number of lines that
+//! Compares the bytes sent by each kind of write, with and without interruptions, with the recordings under
+//! `tests/fixtures/wire`. Each file contains the complete write. For each interruption it has the number of lines that
 //! equal those of the complete write, the number of lines after them, a checksum of all lines, and the result.
 //!
 //! `ENCODER_STUDIO_RECORD=1` rewrites the files. Use it only if the data are meant to change, and commit the difference
@@ -19,7 +19,7 @@ use encoder_studio::worker::{Device, Session};
 
 use crate::support::Tap;
 
-/// A prepared write, and what is needed to interrupt it.
+/// A prepared write with the means to interrupt it.
 struct Ready {
     tap: Arc<Mutex<Tap>>,
     cancel: CancelToken,
@@ -44,10 +44,10 @@ fn listen<D: Device>(session: &mut Session<D>) -> (Lines, CancelToken) {
     (lines, cancel)
 }
 
-/// A way to interrupt a write at the frame with this number.
+/// A function that interrupts a write at the frame with the given number.
 type EarlyEnd = fn(&mut Tap, &CancelToken, usize);
 
-/// The ways to interrupt a write at one of the sent frames, with their names in the recordings.
+/// The ways to interrupt a write, with their names in the recordings.
 const EARLY: [(&str, EarlyEnd); 3] = [
     ("cancelled", |tap, cancel, at| tap.cancel_at = Some((at, cancel.clone()))),
     ("lost", |tap, _, at| tap.lost_from = Some(at)),
@@ -62,8 +62,8 @@ impl Ready {
     }
 }
 
-/// Compares a write, and the same write interrupted at the sent frames `points` (counted from 0, or every frame if
-/// `None`), with the recording.
+/// Compares a write with its recording, both complete and interrupted at the sent frames `points` (counted from 0, or
+/// at every frame if `None`).
 fn compare(name: &str, points: Option<&[usize]>, ready: &mut dyn FnMut() -> Ready) {
     let undisturbed = ready();
     let (tap, first) = (undisturbed.tap.clone(), undisturbed.tap.lock().unwrap().sent.len());

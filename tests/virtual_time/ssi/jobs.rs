@@ -1,4 +1,4 @@
-//! The identity of the adapter, its settings for reading words, and reading a single word.
+//! Identifying the adapter, setting it up for reading words, and reading a single word.
 
 use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::buses::bridge::protocol::{Capabilities, Operation};
@@ -50,8 +50,8 @@ fn the_supply_stays_off_unless_requested() {
     assert_eq!((hello(&mut stand).supply, stand.count(Operation::Supply)), (None, 0));
 }
 
-/// ATM60 with factory settings: 12 bits of turns and 13 bits of steps in Gray code. The shaft is at turn 1234h, 270°,
-/// which is turn 234h of 4096, step 1800h of 8192. The Gray code of this word is 0x469800 ^ 0x234C00.
+/// An ATM60 with factory settings has 12 bits of turns and 13 bits of steps in Gray code. The shaft is at turn 1234h
+/// and 270°, which is turn 234h of 4096 and step 1800h of 8192. The Gray code of this word is 0x469800 ^ 0x234C00.
 #[test]
 fn a_word_is_read_with_the_requested_clocks() {
     let mut stand = Stand::new("", "ssi=atm60,code=gray&position=0x24698000");
@@ -68,7 +68,7 @@ fn a_word_is_read_with_the_requested_clocks() {
     assert_eq!(configured, [25, 27, 13]);
 }
 
-/// If the adapter rejects a setting, the previous settings remain.
+/// The adapter rejects a setting.
 #[test]
 fn a_refused_setting_keeps_the_previous_one() {
     let mut stand = Stand::quick("rpm=60");
@@ -95,7 +95,7 @@ fn an_adapter_of_another_version_is_refused_naming_both() {
     assert_eq!(error, Error::Adapter(AdapterError::Version { expected: 1, got: 2 }));
 }
 
-/// The adapter has never answered. The request is repeated once, as in the reference.
+/// The request is repeated once, as in the reference.
 #[test]
 fn a_silent_adapter_is_reported_after_two_tries() {
     let mut stand = Stand::new("", "fault=silent-after:0");
@@ -103,8 +103,7 @@ fn a_silent_adapter_is_reported_after_two_tries() {
     assert_eq!((error, stand.count(Operation::Hello)), (Error::Adapter(AdapterError::Silent), 2));
 }
 
-/// One byte in a hundred is lost, so a quarter of all exchanges fails. The values that are read are correct
-/// nevertheless.
+/// One byte in a hundred is lost, so a quarter of all exchanges fail. The values read are still correct.
 #[test]
 fn words_are_requested_again_on_a_lossy_line() {
     for seed in 0..20 {

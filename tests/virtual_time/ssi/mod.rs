@@ -1,4 +1,4 @@
-//! An SSI encoder at an adapter.
+//! Tests of an SSI encoder on an adapter.
 
 mod jobs;
 mod streams;

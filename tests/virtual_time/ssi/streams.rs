@@ -1,5 +1,5 @@
-//! Repeated readings of words: each word is requested if there is enough time, otherwise the adapter streams them. The
-//! stream is ended before any other request.
+//! Reading words repeatedly: each word is requested if there is enough time, otherwise the adapter streams them. The
+//! stream is stopped before any other request.
 
 use std::time::Duration;
 
@@ -15,11 +15,11 @@ use super::support::{QUICK, Stand};
 use crate::biss::support::pairs;
 
 const FAST: Duration = Duration::from_micros(50);
-/// Settings of an ATM60 at 50 revolutions per second. A turn has 8192 steps, so the shaft moves 20.48 steps per word of
-/// 50 µs.
+/// Settings of an ATM60 at 50 revolutions per second. With 8192 steps per turn and 50 µs per word, the shaft moves
+/// 20.48 steps per word.
 const TURNING: &str = "ssi=atm60,code=binary&rpm=3000&position=0";
 
-/// Checks that numbers and times are continuous, and that the position follows the shaft.
+/// Checks that numbers and times have no gaps, and that the position follows the shaft.
 fn check(runs: &[Words]) {
     let (mut next, mut before) = (runs[0].first, None);
     for run in runs {
@@ -91,7 +91,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
     assert_eq!(stand.sample().period_ns, 100_000, "another pace is another stream");
 }
 
-/// When the settings change, the stream continues, and has the new width from its first word on.
+/// When the settings change, the stream continues and has the new width from its first word on.
 #[test]
 fn changed_settings_apply_to_a_running_stream() {
     let mut stand = Stand::quick(TURNING);
@@ -108,7 +108,7 @@ fn changed_settings_apply_to_a_running_stream() {
     assert_eq!(stand.count(Operation::Hello), 1);
 }
 
-/// 25 clocks at 500 kHz take 50 µs, and the pause 200 µs.
+/// 25 clocks at 500 kHz take 50 µs, and the pause takes 200 µs.
 #[test]
 fn a_clock_or_pause_too_slow_for_the_interval_is_reported() {
     let mut slow = Stand::new("clock=500000&pause=200", TURNING);
@@ -136,7 +136,7 @@ fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
     assert!(matches!(stand.session.take_sample(), Err(Error::Link(error)) if error.is_lost()));
 }
 
-/// A reset ends the stream and clears the supply and the clock. The next job or sample detects this and continues.
+/// A reset stops the stream and clears supply and clock. The next job or sample detects this and continues.
 #[test]
 fn an_adapter_reset_while_streaming_is_configured_again() {
     let query = "supply=switched&rpm=60";
@@ -157,7 +157,7 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
     }
 }
 
-/// With single requests, a reset is detected by the next request.
+/// Without a stream, the next request detects the reset.
 #[test]
 fn an_adapter_reset_between_two_words_is_configured_again() {
     let query = "supply=switched&rpm=60";
@@ -170,7 +170,7 @@ fn an_adapter_reset_between_two_words_is_configured_again() {
     assert_eq!((stand.count(Operation::Supply), stand.count(Operation::SsiConfig)), (2, 2));
 }
 
-/// Damaged packets are counted as missing before the next one, and no word is wrong.
+/// Damaged packets are counted as missing before the next word, and no word is wrong.
 #[test]
 fn packets_lost_in_transit_are_reported() {
     let mut stand = Stand::quick(&format!("{TURNING}&seed=3&fault=drop:0.001"));

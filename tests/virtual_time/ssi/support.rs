@@ -1,4 +1,4 @@
-//! Test support: a virtual SSI encoder at a virtual adapter, with a session.
+//! Test support: an SSI encoder on an adapter in virtual time, with a session.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -16,7 +16,7 @@ use encoder_studio::worker::Session;
 use crate::biss::support::pairs;
 use crate::support::{MARGIN, Tap, TestLink};
 
-/// Settings for words in less than 50 µs: 25 clocks in 16.67 µs and a pause of 30 µs.
+/// Settings for reading a word in less than 50 µs: 25 clocks in 16.67 µs and a pause of 30 µs.
 pub(crate) const QUICK: ClockSettings = ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 30 };
 
 pub(crate) struct Stand {
@@ -61,7 +61,7 @@ impl Stand {
         self.session.take_sample().unwrap()
     }
 
-    /// Returns all samples within the given time.
+    /// Returns all samples taken within the given time.
     pub(crate) fn samples(&mut self, time: Duration) -> Vec<Words> {
         let end = self.clock.now() + time;
         let mut samples = Vec::new();
@@ -82,7 +82,7 @@ impl Stand {
         (0..1000).map(|_| bytes(1)).sum()
     }
 
-    /// Returns the sent requests of an operation.
+    /// Returns the requests sent for an operation.
     pub(crate) fn requests(&self, operation: Operation) -> Vec<Packet> {
         let mut receiver = Receiver::default();
         self.tap.lock().unwrap().sent.iter().for_each(|bytes| receiver.push(bytes));
