@@ -100,8 +100,7 @@ impl SimulatedFaults {
         self.delay
     }
 
-    /// Returns the number of frames after which the device fails. From then on, it neither replies nor executes
-    /// anything.
+    /// Returns the number of frames after which the device fails and does nothing more.
     pub fn silent_after(&self) -> Option<u32> {
         self.silent_after
     }
@@ -130,8 +129,8 @@ fn is_hit(probability: f64, rng: &mut Rng) -> bool {
 impl FromStr for SimulatedFaults {
     type Err = FaultError;
 
-    /// Parses a list such as `drop:0.01,delay:5`. Of repeated items, the last one applies. An empty string means no
-    /// faults.
+    /// Parses a list such as `drop:0.01,delay:5`. If an item is repeated, the last one applies. An empty string means
+    /// no faults.
     fn from_str(text: &str) -> Result<Self, FaultError> {
         let mut faults = SimulatedFaults::default();
         for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {

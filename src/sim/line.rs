@@ -90,8 +90,8 @@ impl LineConditions {
         }
     }
 
-    /// Buffer size of a UART in bytes, as in a device server. Further bytes are lost. The buffer holds any request of
-    /// the simulated protocols. At 9600 bit/s, 512 bytes take half a second.
+    /// Buffer size of a UART in bytes, as in a device server. Further bytes are lost. Every request of the simulated
+    /// protocols fits. At 9600 bit/s, sending 512 bytes takes half a second.
     const BUFFER: usize = 512;
 
     /// Returns how many more bytes the host's UART can accept.
@@ -123,7 +123,7 @@ impl LineConditions {
 
 /// A line with its devices. Every implementation is also a [`ByteDevice`].
 pub(crate) trait VirtualLine: Send {
-    /// An event on the line. Simultaneous events are processed in sort order.
+    /// An event on the line. Simultaneous events are processed in ascending order.
     type Event;
 
     fn line_conditions(&self) -> &LineConditions;

@@ -1,4 +1,4 @@
-//! Virtual devices, which simulate the device end of a connection at the level of bytes or voltages, with simulated
+//! Virtual devices, which simulate the device end of a connection at the level of bytes or voltages, and can have
 //! faults. They are deterministic: the same seed and the same calls at the same times yield the same bytes.
 //!
 //! This module does not use clocks, threads, sockets or ports. Time is passed as an argument. The module uses neither
@@ -21,7 +21,7 @@ use std::net::SocketAddrV4;
 use crate::units::{CharacterFormat, Moment};
 
 /// A virtual device on a serial line. It is driven by its owner, such as a link in this process, a pseudo-terminal or a
-/// TCP server. Time never runs backwards: if an earlier time is passed, the latest one is used instead.
+/// TCP server. Time never runs backwards. If a call passes an earlier time than before, the latest time is used.
 pub trait ByteDevice: Send {
     /// Takes bytes that the host passed to its UART at `now`. They are transmitted after any earlier bytes, and take
     /// one character time each.
@@ -42,7 +42,7 @@ pub trait ByteDevice: Send {
     fn connect(&mut self, now: Moment);
 }
 
-/// A virtual device that also receives datagrams. Times are handled as by a [`ByteDevice`].
+/// A virtual device that also receives datagrams. Times have the same meaning as for a [`ByteDevice`].
 pub trait DatagramDevice: Send {
     /// Handles a packet received at `now`.
     fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]);

@@ -63,7 +63,7 @@ impl From<RejectedParameter> for ConfigError {
     }
 }
 
-/// Parses the percent-decoded settings of `device`. Of repeated keys, the last one applies.
+/// Parses the percent-decoded settings of `device`. If a key is repeated, its last value applies.
 ///
 /// # Errors
 /// Returns an error that names the key and the allowed values.

@@ -175,15 +175,15 @@ impl PhaseAccumulator {
     }
 }
 
-/// Settings in a form that is fast to calculate with.
+/// Settings converted to a form that is fast to calculate with.
 struct Model<'a> {
     settings: &'a Settings,
     periods: u64,
-    /// Amplitude in radians of the signal's phase shift due to the eccentricity.
+    /// Amplitude in radians of the phase shift that the eccentricity causes in the signal.
     eccentricity: f64,
     phase_error: f64,
     third: f64,
-    /// Noise of each wire, chosen so that the difference between two wires has the noise in the settings.
+    /// Noise of each wire. The difference between two wires then has the noise given in the settings.
     noise: f64,
 }
 

@@ -21,7 +21,7 @@ use crate::devices::biss::protocol::{KIND, Name, Role};
 use crate::devices::biss::state::explain as explained;
 use crate::result_of;
 
-/// How long valid frames may be missing before the line is considered to carry only noise.
+/// Time without a valid frame after which the line is considered to carry only noise.
 const NOISE: Duration = Duration::from_secs(5);
 
 pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {

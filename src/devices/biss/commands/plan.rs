@@ -29,8 +29,8 @@ pub(super) fn prepare_plan(runner: &mut Runner, change: Change) -> Result<Prepar
     Ok(result_of!(runner.run(BissJob::Prepare(change))?, BissOutput::Prepared(prepared) => *prepared))
 }
 
-/// Asks for consent if required, and executes the plan. An empty plan sends nothing. If the motor is needed, the run
-/// starts as soon as it meets the conditions, within at most `patience`.
+/// Asks for consent if required, and executes the plan. An empty plan sends nothing. If a run needs the motor, it
+/// starts as soon as the motor meets the conditions. `patience` limits this wait.
 pub(super) fn commit_plan(
     runner: &mut Runner,
     output: &Output,
@@ -55,7 +55,7 @@ pub(super) fn commit_plan(
     Ok((WriteSummary { written, verified, write_cycles, backup: committed.backup }, outcomes))
 }
 
-/// Describes the plan as text and JSON, with the old and new value of each operation, and the cost.
+/// Describes the plan as text and JSON, with the old and new value of each operation and the cost in write cycles.
 pub(super) fn plan_report(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     PlanReport::from_plan(

@@ -77,7 +77,7 @@ impl ProfileCommands for BissCommands {
         }
     }
 
-    /// Returns a message if the profile was read outside operation mode, so that it may contain unsaved values.
+    /// Returns a message if the profile was read outside operation mode and may therefore contain unsaved values.
     fn profile_note(&self, profile: &Body) -> Option<Text> {
         explain::profile_unsaved(profile.get()?)
     }

@@ -25,7 +25,7 @@ pub(super) fn register_meaning(address: RegisterAddress, bytes: &[u8]) -> Option
     describe_value(register, bytes)
 }
 
-/// Describes the value of a register if `range` covers exactly this register.
+/// Describes the value of a register if `range` covers exactly that register.
 pub(super) fn describe_register(register: &Register, range: RegisterRange, bytes: &[u8]) -> Option<String> {
     let own = register.address == range.start() && register.width == range.count();
     own.then(|| describe_value(register, bytes)).flatten()

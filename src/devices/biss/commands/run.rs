@@ -51,7 +51,7 @@ impl CliDevice for Biss {
     }
 }
 
-/// Describes the progress of a step: a count, the elapsed time, or what prevents the start.
+/// Describes the progress of a step, such as a count, the elapsed time, or what prevents the start.
 fn describe_detail(news: &ProcedureProgress) -> String {
     match &news.detail {
         StepDetail::Begins => String::new(),
@@ -72,8 +72,7 @@ pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     Ok(result_of!(runner.run(BissJob::Identify)?, BissOutput::Identity(identity) => identity))
 }
 
-/// Returns the number of frames with a wrong checksum in the last job. Those before a position reading are counted in
-/// the reading instead.
+/// Returns the number of frames with a wrong checksum in the last job, without those counted in a position reading.
 pub(super) fn crc_errors(runner: &Runner) -> u64 {
     let count = |remark: &DeviceMessage| match remark {
         DeviceMessage::CrcErrors(count) => u64::from(*count),

@@ -23,7 +23,7 @@ use crate::worker::commit::{ApprovedPlan, CycleCount, total_cycles_to_report};
 /// Limit for the number of persistent writes to an encoder (manual 6.1: "1000 write cycles should not be
 /// exceeded").
 pub const WEAR_LIMIT: u64 = 1000;
-/// Number of persistent writes from which the user is warned.
+/// Number of persistent writes at which warnings start.
 pub const WEAR_WARNING: u64 = 800;
 
 #[derive(Debug)]
@@ -140,7 +140,7 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Returns the number of flash write cycles used after this write, as far as known, or `None` if no warning is
+    /// Returns the number of flash write cycles used after this write, as far as known. Returns `None` if no warning is
     /// needed.
     pub fn wear_to_report(&self) -> Option<u64> {
         total_cycles_to_report(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
@@ -189,7 +189,7 @@ pub struct RegisterValues {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
-    /// Number of frames with a wrong checksum that no position reading includes.
+    /// Number of frames with a wrong checksum, without those counted in a position reading.
     CrcErrors(u32),
     /// User-defined descriptions that cannot be used.
     Descriptions(Vec<StoreError>),

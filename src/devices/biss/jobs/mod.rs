@@ -1,4 +1,4 @@
-//! The BiSS encoder as a device of a session, and its jobs.
+//! The BiSS encoder as the device in a session, and its jobs.
 
 mod commit;
 mod descriptions;
@@ -45,7 +45,7 @@ pub struct Biss {
     streamed_us: Option<u32>,
 }
 
-/// Interval below which an adapter streams positions.
+/// Longest interval at which an adapter streams positions. At longer intervals, they are requested one by one.
 const STREAMING_INTERVAL: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Biss {
@@ -274,7 +274,7 @@ impl Biss {
         Ok(BissOutput::Registers(RegisterValues { start, bytes, unsaved }))
     }
 
-    /// Returns the device mode if registers may show values that were never saved in the encoder.
+    /// Returns the device mode if the registers may show values that were never saved.
     fn unsaved_mode(&mut self, context: &mut SessionContext) -> Result<Option<DeviceMode>, Error> {
         let mut master = self.create_master(context);
         let description = master.description()?;

@@ -1,4 +1,4 @@
-//! Opening a session with a BiSS encoder from a link.
+//! Opening a link to a BiSS encoder as a session.
 
 use std::sync::Arc;
 

@@ -81,7 +81,7 @@ pub enum CheckFinding {
         requested: u32,
         damaged: u64,
     },
-    /// Number of recorded write cycles and the limit of the flash.
+    /// Number of recorded write cycles, and the limit of the flash.
     Wear {
         /// Minimum number of write cycles used so far.
         seen: CycleCount,

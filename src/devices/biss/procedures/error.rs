@@ -1,4 +1,4 @@
-//! Errors of procedures with an encoder, with the details for their messages.
+//! Errors of procedures on an encoder, with the details for their messages.
 
 use std::fmt;
 
@@ -54,7 +54,7 @@ pub enum Error {
     StuckLow { tries: u32 },
     #[error("the data line stays high (attempts: {tries})")]
     StuckHigh { tries: u32 },
-    /// No frame has ever had a correct checksum, so the encoder's frame must have other widths.
+    /// No frame has ever had a correct checksum, so the encoder's frames must have different widths.
     #[error("{frames} frames in a row have a wrong CRC: frames of the encoder do not have {data_bits}+{crc_bits} bits")]
     WrongWidths {
         frames: u32,
@@ -78,7 +78,8 @@ pub enum Error {
         /// Value that the register still holds, or `None` if the connection cannot read it back.
         reads: Option<u8>,
     },
-    /// The value may or may not have been accepted, because reading the register back is impossible or proves nothing.
+    /// The value may or may not have been accepted. The register cannot be read back, or reading it back proves
+    /// nothing.
     #[error("it is not known whether 0x{value:02X} was written to register {address}: {cause}")]
     Unclear {
         address: RegisterAddress,
@@ -148,7 +149,7 @@ pub(super) fn requested_register(number: u16) -> RegisterAddress {
     RegisterAddress::from_global(number).unwrap_or(RegisterAddress::BANK_SELECT)
 }
 
-/// Converts register values to an array of the requested size.
+/// Converts register values to an array of known size.
 ///
 /// # Errors
 /// Returns [`Error::TooFew`] if the number of registers differs.

@@ -25,7 +25,7 @@ pub type Frame = Result<PositionData, FrameReadError>;
 /// Consecutive frames of a stream, at equal intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConsecutiveFrames {
-    /// Number of the first frame, counted from the start of the stream including missing frames.
+    /// Number of the first frame since the start of the stream, including missing frames.
     pub first: u64,
     pub at: Moment,
     pub period_ns: i64,
@@ -34,7 +34,7 @@ pub struct ConsecutiveFrames {
     /// The frames, at least one.
     pub frames: Vec<Frame>,
     pub layout: Arc<Layout>,
-    /// Whether the multiturn width is known.
+    /// Whether the multiturn width is known, so that positions can be split into turns and steps.
     pub is_split_known: bool,
     pub clock_hz: u32,
     /// Whether the adapter cannot send frames at the requested interval.

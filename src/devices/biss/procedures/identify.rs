@@ -45,7 +45,7 @@ pub enum FrameSource {
     DataSheet,
     Description,
     Given,
-    /// The checksums of frames received while the shaft turned. The multiturn width remains unknown.
+    /// The layout matches the checksums of frames received while the shaft turned. The multiturn width remains unknown.
     Checksum,
     Assumed,
 }
@@ -170,8 +170,8 @@ pub(super) fn identify_and_record(
 }
 
 /// Determines an unknown frame layout. The layout of the kit encoder is used if its checksum matches. Otherwise, a
-/// matching layout is searched for. Over the configuration pin, which transmits no frames, this layout is assumed
-/// without a check.
+/// matching layout is searched for. Over the configuration pin, which transmits no frames, the kit encoder's layout is
+/// assumed.
 fn detect_frame_source(master: &mut Master<'_>) -> Result<FrameSource, Error> {
     if master.station().transport == Transport::ConfigPin {
         return Ok(FrameSource::Assumed);

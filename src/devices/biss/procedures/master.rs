@@ -35,7 +35,7 @@ pub struct Master<'a> {
 
 /// The reason why an exchange produced no reply.
 enum ExchangeError {
-    /// No reply arrived, except possibly the echo.
+    /// Nothing arrived, except possibly the echo.
     Silence {
         echo_heard: bool,
     },
@@ -48,13 +48,13 @@ type AttemptResult<T> = Result<Result<T, ExchangeError>, Error>;
 
 enum WriteReaction {
     Yes,
-    /// The encoder rejected the value. The register still holds the given value, or an unknown one (`None`) if this
-    /// connection cannot read it back.
+    /// The encoder rejected the value. The register still holds the given value, which is `None` if this connection
+    /// cannot read it back.
     No(Option<u8>),
 }
 
 impl<'a> Master<'a> {
-    /// Creates the host side of the line for one job, whose time limit starts now.
+    /// Creates the host side of the line for one job. Its time limit starts now.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         // The encoder may have restarted since the last job.
@@ -145,8 +145,8 @@ impl<'a> Master<'a> {
         places.into_iter().map(|address| self.read(address)).collect()
     }
 
-    /// Writes a register. If no reply confirms the value, the register is read back, provided that this is conclusive.
-    /// The write is repeated only if the value was not accepted.
+    /// Writes a register. If no reply confirms the value, the register is read back, provided that this proves
+    /// anything. The write is repeated only if the value was not accepted.
     ///
     /// # Errors
     /// Returns [`Error::Refused`] if the encoder rejects the value. Returns [`Error::Unclear`] if it remains unknown

@@ -59,7 +59,7 @@ pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Err
 }
 
 /// Returns the mean speed of the readings in revolutions per minute, positive clockwise. Returns `None` if the
-/// multiturn width is unknown or insufficient for counting the turns.
+/// multiturn width is unknown or too small to count the turns.
 fn speed(readings: &[PositionReading]) -> Option<f64> {
     let (first, last) = (readings.first()?, readings.last()?);
     if first.multiturn_bits < MIN_MULTITURN_BITS || !first.is_split_known {

@@ -11,7 +11,7 @@ use crate::units::Moment;
 pub struct PositionReading {
     /// Time at which the encoder sampled the position.
     pub at: Moment,
-    /// Number of revolutions, limited by the multiturn width.
+    /// Number of revolutions, which wraps around at the multiturn width.
     pub turns: u32,
     /// Position within the revolution in steps. The number of steps per revolution is 2 to the power of
     /// [`singleturn_bits`](Self::singleturn_bits).
@@ -35,7 +35,8 @@ pub struct PositionReading {
 }
 
 impl PositionReading {
-    /// Creates a reading without error and warning bits, CRC errors and a frame, which some transports do not provide.
+    /// Creates a reading without the error and warning bits, CRC error count and frame, which some transports do not
+    /// provide.
     pub(super) fn new(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             at,
@@ -107,8 +108,8 @@ pub enum PolledSample {
 pub struct WatchedReading {
     pub at: Moment,
     pub range: RegisterRange,
-    /// Values in ascending order of address, or the reason why they could not be read. For example, the register does
-    /// not exist or belongs to a data area.
+    /// Values in ascending order of address, or the reason why they could not be read, such as a register that does not
+    /// exist or belongs to a data area.
     pub value: Result<Vec<u8>, Error>,
 }
 
@@ -127,7 +128,8 @@ pub fn read_sample(master: &mut Master<'_>) -> Result<PolledSample, Error> {
     }
 }
 
-/// Reads watched registers once. Missing registers and those in a data area are reported in the value, not as an error.
+/// Reads watched registers once. Registers that are missing or belong to a data area do not make the whole reading
+/// fail.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.

@@ -1,4 +1,4 @@
-//! Register values read from an encoder, byte by byte, and the functions that read them as described.
+//! Register values read from an encoder, stored byte by byte, and functions that read the registers in a description.
 
 use std::collections::BTreeMap;
 
@@ -68,8 +68,8 @@ impl Registers {
         self.read(master, register.address, register.width)
     }
 
-    /// Reads all described registers that this firmware has and that have not been read yet. Returns the addresses that
-    /// turn out to be missing in the encoder.
+    /// Reads all described registers that this firmware has and that have not been read yet. Returns the addresses of
+    /// those that the encoder does not have.
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
@@ -121,8 +121,8 @@ impl Registers {
     }
 }
 
-/// Returns whether a register can be read with the given firmware. If the firmware is unknown, only registers that
-/// every version has can be read.
+/// Returns whether a register can be read with the given firmware. If the firmware is unknown, the oldest one is
+/// assumed.
 fn is_readable(register: &Register, firmware: Option<Firmware>) -> bool {
     register.access.is_readable() && firmware.unwrap_or_default() >= register.since
 }

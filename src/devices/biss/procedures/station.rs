@@ -74,7 +74,7 @@ parameters! {
 pub enum Transport {
     /// UBICOM over the configuration pin, with global register addresses.
     ConfigPin,
-    /// BiSS over an adapter, with register addresses within the selected bank.
+    /// BiSS through an adapter, with register addresses in the selected bank.
     Adapter,
 }
 
@@ -101,7 +101,7 @@ pub struct Station {
     pub timeout: Duration,
     /// Requested BiSS clock frequency in hertz. The adapter uses the nearest supported frequency.
     pub clock_hz: u32,
-    /// BiSS clock frequency set by the adapter in hertz, or `None` until it has been set.
+    /// Actual BiSS clock frequency of the adapter in hertz, or `None` until it has been set.
     pub actual_clock_hz: Option<u32>,
     /// Supply for the encoder, if the adapter is to switch it.
     pub supply: Option<Supply>,
@@ -246,7 +246,7 @@ impl Station {
         self.source.is_none_or(FrameSource::is_known)
     }
 
-    /// Returns whether values must be read twice, because a checksum misses some pairs of flipped bits.
+    /// Returns whether values must be read twice, since a checksum misses some pairs of flipped bits.
     pub(super) fn requires_double_read(&self) -> bool {
         self.thorough || self.noisy
     }
@@ -280,7 +280,7 @@ impl fmt::Display for Station {
 }
 
 impl FrameParameters {
-    /// Returns the frame layout specified in the link. Without a checksum in the link, the usual one is used.
+    /// Returns the frame layout specified in the link. If the link specifies no checksum, the usual one is assumed.
     fn layout(self, query: &UrlQuery) -> Result<Option<Layout>, RejectedParameter> {
         let alone = |name: &str, allowed| RejectedParameter::new(name, query.get(name).unwrap_or_default(), allowed);
         let Some(singleturn) = self.singleturn else {

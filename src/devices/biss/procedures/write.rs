@@ -44,8 +44,8 @@ pub struct EndState {
 }
 
 impl InterruptedWrite {
-    /// Returns the register whose individual write has an unknown result, if any. A rejected or unsent write has a
-    /// known result.
+    /// Returns the register that was written individually with an unknown result, if any. The result of a rejected or
+    /// unsent write is known.
     pub fn uncertain_write(&self) -> Option<RegisterAddress> {
         match (&self.unfinished, &self.cause) {
             (Some(Op::WriteRegister { .. }), Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,

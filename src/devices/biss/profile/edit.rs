@@ -14,7 +14,7 @@ use crate::devices::biss::protocol::{
 /// Oldest firmware that can preset singleturn and multiturn separately (manual 6.7).
 const PRESET_PARTS_SINCE: Firmware = Firmware::new(1, 6, 0);
 
-/// The motor that turns the shaft in a procedure, by its dependence on the encoder.
+/// The kind of motor that turns the shaft during a procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotorSource {
     /// A motor that does not depend on this encoder: a separate motor, a drive in open-loop control, or one with

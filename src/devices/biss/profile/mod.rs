@@ -1,5 +1,5 @@
-//! BiSS profiles, which contain the saved content of an encoder. This includes comparing two encoders, and planning
-//! restores and guided procedures.
+//! BiSS profiles, which hold the saved content of an encoder. They can be compared and restored. Guided procedures are
+//! planned here as well.
 
 #![warn(missing_docs)]
 

@@ -1,5 +1,5 @@
-//! The changes made by an operation, as listed in the logbook. Registers have their address and their name in the
-//! manual, regardless of the language of the window.
+//! The changes made by an operation, as listed in the logbook. Registers are listed with their address and their name
+//! in the manual, whatever the language of the window.
 
 use super::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::bits::hex_compact;

@@ -41,7 +41,7 @@ pub enum Op {
     FirePreset {
         /// Parts of the position that are set.
         parts: PresetParts,
-        /// Preset value that is stored when the operation runs.
+        /// Stored preset value to which the position is set.
         value: PresetValue,
     },
     /// Selects the position filter (manual 6.6).
@@ -159,8 +159,8 @@ impl Op {
         }
     }
 
-    /// Returns how many items of a comparison the operation changes: each changed register of a data area, and one item
-    /// for any other operation.
+    /// Returns how many items of a comparison the operation changes. For a data area, this is the number of changed
+    /// registers, and for any other operation one.
     pub fn compared_items(&self) -> u64 {
         match self {
             Op::StoreData { registers, .. } => registers.len() as u64,

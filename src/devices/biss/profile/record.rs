@@ -140,7 +140,7 @@ pub struct DataImage {
 }
 
 impl BissProfile {
-    /// Registers of a kit encoder's preset value, singleturn first.
+    /// Registers of the preset value in a kit encoder, singleturn first.
     pub const PRESET: &'static str = "0x01:0x02+6";
     /// Filter register of a kit encoder.
     pub const FILTER: &'static str = "0x6E";

@@ -7,7 +7,7 @@ use super::other_type::{TypeMismatch, other_type};
 use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{Area, Firmware, PositionFilter, PresetValue, ProcedureKind, RegisterAddress};
 
-/// What a plan requires to know about the current state of an encoder.
+/// The current state of an encoder, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the encoder.

@@ -1,5 +1,4 @@
-//! Undoing a write to an encoder: separating its registers, and giving instructions for items that the backup cannot
-//! restore.
+//! Undoing a write to an encoder: one change per register, and instructions for items that the backup cannot restore.
 
 use super::{BissProfile, RegisterRange};
 use crate::profile::{ChangedItem, Redo, single_bytes};

@@ -91,8 +91,8 @@ impl Crc {
         self.polynomial.ilog2() as u8 // at most 32
     }
 
-    /// Returns the checksum of the lowest `bits` bits of `data`, starting with the highest of them. The result is
-    /// inverted if the checksum is sent inverted. At most 64 bits are used.
+    /// Returns the checksum of the lowest `bits` bits of `data`, processed from the highest to the lowest. The result
+    /// is inverted if the checksum is sent inverted. At most 64 bits are used.
     pub fn compute(&self, data: u64, bits: u8) -> u32 {
         let unused = 32 - u32::from(self.width());
         let mut register = self.start << unused;

@@ -46,7 +46,7 @@ pub struct Identity {
     pub device_id: [u8; 6],
 }
 
-/// An encoder's identity that does not match a description.
+/// A mismatch between an encoder's identity and a description.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the encoder reports {found}, but the description \"{name}\" is for {expected}")]
 pub struct IdentityMismatch {
@@ -125,7 +125,7 @@ impl Description {
         &self.name
     }
 
-    /// Returns the identity of the described encoders, or `None` if the description applies to any encoder.
+    /// Returns the identity of the described encoders, or `None` if the description is generic.
     pub const fn identity(&self) -> Option<&Identity> {
         self.identity.as_ref()
     }

@@ -52,7 +52,7 @@ pub enum EdsValue {
     Bank(u8),
     /// A bank that is not available, which is encoded as FFh.
     NotAvailable,
-    /// Time in an unknown unit. The manual does not define it, and no unit fits all values in its tables.
+    /// Time in an unknown unit. The manual does not define the unit, and none fits all values in its tables.
     Ticks(u8),
     /// Adaptive time-out, which is encoded as 0.
     Adaptive,

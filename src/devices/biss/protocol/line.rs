@@ -1,6 +1,6 @@
 //! One cycle on the data line SLO, sampled once per clock after the latch. A cycle consists of acknowledge, start bit,
-//! control bit, frame and time-out. The clock period and the duration of the time-out do not matter here. See manual,
-//! figure 2.
+//! control bit, frame and time-out. This module depends on neither the clock period nor the duration of the time-out.
+//! See manual, figure 2.
 
 use super::single_cycle::Layout;
 

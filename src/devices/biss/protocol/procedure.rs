@@ -146,7 +146,7 @@ codes! {
     DataCommand {
         /// Opens banks 04h to 23h for writing.
         OpenMotorData = 0x01 "get write access to EDS motor data",
-        /// Saves the entered values in the flash.
+        /// Opens banks 24h to 43h for writing.
         OpenOemData = 0x02 "get write access to OEM data",
         /// Writes the entered values to flash.
         Save = 0x03 "save data",

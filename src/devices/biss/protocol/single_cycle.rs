@@ -4,7 +4,7 @@
 
 use super::crc::{Crc, CrcError};
 
-/// The bit layout of a frame after the start and control bits.
+/// The bits of a frame after the start and control bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     multiturn_bits: u8,
@@ -143,7 +143,7 @@ impl Layout {
         self.data_bits() + self.crc_bits()
     }
 
-    /// Parses a right-justified frame, whose last received bit is bit 0.
+    /// Parses a right-justified frame. Bit 0 is the last bit received.
     ///
     /// # Errors
     /// Returns a [`FrameError`] if the bits are not a valid frame. It distinguishes a stuck line from a wrong checksum.

@@ -75,7 +75,7 @@ impl Encoder {
     const PRESET_SINCE: Firmware = Firmware::new(1, 2, 0);
     const FILTER_SINCE: Firmware = Firmware::new(1, 1, 0);
 
-    /// Creates an encoder that was powered on long ago.
+    /// Creates an encoder that has been on for a long time.
     pub fn new(config: &Config) -> Self {
         let flash = Flash { filter: config.filter, ..Flash::factory_default(config.cycles) };
         let mut encoder = Encoder {
@@ -134,7 +134,7 @@ impl Encoder {
         self.watch_temperature();
     }
 
-    /// Replaces the simulated faults of the flash. The number of stores so far is kept.
+    /// Replaces the simulated faults of the flash, but keeps the count of stores.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.die_in_store = faults.failing_store();
     }

@@ -1,5 +1,5 @@
 //! Procedures in which values are first entered and then saved: data, filter and preset. This module holds the entered
-//! values, and the [`Encoder`](super::Encoder) saves them. A command out of sequence is rejected, which is not
+//! values, and the [`Encoder`](super::Encoder) saves them. A command out of sequence is rejected. This behaviour is not
 //! documented (`U`). See manual 6.5 to 6.7.
 
 use crate::devices::biss::protocol::{

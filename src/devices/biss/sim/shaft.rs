@@ -1,5 +1,5 @@
-//! A model of the shaft, whose position is calculated exactly from the time. A preset changes the reported position,
-//! but does not move the shaft.
+//! A model of the shaft, whose position is calculated from the time without accumulating errors. A preset changes the
+//! reported position, but does not move the shaft.
 
 use crate::devices::biss::protocol::{Layout, PositionData};
 use crate::units::Moment;
@@ -48,8 +48,8 @@ impl Shaft {
         PositionData { multiturn, singleturn, error: false, warning: false }
     }
 
-    /// Returns the position at time `at` as a fixed-point number with [`FRACTIONAL_BITS`] fractional bits, which
-    /// another encoder on the same shaft may need.
+    /// Returns the position at time `at` as a fixed-point number with [`FRACTIONAL_BITS`] fractional bits. Another
+    /// encoder on the same shaft needs this resolution.
     pub(super) fn fractional_position_at(&self, at: Moment) -> u64 {
         let whole = (self.integer_steps(at) + self.offset) % self.position_count();
         // The product is at least 0 and below 1 << FRACTIONAL_BITS.

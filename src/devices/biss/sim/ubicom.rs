@@ -77,7 +77,7 @@ impl UbicomPort {
         &mut self.encoder
     }
 
-    /// Replaces the simulated faults of the line and the encoder. The numbers of frames and stores so far are kept.
+    /// Replaces the simulated faults of the line and the encoder, but keeps the counts of frames and stores.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.wires.faults = faults.clone();
         self.encoder.set_faults(faults);

@@ -17,7 +17,7 @@ use crate::profile::Body;
 use super::table::Group;
 use crate::devices::biss::state::explain as explained;
 
-/// Interval at which watched registers are read. They change slowly, and reading them delays the positions.
+/// Interval at which watched registers are read. Their values change slowly, and each reading delays the positions.
 const WATCH_INTERVAL: Duration = Duration::from_millis(500);
 
 impl Encoder {
@@ -94,15 +94,15 @@ impl Encoder {
         }
     }
 
-    /// Returns whether a bank that has become visible should be read. It must be unread, with no failed attempt, no
-    /// running job and no stream that a read would interrupt.
+    /// Returns whether a bank that has become visible should be read. This is not the case if it was read before, an
+    /// attempt failed, a job is running, or a stream would be interrupted.
     pub fn should_read_bank(&self, group: &Group) -> bool {
         let free = self.session.is_ready() && self.active_stream().is_none();
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }
 
-    /// Returns the part of an area that can be shown. Of an encoder, this is the whole area. Of a profile, it is what
-    /// the file contains.
+    /// Returns the part of an area that can be shown, which is the whole area of an encoder, or what a profile
+    /// contains.
     pub fn visible_area_part(&self, area: &Area) -> Option<Area> {
         if self.profile().is_some() { self.memory.readable_part(area) } else { Some(area.clone()) }
     }
@@ -126,7 +126,7 @@ impl Encoder {
         }
     }
 
-    /// Saves a profile that was just read to the requested file.
+    /// Saves a newly read profile to the requested file.
     pub(super) fn save_profile(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.memory.count());
         let remarks = explained::unsaved_profile_warning(&profile).into_iter().collect();

@@ -180,7 +180,7 @@ impl BissForm {
         self.kind == BissLinkKind::Bus || (self.supports_pin_and_bus() && self.behind_adapter)
     }
 
-    /// Returns whether links of this kind can lead to the configuration pin or to the bus.
+    /// Returns whether this kind of link supports both the configuration pin and the bus.
     pub fn supports_pin_and_bus(&self) -> bool {
         matches!(self.kind, BissLinkKind::Virtual | BissLinkKind::Replay)
     }

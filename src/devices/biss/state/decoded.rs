@@ -1,5 +1,5 @@
 //! Decoded register values as text. They follow the register's description, except in the data sheet and for registers
-//! with a special role.
+//! with a role.
 
 use super::encoder::Encoder;
 use super::format;

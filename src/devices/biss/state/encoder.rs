@@ -30,12 +30,12 @@ pub struct Encoder {
     pub record: Record,
     /// The running guided procedure, or the last one with its result.
     pub guide: Option<ProcedureRun>,
-    /// Why the last request for data was rejected, if it was.
+    /// Why the last request for data was rejected, if it was rejected.
     pub refusal: Option<Text>,
     pub motor: Option<Motor>,
     pub(super) meaning: FrameDecoder,
-    /// Banks that have already been read when they became visible, or could not be read. They are not read
-    /// automatically again.
+    /// Banks that have been read when they became visible, or that could not be read. They are not read automatically
+    /// again.
     pub(super) seen: BTreeSet<Option<u8>>,
     /// Banks that were written and must be read back.
     pub(super) read_after: BTreeSet<u8>,
@@ -130,7 +130,7 @@ impl Encoder {
         self.memory.is_dirty()
     }
 
-    /// Applies a survey of the encoder. Edits are kept unless it is a different encoder.
+    /// Applies the values read from the encoder. Edits are kept unless it is a different encoder.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         self.session.values_read_at = Some(services.current_time().timestamp());
         let fresh = std::mem::take(&mut self.session.just_connected);
@@ -178,7 +178,7 @@ impl Encoder {
         Some(explain::unsaved_warning(mode))
     }
 
-    /// Returns whether this identity is not the one that was read before.
+    /// Returns whether the identity differs from the one that was read before.
     pub(super) fn is_different_device(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.kind.clone(), identity.serial_number.clone());
         self.identity().is_some_and(|known| who(known) != who(identity))

@@ -63,7 +63,7 @@ impl Kind for Biss {
 }
 
 impl Encoder {
-    /// Reads back the next of the banks that were written.
+    /// Reads back the next bank on the list of written banks.
     fn read_back_changes(&mut self, services: &mut Services) {
         if let Some(bank) = self.read_after.pop_first() {
             self.submit(BissJob::ReadBank(bank), services);

@@ -101,7 +101,7 @@ pub fn eds_field_name(bank: EdsBank, field: &EdsField) -> Text {
     described.map_or_else(|| literal_text(field.name), |register| words::name_text(&register.name))
 }
 
-/// The built-in description of the kit encoder, from which the names of data sheet fields are taken in both languages.
-/// All data sheets have these fields.
+/// The built-in description of the kit encoder, which provides the names of data sheet fields in both languages. All
+/// data sheets have these fields.
 static KIT_DESCRIPTION: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());

@@ -1,4 +1,4 @@
-//! The values entered for procedures, and their conversion.
+//! The input for the procedures, and its conversion.
 
 use crate::app::Text;
 use crate::app::number::{parse_in_range, parse_integer};
@@ -45,7 +45,7 @@ impl PresetForm {
         parse_integer(TEXTS.text("preset_card.turns"), &self.turns, 0, last.min(PresetValue::MAX))
     }
 
-    /// Returns the preset value that both entries define.
+    /// Returns the preset value defined by both entries.
     ///
     /// # Errors
     /// Returns an error with the valid range if an entry is invalid. Only the first invalid entry is reported.

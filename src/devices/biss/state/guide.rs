@@ -11,7 +11,8 @@ use crate::devices::biss::profile::Op;
 pub struct ProcedureRun {
     ops: Vec<Op>,
     progress: Option<ProcedureProgress>,
-    /// The interrupted step. The last reported step may be a later one, during the return to operation mode.
+    /// The interrupted step. The last reported step may be a later one, if the encoder was then returned to operation
+    /// mode.
     pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
     skips: Vec<(usize, OperatorTask)>,
@@ -29,7 +30,7 @@ pub enum ProcedureEnd {
         texts: Vec<Text>,
         /// Results of the operations that were completed before the interruption.
         before: Vec<Outcome>,
-        /// Whether the encoder may be in a mode other than operation mode, and can be returned from it.
+        /// Whether the encoder may still be outside operation mode, so that the user can return it.
         may_return_to_operation: bool,
         cancelled: bool,
     },

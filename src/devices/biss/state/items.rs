@@ -49,7 +49,7 @@ pub(super) fn item_group(item: &str) -> Option<Text> {
     }
 }
 
-/// Returns the value of a profile item: the meaning of a setting, or bytes.
+/// Returns the value of a profile item: the meaning of a setting, or the bytes of a register.
 pub(super) fn item_value(profile: &BissProfile, item: &str, value: &str) -> Option<ItemValue> {
     Some(match (item, profile.filter, &profile.preset) {
         (BissProfile::FILTER, Some(filter), _) => ItemValue::Text(format::filter(filter)),

@@ -12,7 +12,7 @@ use crate::devices::biss::protocol::{Area, Description, Register, RegisterAddres
 #[derive(Clone, Debug, Default)]
 pub struct Registers {
     read: BTreeMap<RegisterAddress, u8>,
-    /// Registers whose values differ from the previous reading.
+    /// Registers whose values have changed since the previous reading.
     changed: BTreeSet<RegisterAddress>,
 }
 
@@ -164,7 +164,7 @@ impl Memory {
         self.iter().map(|(at, byte)| (at.global_number(), byte)).collect()
     }
 
-    /// Adopts the edits in a draft. An edit is dropped when its register has been read and already has the value.
+    /// Adopts the edits in a draft. An edit is dropped when its register is read and already has that value.
     pub fn take_draft(&mut self, draft: Vec<(u16, u8)>) {
         let places = draft.into_iter().filter_map(|(at, byte)| Some((RegisterAddress::from_global(at)?, byte)));
         self.edit_values(places);

@@ -20,7 +20,7 @@ use crate::devices::biss::state::explain;
 use crate::profile::{Body, PlanId, ProfileError};
 use crate::worker::JobInterruption;
 
-/// The substitute for an operator in writes that need none at the motor. It waits three seconds for the shaft to stop.
+/// The substitute for an operator in writes without a task at the motor. It waits three seconds for the shaft to stop.
 const UNATTENDED: UnattendedOperator = UnattendedOperator { patience: Duration::from_secs(3) };
 
 impl Encoder {

@@ -1,5 +1,4 @@
-//! The connection form for BiSS C encoders. They are connected through the configuration pin or through an adapter on
-//! the bus, or are virtual.
+//! The connection form for encoders on the configuration pin, encoders on the bus of an adapter, and virtual encoders.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! The encoder page: identity, status, frame, wiring, data sheet.
+//! The encoder page: identity, status, frame, wiring and data sheet.
 
 use egui::{RichText, Ui};
 

@@ -172,7 +172,7 @@ fn procedure_checkbox_ui(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static
     });
 }
 
-/// Indents the next widget in a row to the text of the checkbox above.
+/// Indents the next widget in a row to align it with the text of the checkbox above.
 fn indent_like_checkbox(ui: &mut Ui) {
     ui.add_space(ui.spacing().icon_width + ui.spacing().icon_spacing);
 }

@@ -54,8 +54,8 @@ mod tests {
     use crate::devices::biss::state::TEXTS;
     use crate::ui::wiring::{assert_notes, assert_wires};
 
-    /// Tables 1 (pins), 2 (supply) and 14 (preset) and sections 2.1 (connector) and 2.3 (point to point, RS-422) of the
-    /// kit encoder's manual. UBICOM uses 115200 baud (issue 22.23).
+    /// Compares the card with the kit encoder's manual: tables 1 (pins), 2 (supply) and 14 (preset), and sections 2.1
+    /// (connector) and 2.3 (point to point, RS-422). UBICOM uses 115200 baud (issue 22.23).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         assert_wires(

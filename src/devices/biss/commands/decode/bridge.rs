@@ -168,7 +168,7 @@ fn hello_reply_lines(hello: &Hello) -> Vec<String> {
     ]
 }
 
-/// Describes a frame that the adapter has read and whose CRC it has not checked.
+/// Describes a frame from an adapter. The adapter does not check the CRC, so it is checked here.
 fn explain_frame(t_s: f64, status: BissStatus, raw: u64) -> Result<Vec<String>, String> {
     let bad = match status {
         BissStatus::OK => {

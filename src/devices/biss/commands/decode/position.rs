@@ -48,7 +48,7 @@ fn describe_position(layout: &Layout, reading: &PositionData, raw: u64, more: &m
     format!("turn {turns}, step {steps} of {}, {degrees:.6}°", 1u64 << layout.singleturn_bits())
 }
 
-/// Returns one line per field, or an error if the bits are not a valid frame.
+/// Returns one line per field of a frame, or an error if the bits are not a valid frame.
 pub(super) fn explain_fields(raw: u64, more: &mut Map<String, Json>) -> Result<Vec<String>, String> {
     let layout = Layout::default();
     match layout.parse(raw) {

@@ -1,4 +1,4 @@
-//! Decoding of UBICOM frames. Register numbers are assumed to be sent low byte first.
+//! Decoding of UBICOM frames, which are assumed to contain the low byte of a register number first.
 
 use super::form_map;
 use crate::bits::{ByteOrder, hex, hex_compact};
@@ -7,8 +7,8 @@ use crate::cli::decode::FrameExplanation;
 use crate::devices::biss::commands::register_text;
 use crate::devices::biss::protocol::{Layout, RegisterAddress};
 
-/// Decodes frames. `requested` is the request to which the first frame may reply, and is updated with each request that
-/// is decoded.
+/// Decodes frames. `requested` is the request to which the first frame may be the reply. It is updated with each
+/// decoded request.
 pub(super) fn explain_frames(bytes: &[u8], requested: &mut Option<Request>) -> Vec<FrameExplanation> {
     let mut explained = Vec::new();
     let mut request = *requested;

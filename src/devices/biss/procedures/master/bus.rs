@@ -15,10 +15,9 @@ use crate::units::Moment;
 
 /// Slave number of the only encoder on the line.
 const SLAVE: u8 = 0;
-/// Time since the last reply in which the encoder cannot have restarted unnoticed. A restart takes 500 ms (data sheet,
-/// 02:0Eh).
+/// Time after a reply within which the encoder cannot restart unnoticed. A restart takes 500 ms (data sheet, 02:0Eh).
 const BANK_TRUST: Duration = Duration::from_millis(200);
-/// Pause between two attempts, because the adapter reports a missing encoder immediately.
+/// Pause between two attempts. The adapter reports a missing encoder immediately, so there would be no pause otherwise.
 const PAUSE: Duration = Duration::from_millis(20);
 /// Number of consecutive frames with a wrong checksum after which noise is ruled out as the cause. The number is not
 /// documented (`U`).
@@ -235,7 +234,8 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads a frame after a register access without a reply. Without a frame, the line itself is at fault.
+    /// Reads a frame after a register access to which no reply came. If this fails as well, the line itself is at
+    /// fault.
     pub(super) fn diagnose_line(&mut self, failed: Error) -> Error {
         let Error::NoReply { tries, .. } = failed else { return failed };
         match self.read_frame_once() {

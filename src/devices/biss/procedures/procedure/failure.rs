@@ -31,7 +31,7 @@ pub enum Failure {
     #[error("the run has not ended after {seconds} s")]
     TooLong {
         run: MotorRun,
-        /// How long the program waited, in seconds.
+        /// How long the program has waited, in seconds.
         seconds: u64,
     },
     /// The operator did not complete the task in time.

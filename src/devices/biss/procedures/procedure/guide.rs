@@ -92,7 +92,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         self.master
     }
 
-    /// Records that the encoder starts in operation mode. `password` is whether the password is set.
+    /// Records that the encoder starts in operation mode, and whether its password is set.
     pub(in crate::devices::biss::procedures) fn set_initial_state(&mut self, password: bool) {
         self.standing = LeftState::in_operation(password);
     }
@@ -185,7 +185,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         }
     }
 
-    /// Sends the command that writes the flash. From then on, the flash counts as written, unless a reply proves
+    /// Sends the command that writes the flash. From then on, the flash is regarded as written, unless a reply proves
     /// otherwise.
     pub(super) fn save(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         let before = self.standing.activity;
@@ -274,7 +274,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         Ok(())
     }
 
-    /// Waits until an encoder that may be restarting replies, and reads its state.
+    /// Waits for a reply from an encoder that may be restarting, and reads its state.
     pub(super) fn wait_for_restart(&mut self) -> Result<(), Error> {
         self.begin_step(ProcedureStep::Restart);
         self.standing.record_possible_restart();

@@ -18,7 +18,7 @@ pub struct LeftState {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
-    /// Nothing that a loss of the link could interrupt.
+    /// The encoder does nothing that a loss of the link could interrupt.
     Nothing,
     Running(MotorRun),
     /// Values have been entered but not saved. They are lost when the mode is left or the power fails.

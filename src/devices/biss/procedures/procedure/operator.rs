@@ -23,7 +23,7 @@ pub struct SpeedRange {
 }
 
 impl SpeedRange {
-    /// Allowed error of a speed measurement, as a fraction of the speed.
+    /// Error to allow for in a speed measurement, as a fraction of the speed.
     const MEASURING_TOLERANCE: f64 = 0.01;
 
     const fn new(least: f64, greatest: f64) -> Self {
@@ -237,7 +237,7 @@ pub struct UnattendedOperator {
 }
 
 impl UnattendedOperator {
-    /// Extra time until the first measurement is available, before giving up.
+    /// Extra time before giving up, while there is no measurement yet.
     const FIRST_MEASUREMENT_TIME: Duration = Duration::from_secs(5);
 }
 

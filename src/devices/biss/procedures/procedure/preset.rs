@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::{
     PresetCommand, PresetStatus, PresetValue, Procedure, ProcedureKind, RegisterAddress,
 };
 
-/// Reciprocal of the allowed jitter around the new position, in revolutions. The jitter may be 0.35°.
+/// Reciprocal of the allowed jitter around the new position, in revolutions. This allows 0.35°.
 const PRESET_JITTER_DIVISOR: u64 = 1024;
 
 impl ProcedureContext<'_, '_> {

@@ -21,13 +21,13 @@ pub(super) struct SpeedMonitor {
 pub struct ShaftMotion {
     /// Mean speed in revolutions per minute, positive clockwise. Positions increase during clockwise rotation.
     pub rpm: f64,
-    /// Largest deviation of a quarter's speed from the mean speed, in revolutions per minute.
+    /// Largest difference between the speed in a quarter of the window and the mean speed, in revolutions per minute.
     pub spread: f64,
     pub travel: f64,
 }
 
 impl ShaftMotion {
-    /// Allowed jitter of a shaft at rest, in revolutions (`U`: not documented).
+    /// Allowed jitter of a shaft at rest, in revolutions. The jitter is not documented (`U`).
     const REST_JITTER: f64 = 1.0 / 8192.0;
 
     pub fn is_still(&self) -> bool {
@@ -36,7 +36,7 @@ impl ShaftMotion {
 }
 
 impl SpeedMonitor {
-    /// Number of parts of the window whose speeds are compared.
+    /// Number of equal parts of the window in which the speed is measured separately.
     const PARTS: i32 = 4;
 
     pub(super) fn with_window(window: Duration) -> Self {
@@ -129,7 +129,8 @@ mod tests {
         }
     }
 
-    /// Measures positions sampled every 20 ms for 1.2 s. `turns` returns the position at a time in seconds.
+    /// Returns the motion measured from positions every 20 ms for 1.2 s. `turns` gives the position at a time in
+    /// seconds.
     fn measured(multiturn_bits: u8, turns: impl Fn(f64) -> f64) -> ShaftMotion {
         let mut gauge = SpeedMonitor::with_window(Duration::from_secs(1));
         for at in (0..=1200).step_by(20) {

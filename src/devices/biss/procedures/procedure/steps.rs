@@ -46,8 +46,8 @@ pub enum StepDetail {
     Demand(OperatorPrompt),
 }
 
-/// Returns the steps of an operation. After a restart, the encoder is in operation mode, so no separate step returns
-/// it.
+/// Returns the steps of an operation. A restart already returns the encoder to operation mode, so no separate step
+/// follows it.
 pub fn operation_steps(op: &Op) -> Vec<ProcedureStep> {
     let entered = |mode, steps: &[ProcedureStep]| {
         let mut all = vec![ProcedureStep::Enter(mode)];

@@ -1,5 +1,5 @@
-//! The test of the Wiegand sensor, which collects pulses during 515 clockwise revolutions and then during 515
-//! counterclockwise revolutions. See manual 6.3.
+//! The Wiegand sensor test, which collects pulses during 515 clockwise and then 515 counterclockwise revolutions. See
+//! manual 6.3.
 
 use std::time::Duration;
 

@@ -47,7 +47,7 @@ fn edits_of_an_area_need_one_save_and_skip_equal_bytes() {
     assert_eq!(changes, [(0, 1), (0, 4), (0, 9)], "of two edits of one register the later counts");
 }
 
-/// Appendix 9.1 of the manual lists commands, lock registers, read-only registers, and registers that can be written.
+/// The registers in appendix 9.1 of the manual: commands, lock registers, read-only registers, and writable registers.
 #[test]
 fn registers_owned_by_a_procedure_are_not_written_directly() {
     let kit = kit();

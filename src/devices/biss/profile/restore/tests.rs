@@ -271,7 +271,7 @@ fn values_the_encoder_cannot_have_are_reported_or_refused() {
     assert_eq!(error, PlanError::NoBank { bank: 0x24 });
 }
 
-/// Each register written without an opening command is assumed to cost one write cycle.
+/// Without an opening command, each register is written individually, at an assumed cost of one write cycle.
 #[test]
 fn an_area_without_a_procedure_is_written_directly() {
     let mut now = device(&profile("1"));

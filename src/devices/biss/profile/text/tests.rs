@@ -215,7 +215,7 @@ fn a_mark_covers_its_registers() {
     assert_eq!(profile.mounting.len(), count, "an encoder without a preset value has nothing of the kind");
 }
 
-/// Changing a value changes the text at a single location (issue 22.26).
+/// Changing a value changes only that part of the text (issue 22.26).
 #[test]
 fn a_change_edits_only_its_value() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/biss.ron"));

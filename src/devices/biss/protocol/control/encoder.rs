@@ -37,7 +37,7 @@ enum State {
     Rest,
     /// Ignoring a frame that is damaged or addressed to another encoder.
     Ignoring,
-    /// Receiving the head of a frame. `bits` holds the first `cycle` bits, with the latest bit lowest.
+    /// Receiving the head of a frame. `bits` holds the first `cycle` bits, the latest in bit 0.
     Head { bits: u32, cycle: u8 },
     /// About to send the start bit S. A read must wait until its value is known.
     Start { address: u8, access: Access },

@@ -26,7 +26,7 @@ pub struct Step {
 #[derive(Clone, Debug)]
 enum State {
     Rest,
-    /// Sending the head in cycles 0 to 18. `bits` contains the CDM bits, and bit 18 is sent first.
+    /// Sending the head in cycles 0 to 18. `bits` holds the CDM bits, and bit 18 is sent first.
     Head {
         request: Request,
         bits: u32,
@@ -90,7 +90,7 @@ impl Host {
         self.waiting.is_some() || !matches!(self.state, State::Rest)
     }
 
-    /// Abandons the request. The encoder discards it during the zeros that precede the next request.
+    /// Abandons the request. The encoder discards it when it receives the zeros before the next request.
     pub fn abandon(&mut self) {
         self.waiting = None;
         self.restart_zeros();

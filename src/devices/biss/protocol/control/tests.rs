@@ -211,7 +211,7 @@ fn a_command_is_ignored() {
     }
 }
 
-/// After fourteen zeros, the line is idle whatever was sent before.
+/// After fourteen zeros, the line is idle, whatever was sent before.
 #[test]
 fn fourteen_zeros_reset_every_cycle() {
     let (_, _, write) = WRITES[2];

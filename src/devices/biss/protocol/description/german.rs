@@ -16,8 +16,7 @@ use super::name::Name;
 pub(super) struct GermanNames(BTreeMap<String, String>);
 
 impl GermanNames {
-    /// Adds the German names to the English names. `text` is the file content, in which the position of an unused entry
-    /// is searched.
+    /// Adds the German names to the English names. `text` is the file content, in which an unused entry is located.
     pub(super) fn translate<'a>(
         mut self,
         names: impl Iterator<Item = &'a mut Name>,

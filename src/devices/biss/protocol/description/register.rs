@@ -22,9 +22,9 @@ pub struct Register {
     pub order: ByteOrder,
     /// Factory settings of the bytes. The list is empty if they are unknown.
     pub default: Vec<u8>,
-    /// Method by which the value is decoded.
-    pub decoding: ValueDecoding,
     /// How the value is decoded.
+    pub decoding: ValueDecoding,
+    /// Unit symbol, which may be empty.
     pub unit: String,
     /// Values that cost a flash write cycle when they are written.
     pub saves: Vec<u8>,
@@ -32,7 +32,7 @@ pub struct Register {
     pub since: Firmware,
 }
 
-/// What the program uses a register for. The address depends on the description.
+/// The purpose of a register that the program uses, whatever its address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -89,7 +89,7 @@ pub enum ValueDecoding {
     Scaled {
         /// Factor by which the number is multiplied.
         factor: f64,
-        /// Value that the number 0 stands for.
+        /// Value for the number 0.
         offset: f64,
     },
     /// Named bits, numbered from 0 for the lowest bit.
@@ -130,7 +130,7 @@ pub struct Area {
     pub last: u8,
     /// Permitted access.
     pub access: Access,
-    /// Command of the data write procedure that opens the area for writing, if this is necessary.
+    /// Command of the data write procedure that opens the area for writing, if it must be opened.
     pub open: Option<u8>,
 }
 

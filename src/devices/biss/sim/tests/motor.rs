@@ -100,8 +100,7 @@ fn the_second_run_needs_the_first() {
     assert!(!host.write("0x00:0x00", 0x01), "it runs already");
 }
 
-/// In each direction, 515 revolutions take 61.8 s at 500 rpm and 15.45 s at 2000 rpm, according to section 5.1 of the
-/// reference.
+/// According to section 5.1 of the reference, 515 revolutions take 61.8 s at 500 rpm and 15.45 s at 2000 rpm.
 #[test]
 fn a_wiegand_test_takes_515_revolutions_each_way() {
     for (rpm, seconds) in [(500.0, 61.8), (2000.0, 15.45)] {

@@ -4,7 +4,7 @@
 use super::*;
 use crate::devices::biss::protocol::{Descriptions, ErrorRegister};
 
-/// Checks every register for which the description has a default.
+/// Every register with a default in the description must contain it.
 #[test]
 fn a_new_encoder_has_factory_settings() {
     let mut host = Host::with("");

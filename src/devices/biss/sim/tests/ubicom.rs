@@ -75,7 +75,7 @@ fn the_probe_reveals_the_byte_order() {
     Line::with("order=high-first").expect("80 01 01 02 00 01 00 7A", "80 01 01 01 00 01 7B");
 }
 
-/// Eight bytes, a pause of one millisecond, and seven bytes, at 86.8 µs per byte.
+/// An exchange takes eight bytes, one millisecond, and seven bytes, at 86.8 µs per byte.
 #[test]
 fn an_exchange_takes_the_expected_time() {
     let mut line = Line::with("");

@@ -107,14 +107,14 @@ pub fn advice_text(advice: OperatorAdvice) -> Text {
     }
 }
 
-/// Returns what the motor and the encoder must fulfil for a calibration.
+/// Returns the requirements on the motor and the encoder for a calibration.
 pub fn calibration_requirements_text() -> Text {
     let run = MotorRun::CalibrationCounterclockwise;
     let text = speed_range_text(TEXTS.text("mounting_card.calibrate_words"), run.allowed_speeds());
     temperature_range_text(text.with_number("best", run.recommended_range().midpoint(), 0))
 }
 
-/// Returns what the motor must fulfil for a Wiegand test.
+/// Returns the requirements on the motor for a Wiegand test.
 pub fn wiegand_requirements_text() -> Text {
     with_revolutions(speed_range_text(
         TEXTS.text("mounting_card.wiegand_words"),
@@ -171,7 +171,8 @@ pub fn outcome_texts(outcome: &Outcome) -> Vec<Text> {
     }
 }
 
-/// Returns the lines about an operation's result, each with its severity. A skipped operation is named.
+/// Returns the result of an operation, one line per fact, each with its severity. If the operation was skipped, the
+/// line names it.
 pub fn report_lines(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
     let lines = outcome_texts(own);
     if let Outcome::Skipped { .. } = own {

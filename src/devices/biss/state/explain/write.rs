@@ -83,7 +83,7 @@ fn register_run_texts(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
     RegisterRange::from_addresses(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
 }
 
-/// Formats a preset value as angle, step and turn. The width of the singleturn position determines the angle.
+/// Formats a preset value as angle, step and turn. The angle depends on the width of the singleturn position.
 pub fn preset_value_text(value: PresetValue, singleturn_bits: u8) -> Text {
     preset_text("biss_op.preset_value", value, singleturn_bits)
 }
@@ -268,8 +268,8 @@ mod tests {
         (words(English), words(German))
     }
 
-    /// The suggested remedy depends on the kind of change, also on the terminal. Data that may have changed is never
-    /// called unchanged.
+    /// The suggested remedy depends on the kind of change, on the terminal as well. Data that may have changed is never
+    /// reported as unchanged.
     #[test]
     fn the_remedy_for_an_interrupted_write_matches_its_kind() {
         let last = |interrupted: &InterruptedWrite, kind| {
