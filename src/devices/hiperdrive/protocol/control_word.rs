@@ -1,5 +1,5 @@
-//! The control word (STW, reference, section 3), built from the action that a host requests. Words built here never
-//! have reserved bits set. They have no jog bits set either, because a stop might not end a jog step.
+//! The control word (STW) of a drive, built from the action that the host requests (reference, section 3). Words built
+//! here never have reserved bits set. Jog bits are not set either, because a stop might not end a jog step.
 
 use super::status_word::{StatusBit, StatusWord};
 
@@ -7,30 +7,30 @@ use super::status_word::{StatusBit, StatusWord};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ControlWord(u16);
 
-/// A defined bit of the control word. Bits 1, 2, 11 and 13 to 15 must be 0.
+/// A bit of the control word. Bits 1, 2, 11 and 13 to 15 are reserved and must be 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum ControlBit {
-    /// Switches the drive on.
+    /// Switch the drive on.
     On = 0,
-    /// Enables operation.
+    /// Enable operation.
     Enable = 3,
-    /// No stop in positioning; clockwise rotation in speed mode.
+    /// Positioning: no stop. Speed mode: clockwise rotation.
     NoStop = 4,
-    /// No pause in positioning; an endless run past the end of the range in speed mode.
+    /// Positioning: no pause. Speed mode: an endless run past the end of the range.
     NoPause = 5,
-    /// Start of a job in positioning, or of a run in speed mode. A job starts when this bit differs from status bit 12.
-    /// A run lasts while this bit is set.
+    /// Positioning: start of a job, when this bit differs from status bit 12. Speed mode: a run for as long as this bit
+    /// is set.
     Start = 6,
-    /// Acknowledgement of a fault on the falling edge.
+    /// Acknowledge a fault, on the falling edge.
     Acknowledge = 7,
     /// One jog step forward.
     JogOne = 8,
     /// One jog step backward.
     JogTwo = 9,
-    /// Request for control of the drive.
+    /// Request control of the drive.
     Control = 10,
-    /// Selection of speed mode instead of positioning.
+    /// Select speed mode instead of positioning.
     SpeedMode = 12,
 }
 
@@ -43,12 +43,13 @@ pub enum Direction {
     Counterclockwise,
 }
 
-/// Condition that ends a run in speed mode.
+/// Condition on which a run in speed mode ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RunEnd {
     /// The run ends at the end of the range.
     RangeEnd,
-    /// The run ignores the limits and ends only when stopped. For experts, and only with factory limits and scaling.
+    /// The run ignores the limits and ends only when stopped. It is for experts and requires factory limits and
+    /// scaling.
     Endless,
 }
 
@@ -65,7 +66,7 @@ pub enum MotionStart {
     JogTwo,
 }
 
-/// A control word with reserved bits set, which must not be sent.
+/// Error for a control word with reserved bits set. Such a word must not be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("control word {word:04X} has reserved bits set ({}), which must be 0", bits(*word & RESERVED))]
 pub struct ReservedBitsError {
@@ -73,7 +74,7 @@ pub struct ReservedBitsError {
     pub word: u16,
 }
 
-/// Mask of the reserved bits 1, 2, 11, 13, 14 and 15. PROFIdrive, by contrast, requires bits 1 and 2 to be set
+/// Mask of the reserved bits 1, 2, 11, 13, 14 and 15. By contrast, PROFIdrive requires bits 1 and 2 to be set
 /// (reference, section 8.2).
 const RESERVED: u16 = 0xE806;
 
@@ -102,7 +103,7 @@ impl ControlBit {
         self as u8
     }
 
-    /// Returns the meaning of the bit when set. Bits 4 to 6 have a different meaning in speed mode.
+    /// Returns the meaning of the bit when set. Bits 4 to 6 have another meaning in speed mode.
     pub const fn name(self, speed_mode: bool) -> &'static str {
         match (self, speed_mode) {
             (ControlBit::On, _) => "on",
@@ -127,17 +128,17 @@ impl ControlBit {
 }
 
 impl ControlWord {
-    /// Control word 0000h, which requests no control.
+    /// Control word 0000h, which does not request control.
     pub const OFF: ControlWord = ControlWord(0);
-    /// Control word 0400h (ready). Speed mode is left through this word. Below the operational state, the drive
-    /// discards the job that clearing bit 12 would start.
+    /// Control word 0400h (ready), which must follow speed mode. It takes the drive out of the operational state, so
+    /// that clearing bit 12 does not start a stale job.
     pub const READY: ControlWord = ControlWord::OFF.with_bit(ControlBit::Control);
     /// Control word 0401h (operational).
     pub const OPERATIONAL: ControlWord = ControlWord::READY.with_bit(ControlBit::On);
     /// Control word 0409h (enabled).
     pub const ENABLED: ControlWord = ControlWord::OPERATIONAL.with_bit(ControlBit::Enable);
-    /// Control word 0481h, the first of two words that acknowledge a fault. [`OPERATIONAL`](Self::OPERATIONAL) must
-    /// follow. Bit 0 stays set, so its falling edge remains available for the switch-on lock.
+    /// Control word 0481h, the first of two words that acknowledge a fault. [`OPERATIONAL`](Self::OPERATIONAL) is the
+    /// second. Bit 0 stays set, so that its falling edge can still release the switch-on lock.
     pub const ACKNOWLEDGE: ControlWord = ControlWord::OPERATIONAL.with_bit(ControlBit::Acknowledge);
 
     /// Parses a received control word.
@@ -153,18 +154,19 @@ impl ControlWord {
         self.0
     }
 
-    /// Returns the control word that prepares a job without starting one: 0439h or 0479h. Bit 6 has the level that the
-    /// drive has acknowledged.
+    /// Returns the control word that prepares a job without starting it: 0439h or 0479h. Bit 6 equals the level that
+    /// the drive has acknowledged.
     pub const fn without_job_start(status: StatusWord) -> Self {
         ControlWord::position_mode(status.is_set(StatusBit::SetpointAcknowledged))
     }
 
-    /// Returns the control word that starts a job. Bit 6 is the opposite of the value that the drive has acknowledged.
+    /// Returns the control word that starts a job. Bit 6 is the opposite of the level that the drive has acknowledged.
     pub const fn with_job_start(status: StatusWord) -> Self {
         ControlWord::position_mode(!status.is_set(StatusBit::SetpointAcknowledged))
     }
 
-    /// Returns the speed mode word for standstill: 1409h or 1419h, or 1429h or 1439h for an endless run.
+    /// Returns the control word that selects speed mode at standstill: 1409h or 1419h, or for an endless run 1429h or
+    /// 1439h.
     pub const fn speed_mode(direction: Direction, end: RunEnd) -> Self {
         let word = ControlWord::ENABLED.with_bit(ControlBit::SpeedMode);
         let word = match direction {
@@ -177,14 +179,14 @@ impl ControlWord {
         }
     }
 
-    /// Returns the speed mode word that runs the drive: 1449h or 1459h, or 1469h or 1479h for an endless run. The drive
-    /// must have received [`speed_mode`](Self::speed_mode) before.
+    /// Returns the control word that runs the drive in speed mode: 1449h or 1459h, or for an endless run 1469h or
+    /// 1479h. [`speed_mode`](Self::speed_mode) must have been sent before.
     pub const fn speed_mode_running(direction: Direction, end: RunEnd) -> Self {
         ControlWord::speed_mode(direction, end).with_bit(ControlBit::Start)
     }
 
-    /// Returns this control word with a stop for its mode. Speed mode clears bit 6. Positioning clears bit 4 and
-    /// discards the job. Torque stays on, and jog bits are cleared in both modes.
+    /// Returns this control word, changed to stop the drive with torque still on. Speed mode clears bit 6. Positioning
+    /// clears bit 4, which discards the job. Jog bits are cleared in both modes.
     pub const fn with_stop(self) -> Self {
         let word = self.without_bit(ControlBit::JogOne).without_bit(ControlBit::JogTwo);
         if self.is_set(ControlBit::SpeedMode) {
@@ -194,13 +196,13 @@ impl ControlWord {
         }
     }
 
-    /// Returns this control word with the job paused. [`without_pause`](Self::without_pause) continues the job. In
-    /// speed mode, bit 5 has another meaning, so the word is returned unchanged.
+    /// Returns this control word, changed to pause the job until [`without_pause`](Self::without_pause) resumes it. In
+    /// speed mode, bit 5 has another meaning, so the word stays unchanged.
     pub const fn with_pause(self) -> Self {
         if self.is_set(ControlBit::SpeedMode) { self } else { self.without_bit(ControlBit::NoPause) }
     }
 
-    /// Returns this control word with a paused job resumed. In speed mode, the word is returned unchanged.
+    /// Returns this control word, changed to resume a paused job. In speed mode, the word stays unchanged.
     pub const fn without_pause(self) -> Self {
         if self.is_set(ControlBit::SpeedMode) { self } else { self.with_bit(ControlBit::NoPause) }
     }
@@ -217,9 +219,9 @@ impl ControlWord {
         set.map(move |bit| (bit.bit_number(), bit.name(speed_mode)))
     }
 
-    /// Returns the motion that starts when this control word follows `before`. The drive must be operational and report
-    /// `status`. A job starts on a difference of levels, not on an edge (reference, section 8.10). Clearing bit 12
-    /// after a run therefore starts a job to a stale target.
+    /// Returns the motion that this control word starts when it follows `before`. The drive must be operational and
+    /// report `status`. A job starts on a level of bit 6 that differs from the acknowledged one, not on an edge
+    /// (reference, section 8.10). Clearing bit 12 after a run therefore starts a job to a stale target.
     pub fn motion_start(self, before: ControlWord, status: StatusWord) -> Option<MotionStart> {
         let rises = |bit: ControlBit| self.is_set(bit) && !before.is_set(bit);
         let acknowledged = status.is_set(StatusBit::SetpointAcknowledged);
@@ -243,8 +245,8 @@ impl ControlWord {
         }
     }
 
-    /// Returns whether this control word starts no motion and brings a moving drive to a standstill. This holds for any
-    /// status that the drive reports, even late.
+    /// Returns whether this control word starts no motion and stops a moving drive, whatever status the drive reports,
+    /// even late.
     pub const fn is_at_rest(self) -> bool {
         let jogs = self.is_set(ControlBit::JogOne) || self.is_set(ControlBit::JogTwo);
         let moves = if self.is_set(ControlBit::SpeedMode) {

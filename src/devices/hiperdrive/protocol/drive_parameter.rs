@@ -1,31 +1,30 @@
-//! Parameter numbers used in the code, by name. Most of them belong to drive 1. The service parameter, which saves and
-//! resets, belongs to the device.
+//! Names for the parameter numbers used in the code. All except [`SERVICE`] are parameters of drive 1.
 
 use std::ops::RangeInclusive;
 
-/// Parameter of the device for saving, recalling and resetting.
+/// Device parameter that saves, recalls and resets.
 pub const SERVICE: u16 = 47;
-/// Control word. This parameter and the next three move a drive.
+/// Control word. This parameter and the next three can move a drive.
 pub const CONTROL: u16 = 101;
-/// Speed, in percent of the maximum speed.
+/// Speed in percent of the maximum speed.
 pub const SPEED_SHARE: u16 = 102;
-/// Torque, in percent of the nominal torque.
+/// Torque in percent of the nominal torque.
 pub const TORQUE_SHARE: u16 = 103;
-/// Target position, in steps.
+/// Target position in steps.
 pub const TARGET: u16 = 104;
 /// Status word.
 pub const STATUS: u16 = 105;
 /// Actual speed.
 pub const SPEED: u16 = 106;
-/// Actual position, in steps.
+/// Actual position in steps.
 pub const POSITION: u16 = 107;
-/// Latest of the eight errors that a drive stores.
+/// Newest of the eight errors that a drive stores.
 pub const NEWEST_ERROR: u16 = 108;
-/// Earliest stored error.
+/// Oldest of the stored errors.
 pub const OLDEST_ERROR: u16 = 115;
 /// Variant of the drive, or 0 if no drive is connected.
 pub const VARIANT: u16 = 120;
-/// Whether the drive is requested by the bus.
+/// Whether the bus requests the drive. Only a requested drive can move.
 pub const REQUESTED_BY_BUS: u16 = 152;
 /// Numerator of the position scale.
 pub const NUMERATOR: u16 = 154;
@@ -41,23 +40,23 @@ pub const SPEED_NUMERATOR: u16 = 162;
 pub const SPEED_DENOMINATOR: u16 = 164;
 /// Maximum speed.
 pub const MAXIMUM_SPEED: u16 = 166;
-/// Permitted maximum speeds, in tenths of rpm.
+/// Allowed maximum speeds in tenths of rpm.
 pub const MAXIMUM_SPEEDS: RangeInclusive<u16> = 5..=350;
-/// Waiting time before hand operation, which is never saved.
+/// Waiting time before operation by hand. It is never saved.
 pub const HAND_DRIVE_WAIT: u16 = 182;
 /// RS-485 time-out.
 pub const TIMEOUT: u16 = 186;
-/// Time-out value with which a drive continues to move without commands.
+/// Value of [`TIMEOUT`] for no time-out: the drive continues to move without communication.
 pub const NO_TIMEOUT: i64 = 255;
 /// RS-485 address.
 pub const RS485_ADDRESS: u16 = 188;
 /// RS-485 baud rate.
 pub const RS485_BAUD: u16 = 190;
-/// RS-485 complete time.
+/// RS-485 complete time, as the manual calls it.
 pub const RS485_COMPLETE: u16 = 192;
 /// Number of faults since the last acknowledgement. Writing 0 acknowledges the fault.
 pub const ACKNOWLEDGE: u16 = 197;
-/// Position assigned to the current location of the drive.
+/// Position assigned to the current location of the axis.
 pub const REFERENCE: u16 = 198;
 /// Parameter that resets the drive.
 pub const RESET: u16 = 199;

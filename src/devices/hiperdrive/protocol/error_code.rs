@@ -1,5 +1,5 @@
-//! Errors that a drive stores (parameters 108 to 115, newest first; reference, section 4). The names follow the manual.
-//! Causes and remedies are derived where the manual gives none (`D`).
+//! Errors that a drive stores in parameters 108 to 115, newest first (reference, section 4). Their names are those of
+//! the manual. Causes and remedies are derived where the manual gives none (`D`).
 
 use std::fmt;
 
@@ -16,7 +16,7 @@ pub struct ErrorCodeRow {
     pub name: &'static str,
     /// Cause of the error.
     pub cause: &'static str,
-    /// Remedy to apply before acknowledging the error.
+    /// What to do before acknowledging the error.
     pub remedy: &'static str,
 }
 
@@ -24,8 +24,8 @@ const fn row(code: ErrorCode, name: &'static str, cause: &'static str, remedy: &
     ErrorCodeRow { code, name, cause, remedy }
 }
 
-/// All known errors, numbered as in the manual. The numbers 8200 to 8603 are assumed to be hexadecimal, which the
-/// manual does not state (`U`).
+/// All known errors, with the numbers given in the manual. The manual does not say that 8200 to 8603 are hexadecimal
+/// (`U`).
 pub const ERROR_CODES: [ErrorCodeRow; 16] = [
     row(
         ErrorCode::OVER_CURRENT,
@@ -134,7 +134,7 @@ impl ErrorCode {
     pub const UNDER_VOLTAGE: ErrorCode = ErrorCode(0x8201);
     /// Temperature too high.
     pub const OVER_TEMPERATURE: ErrorCode = ErrorCode(0x8202);
-    /// Following error, because the drive is too slow.
+    /// Following error: the drive cannot keep up.
     pub const FOLLOWING_ERROR: ErrorCode = ErrorCode(0x8203);
     /// Blocked while turning backward.
     pub const BLOCK_REVERSE: ErrorCode = ErrorCode(0x8300);
@@ -148,7 +148,7 @@ impl ErrorCode {
     pub const CONTROL_LOOP: ErrorCode = ErrorCode(0x8401);
     /// Error in the stored data.
     pub const EEPROM: ErrorCode = ErrorCode(0x8410);
-    /// Motion that cannot start.
+    /// Motion cannot start.
     pub const START_IMPOSSIBLE: ErrorCode = ErrorCode(0x8500);
     /// Invalid parameter value.
     pub const INVALID_VALUE: ErrorCode = ErrorCode(0x8501);
@@ -156,9 +156,9 @@ impl ErrorCode {
     pub const SINCOS: ErrorCode = ErrorCode(0x8502);
     /// Invalid target.
     pub const INVALID_TARGET: ErrorCode = ErrorCode(0x8503);
-    /// Time-out, because the drive has received no data.
+    /// Time-out: the drive has received no data.
     pub const CONNECTION_TIMEOUT: ErrorCode = ErrorCode(0x8601);
-    /// No reply from the drive over RS-485.
+    /// The drive does not reply over RS-485.
     pub const RS485: ErrorCode = ErrorCode(0x8603);
 
     /// Creates an error code from any number.

@@ -1,4 +1,4 @@
-//! LEDs of a hub, of an adapter and of their network ports (reference, section 1). Remedies are derived (`D`).
+//! LEDs of a hub, of an adapter and of their network ports (reference, section 1). The remedies are derived (`D`).
 
 /// State of a two-colour RS485 LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,23 +19,24 @@ pub enum DriveLedState {
     Alternating,
 }
 
-/// The drive or drives to which an RS485 LED refers.
+/// The drive or drives that an RS485 LED stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LedSubject {
     /// The drive of a bus adapter, which has no switch S3.
     Adapter,
     /// All drives of a hub whose switch S3 is at 0.
     Drives,
-    /// The drive of a hub whose number is set on switch S3. In this position no drive can be moved over the bus.
+    /// A single drive of a hub, selected with switch S3. With the switch in this position, no drive can be moved over
+    /// the bus.
     Drive,
 }
 
-/// Meaning and remedy of a state of the RS485 LED.
+/// Meaning and remedy of an RS485 LED state.
 #[derive(Clone, Copy, Debug)]
 pub struct LedRow {
     /// State of the LED.
     pub light: DriveLedState,
-    /// Meaning in the manual.
+    /// Meaning according to the manual.
     pub meaning: &'static str,
     /// Remedy.
     pub remedy: &'static str,
@@ -63,18 +64,18 @@ pub enum NetworkLedState {
     Red,
     /// Red, flashing.
     RedFlashing,
-    /// Sequence of green, red and green.
+    /// Green, then red, then green.
     Alternating,
 }
 
-/// Meaning and remedy of a state of a network LED.
+/// Meaning and remedy of a network LED state.
 #[derive(Clone, Copy, Debug)]
 pub struct NetworkLedRow {
     /// LED to which the row applies.
     pub lamp: NetworkLed,
     /// State of the LED.
     pub light: NetworkLedState,
-    /// Meaning that ODVA defines for the LED on all devices.
+    /// Meaning that ODVA defines for this LED on all devices.
     pub meaning: &'static str,
     /// Remedy.
     pub remedy: &'static str,
@@ -91,12 +92,12 @@ pub enum PortLedState {
     Active,
 }
 
-/// Meaning and remedy of a state of the port LEDs.
+/// Meaning and remedy of a port LED state.
 #[derive(Clone, Copy, Debug)]
 pub struct PortLedRow {
     /// State of both LEDs.
     pub light: PortLedState,
-    /// Meaning in the manual.
+    /// Meaning according to the manual.
     pub meaning: &'static str,
     /// Remedy.
     pub remedy: &'static str,
@@ -142,7 +143,7 @@ const ADAPTER_LEDS: [LedRow; 7] = [
     drive(DriveLedState::Green, "the drive has no errors", "no action needed"),
 ];
 
-/// States of the RS485 LED of a hub with switch S3 at 0, which apply to all drives (manual 3.3).
+/// States of the RS485 LED of a hub for all drives, with switch S3 at 0 (manual 3.3).
 const DRIVES_LEDS: [LedRow; 7] = [
     drive(DriveLedState::Off, "no supply voltage", "check the control supply and its fuse"),
     drive(DriveLedState::Alternating, "presence test in progress", "wait until the test has finished"),
@@ -173,7 +174,7 @@ const DRIVES_LEDS: [LedRow; 7] = [
     ),
 ];
 
-/// States of the RS485 LED of a hub with switch S3 at the number of a drive, which apply to that drive (manual 3.3).
+/// States of the RS485 LED of a hub for the drive selected with switch S3 (manual 3.3).
 const DRIVE_LEDS: [LedRow; 4] = [
     drive(DriveLedState::Off, "the drive is neither connected nor requested", "to use the drive, plug it in"),
     drive(
@@ -263,7 +264,7 @@ pub const BUS_LEDS: [NetworkLedRow; 12] = [
 ];
 
 impl LedSubject {
-    /// Returns all states of the RS485 LED with their meanings and remedies.
+    /// Returns all states of the RS485 LED, each with its meaning and remedy.
     pub const fn rows(self) -> &'static [LedRow] {
         match self {
             LedSubject::Adapter => &ADAPTER_LEDS,

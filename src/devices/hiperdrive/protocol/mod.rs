@@ -1,9 +1,10 @@
-//! HIPERDRIVE: small drives of halstrup-walcher, one behind an EtherNet/IP adapter or up to eight behind a hub. Control
-//! and status words, the state machine, process data, parameter words, parameters, scaling, switches and LEDs.
+//! HIPERDRIVE: small positioning drives of halstrup-walcher, one on an EtherNet/IP adapter or up to eight on a hub.
+//! This module defines control and status words, the state machine, process data, parameter words, parameters, scaling,
+//! switches and LEDs.
 //!
-//! The source is manual 004 of the drive, called "the manual" below. "The reference" is the project's reference on
+//! The source is manual 004 of the drive, called "the manual" here. "The reference" is this project's reference on
 //! HIPERDRIVE. `D` marks derived facts, and `U` marks assumptions that the manual does not confirm. Where the manual
-//! contradicts itself, section 8 of the reference states the interpretation used.
+//! contradicts itself, section 8 of the reference gives the interpretation used.
 
 #![warn(missing_docs)]
 
@@ -26,11 +27,11 @@ mod variant;
 #[cfg(test)]
 mod vectors;
 
-/// Identifier of this device kind on the command line, in profiles and in stored files.
+/// Name of this kind of device on the command line, in profiles and in stored files.
 pub const KIND: &str = "hiperdrive";
-/// Vendor ID of halstrup-walcher in ODVA's list.
+/// Vendor ID of halstrup-walcher, assigned by ODVA.
 pub const VENDOR: u16 = 1010;
-/// Assemblies of the cyclic connection: configuration, output to the drives, and input from the drives.
+/// Assembly instances of the cyclic connection: configuration, output to the drives, input from the drives.
 pub const ASSEMBLIES: [u16; 3] = [104, 100, 101];
 
 pub use control_word::{ControlBit, ControlWord, Direction, MotionStart, ReservedBitsError, RunEnd};

@@ -8,52 +8,52 @@ use super::scaling::{Family, PositionScale};
 use super::travel::{StepLimit, Travel};
 use super::value::Kind;
 
-/// Number of a drive, 1 to 8 on a hub. An adapter has only drive 1.
+/// Number of a drive: 1 to 8 on a hub, or 1 on an adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct DriveNumber(u8);
 
-/// Parameter number: up to 99 for the device, 100 to 199 for drive 1, 200 to 299 for drive 2, and so on up to 899. The
-/// manual's text says n · 100 instead of (n − 1) · 100 (reference, section 8.3).
+/// Parameter number: up to 99 for the device, 100 to 199 for drive 1, 200 to 299 for drive 2, and so on up to 899.
+/// Drive n adds (n − 1) · 100 to the numbers of drive 1. The text of the manual wrongly says n · 100 (reference,
+/// section 8.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ParameterNumber(u16);
 
 /// Row of the parameter table.
 #[derive(Clone, Copy, Debug)]
 pub struct ParameterRow {
-    /// Parameter number. A drive parameter has the number for drive 1.
+    /// Parameter number. For a drive parameter, this is the number for drive 1.
     pub number: u16,
     /// Name of the parameter.
     pub name: &'static str,
-    /// Unit of the value, or an empty string if the value has no unit.
+    /// Unit of the value, or an empty string if there is none.
     pub unit: &'static str,
     /// Type of the value.
     pub kind: Kind,
     /// Allowed access.
     pub access: ParameterAccess,
-    /// Whether the value survives a power cycle after it has been saved.
+    /// Whether the value can be saved, so that it survives a power cycle.
     pub saved: bool,
-    /// Whether the adapter or hub stores the value, and not a drive.
+    /// Whether the value is stored by the adapter or hub, even if it concerns a drive.
     pub(super) kept_by_device: bool,
     /// Allowed values.
     pub range: ParameterRange,
-    /// Limit given by the turns of the drive around 0, in addition to `range`. It is `None` if turns do not limit the
+    /// Additional limit of the value, given by the turns of the drive. It is `None` if the turns do not limit the
     /// value.
     pub reach: Option<StepLimit>,
     /// Factory value.
     pub factory: FactoryValue,
-    /// Values that the device takes a long time to apply. The reply to any other written value comes as fast as the
-    /// reply to a read.
+    /// Values that take the device a long time to apply. The device replies to all other writes as fast as to a read.
     pub slow: &'static [SlowValue],
 }
 
-/// A value whose reply is sent only after the device has applied it, with the maximum time for this.
+/// A value that delays the reply to its write until the device has applied it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SlowValue {
     /// Written value.
     pub value: i64,
-    /// Maximum time for an adapter.
+    /// Maximum delay on an adapter.
     pub adapter: Duration,
-    /// Maximum time for a hub.
+    /// Maximum delay on a hub.
     pub hub: Duration,
 }
 
@@ -64,7 +64,7 @@ pub enum ParameterAccess {
     Read,
     /// Read and write.
     ReadWrite,
-    /// Write-only access. A read returns no meaningful value.
+    /// Write-only. A read returns no meaningful value.
     Write,
 }
 
@@ -75,18 +75,18 @@ pub enum ParameterRange {
     Any,
     /// A value between two numbers, inclusive.
     Within(i64, i64),
-    /// A value between two numbers, or one further number with a special meaning.
+    /// A value between two numbers, or the third number, which has a special meaning.
     WithinOrEqual(i64, i64, i64),
-    /// One of the listed values, smallest first.
+    /// One of the listed values, in ascending order.
     OneOf(&'static [i64]),
 }
 
 /// Factory value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FactoryValue {
-    /// No factory value, because the parameter is measured or identifies the device.
+    /// None, because the parameter is measured or identifies the device.
     None,
-    /// The same number for every topology.
+    /// The same value for all topologies.
     Number(i64),
     /// Factory values that differ between adapters and hubs.
     Topology {
@@ -95,13 +95,13 @@ pub enum FactoryValue {
         /// Factory value for each drive of a hub.
         hub: i64,
     },
-    /// The factory number of turns of the drive family, in the direction given by the sign −1 or 1.
+    /// The drive family's factory number of turns, with the sign −1 or 1 for the direction.
     Turns(i32),
-    /// A value determined by the drive.
+    /// A value that the drive determines itself.
     Automatic,
 }
 
-/// A number outside the allowed values of a parameter.
+/// Error for a number outside the allowed values of its parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct OutOfRange {
     /// Number of the parameter.
@@ -114,7 +114,7 @@ pub struct OutOfRange {
     pub range: ParameterRange,
 }
 
-/// CIP class of the device parameters. The class of drive 1 follows it.
+/// CIP class of the device parameters. The classes of drives 1 to 8 follow it.
 const CLASS: u16 = 0x64;
 
 impl DriveNumber {
@@ -131,31 +131,31 @@ impl DriveNumber {
         self.0
     }
 
-    /// Returns the numbers of all drives for which a topology has a port.
+    /// Returns the numbers of all drives that can be connected in this topology.
     pub fn all_for(topology: Topology) -> impl Iterator<Item = DriveNumber> {
         (1..=topology.drives()).map(DriveNumber)
     }
 }
 
 impl ParameterRow {
-    /// Returns whether the adapter or hub stores the parameter. The values −1 and −2 of parameter 47 change only such
-    /// parameters (manual, 47).
+    /// Returns whether the adapter or hub itself stores the parameter. Writing −1 or −2 to parameter 47 affects only
+    /// such parameters (manual, 47).
     pub const fn is_stored_by_device(&self) -> bool {
         self.saved && self.kept_by_device
     }
 }
 
 impl ParameterNumber {
-    /// Parameter that saves, resets or restores all parameters.
+    /// Parameter 47, which saves, resets or restores all parameters.
     pub const SAVE: ParameterNumber = ParameterNumber(47);
 
-    /// Creates a parameter number, or returns `None` for 0 and above 899.
+    /// Creates a parameter number, or returns `None` if the number is 0 or above 899.
     pub const fn new(number: u16) -> Option<Self> {
         if 1 <= number && number <= 899 { Some(ParameterNumber(number)) } else { None }
     }
 
-    /// Converts a parameter number of drive 1 to the number for another drive, or returns `None` if the number does not
-    /// belong to drive 1.
+    /// Converts the number of a drive 1 parameter to the number for another drive. Returns `None` if the number does
+    /// not belong to drive 1.
     pub const fn for_drive(number: u16, drive: DriveNumber) -> Option<Self> {
         if 100 <= number && number <= 199 { Some(ParameterNumber(number + 100 * (drive.0 as u16 - 1))) } else { None }
     }
@@ -170,7 +170,7 @@ impl ParameterNumber {
         DriveNumber::new((self.0 / 100) as u8)
     }
 
-    /// Returns the number of the same parameter for drive 1, or the number itself for a device parameter.
+    /// Returns the number of the same parameter for drive 1. A device parameter keeps its number.
     pub const fn drive1_number(self) -> u16 {
         if self.0 < 100 { self.0 } else { 100 + self.0 % 100 }
     }
@@ -185,7 +185,7 @@ impl ParameterNumber {
         CLASS + self.0 / 100
     }
 
-    /// Returns the attribute number within instance 1 of the class.
+    /// Returns the attribute number of the parameter in instance 1 of its class.
     pub const fn attribute(self) -> u16 {
         self.drive1_number()
     }
@@ -207,7 +207,7 @@ impl fmt::Display for ParameterNumber {
 
 impl ParameterRow {
     /// Returns the allowed values, or `None` for strings. They come from the table or, if it gives none, from the data
-    /// type. The turns of the drive restrict them as far as they are known.
+    /// type and the travel of the drive.
     pub fn allowed_values(&self, travel: Travel) -> Option<ParameterRange> {
         let (low, high) = self.kind.limits()?;
         Some(match (self.range, self.reach.and_then(|reach| travel.max_steps(reach))) {
@@ -217,26 +217,25 @@ impl ParameterRow {
         })
     }
 
-    /// Checks a value against the range of a parameter. The drive itself checks dependencies between parameters:
-    /// parameter 160 must be above parameter 158, and the position, the target and parameter 198 must lie between the
-    /// two.
+    /// Checks a value against the range of its parameter. Dependencies are left to the drive: parameter 160 must be
+    /// above parameter 158, with the position, the target and parameter 198 between them.
     ///
     /// # Errors
-    /// Returns [`OutOfRange`] with the allowed values. Strings accept no number.
+    /// Returns [`OutOfRange`] with the allowed values if the value is out of range or the parameter is a string.
     pub fn check_value(&self, number: ParameterNumber, value: i64, travel: Travel) -> Result<i64, OutOfRange> {
         let range = self.allowed_values(travel).unwrap_or(ParameterRange::OneOf(&[]));
         if range.contains(value) { Ok(value) } else { Err(OutOfRange { number, name: self.name, value, range }) }
     }
 
-    /// Returns how long the device may take to reply when this value is written, or `None` if the usual reply time
-    /// applies. For an unknown topology, the time of a hub is returned.
+    /// Returns how long the device may take to reply to a write of this value, or `None` for the usual reply time. If
+    /// the topology is unknown, the time for a hub is returned.
     pub fn write_duration(&self, value: i64, topology: Option<Topology>) -> Option<Duration> {
         let slow = self.slow.iter().find(|slow| slow.value == value)?;
         Some(if topology == Some(Topology::Adapter) { slow.adapter } else { slow.hub })
     }
 
-    /// Returns the factory value under factory scaling, or `None` if the manual gives no value or the drive determines
-    /// it.
+    /// Returns the factory value, assuming factory scaling. Returns `None` if the manual does not give the value or the
+    /// drive determines it itself.
     pub fn factory_value(&self, topology: Topology, family: Family) -> Option<i64> {
         match self.factory {
             FactoryValue::None | FactoryValue::Automatic => None,
@@ -250,7 +249,7 @@ impl ParameterRow {
 }
 
 impl ParameterRange {
-    /// Returns whether the range contains a number.
+    /// Returns whether the range includes a number.
     pub fn contains(self, value: i64) -> bool {
         match self {
             ParameterRange::Any => true,

@@ -1,5 +1,5 @@
-//! All parameters of the device and of drive 1 (reference, section 4). The program defines the English names, since the
-//! manual only has German ones.
+//! All parameters of the device and of drive 1 (reference, section 4). The English names are not official, since the
+//! manual has only German ones.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -33,13 +33,13 @@ const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -
 }
 
 impl ParameterRow {
-    /// Returns a copy of the row that is writable, with a value that is lost at power-off.
+    /// Returns this row with write access. The value is lost at power-off.
     const fn writable(self, range: ParameterRange, factory: FactoryValue) -> Self {
         ParameterRow { access: ParameterAccess::ReadWrite, range, factory, ..self }
     }
 
-    /// Marks a drive parameter whose value the adapter or hub stores. See sections 3.4 and 4.5 of the manual for
-    /// parameter 152, and the table row of parameter 190.
+    /// Returns this row as that of a drive parameter stored by the adapter or hub. See sections 3.4 and 4.5 of the
+    /// manual for parameter 152, and its parameter table for 190.
     const fn with_device_storage(self) -> Self {
         ParameterRow { kept_by_device: true, ..self }
     }
@@ -57,10 +57,10 @@ impl ParameterRow {
     }
 }
 
-/// Maximum time for storing to EEPROM. It also applies to the TCP/IP object, which is stored on every change. See
-/// manual 6.2, parameter 47, and 5.
+/// Maximum time for a write to the EEPROM (manual 6.2, parameter 47). Every change to the TCP/IP object also takes this
+/// time (manual 5).
 pub const STORE_TIME: Duration = Duration::from_millis(200);
-/// Maximum time for resetting a single drive. The value −4 of parameter 47 takes this time on an adapter.
+/// Maximum time for resetting a single drive, also with −4 in parameter 47 of an adapter.
 const DRIVE_RESETS: Duration = Duration::from_secs(2);
 /// Maximum time for resetting all drives of a hub.
 const HUB_RESETS: Duration = Duration::from_secs(8);
@@ -77,8 +77,8 @@ const fn slow_for_one_drive(value: i64) -> SlowValue {
     SlowValue { value, adapter: DRIVE_RESETS, hub: DRIVE_RESETS }
 }
 
-/// Slow values of parameter 47. The manual states no time for −3, −2 and −1. The time for −4 is used instead, since all
-/// of them send all parameters to all drives over RS-485 (`D`).
+/// Values of parameter 47 that take long to apply. The manual gives no time for −3, −2 and −1. They are assumed to take
+/// as long as −4, since all of them send all parameters to all drives over RS-485 (`D`).
 const SAVE_AND_RESET: &[SlowValue] = &[
     slow_for_all_drives(-4),
     slow_for_all_drives(-3),
@@ -86,9 +86,10 @@ const SAVE_AND_RESET: &[SlowValue] = &[
     slow_for_all_drives(-1),
     store_duration(1),
 ];
-/// Slow values of parameter 152. A change from 0 to 1 resets the drive. The time is derived (`D`).
+/// The value of parameter 152 that takes long to apply. A change from 0 to 1 resets the drive. The time is derived
+/// (`D`).
 const REQUEST: &[SlowValue] = &[slow_for_one_drive(1)];
-/// Slow values of parameter 199. The time is derived (`D`).
+/// Values of parameter 199 that take long to apply. The time is derived (`D`).
 const RESET_DRIVE: &[SlowValue] = &[slow_for_one_drive(0), slow_for_one_drive(1)];
 
 const fn text(number: u16, name: &'static str, unit: &'static str) -> ParameterRow {
@@ -115,7 +116,8 @@ const fn whole_range(range: RangeInclusive<u16>) -> ParameterRange {
     Within(*range.start() as i64, *range.end() as i64)
 }
 
-/// All parameters by number. Parameters 11 and 119 are assumed to be signed (`U`). The manual gives only their width.
+/// All parameters by number. Parameters 11 and 119 are assumed to be signed, since the manual gives only their width
+/// (`U`).
 pub const PARAMETERS: &[ParameterRow] = &[
     read(9, "control supply", U16, "0.1 V"),
     read(11, "device temperature", I16, "°C"),

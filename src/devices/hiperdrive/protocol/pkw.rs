@@ -1,4 +1,4 @@
-//! Parameter words in the process data: a request is repeated until its reply has arrived (reference, section 6).
+//! Parameter words in the process data. A request is repeated until its reply has arrived (reference, section 6).
 
 use std::fmt;
 
@@ -7,15 +7,15 @@ use super::process_data::ByteOrder;
 /// Parameter words of the process data, eight bytes in each direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Pkw {
-    /// PKE, which holds the task or answer (bits 15 to 12), SPM (bit 11) and the parameter number.
+    /// PKE: task or answer in bits 15 to 12, SPM in bit 11, and the parameter number in the other bits.
     pub pke: u16,
-    /// IND, the index of the array element.
+    /// IND: index of the array element.
     pub ind: u16,
-    /// PWE, the value of the parameter. A 16-bit value is in the lower half.
+    /// PWE: value of the parameter. A 16-bit value is in the lower half.
     pub pwe: u32,
 }
 
-/// Task of a request, in bits 15 to 12 of PKE.
+/// Task in a request, in bits 15 to 12 of PKE.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Task {
@@ -27,7 +27,7 @@ pub enum Task {
     WriteWord = 2,
     /// Writes a double word.
     WriteDouble = 3,
-    /// Reads an array element, which for a string is four characters.
+    /// Reads an array element. An element of a string contains four characters.
     ReadElement = 6,
     /// Writes a word element of an array.
     WriteElementWord = 7,
@@ -37,10 +37,11 @@ pub enum Task {
     Count = 9,
 }
 
-/// Answer in a reply. The manual's text repeats the numbers of the requests instead (reference, section 8.4).
+/// Answer in a reply. The text of the manual wrongly gives answers the same numbers as requests (reference, section
+/// 8.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Answer {
-    /// Answer 0: there was no request.
+    /// Answer 0: nothing was requested.
     None,
     /// Answer 1, or 4 for an array: the value as a word.
     Word(u16),
@@ -92,7 +93,7 @@ impl Task {
         }
     }
 
-    /// Returns whether an answer can belong to the task. The answer to a read may be a word or a double word.
+    /// Returns whether this answer is possible for the task. A read can be answered with a word or a double word.
     const fn accepts_answer(self, answer: u8) -> bool {
         match self {
             Task::None => answer == 0,
@@ -108,7 +109,8 @@ impl Task {
 }
 
 impl Pkw {
-    /// Builds a request for a parameter from the low 11 bits of its number. A word uses the lower 16 bits of the value.
+    /// Builds a request for a parameter. Only the low 11 bits of the number are used and, for a word, only the low 16
+    /// bits of the value.
     pub const fn request(task: Task, number: u16, element: u16, value: u32) -> Self {
         Pkw { pke: (task.code() as u16) << 12 | number & NUMBER, ind: element, pwe: value }
     }
@@ -149,8 +151,8 @@ impl Pkw {
         }
     }
 
-    /// Returns the answer if this reply belongs to `request`. The request must be repeated until its answer arrives.
-    /// Before the same request is sent again, [`Task::None`] must be sent and answered.
+    /// Returns the answer if this is a reply to `request`. The request must be repeated until then. Before the same
+    /// request can be sent again, [`Task::None`] must be sent and answered.
     pub fn answer_to(self, request: Pkw) -> Option<Answer> {
         let task = request.task()?;
         let same = task == Task::None || self.number() == request.number();
@@ -169,7 +171,7 @@ impl PkwError {
     pub const READ_ONLY: PkwError = PkwError(1);
     /// Error 2: the value is outside the limits.
     pub const RANGE: PkwError = PkwError(2);
-    /// Error 3: the element is beyond the end of the string or array.
+    /// Error 3: the string or array has no such element.
     pub const NO_ELEMENT: PkwError = PkwError(3);
     /// Error 4: the parameter has no elements.
     pub const NO_ARRAY: PkwError = PkwError(4);
@@ -180,7 +182,7 @@ impl PkwError {
     /// Error 18: any other reason.
     pub const OTHER: PkwError = PkwError(18);
 
-    /// Creates an error from any error code.
+    /// Creates an error from an error code, even an unknown one.
     pub const fn new(code: u32) -> Self {
         PkwError(code)
     }

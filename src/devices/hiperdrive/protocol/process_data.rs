@@ -1,12 +1,12 @@
-//! Process data: the cyclic output to the drives and the input from them (reference, section 2).
+//! Process data: the cyclic data sent to the drives and received from them (reference, section 2).
 
 use super::control_word::{ControlWord, ReservedBitsError};
 use super::pkw::Pkw;
 use super::status_word::StatusWord;
 use crate::parameter::Keywords;
 
-/// Byte order of numbers in the process data. The manual does not define it (reference, section 8.11). It is
-/// little-endian unless a device is observed to differ.
+/// Byte order of numbers in the process data. The manual does not specify it (reference, section 8.11). Little-endian
+/// is assumed unless a device proves to differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ByteOrder {
     /// Low byte first, as throughout CIP.
@@ -17,11 +17,11 @@ pub enum ByteOrder {
 }
 
 impl ByteOrder {
-    /// Spelling of the byte orders in link URLs.
+    /// Names of the byte orders in link URLs.
     pub const KEYWORDS: Keywords<ByteOrder> = Keywords(&[("little", ByteOrder::Little), ("big", ByteOrder::Big)]);
 }
 
-/// Type of the device at an IP address, which determines the number of drive ports.
+/// Type of the device, which determines the number of drive ports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Topology {
     /// Adapter with one drive.
@@ -35,9 +35,9 @@ pub enum Topology {
 /// Layout of the process data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Layout {
-    /// Topology, which determines the number of drive ports.
+    /// Type of the device, which determines the number of drive ports.
     pub topology: Topology,
-    /// Whether eight bytes of parameter words follow the data of the drives.
+    /// Whether eight bytes of parameter words follow the drive data.
     pub pkw: bool,
     /// Byte order of all numbers.
     pub order: ByteOrder,
@@ -47,20 +47,20 @@ pub struct Layout {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Percent(u8);
 
-/// Setpoint of a drive.
+/// Setpoint for a drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Setpoint {
     /// Control word (STW).
     pub control: ControlWord,
-    /// Speed as a percentage of the maximum speed (parameter 166). At a speed of 0 %, no motion starts.
+    /// Speed in percent of the maximum speed (parameter 166). At 0 %, no motion starts.
     pub speed: Percent,
-    /// Torque as a percentage of the nominal torque, in steps of 25 %. At a torque of 0 %, no motion starts.
+    /// Torque in percent of the nominal torque, in steps of 25 %. At 0 %, no motion starts.
     pub torque: Percent,
     /// Target in scaled steps.
     pub target: i32,
 }
 
-/// Output data of a drive: a setpoint or arbitrary bytes.
+/// Output data for a drive: a setpoint or arbitrary bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OutputData {
     /// Control word (STW).
@@ -73,36 +73,36 @@ pub struct OutputData {
     pub target: i32,
 }
 
-/// Input data of a drive.
+/// Input data from a drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ActualValues {
     /// Status word (ZSW).
     pub status: StatusWord,
-    /// Speed as scaled by parameters 162 and 164. With factory settings, the unit is 0.1 rpm.
+    /// Speed, scaled with parameters 162 and 164. The factory scale gives tenths of rpm.
     pub speed: i16,
     /// Position in scaled steps.
     pub position: i32,
 }
 
-/// Output image for all drives.
+/// Process data sent to all drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputImage {
-    /// Output data of each drive in the layout.
+    /// Output data for each drive in the layout.
     pub drives: Vec<OutputData>,
     /// Parameter words, if the layout has them.
     pub pkw: Option<Pkw>,
 }
 
-/// Input image of all drives.
+/// Process data received from all drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputImage {
-    /// Input data of each drive in the layout.
+    /// Input data from each drive in the layout.
     pub drives: Vec<ActualValues>,
     /// Parameter words, if the layout has them.
     pub pkw: Option<Pkw>,
 }
 
-/// Error for an image whose length does not match the layout.
+/// Error for process data whose length does not match the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{got} bytes of process data instead of {expected}")]
 pub struct ProcessImageError {
@@ -112,7 +112,7 @@ pub struct ProcessImageError {
     pub got: usize,
 }
 
-/// Number of bytes for one drive. The parameter words have the same length.
+/// Number of data bytes per drive. The parameter words have the same length.
 const BYTES_PER_DRIVE: usize = 8;
 
 impl ByteOrder {
@@ -158,7 +158,7 @@ impl Topology {
         }
     }
 
-    /// Returns the value of parameter 13 for this topology.
+    /// Returns the value of parameter 13 that stands for this topology.
     pub const fn category(self) -> &'static str {
         match self {
             Topology::Adapter => "HIPERDRIVE SINGLE",
@@ -167,19 +167,19 @@ impl Topology {
         }
     }
 
-    /// Returns the topology for a value of parameter 13.
+    /// Returns the topology that a value of parameter 13 stands for.
     pub fn from_category(category: &str) -> Option<Self> {
         Topology::ALL.into_iter().find(|topology| topology.category() == category.trim())
     }
 }
 
 impl Layout {
-    /// Returns the number of bytes in each direction: 8 per drive, and 8 for the parameter words if present.
+    /// Returns the number of bytes in each direction: 8 per drive, plus 8 if there are parameter words.
     pub const fn byte_length(self) -> usize {
         BYTES_PER_DRIVE * (self.topology.drives() as usize + self.pkw as usize)
     }
 
-    /// Returns all layouts with the given length, most likely first.
+    /// Returns all layouts with this length, most likely first.
     pub fn all_with_length(length: usize) -> impl Iterator<Item = Layout> {
         let all = Topology::ALL
             .into_iter()
@@ -187,7 +187,7 @@ impl Layout {
         all.filter(move |layout| layout.byte_length() == length)
     }
 
-    /// Splits bytes into the data of the drives and the parameter words.
+    /// Splits process data into the data of each drive and the parameter words.
     fn split_drives(self, bytes: &[u8]) -> Result<(Vec<[u8; BYTES_PER_DRIVE]>, Option<Pkw>), ProcessImageError> {
         let (places, rest) = bytes.as_chunks::<BYTES_PER_DRIVE>();
         if !rest.is_empty() || bytes.len() != self.byte_length() {
@@ -199,7 +199,7 @@ impl Layout {
         }
     }
 
-    /// Builds an image from the data of the drives. The data of missing drives are zero, and surplus drives are
+    /// Builds process data from the data of the drives. Missing drives are filled with zeros, and surplus drives are
     /// dropped.
     fn image(self, places: impl Iterator<Item = [u8; BYTES_PER_DRIVE]>, pkw: Option<Pkw>) -> Vec<u8> {
         let drives = usize::from(self.topology.drives());
@@ -226,8 +226,8 @@ impl Percent {
 }
 
 impl Setpoint {
-    /// Returns the setpoint that follows speed mode and starts every connection. Its control word is ready, with zero
-    /// speed and torque. The target is the actual position, so no stale target remains.
+    /// Returns a setpoint that holds the drive in the ready state, with zero speed and torque. Every connection begins
+    /// with it, and it follows speed mode. The target is the actual position, so that no stale target remains.
     pub const fn holding(actual: ActualValues) -> Self {
         let none = Percent::NONE;
         Setpoint { control: ControlWord::READY, speed: none, torque: none, target: actual.position }
@@ -281,7 +281,7 @@ impl ActualValues {
 }
 
 impl OutputImage {
-    /// Parses an image.
+    /// Parses process data.
     ///
     /// # Errors
     /// Returns [`ProcessImageError`] if the length does not match the layout.
@@ -291,15 +291,15 @@ impl OutputImage {
         Ok(OutputImage { drives, pkw })
     }
 
-    /// Returns the image as bytes. Missing drives are filled with zeros, which do not control a drive. Surplus drives
-    /// are dropped.
+    /// Encodes process data. Missing drives are filled with zeros, which do not request control. Surplus drives are
+    /// dropped.
     pub fn emit(&self, layout: Layout) -> Vec<u8> {
         layout.image(self.drives.iter().map(|drive| drive.emit(layout.order)), self.pkw)
     }
 }
 
 impl InputImage {
-    /// Parses an image.
+    /// Parses process data.
     ///
     /// # Errors
     /// Returns [`ProcessImageError`] if the length does not match the layout.
@@ -309,7 +309,7 @@ impl InputImage {
         Ok(InputImage { drives, pkw })
     }
 
-    /// Returns the image as bytes. Missing drives are filled with zeros, and surplus drives are dropped.
+    /// Encodes process data. Missing drives are filled with zeros, and surplus drives are dropped.
     pub fn emit(&self, layout: Layout) -> Vec<u8> {
         layout.image(self.drives.iter().map(|drive| drive.emit(layout.order)), self.pkw)
     }

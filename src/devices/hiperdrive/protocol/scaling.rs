@@ -1,6 +1,6 @@
-//! Conversion between steps, turns, millimetres and rpm by parameters 154 to 164 (reference, section 5).
+//! Conversion between steps, turns, millimetres and rpm, based on parameters 154 to 164 (reference, section 5).
 
-/// Conversion between transmitted steps and turns. A turn has 256 · numerator / denominator steps. The formula in
+/// Scale that converts transmitted steps to turns. A turn has 256 · numerator / denominator steps. The formula in
 /// section 8.4 of the manual is garbled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PositionScale {
@@ -8,7 +8,7 @@ pub struct PositionScale {
     denominator: u16,
 }
 
-/// Conversion between transmitted speed and rpm. A speed of 1 rpm is transmitted as numerator / denominator.
+/// Scale that converts a transmitted speed to rpm. A speed of 1 rpm is transmitted as numerator / denominator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SpeedScale {
     numerator: u16,
@@ -22,10 +22,10 @@ pub struct Length {
     pub nanometres: u64,
 }
 
-/// Drive family, which determines the number of turns in either direction.
+/// Drive family, which determines how many turns the drive can make in either direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Family {
-    /// HDA30 and HDA45. HRA is assumed to belong to this family as well (`U`).
+    /// HDA30 and HDA45. HRA is assumed to belong to this family (`U`).
     Short,
     /// HDA70.
     Long,
@@ -33,16 +33,16 @@ pub enum Family {
     Pse441,
 }
 
-/// Reason why a scale is impossible.
+/// Reason why a scale cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScaleError {
-    /// A numerator or denominator is 0.
+    /// The numerator or the denominator is 0.
     #[error("numerator and denominator of the scaling must be from 1 to 65535, not 0")]
     Zero,
     /// The pitch or the step size is 0.
     #[error("the spindle pitch and the step size must be greater than 0")]
     NoLength,
-    /// The numerator or denominator would exceed 16 bits.
+    /// The numerator or the denominator would exceed 16 bits.
     #[error(
         "the scaling would be {numerator}/{denominator} for {steps} steps: choose a step size for which neither \
          exceeds 65535"
@@ -57,7 +57,7 @@ pub enum ScaleError {
     },
 }
 
-/// Steps per turn at a scale of 1/1.
+/// Number of steps per turn at a scale of 1/1.
 const UNIT: i64 = 256;
 
 impl PositionScale {
@@ -75,8 +75,8 @@ impl PositionScale {
         }
     }
 
-    /// Returns the scale in which a step has the given length on a spindle of the given pitch. If a turn has a whole
-    /// number of steps, the numerator is that number and the denominator is 256, where possible.
+    /// Returns the scale that gives a step the required length on a spindle with this pitch. If a turn has a whole
+    /// number of steps, the numerator is that number and the denominator 256, where possible.
     ///
     /// # Errors
     /// Returns [`ScaleError`] if either length is 0, or if no scale yields exactly this step.
@@ -117,7 +117,7 @@ impl PositionScale {
         (self.steps_per_turn() * degrees / 360.0).ceil().max(1.0) as u32
     }
 
-    /// Converts turns to steps, rounded towards 0, or returns `None` if the result exceeds 32 bits.
+    /// Converts turns to steps, rounded towards 0. Returns `None` if the result exceeds 32 bits.
     pub fn steps_of_turns(self, turns: i32) -> Option<i32> {
         i32::try_from(self.integer_steps(turns)).ok()
     }
@@ -139,7 +139,7 @@ impl PositionScale {
 }
 
 impl SpeedScale {
-    /// Factory scale of 10/1, which transmits tenths of rpm.
+    /// Factory scale of 10/1, which transmits the speed in tenths of rpm.
     pub const FACTORY: SpeedScale = SpeedScale { numerator: 10, denominator: 1 };
 
     /// Creates a scale from parameters 162 and 164.
@@ -158,7 +158,7 @@ impl SpeedScale {
         f64::from(speed) * f64::from(self.denominator) / f64::from(self.numerator)
     }
 
-    /// Converts rpm to the nearest transmitted speed that fits in 16 bits.
+    /// Converts rpm to the nearest speed that can be transmitted in 16 bits.
     pub fn speed(self, rpm: f64) -> i16 {
         // The float cast saturates at the limits of the type.
         (rpm * f64::from(self.numerator) / f64::from(self.denominator)).round() as i16
@@ -175,7 +175,7 @@ impl Family {
         }
     }
 
-    /// Returns the number of turns in either direction that gives the factory values of parameters 158 and 160.
+    /// Returns the number of turns in either direction to which parameters 158 and 160 are set at the factory.
     pub const fn factory_turns(self) -> i32 {
         match self {
             Family::Short => 511,
@@ -185,13 +185,12 @@ impl Family {
     }
 }
 
-/// Splits a position with 65536 steps per turn into whole turns and steps within the turn. A position of −1 is in
-/// turn −1.
+/// Splits a position at 65536 steps per turn into whole turns and steps within the turn. Position −1 is in turn −1.
 pub const fn to_turns_and_steps(position: i32) -> (i16, u16) {
     ((position >> 16) as i16, position as u16)
 }
 
-/// Rounds to a value that parameter 198 accepts: the nearest multiple of 64, away from 0 in a tie (`U`: not
+/// Rounds a position to a value that parameter 198 accepts: the nearest multiple of 64, away from 0 in a tie (`U`: not
 /// documented). Returns `None` if the result exceeds 32 bits.
 pub fn nearest_reference(position: i32) -> Option<i32> {
     const REFERENCE_GRID: i64 = 64;
@@ -200,7 +199,7 @@ pub fn nearest_reference(position: i32) -> Option<i32> {
     i32::try_from(rounded).ok()
 }
 
-/// Returns the torque percentage that the drive applies, rounded up to a multiple of 25 %.
+/// Returns the torque that the drive applies: the percentage rounded up to a multiple of 25 %.
 pub const fn effective_torque(percent: u8) -> u8 {
     percent.div_ceil(25).saturating_mul(25)
 }

@@ -1,11 +1,11 @@
-//! States of the drive and the transitions between them (reference, section 3). They are reconstructed from sections
-//! 6.4 and 6.5 of the manual (`D`).
+//! States of a drive and the transitions between them (reference, section 3), as derived from sections 6.4 and 6.5 of
+//! the manual (`D`).
 
 use std::fmt;
 
 use super::control_word::{ControlBit, ControlWord};
 
-/// State of the drive according to the status word.
+/// State of a drive according to its status word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum State {
     /// Control of the drive has not been requested.
@@ -20,7 +20,7 @@ pub enum State {
     Moving,
     /// A fault has occurred.
     Fault,
-    /// A fault has been acknowledged, and the drive is locked.
+    /// A fault has been acknowledged, but the switch-on lock is active.
     Locked,
 }
 
@@ -31,13 +31,13 @@ pub enum Trigger {
     Set(ControlBit),
     /// A bit of the control word is clear.
     Clear(ControlBit),
-    /// A bit of the control word changes from set to clear. If another bit is given, it must have the given level.
+    /// A bit of the control word changes from set to clear, while the other bit, if given, has the given value.
     Falls(ControlBit, Option<(ControlBit, bool)>),
     /// A job or a run starts.
     Starts,
     /// The motion has ended.
     Ends,
-    /// A fault has occurred, or a connection was lost.
+    /// A fault has occurred, or the connection was lost.
     Fails,
 }
 
@@ -50,9 +50,9 @@ pub struct Transition {
     pub trigger: Trigger,
     /// Resulting state.
     pub to: State,
-    /// The control word that causes the transition, or `None` if no single word does.
+    /// Control word that causes the transition, or `None` if no single word does.
     pub word: Option<ControlWord>,
-    /// Whether the transition is assumed because the manual does not define it.
+    /// Whether the transition is an assumption, because the manual does not define it.
     pub assumed: bool,
 }
 
@@ -67,7 +67,7 @@ const fn assumed_transition(from: &'static [State], trigger: Trigger, to: State,
     Transition { from, trigger, to, word: Some(word), assumed: true }
 }
 
-/// All transitions of the state machine. The first applicable transition takes effect.
+/// All transitions of the state machine. The first one that applies takes effect.
 pub const TRANSITIONS: [Transition; 14] = [
     row(&[NotReady], Set(ControlBit::Control), Ready, Some(ControlWord::READY)),
     row(&[Ready, Operational, Enabled, Moving], Clear(ControlBit::Control), NotReady, Some(ControlWord::OFF)),
@@ -107,8 +107,8 @@ impl State {
         TRANSITIONS.iter().filter(move |row| row.from.contains(&self))
     }
 
-    /// Returns the state after the control word changes from `before` to `now`. At most one transition takes place. A
-    /// control word alone never leads to a moving drive.
+    /// Returns the state after the control word has changed from `before` to `now`. At most one transition takes place.
+    /// No control word alone leads to the moving state.
     pub fn after_control_word(self, before: ControlWord, now: ControlWord) -> State {
         let applies = |trigger: Trigger| match trigger {
             Set(bit) => now.is_set(bit),
@@ -122,12 +122,12 @@ impl State {
         self.transitions().find(|row| applies(row.trigger)).map_or(self, |row| row.to)
     }
 
-    /// Returns the state after an event other than a control word.
+    /// Returns the state after an event that is not a control word.
     pub fn after_event(self, trigger: Trigger) -> State {
         self.transitions().find(|row| row.trigger == trigger).map_or(self, |row| row.to)
     }
 
-    /// Returns whether the keys on the drive can move the drive in this state.
+    /// Returns whether the keys on the drive can move it in this state.
     pub const fn can_be_moved_with_keys(self) -> bool {
         matches!(self, NotReady | Ready | Fault | Locked)
     }

@@ -16,17 +16,17 @@ pub enum StatusBit {
     Operational = 1,
     /// The drive may move.
     OperationEnabled = 2,
-    /// A fault has occurred since the drive was operational.
+    /// A fault has occurred in an operational drive.
     Fault = 3,
-    /// The drive was detected or requested.
+    /// The drive has been detected or is requested.
     NoOff2 = 4,
     /// Same as bit 4.
     NoOff3 = 5,
-    /// The drive is locked after a fault or a falling edge of control bit 0.
+    /// The switch-on lock is active, after a fault or a falling edge of control bit 0.
     SwitchOnLock = 6,
-    /// A fault is present in any state.
+    /// A fault is present, whatever the state.
     Warning = 7,
-    /// Following error bit. The manual describes it both as set and as cleared by a following error (reference, section
+    /// Following error bit. According to the manual, a following error both sets and clears it (reference, section
     /// 8.1). Use error 8203 and bit 3 instead.
     NoFollowingError = 8,
     /// Same as bit 4.
@@ -35,11 +35,11 @@ pub enum StatusBit {
     TargetReached = 10,
     /// Same as bit 4.
     ReferenceSet = 11,
-    /// Level of control bit 6 of the last job.
+    /// Value of control bit 6 for the last job.
     SetpointAcknowledged = 12,
     /// The drive is at standstill.
     Standstill = 13,
-    /// The current was too high.
+    /// The current is too high.
     OverCurrent = 14,
     /// The position is outside the range.
     PositionLimit = 15,
@@ -95,7 +95,7 @@ impl StatusBit {
 }
 
 impl StatusWord {
-    /// Status word 0A30h, of a detected drive that is not at standstill.
+    /// Status word 0A30h of a detected drive that is not at standstill.
     pub const FOUND: StatusWord = StatusWord(0x0A30);
 
     /// Creates a status word from a received value.
@@ -124,19 +124,19 @@ impl StatusWord {
         StatusBit::ALL.into_iter().filter(move |bit| self.is_set(*bit))
     }
 
-    /// Returns whether the drive is present, that is, detected or requested.
+    /// Returns whether the drive is present, that is, it has been detected or is requested.
     pub const fn is_present(self) -> bool {
         self.is_set(StatusBit::NoOff2)
     }
 
-    /// Returns whether a drive can send this status word. Bits 4, 5, 9 and 11 are always set and cleared together.
+    /// Returns whether a drive can send this status word. Bits 4, 5, 9 and 11 of a drive always have the same value.
     pub const fn is_plausible(self) -> bool {
         let found = self.0 & StatusWord::FOUND.0;
         found == 0 || found == StatusWord::FOUND.0
     }
 
-    /// Returns the state of the drive. A fault takes precedence over the lock, and the lock over all other states
-    /// (`D`). Bits 0 to 2 during a fault are not documented (`U`).
+    /// Returns the state of the drive. A fault takes precedence over the lock, and the lock over any other state (`D`).
+    /// Bits 0 to 2 are not documented for a fault (`U`).
     pub const fn state(self) -> State {
         use StatusBit::{Fault, OperationEnabled, Operational, Ready, Standstill, SwitchOnLock};
         if self.is_set(Fault) {

@@ -1,27 +1,27 @@
-//! Address switches S1 and S2, read when the device is switched on (reference, section 1). S3 selects the drive to
-//! which the RS485 LED refers.
+//! Address switches S1 and S2, which are read at power-up (reference, section 1). Switch S3 selects the drive that the
+//! RS485 LED stands for.
 
 use core::net::Ipv4Addr;
 
 /// Source of the IP address, selected by the two address switches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AddressSwitch {
-    /// Switch position 0: the source in the TCP/IP object (class F5h, attribute 3). It is stored, BOOTP or DHCP. The
-    /// factory setting is DHCP.
+    /// Position 0: the source in the TCP/IP object (class F5h, attribute 3), which is *stored*, BOOTP or DHCP. It is
+    /// set to DHCP at the factory.
     Object,
-    /// Switch positions 1 to 96: address 192.168.1.n with the mask 255.255.255.0 and no gateway.
+    /// Positions 1 to 96: address 192.168.1.n, mask 255.255.255.0, no gateway.
     Fixed(Ipv4Addr),
-    /// Switch position 97: the stored address. If the switches are turned to 97 during operation, the device also
+    /// Position 97: the stored address. If the switches are turned to this position during operation, the device also
     /// stores its current address.
     Stored,
-    /// Switch position 98: BOOTP.
+    /// Position 98: BOOTP.
     Bootp,
-    /// Switch position 99: DHCP.
+    /// Position 99: DHCP.
     Dhcp,
 }
 
 impl AddressSwitch {
-    /// Converts the two-digit position of the address switches, or returns `None` if `number` is greater than 99.
+    /// Converts the two-digit position of the address switches. Returns `None` if `number` is above 99.
     pub const fn parse(number: u8) -> Option<Self> {
         let source = match number {
             0 => AddressSwitch::Object,
@@ -34,7 +34,7 @@ impl AddressSwitch {
         Some(source)
     }
 
-    /// Returns the two digits.
+    /// Returns the two digits of the switch position.
     pub const fn number(self) -> u8 {
         match self {
             AddressSwitch::Object => 0,

@@ -1,4 +1,4 @@
-//! Parameter values in CIP: strings, and numbers whose length depends on their type (reference, section 7).
+//! Parameter values in CIP: strings, and numbers whose length depends on the type (reference, section 7).
 
 /// Type of a parameter value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -22,13 +22,13 @@ pub enum Kind {
 /// A parameter value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {
-    /// A number of any numeric type.
+    /// A number of any integer type.
     Number(i64),
     /// A string.
     Text(String),
 }
 
-/// Reason why data or a value do not match a type.
+/// Reason why data or a value does not match a type.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ValueError {
     /// The length does not match the type.
@@ -39,7 +39,7 @@ pub enum ValueError {
         /// Actual length in bytes.
         got: usize,
     },
-    /// The number exceeds the range of the type.
+    /// The number is out of the range of the type.
     #[error("{number} is outside the range {low} to {high}")]
     Number {
         /// Rejected number.
@@ -58,7 +58,7 @@ pub enum ValueError {
 }
 
 impl Kind {
-    /// Returns the length of a number in bytes, or `None` for strings.
+    /// Returns the length in bytes, or `None` for strings.
     pub const fn byte_length(self) -> Option<usize> {
         match self {
             Kind::U8 | Kind::I8 => Some(1),
@@ -82,8 +82,8 @@ impl Kind {
         Some(limits)
     }
 
-    /// Parses a value. A string may be preceded by its length (`U`: not documented). Trailing zeros and blanks are
-    /// removed, and non-ASCII bytes become question marks.
+    /// Parses a value. The first byte of a string may be its length (`U`: not documented). Trailing zeros and blanks
+    /// are removed, and non-ASCII bytes become question marks.
     ///
     /// # Errors
     /// Returns [`ValueError::Length`] if the data of a number have the wrong length.
@@ -121,7 +121,7 @@ impl Kind {
     }
 }
 
-/// Parses a nominal value (parameters 126 to 129) and returns it with its number of decimals. A value preceded by an
+/// Parses a nominal value (parameters 126 to 129) and returns it with its number of decimals. A value with the prefix
 /// `A` is in tenths and has one decimal (manual 6.2).
 pub fn nominal_value(text: &str) -> Option<(f64, usize)> {
     let (digits, by, decimals) = text.strip_prefix('A').map_or((text, 1.0, 0), |tenths| (tenths, 10.0, 1));

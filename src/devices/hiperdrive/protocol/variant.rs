@@ -2,18 +2,18 @@
 
 use super::scaling::Family;
 
-/// Product variant of a drive, as reported by parameter 120. Unknown numbers are preserved.
+/// Product variant of a drive, from parameter 120. Unknown numbers are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant(u16);
 
 /// Row of the variant table.
 #[derive(Clone, Copy, Debug)]
 pub struct VariantRow {
-    /// Variant of the row.
+    /// Variant that this row describes.
     pub variant: Variant,
     /// Product name.
     pub name: &'static str,
-    /// Drive family, which determines the travel. It is assumed for HRA (`U`).
+    /// Drive family, which determines the travel. For HRA, the family is an assumption (`U`).
     pub family: Family,
 }
 
@@ -39,12 +39,12 @@ pub const VARIANTS: [VariantRow; 13] = [
 ];
 
 impl Variant {
-    /// Variant 0, which means that no drive is connected.
+    /// Variant 0, which stands for no connected drive.
     pub const NONE: Variant = Variant(0);
     /// Variant FFFFh, which the manual does not list.
     pub const OTHER: Variant = Variant(0xFFFF);
 
-    /// Creates a variant from any number.
+    /// Creates a variant from its number, even an unknown one.
     pub const fn new(number: u16) -> Self {
         Variant(number)
     }

@@ -1,5 +1,5 @@
-//! Tests of words and process data against the reference: both directions, forbidden words and arbitrary input. Tests
-//! of parameters and scaling are in the submodules.
+//! Tests of words and process data against the reference, including reserved bits and arbitrary input. Tests of
+//! parameters and scaling are in the submodules.
 
 use proptest::prelude::*;
 
@@ -27,7 +27,7 @@ fn status(word: u16) -> StatusWord {
     StatusWord::new(word)
 }
 
-/// Control words match section 3 of the reference.
+/// The control words match section 3 of the reference.
 #[test]
 fn published_control_words_match() {
     use Direction::{Clockwise, Counterclockwise};
@@ -61,7 +61,7 @@ fn published_control_words_match() {
     assert_eq!(names(0x0509), "0 on, 3 enable operation, 8 jog 1, 10 control by PLC");
 }
 
-/// Reserved bits (1, 2, 11, 13 to 15) are rejected as in section 9 of the reference, for example PROFIdrive's 047F.
+/// Reserved bits (1, 2, 11, 13 to 15) are rejected, for example in PROFIdrive's 047F (reference, section 9).
 #[test]
 fn reserved_bits_are_refused() {
     for bit in [1, 2, 11, 13, 14, 15] {
@@ -74,7 +74,7 @@ fn reserved_bits_are_refused() {
     assert_eq!(legal, 1 << 10);
 }
 
-/// The stop word clears the jog bits, because a stop does not end a jog step.
+/// The stop word also clears the jog bits, because a stop does not end a jog step.
 #[test]
 fn the_stop_word_depends_on_the_mode() {
     for (before, stopped) in [
@@ -96,7 +96,7 @@ fn the_stop_word_depends_on_the_mode() {
     );
 }
 
-/// A job starts on a difference of levels, and a run on an edge, if all conditions are met (sections 3 and 8.10).
+/// A job starts on a level of bit 6, a run on an edge, if all conditions are met (reference, sections 3 and 8.10).
 #[test]
 fn words_start_a_job_or_a_run() {
     let cases = [
@@ -123,7 +123,7 @@ fn words_start_a_job_or_a_run() {
     }
 }
 
-/// Status words and the resulting states match sections 3 and 9 of the reference.
+/// The status words and their states match sections 3 and 9 of the reference.
 #[test]
 fn published_status_words_match() {
     let cases = [
@@ -156,7 +156,7 @@ fn published_status_words_match() {
     assert!(moving && done);
 }
 
-/// Transitions match section 3 of the reference.
+/// The transitions match section 3 of the reference.
 #[test]
 fn the_state_machine_matches_the_reference() {
     use State::{Enabled, Fault, Locked, Moving, NotReady, Operational, Ready};
@@ -222,7 +222,7 @@ fn the_state_machine_matches_the_reference() {
     }
 }
 
-/// Returns the status word that section 3 of the reference states for a drive state.
+/// Returns the status word of a drive state according to section 3 of the reference.
 fn status_word_for(state: State) -> StatusWord {
     let word = match state {
         State::NotReady => 0x2A30,
@@ -236,7 +236,7 @@ fn status_word_for(state: State) -> StatusWord {
     status(word)
 }
 
-/// The control words match section 3 of the reference, and no step is complete before its word is sent.
+/// The control words match section 3 of the reference. No step is complete before its word has been sent.
 #[test]
 fn recipes_reach_their_target_state() {
     let walk = |steps: &[Step], mut before: ControlWord, mut state: State| {
@@ -262,7 +262,8 @@ fn recipes_reach_their_target_state() {
     assert_eq!(unlocked, (vec![0x0401, 0x0400], State::Ready));
 }
 
-/// Section 9 of the reference: 2.5 turns (163840) at 100 % in both byte orders, −1 turn (−65536) at 50 % and 75 %.
+/// The data match section 9 of the reference: 2.5 turns (163840) at 100 % in both byte orders, and −1 turn (−65536) at
+/// 50 % and 75 %.
 #[test]
 fn published_process_data_to_a_drive_match() {
     let setpoint = |control: u16, speed, torque, target| Setpoint {
@@ -306,7 +307,7 @@ fn published_process_data_to_a_drive_match() {
     assert_eq!((Percent::new(101), Percent::new(100)), (None, Some(Percent::FULL)));
 }
 
-/// Process data from a drive match section 9 of the reference.
+/// Data from a drive match section 9 of the reference.
 #[test]
 fn published_process_data_from_a_drive_match() {
     let cases = [
@@ -327,7 +328,8 @@ fn published_process_data_from_a_drive_match() {
     assert_eq!(to_turns_and_steps(actual.position), (1, 34_464));
 }
 
-/// Section 2 of the reference: 16 or 8 bytes for an adapter, 40 and 72 for hubs, or 8 less without parameter words.
+/// The process data have 16 bytes for an adapter and 40 or 72 for a hub, or 8 fewer without parameter words (reference,
+/// section 2).
 #[test]
 fn published_lengths_match() {
     let layout = |topology, pkw| Layout { topology, pkw, order: ByteOrder::Little };

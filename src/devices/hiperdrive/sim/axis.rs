@@ -1,10 +1,12 @@
-//! The spindle: it accelerates, brakes, and hits obstacles. Units are milliseconds and steps of 1/65536 turn.
+//! The simulated spindle, which accelerates, brakes and hits obstacles. Units are milliseconds and steps of 1/65536
+//! turn.
 
 use std::time::Duration;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpindleLoad {
-    /// Load as a percentage of the nominal torque. The spindle does not move if the effective torque is lower.
+    /// Load as a percentage of the nominal torque. The spindle moves only if the effective torque is at least this
+    /// high.
     pub percent: u8,
     /// Position of the lower obstacle, in steps of 65536 per shaft turn.
     pub wall_below: Option<f64>,
@@ -17,7 +19,7 @@ pub struct SpindleLoad {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DriveDefect {
-    /// The drive does not stop at its target or limits.
+    /// The drive does not stop at its target or at its limits.
     RunsOn,
     /// The drive turns in the wrong direction.
     Reversed,
@@ -51,7 +53,7 @@ pub(super) enum AxisSetpoint {
 }
 
 impl AxisSetpoint {
-    /// Returns the setpoint that a drive with the given defect follows at this position.
+    /// Returns the setpoint that a drive with this defect actually follows at this position.
     pub(super) fn with_defect(self, defect: Option<DriveDefect>, place: f64) -> AxisSetpoint {
         let turned = |speed: f64| if defect == Some(DriveDefect::Reversed) { -speed } else { speed };
         match (self, defect) {
@@ -65,7 +67,7 @@ impl AxisSetpoint {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TickOutcome {
     OnTheWay,
-    /// The drive is at its target, or at rest as requested.
+    /// The drive is at its target, or at rest if requested.
     There,
     Held {
         above: bool,
@@ -76,7 +78,7 @@ pub(super) enum TickOutcome {
 pub(super) const TURN: f64 = 65536.0;
 pub(super) const TICK: Duration = Duration::from_millis(1);
 const TICK_S: f64 = 1e-3;
-/// Assumed acceleration. At this rate, 35 rpm are reached or lost in a tenth of a second.
+/// Assumed acceleration. The drive reaches 35 rpm, or brakes from 35 rpm, in 0.1 s.
 const ACCELERATION: f64 = 350.0 / 60.0 * TURN;
 
 impl Axis {
@@ -131,7 +133,8 @@ impl Axis {
     }
 }
 
-/// Returns the obstacle between the spindle and a position, if there is one. The flag is set for the upper obstacle.
+/// Returns the obstacle that the spindle has reached at this position, if any. The flag is `true` for the upper
+/// obstacle.
 fn blocking_obstacle(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
     let below = load.wall_below.filter(|wall| place < *wall).map(|wall| (wall, false));
     below.or_else(|| load.wall_above.filter(|wall| place > *wall).map(|wall| (wall, true)))
@@ -151,7 +154,7 @@ mod tests {
         panic!("it never ends: {axis:?}");
     }
 
-    /// At 35 rpm, 0.1 s of acceleration and 0.1 s of braking cover 1/60 · 35 · 0.1 = 0.0583 turns together. A turn
+    /// At 35 rpm, 0.1 s of acceleration and 0.1 s of braking together cover 1/60 · 35 · 0.1 = 0.0583 turns. A full turn
     /// takes 0.2 + (1 − 0.0583) / 0.5833 s.
     #[test]
     fn a_turn_takes_the_expected_time() {

@@ -1,4 +1,4 @@
-//! Settings of virtual drives and their adapter or hub in the query of a `sim:` link. An example is
+//! Settings of a virtual adapter or hub and its drives, taken from the query of a `sim:` link such as
 //! `hub=4&drives=1,0,1&position=65536`. This module opens no connection.
 
 use std::time::Duration;
@@ -17,13 +17,13 @@ use crate::sim::{ConfigError, FAULTS, SEED, SimulatedFaults, VirtualDevice, sett
 
 parameters! {
     /// Settings of a virtual adapter or hub and its drives. The default is an adapter with a single HDA30A at rest,
-    /// with factory settings and without faults. Drive settings apply to all drives.
+    /// with factory settings and without faults. The drive settings apply to all drives alike.
     pub struct Config: ConfigError {
         /// Topology, by default an adapter with one drive.
         pub(super) topology: Topology = Topology::Adapter, "hub" => CustomNotation(AllowedValues::Hub, |text| HUBS.read(text));
-        /// Ports that have a drive, by default all. Ports after the end of the list are empty.
+        /// Ports that have a drive, by default all. Ports that are not listed are empty.
         drives: Option<String> = None, "drives" => OptionalValue(ANY), "connect.plugged" like "1,0,1";
-        /// Whether each port has a drive; `None` means a drive in every port.
+        /// Whether each port has a drive, or `None` if all ports have one.
         plugged: Option<Vec<bool>> = None;
         /// Variant of the drives, given as the value of parameter 120 or by name.
         pub(super) variant: Variant = Variant::new(7), "variant" => CustomNotation(AllowedValues::Variant, parse_variant);
@@ -33,21 +33,21 @@ parameters! {
         pub(super) position: i32 = 0, "position" => WholeNumbers(Quantity::Steps, i32::MIN..=i32::MAX);
         /// Maximum speed (parameter 166), in tenths of rpm.
         pub(super) speed: Option<u16> = None, "speed" => OptionalValue(WholeNumbers(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
-        /// Spindle load in percent; no drive can move a load above 100.
+        /// Load of the spindles in percent. A load above 100 cannot be moved.
         load: u8 = SpindleLoad::default().percent, "load" => WholeNumbers(Quantity::Torque, 0..=200);
         blocked: bool = false, "blocked" => SWITCH;
-        /// Defect of the drives. They do not stop at a target or limit, turn in the wrong direction, or always set
+        /// Defect of the drives: they do not stop at a target or limit, turn in the wrong direction, or always set
         /// status bit 15.
         defect: Option<DriveDefect> = None, "defect" => OptionalValue(Keywords(&[
             ("runs-on", DriveDefect::RunsOn), ("reversed", DriveDefect::Reversed), ("says-outside", DriveDefect::SaysOutside),
         ]));
-        /// Ambient temperature of the drives in degrees Celsius. Drives fail from 80 degrees.
+        /// Ambient temperature of the drives in degrees Celsius. A drive hotter than 80 degrees reports a fault.
         temperature: f64 = SpindleLoad::default().ambient, "temperature" => DecimalNumbers(Quantity::Celsius, -40.0..=120.0);
-        /// Position of switch S3. Drives can be moved over the bus only if the switch is at 0.
+        /// Position of switch S3. Drives can be moved over the bus only in position 0.
         pub(super) s3: u8 = 0, "s3" => WholeNumbers(Quantity::SwitchPosition, 0..=9);
         pub(super) switch: u8 = 0, "switch" => CustomNotation(AllowedValues::SwitchDigits, parse_switches);
         pub(super) volts: f64 = 24.0, "supply" => DecimalNumbers(Quantity::Volts, 0.0..=100.0);
-        /// Duration of a reset of all drives (47 = −4). The reply is sent afterwards.
+        /// Duration of a reset of all drives (47 = −4), after which the reply is sent.
         pub(super) resets: Duration = RESET_TIME, "reset" => Milliseconds(0..=8000);
         /// Serial number, parameter 17.
         pub(super) serial_number: u16 = 4711, "serial" => WholeNumbers(Quantity::Number, 0..=u16::MAX);
@@ -58,16 +58,16 @@ parameters! {
         /// Whether parameter strings are preceded by their length (`U`: not documented).
         pub(super) counted_texts: bool = false, "text" => Keywords(&[("plain", false), ("counted", true)]);
         pub(super) seed: u64 = 0, "seed" => SEED;
-        /// Tests of injected faults. `drop` is the fraction of replies, and of packets in both directions, that are
-        /// lost. `flip` and `garbage` are the fractions of replies and returned packets with an inverted bit or
-        /// replaced by random bytes. `silent-after` counts frames and packets.
+        /// Faults to inject. `drop` is the fraction of replies, and of packets in both directions, that are lost.
+        /// `flip` and `garbage` are the fractions of replies and returned packets in which a bit is inverted or all
+        /// bytes are random. `silent-after` counts frames and packets.
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
 
 impl Config {
-    /// Parses percent-decoded keys and values. Numbers are decimal or hexadecimal with the prefix `0x`. If a key occurs
-    /// twice, the last value applies.
+    /// Parses keys and values, already percent-decoded. Numbers are decimal, or hexadecimal with the prefix `0x`. If a
+    /// key occurs twice, the last value applies.
     ///
     /// # Errors
     /// Returns an error with the key and the allowed values if a setting is invalid.
@@ -106,7 +106,7 @@ impl Config {
     }
 }
 
-/// Allowed words for the topology of a hub.
+/// Allowed values of the `hub` setting.
 const HUBS: Keywords<Topology> = Keywords(&[("4", Topology::Hub4), ("8", Topology::Hub8)]);
 
 fn parse_variant(text: &str) -> Option<Variant> {
@@ -211,7 +211,7 @@ mod tests {
         }
     }
 
-    /// A station returns the configured settings.
+    /// A station created with settings returns their values.
     #[test]
     fn a_station_has_its_configured_settings() {
         let query = "hub=4&drives=0,1&variant=HDA70&requested=1&position=-100&speed=200&switch=17&supply=23.5&serial=16&name=Feeder";
@@ -226,7 +226,7 @@ mod tests {
         assert_eq!(value(260), Some(Value::Number(1_048_576_000)));
     }
 
-    /// Moves the first drive towards a target until it stops. Returns its last status and newest error.
+    /// Moves the first drive towards a target until it stops, and returns its last status and newest error.
     fn move_to_target(query: &str) -> (u16, Option<ErrorCode>) {
         let mut station = Station::from_config(&read(query).unwrap());
         let mut now = Moment::START;
@@ -246,8 +246,8 @@ mod tests {
         (status.with_bit(StatusBit::SetpointAcknowledged, false).to_u16(), error)
     }
 
-    /// The status words match sections 3 and 9 of the reference: 3E37 when done, compared without bit 12, and 2AB8 for
-    /// a fault.
+    /// The status words are those of sections 3 and 9 of the reference: 3E37 at the target (compared without bit 12)
+    /// and 2AB8 for a fault.
     #[test]
     fn drives_show_their_configured_faults() {
         for (query, status, error) in [

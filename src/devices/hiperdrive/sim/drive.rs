@@ -1,4 +1,4 @@
-//! A virtual drive: effects of control words, motion and faults (reference, sections 2 to 5).
+//! A virtual drive: how it responds to control words, moves and fails (reference, sections 2 to 5).
 //!
 //! Assumptions (`U`: not documented):
 //! - Words with reserved bits are ignored.
@@ -29,7 +29,7 @@ pub struct Drive {
     pub(super) variant: Variant,
     pub(super) memory: Memory,
     pub(super) axis: Axis,
-    /// Offset from the axis to the position, in steps of the axis.
+    /// Offset that is added to the axis to give the position, in steps of the axis.
     pub(super) offset: f64,
     pub(super) out: OutputData,
     pub(super) errors: VecDeque<ErrorCode>,
@@ -38,13 +38,13 @@ pub struct Drive {
     pub(super) celsius: f64,
     load: SpindleLoad,
     control: ControlWord,
-    /// State of the drive, except for motion, which is read from the axis.
+    /// State of the drive. Whether it moves is read from the axis instead.
     state: State,
     motion: Motion,
     target_reached: bool,
     acknowledged: bool,
     over_current: bool,
-    /// Time without progress in milliseconds.
+    /// Time in milliseconds for which a moving drive has made no progress.
     stuck_ms: u32,
     allowed: bool,
     at: Moment,
@@ -58,11 +58,11 @@ enum Motion {
         at: f64,
         jog: Option<Jog>,
     },
-    /// A paused job, which is resumed when control bit 5 is set.
+    /// A paused job, which resumes when control bit 5 is set.
     Paused {
         at: f64,
     },
-    /// A run in speed mode, to a position or without an end.
+    /// A run in speed mode, either to a position or endless.
     Run {
         to: Option<f64>,
         clockwise: bool,
@@ -131,7 +131,7 @@ impl Drive {
         self.axis = Axis::at_position(self.axis.place() + steps);
     }
 
-    /// Injects an error, which is stored. If the drive is operational, the error ends the motion as a fault.
+    /// Injects and stores an error. It becomes a fault and ends the motion if the drive is operational.
     pub fn inject_error(&mut self, now: Moment, code: ErrorCode) {
         self.advance_to(now);
         self.enter_fault(code);
@@ -151,7 +151,7 @@ impl Drive {
         }
     }
 
-    /// Sets whether the drive may move over the bus, which is the case while S3 is at 0.
+    /// Sets whether the drive may be moved over the bus, as is the case while S3 is at 0.
     pub(super) const fn set_motion_allowed(&mut self, allowed: bool) {
         self.allowed = allowed;
     }
@@ -192,7 +192,7 @@ impl Drive {
         .fold(StatusWord::FOUND, |status, (bit, set)| status.with_bit(bit, set))
     }
 
-    /// Returns whether the drive is at rest and has no motion pending.
+    /// Returns whether the drive is at rest and has no motion to start.
     pub(super) fn is_at_rest(&self) -> bool {
         self.axis.is_at_rest() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
     }
@@ -222,7 +222,7 @@ impl Drive {
         (limit(LOWER_LIMIT), limit(UPPER_LIMIT))
     }
 
-    /// Handles the loss of the master, which is a fault for an operational drive.
+    /// Handles the loss of the master, which causes a fault if the drive is operational.
     pub(super) fn handle_master_loss(&mut self, now: Moment) {
         self.advance_to(now);
         if self.state.after_event(Trigger::Fails) == State::Fault && self.state != State::Fault {
@@ -251,7 +251,7 @@ impl Drive {
         f64::from(position) / self.scale().steps_per_turn() * TURN - self.offset
     }
 
-    /// Advances the simulation to a moment in steps of one millisecond. An earlier moment has no effect.
+    /// Advances the simulation to the given time in steps of one millisecond. A time in the past has no effect.
     pub(super) fn advance_to(&mut self, now: Moment) {
         while self.at + TICK <= now {
             let ticks = if self.is_settled() { now.duration_since(self.at).as_millis().max(1) } else { 1 };
@@ -261,13 +261,13 @@ impl Drive {
         }
     }
 
-    /// Returns whether everything except the temperature is constant.
+    /// Returns whether nothing but the temperature can change by itself.
     fn is_settled(&self) -> bool {
         let begins = self.control.motion_start(self.control, self.status()).is_some();
         self.motion == Motion::Rest && self.axis.is_at_rest() && !begins && self.next(self.control) == self.state
     }
 
-    /// Returns the state after the control word has changed from the given one to the current one.
+    /// Returns the next state, given the previous control word. The current one is that of the drive.
     fn next(&self, before: ControlWord) -> State {
         match self.state {
             State::NotReady if !self.may_move() => State::NotReady,
@@ -275,7 +275,7 @@ impl Drive {
         }
     }
 
-    /// Returns whether the drive is requested and S3 does not select a drive.
+    /// Returns whether the drive may be moved: it is requested, and switch S3 is at 0.
     fn may_move(&self) -> bool {
         self.allowed && self.memory.get(REQUESTED_BY_BUS) == Some(1)
     }
@@ -348,7 +348,7 @@ impl Drive {
         self.state = state;
     }
 
-    /// Applies the control word to a running motion, without affecting a jog step.
+    /// Applies the control word to a motion in progress. Jog steps are not affected.
     fn apply_command(&mut self) {
         let has = |bit| self.control.is_set(bit);
         let speed_mode = has(ControlBit::SpeedMode);

@@ -1,4 +1,4 @@
-//! Writable parameters: present values and those that survive a power cycle.
+//! Writable parameters: their current values, and the values that survive a power cycle.
 
 use std::collections::BTreeMap;
 
@@ -12,12 +12,12 @@ pub(super) struct Memory {
     kept: BTreeMap<u16, i64>,
 }
 
-/// Value of parameter 192 in milliseconds, determined by the drive (assumed).
+/// Value of parameter 192 in milliseconds. A real drive determines it by itself; this value is assumed.
 const COMPLETE_TIME_MS: i64 = 5;
 
 impl Memory {
-    /// Creates the memory of a virtual device. It contains the factory settings of the parameters for which `holds`
-    /// returns `true`.
+    /// Creates the memory of a virtual device with factory settings. It holds the parameters for which `holds` returns
+    /// `true`.
     pub(super) fn new(topology: Topology, family: Family, holds: fn(&ParameterRow) -> bool) -> Self {
         let value = |row: &ParameterRow| {
             let found = (row.number == RS485_COMPLETE).then_some(COMPLETE_TIME_MS);
@@ -27,7 +27,7 @@ impl Memory {
         Memory { now: factory.clone(), kept: factory.clone(), factory }
     }
 
-    /// Returns the value of a parameter, or `None` if this memory does not store it.
+    /// Returns the value of a parameter, or `None` if this memory does not hold it.
     pub(super) fn get(&self, number: u16) -> Option<i64> {
         self.now.get(&number).copied()
     }
@@ -47,28 +47,28 @@ impl Memory {
         self.kept.extend(self.now.iter().filter(|(number, _)| is_saved(**number)));
     }
 
-    /// Stores the first half of the values, as if the supply failed during the save.
+    /// Saves only the first half of the values, as if the supply failed during the save.
     pub(super) fn save_partially(&mut self) {
         let saved: Vec<(u16, i64)> = self.now.iter().map(|(n, v)| (*n, *v)).filter(|(n, _)| is_saved(*n)).collect();
         let half = saved.len() / 2;
         self.kept.extend(saved.into_iter().take(half));
     }
 
-    /// Restores the saved values after a power failure or a reset. Values that are never saved get their factory
-    /// settings. A position that was set is kept, since a reset has no effect on it (manual, 198).
+    /// Restores the saved values after a power failure or a reset. Values that are never saved return to their factory
+    /// settings. The set position is kept, since a reset does not affect it (manual, 198).
     pub(super) fn handle_restart(&mut self) {
         let reference = self.get(REFERENCE);
         self.now = self.kept.clone();
         reference.into_iter().for_each(|position| self.set_value(REFERENCE, position));
     }
 
-    /// Handles 47 = −2, which restores the last saved values that the adapter or hub itself stores.
+    /// Handles 47 = −2, which recalls the saved values, but only those that the adapter or hub itself stores.
     pub(super) fn restore_saved(&mut self) {
         copy_device_parameters(&self.kept, &mut self.now);
     }
 
-    /// Handles a write of −1 to parameter 47, which restores the factory settings of the values that the adapter or hub
-    /// itself stores, without saving them.
+    /// Handles 47 = −1, which restores factory settings without saving them, but only for values that the adapter or
+    /// hub itself stores.
     pub(super) fn reset_device_values(&mut self) {
         copy_device_parameters(&self.factory, &mut self.now);
     }

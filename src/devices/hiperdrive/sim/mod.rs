@@ -1,6 +1,6 @@
-//! Virtual drives behind an adapter or a hub (HIPERDRIVE reference): effects of process data and parameters, and the
-//! EtherNet/IP target in front of them, in virtual time. Where the manual leaves the behaviour open (`U`), the
-//! assumption is documented.
+//! Virtual drives behind an adapter or a hub (HIPERDRIVE reference). They respond to process data and parameters
+//! through an EtherNet/IP target, in virtual time. Assumptions are documented where the manual does not define the
+//! behaviour (`U`).
 //!
 //! | file | content |
 //! |---|---|

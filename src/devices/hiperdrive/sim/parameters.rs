@@ -1,4 +1,4 @@
-//! Reading and writing of the parameters of a drive.
+//! Reads and writes the parameters of a virtual drive.
 //!
 //! Assumptions (`U`: not documented): A rejected value is stored as error 8501, as in the manual, and is a fault if the
 //! drive is operational. Parameter 198 can only be written at standstill.
@@ -42,7 +42,7 @@ impl ParameterError {
 }
 
 impl Drive {
-    /// Returns a parameter, given its number for drive 1.
+    /// Returns the value of a parameter, given its number for drive 1.
     pub(super) fn read(&mut self, now: Moment, number: u16) -> Option<Value> {
         let actual = self.actual_values(now);
         let text = |text: &str| Some(Value::Text(text.to_owned()));
@@ -77,13 +77,13 @@ impl Drive {
         Some(Value::Number(value))
     }
 
-    /// Returns whether writing this value restarts the drive. The drive restarts when parameter 152 changes from 0 to
-    /// 1, and on every write to parameter 199.
+    /// Returns whether writing this value restarts the drive. This is the case when parameter 152 changes from 0 to 1,
+    /// and for every write to parameter 199.
     pub(super) fn is_reset_by(&self, number: u16, value: i64) -> bool {
         number == RESET || (number, value) == (REQUESTED_BY_BUS, 1) && self.memory.get(REQUESTED_BY_BUS) == Some(0)
     }
 
-    /// Writes a parameter, given its number for drive 1, after its range has been checked.
+    /// Writes a parameter, given its number for drive 1. The caller has checked its range.
     pub(super) fn write(&mut self, now: Moment, number: u16, value: i64) -> Result<(), ParameterError> {
         self.advance_to(now);
         let mut out = self.out;
@@ -121,8 +121,8 @@ impl Drive {
         Ok(())
     }
 
-    /// Writes a limit. The upper limit (parameter 160) must be above the lower limit (parameter 158), and the position
-    /// must lie between them.
+    /// Writes a limit. The upper limit (parameter 160) must stay above the lower limit (parameter 158), with the
+    /// position between them.
     fn write_limit(&mut self, number: u16, value: i64) -> Result<(), ParameterError> {
         let (low, high) = self.limits();
         let (low, high) = if number == LOWER_LIMIT { (value, high.into()) } else { (low.into(), value) };
@@ -147,7 +147,7 @@ impl Drive {
         Ok(())
     }
 
-    /// Sets the position to the angle of the shaft, between 0 and 1 turn (manual, 198).
+    /// Sets the position to the angle of the shaft, which is between 0 and 1 turn (manual, 198).
     pub(super) fn invalidate_position(&mut self) {
         self.offset = -(self.axis.place() / TURN).floor() * TURN;
     }
@@ -158,7 +158,7 @@ impl Drive {
     }
 }
 
-/// Returns four characters of a string as one element.
+/// Returns an element of a string, which consists of four characters.
 pub(super) fn string_element(text: &str, element: u16) -> Option<u32> {
     let bytes = text.as_bytes();
     let part = bytes.chunks(4).nth(element.into())?;

@@ -1,4 +1,4 @@
-//! All drives of an adapter or a hub: process data, parameters, saving, loss of the master.
+//! An adapter or a hub with all its drives: process data, parameters, saving, loss of the master.
 //!
 //! Assumptions (`U`: not documented):
 //! - A connection that ends for any reason is treated as a loss of the master.
@@ -26,7 +26,7 @@ use crate::units::Moment;
 #[derive(Clone, Debug, PartialEq)]
 pub struct StationConfig {
     pub topology: Topology,
-    /// Drives by port, with `None` for an empty port.
+    /// Drives by port. An empty port is `None`.
     pub drives: Vec<Option<(Variant, SpindleLoad)>>,
     /// Serial number, parameter 17.
     pub serial_number: u16,
@@ -39,11 +39,11 @@ pub struct Station {
     memory: Memory,
     master: Option<Master>,
     busy_until: Moment,
-    /// Time of the reply to the last write, if the write resets drives.
+    /// Time at which the last write is answered, if it resets drives.
     answers_at: Option<Moment>,
-    /// Last received parameter words, and the answer in the process data.
+    /// Last received parameter words, and the current answer to them.
     words: (Pkw, Pkw),
-    /// Next answer, with the time at which it appears.
+    /// Answer to come, and the time at which it appears in the process data.
     answers: Option<(Moment, Pkw)>,
     resets: Duration,
     plate: StationIdentity,
@@ -51,7 +51,7 @@ pub struct Station {
     hindered: ActiveWriteFault,
 }
 
-/// Identity data in addition to a [`StationConfig`].
+/// Identity data that are not part of [`StationConfig`].
 #[derive(Clone, Debug)]
 struct StationIdentity {
     name: String,
@@ -59,11 +59,11 @@ struct StationIdentity {
     supply_tenths: u16,
 }
 
-/// State of saving, which a loss of supply can interrupt.
+/// State of saving, which can be interrupted by a loss of supply.
 #[derive(Clone, Copy, Debug, Default)]
 struct Store {
     count: u32,
-    /// Number of the save during which the supply is lost, counted from 1.
+    /// Which save, counted from 1, the supply fails in.
     failing_save: Option<u32>,
     dies_at: Option<Moment>,
     /// Whether the supply was lost.
@@ -76,14 +76,14 @@ struct Master {
     heard: Moment,
 }
 
-/// Duration of a save, chosen within the limit given by the manual.
+/// Duration of a save. It is within the limit in the manual.
 const SAVE_TIME: Duration = Duration::from_millis(150);
-/// Duration of a reset of all drives, unless the settings specify another.
+/// Duration of a reset of all drives, unless the settings give another.
 pub(super) const RESET_TIME: Duration = Duration::from_secs(1);
 const DRIVE_RESETS: Duration = Duration::from_millis(300);
 
 impl Default for StationConfig {
-    /// Creates an adapter with a drive of type HDA30A.
+    /// Creates an adapter with an HDA30A drive.
     fn default() -> Self {
         let drives = vec![Some((Variant::new(7), SpindleLoad::default()))];
         StationConfig { topology: Topology::Adapter, drives, serial_number: 4711 }
@@ -145,18 +145,19 @@ impl Station {
         self.store.count
     }
 
-    /// Returns whether the station has lost its supply and does not reply until [`power_cycle`](Self::power_cycle).
+    /// Returns whether the supply has failed. The station then does not reply until [`power_cycle`](Self::power_cycle)
+    /// is called.
     pub fn is_dead(&mut self, now: Moment) -> bool {
         self.advance_to(now);
         self.store.dead
     }
 
-    /// Sets the number of the save, counted from 1, during which the supply is lost. `None` disables the loss.
+    /// Sets in which save, counted from 1, the supply fails. `None` stands for no failure.
     pub const fn set_failing_save(&mut self, number: Option<u32>) {
         self.store.failing_save = number;
     }
 
-    /// Injects a fault into writes of a parameter. `None` removes the fault and repairs a lost line.
+    /// Injects a fault that affects writes of a parameter. `None` removes the fault and restores a lost line.
     pub const fn set_write_fault(&mut self, what: Option<(ParameterNumber, WriteFault)>) {
         self.hindered = ActiveWriteFault::new(what);
     }
@@ -188,7 +189,7 @@ impl Station {
         self.master.is_some()
     }
 
-    /// Handles process data, which are dropped without a connection and during a reset of drives.
+    /// Handles process data. They are dropped if no connection is open or the drives are being reset.
     pub fn handle_process_data(&mut self, now: Moment, image: &OutputImage, runs: bool) {
         self.advance_to(now);
         let Some(master) = &mut self.master else { return };
@@ -220,7 +221,7 @@ impl Station {
         InputImage { drives: self.drives.iter_mut().map(actual).collect(), pkw: Some(self.words.1) }
     }
 
-    /// Sets switch S3. Drives can be moved over the bus only if the switch is at 0.
+    /// Sets switch S3. Drives can be moved over the bus only in position 0.
     pub fn set_drive_select_switch(&mut self, now: Moment, position: u8) {
         self.advance_to(now);
         self.present_drives().for_each(|drive| drive.set_motion_allowed(position == 0));
@@ -256,7 +257,7 @@ impl Station {
         }
     }
 
-    /// Returns the time at which the last write is answered, if the reply is delayed.
+    /// Returns when the last write is answered, if its reply is delayed.
     pub const fn delayed_reply_time(&mut self) -> Option<Moment> {
         self.answers_at.take()
     }
@@ -374,8 +375,8 @@ impl Station {
         self.drives.iter_mut().flatten()
     }
 
-    /// Executes all events that are due, at their own times. Examples are a loss of supply during a save and a time-out
-    /// of the master.
+    /// Processes all events due by now, such as a failure of the supply during a save or a time-out of the master. Each
+    /// takes effect at its own time.
     fn advance_to(&mut self, now: Moment) {
         if let Some(at) = self.store.dies_at.take_if(|at| *at <= now) {
             self.store.dead = true;

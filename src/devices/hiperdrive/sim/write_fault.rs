@@ -1,13 +1,13 @@
-//! Injected faults during the write of a parameter.
+//! Faults injected into the write of a parameter.
 
 use super::parameters::ParameterError;
 use crate::devices::hiperdrive::protocol::ParameterNumber;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WriteFault {
-    /// The write is rejected as not possible in this state.
+    /// The write is rejected, as if it were not possible in this state.
     Refused,
-    /// The line is lost after a write that has taken effect.
+    /// The write takes effect, but the line is lost afterwards.
     CutOff,
 }
 

@@ -18,7 +18,7 @@ fn millimetres(hundredths: u64) -> Length {
     Length { nanometres: hundredths * 10_000 }
 }
 
-/// Parameter words match section 9 of the reference: −511 turns are −33488896 steps, or FE010000h.
+/// The parameter words match section 9 of the reference. −511 turns are −33488896 steps, or FE010000h.
 #[test]
 fn published_parameter_words_match() {
     let little = ByteOrder::Little;
@@ -56,7 +56,7 @@ fn published_parameter_words_match() {
     assert_eq!(hex(&big.emit(ByteOrder::Big)), "10 A6 00 00 00 00 01 5E");
 }
 
-/// A reply to a request for another parameter or task is not accepted as the answer.
+/// A reply for another parameter or task is not accepted as the answer.
 #[test]
 fn a_reply_matches_only_its_own_request() {
     let read = Pkw::request(Task::Read, 166, 0, 0);
@@ -75,7 +75,7 @@ fn a_reply_matches_only_its_own_request() {
     }
 }
 
-/// Classes and attributes match section 7 of the reference.
+/// The classes and attributes match section 7 of the reference.
 #[test]
 fn parameters_map_to_cip_attributes() {
     for (own, class, attribute, drive, base) in [
@@ -135,7 +135,7 @@ fn the_parameter_table_matches_the_reference() {
     assert_eq!((factory(176, Hub8, Family::Short), factory(192, Hub8, Family::Short)), (Some(-4096), None));
 }
 
-/// Values at the limits are accepted, and values beyond the limits are rejected (reference, section 4).
+/// Values within the limits are accepted, and values beyond them are rejected (reference, section 4).
 #[test]
 fn parameter_ranges_are_checked() {
     for (own, good, bad) in [
@@ -172,7 +172,8 @@ fn parameter_ranges_are_checked() {
     assert_eq!(message(15, 3), "parameter 15 (name) contains text and cannot be 3");
 }
 
-/// Numbers have 1, 2 or 4 bytes, low byte first. A string may be preceded by its length (reference, sections 7 and 9).
+/// Numbers have 1, 2 or 4 bytes, low byte first. The first byte of a string may be its length (reference, sections 7
+/// and 9).
 #[test]
 fn values_have_the_length_of_their_type() {
     for (kind, text, value) in [
@@ -199,8 +200,8 @@ fn values_have_the_length_of_their_type() {
     assert_eq!(Kind::Text.parse(&[]), Ok(Value::Text(String::new())));
 }
 
-/// The nominal data in parameters 126 to 129 are strings. A value preceded by an "A" is in tenths and has one decimal,
-/// even if this is 0 (manual 6.2).
+/// The nominal data in parameters 126 to 129 are strings. A value with the prefix "A" is in tenths and always has one
+/// decimal (manual 6.2).
 #[test]
 fn nominal_data_may_be_tenths() {
     for (text, number) in [
@@ -216,7 +217,7 @@ fn nominal_data_may_be_tenths() {
     }
 }
 
-/// Conversions match the table in section 5 of the reference and the examples of the manual.
+/// The conversions match the table in section 5 of the reference and the examples in the manual.
 #[test]
 fn steps_convert_to_turns_and_millimetres() {
     for (numerator, denominator, steps) in [(256, 1, 65_536), (400, 256, 400), (100, 256, 100), (20, 256, 20)] {
@@ -259,7 +260,7 @@ fn steps_convert_to_turns_and_millimetres() {
     assert!((four.to_turns(33_488_896) - 83_722.24).abs() < 1e-6);
 }
 
-/// Conversions match sections 2 and 5 of the reference.
+/// The conversions match sections 2 and 5 of the reference.
 #[test]
 fn turns_reference_torque_and_speed_convert() {
     for (position, expected) in [(-1, (-1, 65_535)), (0, (0, 0)), (163_840, (2, 32_768)), (i32::MIN, (-32_768, 0))] {

@@ -1,5 +1,5 @@
-//! Comparison of the parameter table with a second transcription of the manual (`hiperdrive_parameters.txt`), and of
-//! the limits with the turns of each drive family (issue 21.10).
+//! Compares the parameter table with a second transcription of the manual (`hiperdrive_parameters.txt`), and the limits
+//! with the turns of each drive family (issue 21.10).
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use super::super::*;
 
 const FILE: &str = include_str!("../../../../../tests/vectors/hiperdrive_parameters.txt");
 
-/// Row of the transcribed table.
+/// Row of the second transcription.
 struct TranscribedRow<'t> {
     number: u16,
     bits: &'t str,
@@ -20,7 +20,7 @@ struct TranscribedRow<'t> {
     answered: &'t str,
 }
 
-/// Turns of a drive family: the travel (manual 9.2) and, for each parameter number, the range and the factory value.
+/// Turns of a drive family: its travel (manual 9.2), and the range and factory value of each parameter.
 struct TurnsTable {
     way: i64,
     rows: BTreeMap<u16, (i64, i64, i64)>,
@@ -90,7 +90,7 @@ fn parse_numbers(text: &str) -> Vec<i64> {
     text.split(',').map(|own| own.trim().parse().unwrap()).collect()
 }
 
-/// Returns values to probe: the limits, the values next to the limits, and values in the gaps of a list.
+/// Returns allowed and disallowed values to test: at the limits, next to them, and in the gaps of a list.
 fn probe_values(typed: &TranscribedRow<'_>) -> (Vec<i64>, Vec<i64>) {
     let all = || match typed.bits {
         "32" => (0, 4_294_967_295),
@@ -125,8 +125,8 @@ fn probe_values(typed: &TranscribedRow<'_>) -> (Vec<i64>, Vec<i64>) {
     }
 }
 
-/// Every row matches in type, access, unit, saving, factory value and allowed values. No row is missing or superfluous
-/// (issue 21.10).
+/// Every row matches in type, access, unit, saving, factory value and allowed values. No row is missing, and none is
+/// superfluous (issue 21.10).
 #[test]
 fn every_row_matches_the_manual() {
     let typed = transcribed_rows();
@@ -174,7 +174,7 @@ fn every_row_matches_the_manual() {
     }
 }
 
-/// Only the values listed in the manual take a long time to write (issue 21.8).
+/// Only the values listed in the manual have a long reply time (issue 21.8).
 #[test]
 fn every_row_is_answered_within_the_manuals_time() {
     for typed in transcribed_rows() {
@@ -199,8 +199,8 @@ fn every_row_is_answered_within_the_manuals_time() {
     }
 }
 
-/// For each family and scale, limits range to turns · 256 · numerator / denominator steps in either direction, rounded
-/// towards 0 and within 32 bits (issue 21.10).
+/// For each family and scale, the limits are within turns · 256 · numerator / denominator steps in either direction,
+/// rounded towards 0, and within 32 bits (issue 21.10).
 #[test]
 fn limit_ranges_match_the_turns_of_the_family() {
     let names = [("HDA 30, HDA 45", Family::Short), ("HDA 70", Family::Long), ("PSE441", Family::Pse441)];

@@ -1,4 +1,4 @@
-//! The connection manager: opening and closing cyclic and explicit connections, and unwrapping requests.
+//! The connection manager of the target, which opens and closes cyclic and explicit connections, and unwraps requests.
 //!
 //! Assumptions (`U`: not documented):
 //! - There is one cyclic connection, to one master.
@@ -24,7 +24,7 @@ use crate::units::Moment;
 pub(super) struct Connections {
     pub(super) cyclic: Option<Cyclic>,
     explicit: Vec<ExplicitConnection>,
-    /// Number of connections opened so far. No connection number is used twice.
+    /// Number of connections opened so far. Every connection gets a new number.
     opened: u32,
 }
 
@@ -38,7 +38,7 @@ struct ExplicitConnection {
     heard: Moment,
 }
 
-/// Reason why a connection is rejected, as the first extended status word.
+/// Reason for rejecting a connection, sent as the first extended status word.
 type ExtendedStatus = u16;
 
 const IN_USE: ExtendedStatus = 0x0100;
@@ -63,7 +63,7 @@ const ASSEMBLY_CLASS: u16 = 0x04;
 const MESSAGE_ROUTER: u16 = 0x02;
 
 impl Connections {
-    /// Creates the state after a loss of the supply, without connections.
+    /// Creates the state after a power failure, with no connections.
     pub(super) fn after_power_loss(lost: &Connections) -> Self {
         Connections { opened: lost.opened, ..Connections::default() }
     }
@@ -84,7 +84,7 @@ impl Connections {
         self.explicit.retain(|explicit| now.duration_since(explicit.heard) < explicit.timeout);
     }
 
-    /// Handles a message over an explicit connection and returns the data for its reply.
+    /// Records a message over an explicit connection and returns the connection number for the reply.
     pub(super) fn message(&mut self, to_target_id: u32, session: u32, now: Moment) -> Option<u32> {
         let mut explicit = self.explicit.iter_mut();
         let found = explicit.find(|one| one.to_target_id == to_target_id && one.session == session)?;
@@ -99,7 +99,7 @@ impl Connections {
 }
 
 impl TargetDevice {
-    /// Handles a request to the connection manager and returns the reply with the socket items to send along with it.
+    /// Handles a request to the connection manager. Returns the reply and the socket items to send with it.
     pub(super) fn handle_connection(
         &mut self,
         from: (Originator, u32),
@@ -193,7 +193,8 @@ impl TargetDevice {
         Ok((id, vec![Item::SocketToTarget(own)]))
     }
 
-    /// Checks that a path names assemblies 100 and 101, optionally 104 for configuration, and that its key fits.
+    /// Checks that a connection path leads to assemblies 100 and 101, with an optional configuration assembly 104, and
+    /// that its electronic key matches.
     fn check_path(&mut self, path: &EPath) -> Result<(), ExtendedStatus> {
         let [configuration, to_target, to_originator] = ASSEMBLIES;
         for segment in &path.0 {
@@ -211,7 +212,7 @@ impl TargetDevice {
         if fits { Ok(()) } else { Err(ASSEMBLY) }
     }
 
-    /// Checks an electronic key. A field of 0 matches every device.
+    /// Checks whether an electronic key matches this device. A field of 0 matches any device.
     fn check_key(&mut self, key: &ElectronicKey) -> Result<(), ExtendedStatus> {
         let own = self.identity();
         let fits = |wanted: u16, own: u16| wanted == 0 || wanted == own;
@@ -231,7 +232,7 @@ impl TargetDevice {
         }
     }
 
-    /// Returns the layout of an open request, with or without parameter words in both directions.
+    /// Returns the layout that a request to open a connection asks for, with or without parameter words.
     fn layout(&self, open: &ForwardOpen) -> Result<Layout, ExtendedStatus> {
         let topology = self.station.topology();
         let layouts = [true, false].map(|pkw| Layout { topology, pkw, order: self.order });
@@ -280,8 +281,8 @@ impl TargetDevice {
     }
 }
 
-/// Returns the address for cyclic data that the originator requested, or else the originator's address with the usual
-/// port.
+/// Returns the address to which cyclic data are sent: the one that the originator requested or, by default, its own
+/// address with the usual port.
 fn originator_socket(peer: Ipv4Addr, requested: Option<SocketAddress>) -> SocketAddrV4 {
     match requested {
         Some(socket) if socket.address.is_unspecified() => SocketAddrV4::new(peer, socket.port),
@@ -290,7 +291,7 @@ fn originator_socket(peer: Ipv4Addr, requested: Option<SocketAddress>) -> Socket
     }
 }
 
-/// Unwraps the request in an Unconnected_Send. The data contain a time-out, a length, the request padded to whole
+/// Extracts the request from an Unconnected_Send. Its data contain a time-out, a length, the request padded to whole
 /// words, and a route, which is ignored.
 fn unwrap_request(data: &[u8]) -> Result<Request, GeneralStatus> {
     let [_, _, low, high, rest @ ..] = data else { return Err(GeneralStatus::TOO_SHORT) };

@@ -1,4 +1,4 @@
-//! The cyclic connection of class 1: packets received and sent, each at its time.
+//! The cyclic class 1 connection, in which each packet is received and sent at its own time.
 //!
 //! Assumptions (`U`: not documented):
 //! - The first packet is sent one interval after the connection was opened.
@@ -52,8 +52,8 @@ impl Cyclic {
 }
 
 impl TargetDevice {
-    /// Sends the packets that are due and closes the connection of a lost master. Each packet has the state of the
-    /// drives at its time.
+    /// Sends all packets that are due, each with the drive states at its own time, and closes the connection if the
+    /// master is lost.
     pub(super) fn send_due_packets(&mut self) {
         while let Some(cyclic) = self.connections.cyclic.as_mut() {
             let at = cyclic.next.min(self.now);

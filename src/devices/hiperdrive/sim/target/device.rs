@@ -17,7 +17,7 @@ use crate::sim::SimulatedFaults;
 use crate::sim::line::TransitQueue;
 use crate::units::Moment;
 
-/// The device with the state of all connections to it.
+/// The virtual device, with the state of all connections to it.
 #[derive(Debug)]
 pub(super) struct TargetDevice {
     pub(super) station: Station,
@@ -85,7 +85,7 @@ impl TargetDevice {
         }
     }
 
-    /// Handles a frame received over TCP. Returns the reply with its time of sending, unless there is no reply or a
+    /// Handles a frame received over TCP. Returns the reply and the time to send it, unless there is no reply or a
     /// fault drops it.
     pub(super) fn handle_frame(&mut self, now: Moment, from: Originator, frame: &Frame) -> Option<(Moment, Vec<u8>)> {
         self.advance_to(now);
@@ -104,7 +104,7 @@ impl TargetDevice {
         frame.command != Command::UNREGISTER_SESSION
     }
 
-    /// Ends the TCP connection of an originator, with its session and its explicit connections.
+    /// Ends the TCP connection of an originator, together with its session and its explicit connections.
     pub(super) fn disconnect_originator(&mut self, originator: Originator) {
         let own: Vec<u32> = self.sessions.iter().filter(|(_, owner)| **owner == originator).map(|(s, _)| *s).collect();
         own.into_iter().for_each(|session| self.end_session(session));
@@ -134,7 +134,7 @@ impl TargetDevice {
         self.datagrams = TransitQueue::default();
     }
 
-    /// Counts an arrival and returns whether the target receives it.
+    /// Counts a received frame or packet, and returns whether the target handles it.
     pub(super) fn accept_arrival(&mut self) -> bool {
         let speaks = self.can_send();
         self.heard = self.heard.saturating_add(1);
@@ -149,8 +149,8 @@ impl TargetDevice {
         self.faults.transmit_byte(&mut self.rng, 0).carried.is_some()
     }
 
-    /// Applies the faults to a packet. Ethernet delivers a packet completely or not at all. A fault that affects one
-    /// byte on a serial line therefore affects all bytes here.
+    /// Applies the injected faults to a packet. Ethernet delivers a packet completely or not at all, so a fault that
+    /// would affect one byte on a serial line affects the whole packet here.
     pub(super) fn apply_faults(&mut self, mut bytes: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.transmit_byte(&mut self.rng, 0);
         let carried = passage.carried?;
@@ -164,7 +164,7 @@ impl TargetDevice {
         Some(bytes)
     }
 
-    /// Sends a datagram at the given time, unless a fault drops it.
+    /// Sends a datagram at the given time, unless an injected fault drops it.
     pub(super) fn send(&mut self, at: Moment, to: SocketAddrV4, bytes: Vec<u8>) {
         if let Some(bytes) = self.apply_faults(bytes) {
             self.datagrams.insert(at + self.faults.reply_delay(), (to, bytes));

@@ -1,4 +1,4 @@
-//! Frames and their replies: sessions, lists, and the services that carry CIP messages.
+//! Handles frames: sessions, lists, and the commands that carry CIP messages.
 
 use std::net::SocketAddrV4;
 
@@ -8,12 +8,12 @@ use crate::buses::ethernet_ip::protocol::{
     SocketAddress,
 };
 
-/// ListServices item (0100h) with version, capability and name. Its service carries CIP over TCP and cyclic data over
-/// UDP.
+/// ListServices item (0100h) with version, capability flags and name. The flags announce CIP over TCP and cyclic data
+/// over UDP.
 const SERVICES: (u16, [u8; 20]) = (0x0100, *b"\x01\x00\x20\x01Communications\0\0");
-/// Value of attribute 8 of the identity object for an operational device.
+/// Value of attribute 8 of the identity object while the device is operational.
 const OPERATIONAL: u8 = 3;
-/// Status for an unknown path segment.
+/// CIP status for an unknown path segment.
 const PATH_SEGMENT: GeneralStatus = GeneralStatus::new(0x04);
 
 type Refusal = EncapsulationStatus;
@@ -47,7 +47,7 @@ impl TargetDevice {
         })
     }
 
-    /// Handles a frame in a datagram and returns whether the datagram is a frame. Only list commands are answered.
+    /// Handles a frame received in a datagram. Only list commands are answered; for any other frame, returns `false`.
     pub(super) fn answer_datagram(&mut self, from: SocketAddrV4, frame: &Frame) -> bool {
         let asked = matches!(frame.command, Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES);
         if asked && frame.options == 0 {
@@ -95,7 +95,7 @@ impl TargetDevice {
         Body::List(ItemList(items))
     }
 
-    /// Parses the items of a frame that belongs to the originator's own session.
+    /// Parses the items of a frame, which must belong to a session of the originator.
     fn parse_items(&self, from: Originator, frame: &Frame) -> Result<ItemList, Refusal> {
         if self.sessions.get(&frame.session) != Some(&from) {
             return Err(EncapsulationStatus::NO_SESSION);
@@ -116,7 +116,7 @@ impl TargetDevice {
         Ok(Body::Data { interface: 0, timeout_s: 0, items: ItemList(items) })
     }
 
-    /// Handles SendUnitData. Returns `None` for an unknown connection.
+    /// Handles a SendUnitData frame. Returns `None` if the connection is unknown.
     fn handle_unit_data(&mut self, from: Originator, frame: &Frame) -> Result<Option<Body>, Refusal> {
         let items = self.parse_items(from, frame)?;
         let [Item::ConnectedAddress(connection), Item::ConnectedData(data), ..] = items.0.as_slice() else {
@@ -132,7 +132,7 @@ impl TargetDevice {
         Ok(Some(Body::Data { interface: 0, timeout_s: 0, items }))
     }
 
-    /// Handles a CIP message and returns the reply with the socket items to send along with it.
+    /// Handles a CIP message. Returns the reply and the socket items to send with it.
     fn message(
         &mut self,
         from: (Originator, u32),

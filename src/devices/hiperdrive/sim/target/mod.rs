@@ -1,5 +1,5 @@
-//! An EtherNet/IP target in front of a station (reference, section 7): TCP connections, and the datagrams of all of
-//! them.
+//! The EtherNet/IP target of a virtual station (reference, section 7), with several TCP connections and their
+//! datagrams.
 //!
 //! Assumptions (`U`: not documented):
 //! - A session ends with its TCP connection. A cyclic connection ends only by its own time-out, since its packets show
@@ -37,8 +37,8 @@ use crate::sim::line::TransitQueue;
 use crate::sim::{ByteDevice, DatagramDevice, SimulatedFaults};
 use crate::units::Moment;
 
-/// A TCP connection of one originator to a virtual adapter or hub, with the datagrams of all originators. It is created
-/// from a [`Config`]. [`connect_from`](Self::connect_from) and cloning create the connection of another originator.
+/// A TCP connection from one originator to a virtual adapter or hub, together with the datagrams of all originators. It
+/// is created from a [`Config`]. Further originators connect with [`connect_from`](Self::connect_from) or by cloning.
 #[derive(Debug)]
 pub struct Target {
     shared: Arc<Mutex<TargetDevice>>,
@@ -52,14 +52,14 @@ pub struct Target {
 pub struct TrafficCounters {
     /// Number of complete frames received over TCP.
     pub frames: u64,
-    /// Number of streams that were not frames.
+    /// Number of TCP streams that contained something other than frames.
     pub broken: u64,
     pub packets: u64,
-    /// Number of packets of the connection that were repeated or older than an earlier packet.
+    /// Number of packets that were repeated or older than an earlier packet of the connection.
     pub stale: u64,
-    /// Number of datagrams that were neither a packet nor a frame, or had a wrong length.
+    /// Number of datagrams with a wrong length, or that were neither a packet nor a frame.
     pub malformed: u64,
-    /// Number of packets for a connection that does not exist.
+    /// Number of packets for connections that do not exist.
     pub foreign: u64,
 }
 
@@ -68,7 +68,7 @@ impl Target {
         Target::with_device(Arc::new(Mutex::new(TargetDevice::new(config))), Ipv4Addr::LOCALHOST)
     }
 
-    /// Creates a connection of another originator, with this address, to the same device.
+    /// Connects another originator, with this address, to the same device.
     pub fn connect_from(&self, peer: Ipv4Addr) -> Self {
         Target::with_device(self.shared.clone(), peer)
     }
@@ -78,7 +78,7 @@ impl Target {
         Target { shared, originator, receiver: Receiver::default(), to_host: TransitQueue::default(), ended: false }
     }
 
-    /// Gives access to the station, for reading it or for changes that are not possible over a bus.
+    /// Calls `work` with the station, to read it or to change it in ways that are not possible over a bus.
     pub fn with_station<T>(&self, work: impl FnOnce(&mut Station) -> T) -> T {
         work(&mut self.lock().station)
     }
@@ -88,13 +88,13 @@ impl Target {
         self.lock().power_cycle();
     }
 
-    /// Sets the TCP and UDP address that the device reports and at which it receives cyclic data.
+    /// Sets the address and port that the device reports for TCP and UDP, and to which cyclic data must be sent.
     pub fn set_address(&self, at: SocketAddrV4) {
         let mut plant = self.lock();
         (plant.listens, plant.udp) = (at, at.port());
     }
 
-    /// Replaces the injected faults. The counts of frames and saves are kept.
+    /// Replaces the injected faults. Frames and saves counted so far stay counted.
     pub fn set_faults(&self, faults: &SimulatedFaults) {
         self.lock().set_faults(faults);
     }

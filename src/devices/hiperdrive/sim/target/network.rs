@@ -1,4 +1,4 @@
-//! TCP/IP object (class F5h) and Ethernet link object (F6h) as specified by ODVA (`P`).
+//! TCP/IP object (class F5h) and Ethernet link object (class F6h) as specified by ODVA (`P`).
 //!
 //! Assumptions (`U`: not documented): Attribute 5 can be set only while attribute 3 selects stored addresses, and takes
 //! effect immediately. The virtual device remains reachable at its old address.
@@ -11,7 +11,7 @@ use crate::buses::ethernet_ip::protocol::{
 };
 use crate::devices::hiperdrive::protocol::AddressSwitch;
 
-/// Address source and address of the virtual device.
+/// Address source and addresses of the virtual device.
 #[derive(Debug)]
 pub(super) struct Network {
     switch: u8,
@@ -29,15 +29,15 @@ const NONE: InterfaceConfiguration = InterfaceConfiguration {
     domain: String::new(),
 };
 const NETWORK: Ipv4Addr = Ipv4Addr::new(255, 255, 255, 0);
-/// Address assigned by a virtual DHCP or BOOTP server.
+/// Address that a virtual DHCP or BOOTP server assigns.
 const ASSIGNED_ADDRESS: Ipv4Addr = Ipv4Addr::new(192, 168, 1, 200);
-/// Value of attribute 1 of the TCP/IP object, which means that an address was obtained. The value of attribute 2 below
-/// means BOOTP, DHCP and settable.
+/// Value of attribute 1 of the TCP/IP object: an address has been obtained. The next constant is the value of attribute
+/// 2: BOOTP and DHCP are supported, and the attributes can be set.
 const CONFIGURED: u32 = 1;
 const CAPABILITY: u32 = 0x15;
 const ETHERNET_LINK: u16 = 0xF6;
 const MEGABITS: u32 = 100;
-/// Value of attribute 2 of the Ethernet link object for an active, full-duplex link.
+/// Value of attribute 2 of the Ethernet link object: the link is active and full duplex.
 const LINK_UP: u32 = 0x03;
 
 impl Network {
@@ -68,7 +68,7 @@ impl Network {
         };
     }
 
-    /// Restores the factory settings. The current address is kept until the next power cycle.
+    /// Restores the factory settings. The device keeps its current address until the next power cycle.
     pub(super) fn restore_factory(&mut self) {
         (self.control, self.stored) = (dhcp_control(), NONE);
     }

@@ -1,4 +1,4 @@
-//! The CIP objects: identity, parameters (reference, section 7), and network objects.
+//! The CIP objects of the target: identity, parameters (reference, section 7), and network.
 
 use super::device::TargetDevice;
 use crate::buses::ethernet_ip::protocol::{
@@ -7,19 +7,19 @@ use crate::buses::ethernet_ip::protocol::{
 };
 use crate::devices::hiperdrive::protocol::{ParameterAccess, ParameterNumber, ParameterRow, VENDOR, Value};
 
-/// Device type of a communications adapter, from ODVA's list.
+/// Device type assigned by ODVA to communications adapters.
 const DEVICE_TYPE: u16 = 0x0C;
-/// Product code of the virtual device. The value is assumed (`U`).
+/// Product code of the virtual device. The real code is unknown (`U`).
 const PRODUCT_CODE: u16 = 1;
 const REVISION: Revision = Revision { major: 1, minor: 2 };
-/// Status word of the identity object without a cyclic connection. Bits 7 to 4 give the state of the connection, and
-/// bit 0 means that it has an owner.
+/// Status word of the identity object without a cyclic connection. Bits 7 to 4 show the state of the connection, and
+/// bit 0 shows whether it has an owner.
 const NOT_CONNECTED: u16 = 0x0030;
 const CONNECTED: u16 = 0x0061;
 const ETHERNET_LINK: u16 = 0xF6;
-/// CIP class of the device parameters. The class of the parameters of drive n is n higher.
+/// CIP class of the device parameters. The class for drive n is n higher.
 const PARAMETERS: u16 = 0x64;
-/// Status for an attribute that can only be set.
+/// CIP status for an attribute that can be set but not read.
 const NOT_GETTABLE: GeneralStatus = GeneralStatus::new(0x2C);
 
 type ServiceResult = Result<Vec<u8>, GeneralStatus>;
@@ -118,7 +118,7 @@ impl TargetDevice {
     }
 }
 
-/// Returns class and attribute of a path that refers to the only instance of an object.
+/// Returns the class and attribute in a path, which must refer to the only instance of an object.
 pub(super) fn class_and_attribute(path: &EPath) -> Result<(u16, Option<u16>), GeneralStatus> {
     let understood = |segment: &Segment| match segment {
         Segment::Logical { kind, .. } => *kind != LogicalKind::ConnectionPoint,
@@ -139,7 +139,7 @@ pub(super) const fn status_of(error: PacketError) -> GeneralStatus {
     }
 }
 
-/// Reads an object that cannot be set.
+/// Reads an attribute, or all attributes, of a read-only object.
 fn read(
     request: &Request,
     attribute: Option<u16>,

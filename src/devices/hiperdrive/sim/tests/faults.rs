@@ -1,15 +1,14 @@
-//! Tests of faults: how they appear, and how they are cleared (reference, sections 3, 4 and 7).
+//! Tests of how faults appear and how they are cleared (reference, sections 3, 4 and 7).
 
 use super::*;
 use crate::devices::hiperdrive::protocol::{ACKNOWLEDGE, State, UNLOCK};
 
-/// Returns whether an operational drive reports a fault. The status word is 2AB8, ignoring bits 10 and 12.
+/// Returns whether an operational drive reports a fault. Its status word is then 2AB8, apart from bits 10 and 12.
 fn is_fault(bench: &mut Bench) -> bool {
     bench.actual(FIRST).status.to_u16() & 0x2AFF == 0x2AB8
 }
 
-/// Clears a fault with the sequence of control words from the reference. Each step is complete before the next word is
-/// sent.
+/// Clears a fault with the control words from the reference. Each step must be complete before the next word is sent.
 fn acknowledge(bench: &mut Bench) {
     for step in ACKNOWLEDGE {
         bench.word(step.word.to_u16());
@@ -59,8 +58,8 @@ fn insufficient_torque_causes_a_following_error() {
     assert_eq!(bench.position(), 65_536);
 }
 
-/// With an ambient temperature of 50 °C and 40 K of self-heating at full torque, the drive exceeds 80 °C after 60 s ·
-/// ln 4 = 83 s of motion.
+/// At an ambient temperature of 50 °C and with 40 K of self-heating at full torque, the drive exceeds 80 °C after 60 s
+/// · ln 4 = 83 s of motion.
 #[test]
 fn a_hot_drive_faults() {
     let hot = SpindleLoad { ambient: 50.0, ..SpindleLoad::default() };
@@ -76,7 +75,7 @@ fn a_hot_drive_faults() {
     assert_eq!(bench.error(), ErrorCode::OVER_TEMPERATURE);
 }
 
-/// A target beyond the limits causes a fault, and the newest error is stored first (reference, section 9).
+/// A target beyond the limits causes a fault, whose error becomes the newest one (reference, section 9).
 #[test]
 fn a_target_beyond_the_limits_is_a_fault() {
     let mut bench = Bench::single();
@@ -98,7 +97,7 @@ fn a_target_beyond_the_limits_is_a_fault() {
     assert_eq!(bench.read(115), Value::Number(0x8502));
 }
 
-/// Below the operational state, an error is only a warning, which is cleared by 197 = 0.
+/// Below the operational state, an error causes only a warning, which 197 = 0 clears.
 #[test]
 fn a_drive_that_is_switched_off_warns() {
     let mut bench = Bench::single();
@@ -109,7 +108,8 @@ fn a_drive_that_is_switched_off_warns() {
     assert_eq!(bench.actual(FIRST).status.to_u16(), 0x2A30);
 }
 
-/// If bit 0 was cleared before the acknowledgement, the lock needs another falling edge (reference, section 3).
+/// If bit 0 was cleared before the acknowledgement, releasing the lock takes another falling edge (reference, section
+/// 3).
 #[test]
 fn releasing_the_lock_needs_an_edge() {
     let mut bench = Bench::single();
@@ -121,8 +121,8 @@ fn releasing_the_lock_needs_an_edge() {
     assert_eq!(bench.words(&UNLOCK.map(|step| step.word.to_u16())), 0x2A31);
 }
 
-/// The master is lost after 40 ms without a packet. Braking takes 100 ms, regardless of how often the state is read
-/// (reference, sections 3 and 7).
+/// The master is considered lost after 40 ms without a packet. Braking takes 100 ms, no matter how often the state is
+/// read (reference, sections 3 and 7).
 #[test]
 fn a_lost_master_stops_all_drives() {
     for looks in [&[][..], &[10, 39, 40, 41, 200]] {
@@ -152,7 +152,7 @@ fn a_lost_master_stops_all_drives() {
     }
 }
 
-/// An idle master stops the drive but is not lost. A master that closes the connection is lost.
+/// An idle master stops the drive but is not considered lost. A master that closes the connection is.
 #[test]
 fn an_idle_master_stops_the_drive_and_a_closed_one_is_lost() {
     let mut bench = Bench::single();

@@ -1,4 +1,4 @@
-//! Tests of the virtual drives against the reference: control words of a host and their replies, in virtual time.
+//! Tests of the virtual drives against the reference, in virtual time: control words and the replies to them.
 
 mod faults;
 mod motion;
@@ -35,7 +35,7 @@ impl Bench {
         Bench::new(StationConfig::default())
     }
 
-    /// Creates a test set-up with a four-port hub and drives on the first two ports.
+    /// Creates a four-port hub with drives on the first two ports.
     fn hub() -> Self {
         let drive = Some((Variant::new(13), SpindleLoad::default()));
         Bench::new(StationConfig { topology: Topology::Hub4, drives: vec![drive, drive], serial_number: 1 })
@@ -82,7 +82,7 @@ impl Bench {
         self.actual(FIRST).position
     }
 
-    /// Runs cycles until the first drive reports a status, and returns the time taken.
+    /// Runs cycles until the first drive reports this status, and returns the time taken.
     fn until(&mut self, status: u16) -> u64 {
         for ms in (0..120_000).step_by(10) {
             if self.actual(FIRST).status.to_u16() == status {

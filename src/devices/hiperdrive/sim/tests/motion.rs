@@ -1,12 +1,12 @@
-//! Tests of the start and end of jobs, runs and steps (reference, section 3).
+//! Tests of how jobs, runs and steps start and end (reference, section 3).
 
 use proptest::prelude::*;
 
 use super::*;
 use crate::devices::hiperdrive::protocol::State;
 
-/// The start sequence and its status words match sections 3 and 9 of the reference. 2.5 turns at 35 rpm, with 0.1 s
-/// each for acceleration and braking (0.0583 turns together), take 0.2 + (2.5 − 0.0583) / 0.58333 s = 4.386 s.
+/// The start sequence and its status words match sections 3 and 9 of the reference. At 35 rpm, acceleration and braking
+/// take 0.1 s each and together cover 0.0583 turns, so 2.5 turns take 0.2 + (2.5 − 0.0583) / 0.58333 s = 4.386 s.
 #[test]
 fn published_start_sequence_works() {
     let mut bench = Bench::single();
@@ -30,7 +30,8 @@ fn published_start_sequence_works() {
     assert_eq!(bench.word(0x0000), 0x2A30);
 }
 
-/// With an unchanged word, the state machine advances step by step. A word with reserved bits has no effect.
+/// While the word stays the same, the drive passes through one state after another. A word with reserved bits has no
+/// effect.
 #[test]
 fn a_control_word_advances_as_far_as_possible() {
     let mut bench = Bench::single();
@@ -39,8 +40,7 @@ fn a_control_word_advances_as_far_as_possible() {
     assert_eq!(bench.word(0x0400), 0x2A31);
 }
 
-/// A stop ends and discards a job within a tenth of a second, whereas a pause keeps it. The drive moves at the
-/// requested speed.
+/// A stop discards a job within a tenth of a second, whereas a pause keeps it. The drive moves at the requested speed.
 #[test]
 fn jobs_are_stopped_and_paused() {
     let mut bench = Bench::single();
@@ -96,8 +96,8 @@ fn a_start_needs_speed_and_torque() {
     }
 }
 
-/// A run ends at the end of the range unless it is endless. Clearing bit 12 afterwards starts a job to a stale target,
-/// which 0400 prevents (reference, section 3).
+/// A run ends at the end of the range unless it is endless. Clearing bit 12 afterwards would start a job to a stale
+/// target, which the word 0400 prevents (reference, section 3).
 #[test]
 fn leaving_speed_mode_directly_starts_a_stale_job() {
     let mut bench = Bench::single();
@@ -130,7 +130,7 @@ fn leaving_speed_mode_directly_starts_a_stale_job() {
     assert!(actual.position > 65_536 && actual.status.to_u16() & 0x8000 != 0, "{actual:?}");
 }
 
-/// A jog step of 4096 steps, which is 1/16 turn, is not stopped by bit 4 (reference, sections 3 and 5).
+/// Bit 4 does not stop a jog step of 4096 steps, which is 1/16 turn (reference, sections 3 and 5).
 #[test]
 fn a_jog_step_runs_to_completion() {
     let mut bench = Bench::single();
@@ -149,7 +149,7 @@ fn a_jog_step_runs_to_completion() {
     assert_eq!(bench.actual(FIRST).speed, 35);
 }
 
-/// Initially, the drives of a hub are not requested. Only a requested drive moves (reference, section 4).
+/// The drives of a hub are not requested initially. Only a requested drive can move (reference, section 4).
 #[test]
 fn a_hub_moves_only_requested_drives() {
     let mut bench = Bench::hub();
@@ -175,7 +175,7 @@ fn a_hub_moves_only_requested_drives() {
     assert_eq!(bench.actual(1).position, 65_536);
 }
 
-/// The motion does not depend on how often the state is read.
+/// How often the state is read has no effect on the motion.
 #[test]
 fn motion_is_independent_of_the_polling_interval() {
     let run = |portions: &[u64]| {
@@ -198,7 +198,7 @@ fn motion_is_independent_of_the_polling_interval() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Arbitrary input causes no panic, and no motion beyond the range except in endless runs.
+    /// Arbitrary input causes no panic, and no motion beyond the range except in an endless run.
     #[test]
     fn arbitrary_commands_stay_within_limits(
         sent in prop::collection::vec((any::<u16>(), 0u8..=120, 0u8..=120, -200_000i32..200_000, 1u64..400), 1..60)

@@ -1,5 +1,4 @@
-//! Tests of parameters: allowed values, stored values, and the parameter words in the process data (reference, sections
-//! 4 to 6).
+//! Tests of allowed and stored values, and of the parameter words in the process data (reference, sections 4 to 6).
 
 use super::super::ParameterError;
 use super::*;
@@ -10,7 +9,7 @@ fn value(number: i64) -> Value {
     Value::Number(number)
 }
 
-/// Every parameter in the table can be read from a drive or from the device, and the value has the correct type.
+/// Every parameter in the table can be read, and its value has the correct type.
 #[test]
 fn every_parameter_can_be_read() {
     let mut bench = Bench::hub();
@@ -57,8 +56,8 @@ fn limits_must_contain_the_position() {
     assert_eq!((bench.write(160, 1), bench.read(158), bench.read(160)), (Ok(()), value(0), value(1)));
 }
 
-/// Limits are within ±512 turns of an HDA30 or ±16000 turns of an HDA70, in scaled steps. A step of the keys on the
-/// drive is no longer than the travel (issue 21.10).
+/// Limits must be within ±512 turns of an HDA30 or ±16000 turns of an HDA70, in scaled steps. A jog step of the keys on
+/// the drive must not exceed the travel (issue 21.10).
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_refused() {
     let mut bench = Bench::single();
@@ -78,8 +77,8 @@ fn limits_beyond_the_turns_of_the_drive_are_refused() {
     assert_eq!((hub.write(260, 1_048_576_001), hub.write(260, 1_048_575_999)), (Err(ParameterError::Value), Ok(())));
 }
 
-/// A position is rounded to the nearest multiple of 64. It must be within the limits, and can be set only at standstill
-/// (reference, section 5).
+/// A set position is rounded to the nearest multiple of 64. It must be within the limits and can be set only at
+/// standstill (reference, section 5).
 #[test]
 fn the_position_can_be_set() {
     let mut bench = Bench::single();
@@ -96,7 +95,7 @@ fn the_position_can_be_set() {
     assert_eq!(bench.position(), 229_376);
 }
 
-/// A scale of 400 steps per turn changes the position, but not the numbers of the limits (reference, sections 3 and 5).
+/// A scale of 400 steps per turn changes the position but not the numeric limits (reference, sections 3 and 5).
 #[test]
 fn scaling_keeps_the_numeric_limits() {
     let mut bench = Bench::single();
@@ -115,7 +114,7 @@ fn scaling_keeps_the_numeric_limits() {
     assert_eq!(bench.actual(FIRST).speed, 3500);
 }
 
-/// Parameter 47 saves, recalls and resets. Values that are never saved are lost with the supply (reference, section 4).
+/// Parameter 47 saves, recalls and resets. Values that are never saved are lost at power-off (reference, section 4).
 #[test]
 fn saved_parameters_survive_a_power_cycle() {
     let mut bench = Bench::single();
@@ -142,9 +141,9 @@ fn saved_parameters_survive_a_power_cycle() {
     assert_eq!(bench.write(47, 2), Err(ParameterError::Value));
 }
 
-/// The values −1 and −2 of parameter 47 only affect the parameters that the adapter or hub itself stores (manual, 47):
-/// its registers, the requests of drives (152), and their baud rates (190). Scale, limits and reference of a drive are
-/// unchanged (issue 21.6 d).
+/// Values −1 and −2 of parameter 47 affect only parameters that the adapter or hub itself stores (manual, 47): its
+/// registers and, for each drive, the request (152) and the baud rate (190). Scale, limits and reference of a drive
+/// stay unchanged (issue 21.6 d).
 #[test]
 fn the_device_recalls_only_its_own_parameters() {
     let own = [24, 152, 190];
@@ -169,8 +168,8 @@ fn the_device_recalls_only_its_own_parameters() {
     }
 }
 
-/// A reset does not affect a position that was set, whether saved or not. The factory state restores the position of
-/// the shaft, between 0 and 1 turn (manual, 198; issue 21.6 d).
+/// A reset does not affect the set position, saved or not. The factory settings restore the position of the shaft,
+/// which is between 0 and 1 turn (manual, 198; issue 21.6 d).
 #[test]
 fn a_set_position_survives_a_reset() {
     let mut bench = Bench::single();
@@ -190,7 +189,7 @@ fn a_set_position_survives_a_reset() {
     assert_eq!((bench.read(198), bench.position()), (value(0), 16_384));
 }
 
-/// After 47 = −4, the drives restart within 2 s with unchanged positions.
+/// After 47 = −4, the drives restart within 2 s, with their positions unchanged.
 #[test]
 fn drives_can_be_reset() {
     let mut bench = Bench::single();
@@ -204,8 +203,8 @@ fn drives_can_be_reset() {
     assert_eq!((bench.read(47), bench.position()), (value(0), 65_536));
 }
 
-/// A request is repeated until its answer has arrived, and the answer remains as long as the request (reference,
-/// sections 6 and 9).
+/// A request is repeated until its answer arrives, and the answer stays for as long as the request (reference, sections
+/// 6 and 9).
 #[test]
 fn parameter_words_are_answered() {
     let mut bench = Bench::hub();

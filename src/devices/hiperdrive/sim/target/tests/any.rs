@@ -1,4 +1,4 @@
-//! Property tests with arbitrary input: nothing panics, and the target still replies.
+//! Property tests with arbitrary input. Nothing panics, and the target continues to reply.
 
 use proptest::prelude::*;
 
@@ -12,7 +12,7 @@ fn answers(host: &mut Host) {
     host.is_asking("0E 03 20 64 24 01 30 11", "8E 00 00 00 67 12");
 }
 
-/// Generates the frames of the reference with random changes.
+/// Generates frames from the reference with random changes.
 fn corrupt_frame() -> impl Strategy<Value = Vec<u8>> {
     let messages = [OPEN, CLOSE, "0E 03 20 65 24 01 30 6B", "10 03 20 64 24 01 30 2F 01 00", "01 02 20 01 24 01"];
     let message = proptest::sample::select(messages.to_vec()).prop_map(|text| unconnected(&bytes(text)));
@@ -53,7 +53,7 @@ proptest! {
         answers(&mut host);
     }
 
-    /// Every datagram is counted exactly once.
+    /// Any datagram is counted exactly once.
     #[test]
     fn the_target_survives_any_datagram(
         packets in proptest::collection::vec(

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// ForwardOpen, packets in both directions and ForwardClose match section 9 of the reference.
+/// ForwardOpen, the packets in both directions, and ForwardClose match section 9 of the reference.
 #[test]
 fn published_connection_matches() {
     let mut host = Host::new("position=163840");
@@ -41,7 +41,7 @@ fn published_connection_matches() {
     assert_eq!(host.datagrams(), []);
 }
 
-/// Returns the published request with some bytes replaced.
+/// Returns the ForwardOpen request from the reference with some bytes replaced.
 fn open_with(changes: &[(&str, &str)]) -> String {
     changes.iter().fold(OPEN.to_owned(), |text, (from, to)| {
         assert_eq!(text.matches(from).count(), 1, "{from}");
@@ -118,7 +118,7 @@ fn a_second_master_is_refused() {
     assert_eq!(second.open(&other), OPENED.replace("34 12 CD AB", "34 12 CE AB").replace("01 00 02 00", "02 00 02 00"));
 }
 
-/// Packets are sent to the address given by the originator.
+/// Packets are sent to the address that the originator has requested.
 #[test]
 fn cyclic_data_go_to_the_requested_address() {
     for (socket, expected) in [
@@ -166,7 +166,7 @@ fn only_packets_in_sequence_count() {
     assert_eq!(host.status(), Some(0x2A33));
 }
 
-/// Packets with an idle header act like control words of 0.
+/// Packets with an idle header have the same effect as control words of 0.
 #[test]
 fn idle_data_act_as_zero_control_words() {
     let mut host = Host::opened("");
@@ -177,8 +177,8 @@ fn idle_data_act_as_zero_control_words() {
     assert_eq!(host.status(), Some(0x2A30));
 }
 
-/// The master is lost after 4 · 2 intervals (reference, section 7). The drive stops with a fault, which the next
-/// connection still reports.
+/// The master is considered lost after 4 · 2 intervals (reference, section 7). The drive stops with a fault, which is
+/// still present in the next connection.
 #[test]
 fn a_silent_master_is_lost_after_its_timeout() {
     let mut host = Host::opened("");
@@ -200,7 +200,7 @@ fn a_silent_master_is_lost_after_its_timeout() {
     assert_eq!(host.open(OPEN), OPENED.replace("01 00 02 00 01", "02 00 02 00 01"));
 }
 
-/// Closing a TCP connection ends its session. The cyclic connection ends later by its own time-out.
+/// Closing a TCP connection ends its session. The cyclic connection continues until its own time-out.
 #[test]
 fn a_cyclic_connection_outlives_its_tcp_connection() {
     let mut host = Host::opened("");
@@ -215,7 +215,7 @@ fn a_cyclic_connection_outlives_its_tcp_connection() {
     host.is_asking(CLOSE, "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00");
 }
 
-/// 2.5 turns with the high byte of every number first (reference, section 2).
+/// A position of 2.5 turns is transmitted with the high byte first (reference, section 2).
 #[test]
 fn the_byte_order_is_the_requested_one() {
     let mut host = Host::opened("order=big&position=163840");
@@ -225,7 +225,7 @@ fn the_byte_order_is_the_requested_one() {
     assert!(packet.ends_with("2A 31 00 00 00 02 80 00 00 00 00 00 00 00 00 00"), "{packet}");
 }
 
-/// The reading of parameter 166 matches section 9 of the reference.
+/// A read of parameter 166 matches section 9 of the reference.
 #[test]
 fn parameter_words_are_answered_with_process_data() {
     let mut host = Host::opened("");

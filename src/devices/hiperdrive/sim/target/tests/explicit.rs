@@ -49,8 +49,8 @@ fn published_requests_match() {
     host.is_asking("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
 }
 
-/// According to the manual, a reset of drives is answered on completion. Other requests are answered without delay in
-/// the meantime (issue 21.8).
+/// According to the manual, the reply to a reset of the drives is sent when the reset is complete. Meanwhile, other
+/// requests are answered without delay (issue 21.8).
 #[test]
 fn a_reset_is_answered_on_completion() {
     for (query, ms) in [("", 1000), ("reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
@@ -105,7 +105,7 @@ fn impossible_requests_are_refused_with_a_status() {
     }
 }
 
-/// The class of drive n is n above the class of the device (reference, section 7).
+/// The class of drive n is n higher than the class of the device (reference, section 7).
 #[test]
 fn drives_of_a_hub_have_consecutive_classes() {
     let mut host = Host::new("hub=8&drives=1,0,1,1,1,1,1,1&position=65536&variant=HDA70&requested=1");
@@ -126,8 +126,8 @@ fn drives_of_a_hub_have_consecutive_classes() {
     four.is_asking("0E 03 20 64 24 01 30 0D", "8E 00 00 00 10 48 49 50 45 52 44 52 49 56 45 20 48 55 42 2D 34");
 }
 
-/// Identity, composed by hand: vendor 03F2, type 000C, code 1, revision 1.2, status, serial number 4711 = 1267h, and
-/// the 17 characters of "HIPERDRIVE SINGLE".
+/// Identity object, composed by hand: vendor 03F2, type 000C, code 1, revision 1.2, status, serial number 4711 = 1267h,
+/// and the 17 characters of "HIPERDRIVE SINGLE".
 const IDENTITY: &str =
     "F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 11 48 49 50 45 52 44 52 49 56 45 20 53 49 4E 47 4C 45";
 
@@ -185,7 +185,7 @@ fn other_commands_get_a_status_or_no_reply() {
     host.is_asking("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 00 00 00");
 }
 
-/// According to ODVA, attribute 5 can only be set while attribute 3 selects stored addresses.
+/// According to ODVA, attribute 5 can be set only while attribute 3 selects the stored address.
 #[test]
 fn network_settings_can_be_written() {
     let mut host = Host::new("switch=17");
@@ -208,7 +208,7 @@ fn network_settings_can_be_written() {
     host.is_asking("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
 }
 
-/// Unconnected_Send and class 3 connections, which controllers use, are supported.
+/// Controllers use Unconnected_Send and class 3 connections, so these are supported.
 #[test]
 fn wrapped_and_connected_messages_are_answered() {
     let mut host = Host::new("position=163840");

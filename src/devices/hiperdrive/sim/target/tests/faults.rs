@@ -39,8 +39,8 @@ fn saved_values_are_kept_and_unsaved_ones_lost() {
     assert_eq!(host.target.with_station(|station| station.save_count()), 2);
 }
 
-/// After a loss of supply during a save, only the first half of the values in numerical order is saved: 152, but not
-/// 186.
+/// If the supply fails during a save, only the first half of the values is saved, in the order of their numbers: 152,
+/// but not 186.
 #[test]
 fn power_can_fail_during_a_save() {
     let mut host = Host::new("fault=die-in-store:2");
@@ -69,7 +69,7 @@ fn power_can_fail_during_a_save() {
     host.is_asking(GET_107, "8E 00 00 00 00 00 00 00");
 }
 
-/// After the given number of frames and packets, the target neither replies nor receives, and its drives lose their
+/// After the given number of frames and packets, the target no longer receives or replies, and its drives lose their
 /// master.
 #[test]
 fn a_silent_target_also_ignores_requests() {
@@ -113,8 +113,7 @@ fn replies_and_packets_can_be_lost_or_damaged() {
     }
 }
 
-/// A connection survives the loss of a fifth of the packets in both directions, because it only ends after eight lost
-/// packets in a row.
+/// A connection survives the loss of a fifth of all packets, because it ends only after eight lost packets in a row.
 #[test]
 fn a_lossy_line_does_not_lose_the_master() {
     let mut host = Host::opened("seed=3");

@@ -1,4 +1,5 @@
-//! Tests of the target with packets of the reference and packets composed by hand. Input and expected output are bytes.
+//! Tests of the target with packets from the reference and packets composed by hand. Inputs and expected outputs are
+//! bytes.
 
 mod any;
 mod connections;
@@ -25,7 +26,7 @@ struct Host {
 const PEER: Ipv4Addr = Ipv4Addr::new(10, 0, 0, 7);
 const FROM: SocketAddrV4 = SocketAddrV4::new(PEER, 40000);
 const REGISTER: &str = "65 00 04 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 01 00 00 00";
-/// ForwardOpen of the reference, section 9: 10 ms, with parameter words.
+/// ForwardOpen from the reference (section 9), with an interval of 10 ms and parameter words.
 const OPEN: &str = "54 02 20 06 24 01 03 FA 00 00 00 00 01 00 01 00 01 00 34 12 CD AB 00 00 01 00 00 00 10 27 00 00 16 48 \
                     10 27 00 00 12 48 01 04 20 04 24 68 2C 64 2C 65";
 const OPENED: &str = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 10 27 00 00 10 27 00 00 00 00";
@@ -39,7 +40,7 @@ fn config(query: &str) -> Config {
     Config::from_pairs(&query_pairs(query)).unwrap()
 }
 
-/// Builds a frame with a status, context and options of 0.
+/// Builds a frame in which status, context and options are 0.
 fn frame(command: u16, session: u32, data: &[u8]) -> Vec<u8> {
     let length = u16::try_from(data.len()).unwrap();
     [&command.to_le_bytes()[..], &length.to_le_bytes(), &session.to_le_bytes(), &[0; 16], data].concat()
@@ -73,7 +74,7 @@ impl Host {
         self.now = self.now + Duration::from_millis(ms);
     }
 
-    /// Sends bytes and returns the bytes received within 5 ms.
+    /// Sends bytes, waits 5 ms, and returns the bytes received.
     fn bytes(&mut self, bytes: &[u8]) -> Vec<u8> {
         self.target.on_bytes(self.now, bytes);
         self.wait(5);
@@ -87,7 +88,7 @@ impl Host {
         Some((u32::from_le_bytes(status), reply[24..].to_vec()))
     }
 
-    /// Sends a CIP request and returns the items of the reply, starting with the CIP message.
+    /// Sends a CIP request and returns the items of the reply, from the CIP message onwards.
     fn items(&mut self, request: &str) -> String {
         let (status, data) = self.frame(0x6F, &unconnected(&bytes(request))).expect("no reply");
         assert_eq!(status, 0, "{request}");
@@ -132,14 +133,14 @@ impl Host {
         self.target.on_datagram(self.now, FROM, &packet.concat());
     }
 
-    /// Sends a control word with the data of the reference for the drive of an adapter: full speed and torque, 2.5
-    /// turns.
+    /// Sends a control word to the drive of an adapter, with the data from the reference: full speed and torque, and a
+    /// target of 2.5 turns.
     fn word(&mut self, sequence: u32, control: u16) {
         let [low, high] = control.to_le_bytes();
         self.packet(sequence, 1, &[low, high, 100, 100, 0, 0x80, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
     }
 
-    /// Sends each word in three packets and returns the next sequence number.
+    /// Sends each control word in three packets and returns the next sequence number.
     fn words(&mut self, mut sequence: u32, words: &[u16]) -> u32 {
         for word in words {
             for _ in 0..3 {
@@ -157,7 +158,7 @@ impl Host {
         came.into_iter().map(|(to, packet)| (to, hex(&packet))).collect()
     }
 
-    /// Returns the status word of the newest packet.
+    /// Returns the status word in the newest packet.
     fn status(&mut self) -> Option<u16> {
         let (_, packet) = self.datagrams().pop()?;
         let packet = bytes(&packet);
