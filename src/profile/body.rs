@@ -37,8 +37,8 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
         vec![item.clone()]
     }
 
-    /// Removes from a write's backup all values that the write did not change. By default, nothing is removed, for kinds
-    /// whose backups contain little more than the written values.
+    /// Removes from a write's backup all values that the write did not change. By default, nothing is removed, because
+    /// most kinds back up little more than the written values.
     fn keep_items(&mut self, _items: &[ChangedItem]) {}
 
     /// Returns what the user must do about a written item that cannot be restored from this backup.
