@@ -97,7 +97,7 @@ pub(crate) fn differing_ranges(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
     runs(left, right).into_iter().filter(|(differs, _)| *differs).map(|(_, run)| run).collect()
 }
 
-/// Splits the bytes into ranges that are equal or different throughout, and returns which.
+/// Splits the bytes into ranges in which all are equal or all differ. The flag is set for ranges that differ.
 fn runs(left: &[u8], right: &[u8]) -> Vec<(bool, Range<usize>)> {
     let mut runs: Vec<(bool, Range<usize>)> = Vec::new();
     for (at, (left, right)) in left.iter().zip(right).enumerate() {

@@ -1,4 +1,4 @@
-//! Finds where an entry is in the source of a profile, since the parsed values do not tell.
+//! Finds the line and column of a profile entry in the source text, because the parsed values do not contain them.
 
 use std::fmt;
 

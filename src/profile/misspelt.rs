@@ -49,7 +49,7 @@ impl Reading {
         self.beyond.borrow().clone()
     }
 
-    /// Records a misspelt name, unless a structure further inside has already recorded one.
+    /// Records a misspelt name, unless an inner structure has already recorded one.
     pub(super) fn record_misspelling(&self, slip: Misspelling) {
         self.slip.borrow_mut().get_or_insert(slip);
     }

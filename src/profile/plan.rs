@@ -17,7 +17,7 @@ pub trait Operation {
     fn write_cycles(&self) -> u64;
 }
 
-/// The identifier of a plan. A consent refers to it.
+/// The identifier by which a consent refers to a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanId(u64);
 

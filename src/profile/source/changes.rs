@@ -103,7 +103,7 @@ fn named_step(text: &str, element: &SourceNode) -> Option<PathStep> {
     matches!(element.kind, Kind::Entries(_)).then(|| NAMES.into_iter().find_map(entry)).flatten()
 }
 
-/// Normalises the notation of a value, so that `0x10` and `16`, for example, become the same text.
+/// Normalises the notation of a value. For example, `0x10` and `16` become the same text.
 fn normalize_value(value: &str) -> String {
     ron::from_str::<Value>(value).ok().and_then(|value| ron::to_string(&value).ok()).unwrap_or_else(|| value.to_owned())
 }

@@ -1,4 +1,4 @@
-//! Explains process data words in text.
+//! Explains process data words as text.
 
 use serde_json::{Value as Json, json};
 
@@ -75,7 +75,7 @@ pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<Wo
     }
 }
 
-/// Returns what an OUT word would mean in another mode, if it must not be sent in the known one.
+/// Returns what an OUT word would mean in another mode, if it must not be sent in the known mode.
 pub(super) fn meanings_in_other_modes(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let refused = known.mode.and_then(|mode| Command::in_mode(word, mode).err());
     refused

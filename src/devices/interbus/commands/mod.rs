@@ -124,7 +124,7 @@ enum DisturbanceLevel {
 
 impl DisturbanceLevel {
     /// Prints the effect of a command before it begins. A command that switches live outputs must be confirmed on the
-    /// terminal, except for a virtual encoder, an approved write, or if there is no terminal.
+    /// terminal. No confirmation is needed for a virtual encoder, for an approved write, or without a terminal.
     fn confirm_start(self, common: &CommonArgs, output: &Output, consent: Option<&ConsentArgs>) -> Result<()> {
         self.print_effect(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == LinkScheme::Sim);

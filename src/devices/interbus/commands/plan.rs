@@ -61,7 +61,7 @@ pub(super) fn commit_plan(
     if let (Some(WearAfterPlan::Ask(_) | WearAfterPlan::Worn(_) | WearAfterPlan::Unknown), Some(wear_text)) =
         (wear, &wear_text)
     {
-        // Stores above the manufacturer's limit require a second confirmation.
+        // Exceeding the manufacturer's limit requires a second confirmation.
         texts.push(wear_text);
     }
     let agreed = confirm_plan(runner, output, consent, prepared, &texts)?;

@@ -14,8 +14,8 @@ use crate::devices::interbus::protocol::{
 };
 use crate::store::{DeviceKey, EntryKind};
 
-/// Number of EEPROM write cycles at which the user is first warned of wear. The EEPROM is designed for about 200 cycles
-/// and for at most 500 (reference 3).
+/// Number of EEPROM write cycles at which the user is first warned of wear. The EEPROM is designed for about 200
+/// cycles, and 500 at most (reference 3).
 pub const WEAR_WARNING: u64 = 150;
 /// Number of EEPROM write cycles above which the user has to confirm a second time.
 pub const WEAR_CONFIRMATION: u64 = NOMINAL_STORES as u64;
@@ -272,7 +272,7 @@ mod tests {
         };
         let cases = [
             (Some(0), 1, None),
-            // The number of earlier stores is unknown (issue 22.4).
+            // The number of earlier EEPROM write cycles is unknown (issue 22.4).
             (None, 1, Some(WearAfterPlan::Unknown)),
             (None, 0, None),
             (Some(148), 1, None),

@@ -44,7 +44,7 @@ impl WriteJournal {
     }
 
     fn record_intent(&self, serial_number: &str, stores: u64) -> Result<(Logbook, EntryId), LogbookError> {
-        // The connection precedes what happens in it.
+        // The connection is logged before anything that happens during it.
         self.log.record_identity(&self.store, &self.device_key(serial_number));
         let mut logbook = Logbook::open(&self.store.logbook_path())?;
         let items = vec![ChangedItem::new(PROGRAM_READ_NOTE, None, None)];

@@ -1,4 +1,4 @@
-//! An INTERBUS encoder behind a gateway as a session device, and its jobs.
+//! An INTERBUS encoder behind a gateway, for use in a session, and its jobs.
 
 mod commit;
 mod job;

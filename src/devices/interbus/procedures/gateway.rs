@@ -75,7 +75,8 @@ impl<'a> Gateway<'a> {
         (gateway, known)
     }
 
-    /// Sends a request and returns the registers in its reply. Errors that may be temporary cause a repetition.
+    /// Sends a request and returns the registers in its reply. The request is repeated after errors that may be
+    /// temporary.
     fn send_request(&mut self, requested: RequestedItem) -> Result<Vec<u16>, Error> {
         let mut tries = 0;
         loop {

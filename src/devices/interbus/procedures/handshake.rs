@@ -57,7 +57,7 @@ impl WordReply {
 pub struct LeftState {
     /// Last OUT word, which the gateway keeps until another word is written.
     pub out: u32,
-    /// Whether parameters or cams were being set. Until it receives 80000000h, such an encoder sends no position.
+    /// Whether parameters or cams were being set. If so, the encoder sends no position until it receives 80000000h.
     pub parameterising: bool,
     /// Mode before the job, or `None` if it has not been read.
     pub found: Option<StartupMode>,

@@ -272,7 +272,7 @@ pub(super) fn programs(
         read.push((*number, read_program(master)?));
     }
     if selects_first {
-        // Every program contains the shift, so the first one is selected.
+        // The shift can be read in any program, so the first one is selected.
         if let Some(first) = ProgramNumber::new(1) {
             master.switch_to_mode(StartupMode::Cams(first))?;
         }

@@ -49,8 +49,7 @@ pub(super) struct KnownState {
     pub(super) serial_number: Option<u32>,
     pub(super) gear: Option<Gear>,
     pub(super) shift: Option<WindowShift>,
-    /// Mode that the encoder keeps only while an OUT word remains set, with this word. `None` if 00000000h keeps the
-    /// mode.
+    /// A mode that lasts only while this OUT word remains set, or `None` if the mode lasts with 00000000h.
     pub(super) hold: Option<(StartupMode, Command)>,
     pub(super) kept: Option<StartupMode>,
     /// Longest time for which the encoder was seen to be busy with a word in this session.

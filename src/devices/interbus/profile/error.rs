@@ -3,8 +3,8 @@
 use super::{Edge, Item};
 use crate::devices::interbus::protocol::{Flags, GearError, OutOfRange};
 
-/// The encoder types of a profile and of a connected encoder, which differ. They differ if only one counts turns or
-/// only one reports its steps minus one, so that equal numbers mean different things (manual 10.2).
+/// A mismatch between the types of a profile and an encoder: only one of them counts turns, or only one reports its
+/// steps minus one. Equal numbers then mean different things (manual 10.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the profile is for a {} encoder, but this encoder is {}", profile.type_name(), device.type_name())]
 pub struct TypeMismatch {

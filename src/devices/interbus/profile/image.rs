@@ -27,7 +27,7 @@ pub struct Parameters {
     pub revolutions: u32,
     /// Counting direction.
     pub direction: Direction,
-    /// The preset: the position at the shaft angle at which it is executed. It depends on the mounting.
+    /// Preset: the position assigned to the current shaft angle when it is executed. It depends on the mounting.
     pub preset: u32,
     /// Zero shift, which depends on the mounting.
     pub zero_shift: u32,

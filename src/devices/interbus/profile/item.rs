@@ -18,7 +18,7 @@ pub enum Item {
     Direction,
     /// Preset value of the position.
     Preset,
-    /// Zero point shifting.
+    /// Shift of the zero point.
     ZeroShift,
     /// Window shift in cam mode, shared by all programs.
     Shift,
@@ -45,7 +45,7 @@ pub enum ItemValue {
     Cam(Cam),
     /// Temperature in tenths of a degree Celsius.
     TenthsOfDegree(i32),
-    /// Operating time in minutes, in units of ten minutes.
+    /// Operating time in minutes, with a resolution of ten minutes.
     Minutes(u32),
 }
 

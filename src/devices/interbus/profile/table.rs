@@ -71,7 +71,7 @@ pub struct TableEdge {
     pub off: f64,
 }
 
-/// A problem because of which a table entry cannot be read.
+/// A problem that prevents a table entry from being read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}, column {column}: {kind}")]
 pub struct TableProblem {
@@ -180,7 +180,7 @@ pub enum Column {
     Stop,
 }
 
-/// A program imported from a table. All other cams become inactive but keep their edges.
+/// A program imported from a table. Cams that are not in the table become inactive but keep their edges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImportedProgram {
     /// The program.

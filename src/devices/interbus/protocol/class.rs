@@ -55,7 +55,7 @@ pub const fn id_code(class: Class, interface: Interface) -> u8 {
     }
 }
 
-/// Returns the devices with an identification code. Several may share a code, and none has an unknown code.
+/// Returns the devices with an identification code. Several devices may share a code, and an unknown code has none.
 pub fn devices_with_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
     Class::ALL
         .into_iter()

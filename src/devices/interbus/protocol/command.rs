@@ -22,7 +22,7 @@ pub enum Command {
     FrabaPreset,
     /// Sets a parameter.
     Set(Parameter, Value),
-    /// 20400001h and 20400000h: outputs the speed or the position in the IN word.
+    /// 20400001h or 20400000h: outputs the speed or the position in the IN word.
     Velocity(bool),
     /// 2021xxxxh: requests a read-out.
     ReadOut(ReadOutNumber),

@@ -6,7 +6,8 @@ use super::value::Value;
 /// Cam programs, stored as a list of sections with constant outputs. A preview evaluates them at millions of positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompiledPrograms {
-    /// Start positions of the sections in ascending order. `before` holds the outputs in front of the first section.
+    /// Start positions of the sections in ascending order. `before` holds the outputs at positions below the first
+    /// start.
     starts: Vec<u32>,
     /// Outputs in each section, one byte per program, with the first program in the lowest byte.
     outputs: Vec<u64>,

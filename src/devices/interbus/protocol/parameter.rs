@@ -110,7 +110,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the values that are valid with some gear.
+    /// Returns the values that are valid with at least one gear.
     pub const fn range_with_any_gear(self) -> RangeInclusive<u32> {
         match self.row().limit {
             Limit::Fixed(low, high) => low..=high,

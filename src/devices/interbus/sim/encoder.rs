@@ -77,8 +77,8 @@ enum InWordContent {
     Word(u32),
 }
 
-/// The previous IN word, which is still returned for some cycles after the OUT word has changed. A cycle ends with each
-/// reading, and also with time.
+/// The previous IN word, which is still returned for some cycles after the OUT word has changed. Each reading is a
+/// cycle, and cycles also pass with time.
 #[derive(Clone, Copy, Debug, Default)]
 struct PreviousInWord {
     word: u32,

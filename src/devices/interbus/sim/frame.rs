@@ -24,8 +24,7 @@ pub(super) trait Registers {
 
 /// Number of bytes before the unit: transaction number, protocol and length.
 const PREFIX: usize = 6;
-/// Valid values of the length field in the header. It counts the unit, the function code and the data, at most 254
-/// bytes.
+/// Valid values of the length field, which counts the unit, the function code and up to 252 data bytes.
 const LENGTHS: std::ops::RangeInclusive<usize> = 2..=254;
 
 /// Removes the next complete frame from the received bytes, or returns `None` if it is incomplete. Bytes that are not

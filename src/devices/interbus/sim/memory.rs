@@ -1,5 +1,5 @@
 //! The settings of an encoder, and the EEPROM that stores them. The EEPROM is designed for about 200 write cycles, and
-//! for at most 500 (reference 3).
+//! 500 at most (reference 3).
 
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, GUARANTEED_STORES, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,

@@ -38,7 +38,7 @@ pub struct InterbusForm {
     pub rest: Vec<(String, String)>,
 }
 
-/// Link parameter and value for the low word first.
+/// Link parameter and value that put the low word first.
 const LOW_FIRST: (&str, &str) = ("order", "low-first");
 const PORT: &str = "502";
 

@@ -1,4 +1,4 @@
-//! Handles the events of a connection: job results, received words and its loss.
+//! Handles job results, received words and the loss of the connection.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;
@@ -65,7 +65,7 @@ impl Kind for Interbus {
 }
 
 impl Encoder {
-    /// Reads the current word, unless polling already does.
+    /// Reads the current word, unless it is already being polled.
     fn refresh_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {
             self.submit(InterbusJob::Position, services);
@@ -112,7 +112,7 @@ impl SessionEvents for Encoder {
             }
             InterbusOutput::Programs(programs, shift) => {
                 self.staged.refresh_programs(&programs, Some(shift));
-                // The job may have used store cycles.
+                // The job may have used EEPROM write cycles.
                 self.list_backups(services);
                 self.refresh_word(services);
             }

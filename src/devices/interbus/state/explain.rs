@@ -22,7 +22,7 @@ use crate::devices::interbus::procedures::{Error, ExpectedWord, ImplausibleValue
 use crate::devices::interbus::protocol::{ErrorWord, GearError, Reply};
 use crate::link::LinkError;
 
-/// Returns the sentences that explain why a job ended early, one per line.
+/// Returns the lines of text that explain why a job ended early.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder_error_text(error)],

@@ -75,7 +75,7 @@ impl DeviceModel for Encoder {
 
     fn read_device(&mut self, services: &mut Services) {
         if self.try_submit(InterbusJob::Survey, services) {
-            // Reading a program of a real encoder may use a store cycle, so the cams page reads programs only on
+            // Reading a program of a real encoder may use a write cycle, so the cams page reads programs only on
             // request.
             self.read_after = if self.session.is_virtual() { self.known_programs() } else { Vec::new() };
         }

@@ -62,7 +62,7 @@ impl Record {
             }
             _ => self.track.set_watched(&[]),
         }
-        // A position is only treated as missing if the mode transmits it completely.
+        // A missing position is recorded only in a mode that sends complete positions.
         let is_sent = reading.mode != Some(StartupMode::Velocity);
         let position = reading.position();
         if is_sent && (position.is_some() || !reading.is_valid()) {

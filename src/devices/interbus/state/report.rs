@@ -118,7 +118,7 @@ fn program_section(
         .with(Block::Facts(facts.collect()))
 }
 
-/// Returns whether a cam is active or has edges other than the 0 of a new encoder.
+/// Returns whether a cam is active or has an edge other than 0. All edges of a new encoder are 0.
 fn is_used(lane: &Lane) -> bool {
     lane.on || lane.edges.is_some_and(|cam| cam.start.get() != 0 || cam.stop.get() != 0)
 }

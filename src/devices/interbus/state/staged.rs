@@ -35,7 +35,7 @@ pub struct EditedValues {
     pub names: CamNames,
 }
 
-/// Where the base values come from.
+/// Source of the base values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum BaseSource {
     /// An encoder. Missing values were not read and are unknown.

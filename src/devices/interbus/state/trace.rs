@@ -103,8 +103,8 @@ mod tests {
     use crate::bits::{MaskedBytes, parse_hex};
     use crate::units::Moment;
 
-    /// Covers damaged gateway replies (Modbus application protocol 1.1b3, 6.4 and 7), rejections, and replies with an
-    /// error word from the encoder (reference 2) (issue 22.11).
+    /// Damaged replies, rejections and replies with an error word must all be explained and marked (Modbus application
+    /// protocol 1.1b3, 6.4 and 7; reference 2; issue 22.11).
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let request = "00 07 00 00 00 06 01 04 00 00 00 02";

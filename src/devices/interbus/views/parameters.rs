@@ -32,7 +32,7 @@ pub(super) struct EncoderParametersUiState {
 
 const ENTRY_WIDTH: f32 = 96.0;
 const TEXT_WIDTH: f32 = 240.0;
-/// Width of a process data word in hexadecimal digits.
+/// Width of a process data word shown as hexadecimal digits.
 const WORD: f32 = 80.0;
 
 pub(super) fn page_ui(

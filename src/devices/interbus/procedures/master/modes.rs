@@ -11,7 +11,7 @@ use crate::devices::interbus::protocol::{Command, ReadOutNumber, Reply, StartupM
 /// Time limit for a requested cam value to disappear after 00000000h. After that, 80000000h is sent (`U`: not
 /// documented).
 const VALUE_CLEAR_TIMEOUT: Duration = Duration::from_millis(300);
-/// Number of additional readings of the IN word, because the first one may return an old word.
+/// Number of additional readings of the IN word, which are needed because the first one may return an old word.
 const EXTRA_READINGS: u32 = 2;
 const READING_INTERVAL: Duration = Duration::from_millis(10);
 /// How long the mode need not be read again after a step of a job has restored it.

@@ -113,7 +113,7 @@ impl Master<'_> {
         else {
             return;
         };
-        // If the encoder is not back, it has yet to leave its program, which may store it.
+        // An encoder that is not back has yet to leave its program, and may store it then.
         journal
             .record_possible_stores(serial_number, std::mem::take(left) + u64::from(!is_back && excursion.is_some()));
         if is_back && excursion.take().is_some() {

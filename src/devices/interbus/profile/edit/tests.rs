@@ -19,7 +19,7 @@ fn sent(device: &Image, wanted: &Image) -> Vec<(Parameter, u32)> {
 fn equal_values_are_not_written() {
     let plan = plan_edits(&image(), &image()).unwrap();
     assert_eq!(plan, InterbusPlan { base: Base::default(), ops: vec![] });
-    // Values that are not wanted do not have to be known.
+    // Values that are not to be written need not be known.
     let nothing = Image::from_parameters(image().parameters);
     assert!(plan_edits(&image(), &nothing).unwrap().is_empty());
     assert!(plan_edits(&nothing, &nothing).unwrap().is_empty());
@@ -165,7 +165,7 @@ fn the_shift_is_stored_with_a_changed_program() {
         .collect();
     assert_eq!((shifts, plan.write_cycles()), (vec![(3, Some((zero, eight))), (6, None)], 2));
     assert_eq!(plan.base.shift, Some(zero));
-    // A change of the shift alone uses one store cycle.
+    // Changing only the shift uses one EEPROM write cycle.
     let plan = plan_edits(&device, &image_with(&device, &items[..1])).unwrap();
     assert_eq!((plan.ops[0].item_names().as_str(), logbook_note(&plan.ops[0]).as_str()), ("shift", "shift: 0 → 8"));
     assert_eq!((plan.ops.len(), plan.write_cycles(), plan.base.programs.len()), (1, 1, 1));
@@ -202,7 +202,7 @@ fn a_shorter_range_refuses_enabled_cams_beyond_it() {
     // Cam 7 of program 1 ends at 750, and cam 7 of program 8 at 757.
     let beyond = PlanError::CamBeyondRange { item: parse_item("cam:1:7"), edge: Edge::Stop, position: 750, last: 749 };
     assert_eq!(plan_edits(&device, &shorter), Err(beyond.clone()));
-    // The same applies if the wanted image has no programs.
+    // The same applies if no programs are to be written.
     let parameters = Image::from_parameters(shorter.parameters);
     assert_eq!(plan_edits(&device, &parameters), Err(beyond));
     let mut resting = shorter;

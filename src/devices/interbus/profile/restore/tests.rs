@@ -54,7 +54,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
     let restore = plan_restore(&of, &other, with_it).unwrap();
     assert_eq!(operations(&restore), ["preset: 7 → 500, zero-shift: 9 → 0", "cam-mask:1: 0x00 → 0xFF"]);
     assert!(restore.mounting_left.is_empty());
-    // Issue 22.7: values from another mounting are named if they are written.
+    // Values from another mounting are reported if they are written (issue 22.7).
     assert_eq!(restore.mounting_written, [Item::Preset, Item::ZeroShift]);
 }
 
@@ -105,7 +105,7 @@ fn another_type_needs_a_separate_permission() {
         for refused in [RestoreOptions::default(), device_only] {
             assert_eq!(plan_restore(&profile(MINE), &own, refused), Err(types.into()));
         }
-        // The same number of another type is another encoder: it keeps its mounting.
+        // An encoder of another type keeps its mounting-dependent values, even with the same serial number.
         let restore = plan_restore(&profile(MINE), &own, type_only).unwrap();
         assert_eq!(restore.mounting_left, [Item::Preset]);
         let mut two = own.clone();
@@ -114,7 +114,7 @@ fn another_type_needs_a_separate_permission() {
         let both = RestoreOptions { allow_other_type: true, ..device_only };
         assert!(plan_restore(&profile(MINE), &two, both).is_ok());
     }
-    // Unknown bits do not make another type.
+    // Unknown bits do not change the type.
     own.identity.flags = Some(Flags::new(value(6)));
     assert!(plan_restore(&profile(MINE), &own, RestoreOptions::default()).is_ok());
     own.identity.flags = None;
@@ -134,7 +134,7 @@ fn only_needed_programs_are_read() {
     assert_eq!(numbers(&of), [1]);
     of.image.shift = None;
     assert!(numbers(&of).is_empty());
-    // Items that it does not contain are left alone.
+    // Items missing from the profile are left unchanged.
     let restore = plan_restore(&of, &device(MINE, &[("cam-mask:2", Mask(0))]), RestoreOptions::default()).unwrap();
     assert_eq!((restore.plan.is_empty(), restore.unchanged), (true, 5));
 }
@@ -161,7 +161,7 @@ fn ready_made_profiles_plan_the_expected_writes() {
     let machine = read("packaging-machine.ron");
     let now = device(MINE, &[]);
     let restore = plan_restore(&machine, &now, RestoreOptions::default()).unwrap();
-    // Three programs; steps, turns and direction are those of the tests, the preset belongs to the mounting.
+    // Only three programs differ. The preset depends on the mounting and is not written.
     assert_eq!((restore.plan.ops.len(), restore.plan.write_cycles()), (3, 3));
     assert_eq!((restore.mounting_left, restore.missing), (vec![Item::Preset], Vec::<String>::new()));
     let after =
@@ -170,7 +170,7 @@ fn ready_made_profiles_plan_the_expected_writes() {
         after.collect::<Vec<_>>(),
         [("carton 120 mm", 1 << 2), ("carton 180 mm", 1 << 2), ("set-up, glue off", 0)]
     );
-    // 100 steps per millimetre over 2.5 m; the preset is not within the encoder's range.
+    // With 100 steps per millimetre over 2.5 m, the preset is beyond the encoder's current range.
     let spindle = read("scaled-encoder.ron");
     assert_eq!(spindle.image.parameters.gear().map(|gear| gear.total_steps()), Ok(250_000));
     let with_it = RestoreOptions { with_mounting: true, ..RestoreOptions::default() };

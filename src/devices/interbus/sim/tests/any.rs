@@ -26,7 +26,7 @@ proptest! {
             master.wait(pause);
             master.read();
             let (encoder, memory) = (&master.encoder, master.encoder.memory());
-            // A word uses at most one store cycle, and a word with the prefix 000 uses none.
+            // A word uses at most one EEPROM write cycle, and a word with the prefix 000 uses none.
             prop_assert!(encoder.store_count() == before || encoder.store_count() == before + 1 && word >> 29 != 0);
             prop_assert!(memory.gear().total_steps() <= 8192 * memory.gear().turns());
             prop_assert!(ProgramNumber::all().all(|number| memory.program(number).cams.iter().all(Option::is_some)));

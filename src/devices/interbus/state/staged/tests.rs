@@ -327,7 +327,7 @@ fn marks_show_values_beyond_the_range_and_conflicts() {
     staged.undo();
     assert!(staged.edited_values().unwrap().findings().is_empty());
 
-    // Two pulses of one track: one from 300 to 350, and one that may begin within the first.
+    // Of two pulses of one track, the first is from 300 to 350, and the second may begin within it.
     let drawn = |start, stop| Edit::Cam { program: number(1), cam: cam(5), start, stop, on: true };
     staged.apply_edit(&name(3, "Feed")).unwrap();
     staged.apply_edit(&name(5, "feed")).unwrap();

@@ -134,7 +134,7 @@ fn edges_are_moved_by_keys() {
     press(&mut harness, &[(NONE, Key::ArrowRight), (NONE, Key::ArrowLeft), (NONE, Key::ArrowLeft)]);
     assert_eq!(changes(&harness), [moved(0, 101, 299), moved(0, 100, 299), moved(0, 99, 299)]);
     assert_eq!(harness.state().selected, Some(cam(0)));
-    // The grid has 20 steps here: ten points are at least fourteen steps, at most twenty.
+    // The grid lines are 20 steps apart here, because ten points are between fourteen and twenty steps.
     press(&mut harness, &[(SHIFT, Key::ArrowRight), (SHIFT, Key::ArrowRight), (SHIFT, Key::ArrowLeft)]);
     assert_eq!(changes(&harness)[3..], [moved(0, 100, 299), moved(0, 120, 299), moved(0, 100, 299)]);
     press(&mut harness, &[(NONE, Key::Tab)]);
@@ -196,7 +196,7 @@ fn a_cam_is_drawn_in_the_lane_of_a_switched_off_cam() {
     assert_eq!(own, cam(4));
     assert!(to.start.get().abs_diff(100) <= 8 && to.stop.get().abs_diff(300) <= 8, "{to:?}");
     assert!(harness.state().staged.edited_values().unwrap().is_on(program(), cam(4)));
-    // In the lane of an active one nothing is drawn.
+    // In the lane of an active cam, no new cam can be drawn.
     let lane = harness.get_by_label("Cam 0 · feed").rect();
     drag(&mut harness, egui::pos2(lane.right() + 100.0, lane.center().y), by);
     assert_eq!(changes(&harness).len(), 1);
@@ -311,14 +311,14 @@ fn a_ring_is_turned_by_keys_and_pointer() {
     focus(&mut harness, "Cam 3: stop, on the ring");
     press(&mut harness, &[(NONE, Key::ArrowRight), (Modifiers::NONE, Key::Delete)]);
     assert_eq!(changes(&harness), [moved(3, 900, 50), CamEvent::Switched(cam(3), false)]);
-    // From a tenth of the turn to a quarter: three o'clock.
+    // From a tenth to a quarter of the turn, which is at three o'clock.
     let ring = harness.get_by_label("Program 1").rect();
     let from = harness.get_by_label("Cam 0: start, on the ring").rect().center();
     let radius = from.distance(ring.center());
     let to = ring.center() + Vec2::new(radius, 0.0);
     drag(&mut harness, from, to - from);
     assert_eq!(changes(&harness)[2..], [moved(0, 250, 299)]);
-    // Cam 4 as a whole, from half past seven to where the range begins: 650 to 1000.
+    // Cam 4 is moved as a whole, from position 650 at half past seven to 1000 at the top.
     let lane = |part: f32, radius: f32| {
         let angle = part * std::f32::consts::TAU;
         ring.center() + Vec2::new(angle.sin(), -angle.cos()) * radius
