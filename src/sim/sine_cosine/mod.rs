@@ -203,8 +203,7 @@ impl<'a> Model<'a> {
     fn channel_voltages(&self, shaft: PhaseAccumulator) -> (f64, f64) {
         let settings = self.settings;
         let (once_sine, once_cosine) = shaft.angle_radians().sin_cos();
-        // The angle is still in whole parts when it is multiplied by the number of periods. 65 536 turns fit into 64
-        // bits.
+        // The angle is still an integer when it is multiplied by the number of periods. 65 536 turns fit into 64 bits.
         let signal = PhaseAccumulator { at: shaft.at * self.periods % TURN, ..shaft };
         let angle = signal.angle_radians() + self.eccentricity * once_sine;
         let amplitude = settings.amplitude_v * (1.0 + settings.modulation_percent / 100.0 * once_cosine);

@@ -1,4 +1,4 @@
-//! `write`: writes registers by name.
+//! The `write` command, which writes registers by name.
 
 use super::plan::{change_lines, commit_plan, operations_json, prepare_plan};
 use super::run::Runner;

@@ -74,7 +74,7 @@ pub enum CheckFinding {
         high: u32,
     },
     Wiegand(WiegandResult),
-    /// No test result is saved in the encoder.
+    /// No Wiegand test result is saved in the encoder.
     NotTested,
     /// Number of position readings and of damaged frames or replies.
     Readings {

@@ -13,7 +13,7 @@ pub(super) struct Flags {
     error: Option<bool>,
     warning: Option<bool>,
     looked_at: Moment,
-    /// Whether the error register was read last.
+    /// Whether the error register was read more recently than the warning register.
     errors_last: bool,
 }
 

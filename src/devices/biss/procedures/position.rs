@@ -1,4 +1,4 @@
-//! Positions for display and plotting, and watched registers.
+//! Reading positions and watched registers for display and plotting.
 
 use super::flags::add_error_flags;
 use super::{ConsecutiveFrames, Error, Master, ReplyDamage};

@@ -41,7 +41,7 @@ parameters! {
 }
 
 parameters! {
-    /// Link parameters for the time limit of replies.
+    /// Link parameters for the time limit for a reply.
     pub struct LineParameters: UrlError {
         /// Additional delay allowed for a reply, or `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";

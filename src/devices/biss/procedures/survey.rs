@@ -45,7 +45,7 @@ pub struct Survey {
     /// Result of the last Wiegand test since power-up.
     pub wiegand_last: Option<WiegandResult>,
     pub wiegand_production: Option<WiegandResult>,
-    /// Result of the Wiegand test that was saved in the encoder at power-up.
+    /// Result of the Wiegand test that was already saved when the encoder was powered up.
     pub wiegand_saved: Option<WiegandResult>,
     pub preset: Option<PresetValue>,
     pub registers: Registers,

@@ -5,7 +5,7 @@ use crate::bits::hex_compact;
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::profile::{ComparedItem, Comparison};
 
-/// Compares the filter, the preset value and the data areas. Recorded values are not compared.
+/// Compares the filter, the preset value and the data areas. Values that are only recorded are ignored.
 pub(super) fn compare(left: &BissProfile, right: &BissProfile) -> Comparison {
     let mut comparison = Comparison::default();
     let filter = |profile: &BissProfile| profile.filter.map(|filter| vec![filter.byte()]);

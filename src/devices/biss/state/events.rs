@@ -1,4 +1,4 @@
-//! Connection events of an encoder: job results, live samples, and loss of the connection.
+//! Events from the connection to an encoder: job results, live samples, and loss of the connection.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;

@@ -1,4 +1,4 @@
-//! The BiSS tab: its pages, one per task.
+//! The BiSS tab, which has one page per task.
 
 mod connect_form;
 mod data;
