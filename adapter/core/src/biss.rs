@@ -70,8 +70,8 @@ impl BissSetting {
         self.bits + Self::HEAD
     }
 
-    /// Returns the number of steps after which the search for an edge ends. A step is a sixth of a clock in the search
-    /// for the acknowledgement, and a clock in the search for the start bit.
+    /// Returns the number of steps after which the search for an edge ends. A step is a sixth of a clock for the
+    /// acknowledgement, and a clock for the start bit.
     pub fn search_steps(self) -> u32 {
         let clocks = |tenths: u32| tenths.div_ceil(u32::from(self.divisor.max(1)));
         (6 * (2 + clocks(Self::LINE_DELAY))).max(2 + clocks(Self::BUSY))

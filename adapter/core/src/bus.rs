@@ -37,8 +37,8 @@ pub trait Bus {
     /// Selects the bus and settings for the following frames. Must not be called during a stream.
     fn select(&mut self, clocking: Clocking);
 
-    /// Clocks one frame without waiting for the pause or time-out after it. If `cdm` is set, the clock line stays low
-    /// during the time-out of BiSS, which transmits a control bit of 1.
+    /// Clocks one frame, but does not wait for the pause or time-out after it. If `cdm` is set, the clock line stays
+    /// low during the BiSS time-out, which sends a control bit of 1.
     fn frame(&mut self, cdm: bool) -> Frame;
 
     /// Starts a stream that clocks one frame per interval, given in microseconds. Returns the time of the first frame.

@@ -28,7 +28,7 @@ const START_CYCLES: u32 = 3;
 const BISS_START_CYCLES: u32 = 5;
 /// Number of system clock cycles per microsecond. A pacer counts microseconds, so this is also its divisor.
 const PER_US: u16 = (SYSTEM_HZ / 1_000_000) as u16;
-/// Time in microseconds that a pacer needs in addition to its count.
+/// Time in microseconds that a pacer adds to its count.
 const PACER_US: u32 = 3;
 /// Number of the PIO interrupt flag that starts a frame.
 const START: u8 = 1;

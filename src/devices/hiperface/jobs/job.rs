@@ -61,7 +61,7 @@ pub enum Change {
         profile: Box<HiperfaceProfile>,
         options: RestoreOptions,
     },
-    /// Writes bytes of data fields. The count of a range must equal its number of bytes.
+    /// Writes bytes to data fields. The number of bytes must equal the count of the range.
     Store(Vec<(FieldRange, Vec<u8>)>),
     CreateField {
         number: u8,
@@ -93,8 +93,8 @@ pub enum Change {
         exact: bool,
         /// Whether to align the code tracks as well (63h).
         synchronise: bool,
-        /// Whether the user states that the encoder is a kit encoder. This is only needed if the encoder type does not
-        /// reveal it.
+        /// Whether the user has stated that the encoder is a kit encoder. This is needed only if the encoder type does
+        /// not show it.
         kit: bool,
     },
     /// Adds steps to the position at standstill, modulo the measuring range. This undoes setting a position, even if
@@ -206,8 +206,8 @@ pub struct SavedProfile {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
     Codes(Vec<StatusCode>),
-    /// Number of status codes that may have been lost. 50h removes a code from the encoder even if the reply is lost or
-    /// damaged.
+    /// Number of status codes that may have been lost. Command 50h removes a code from the encoder even if the reply is
+    /// lost or damaged.
     CodesUnheard(u32),
     /// An encoder that replied during a search.
     Found(FoundEncoder),
@@ -259,7 +259,7 @@ impl From<PlanError> for JobError {
 }
 
 impl JobError {
-    /// Returns whether the encoder temporarily did not report a position.
+    /// Returns whether the encoder currently has no position to report.
     pub fn is_without_position(&self) -> bool {
         matches!(self, JobError::Device(error) if error.is_without_position())
     }

@@ -1,4 +1,4 @@
-//! Preparation of a plan from a change. No data is written.
+//! Prepares a plan for a change. Nothing is written.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,5 @@
-//! Logging status codes before they are displayed. 50h removes a code from the encoder, so a code that is read but not
-//! stored would be lost.
+//! Stores status codes before they are displayed. Command 50h removes a code from the encoder, so a code that is read
+//! but not stored would be lost.
 
 use std::time::Duration;
 

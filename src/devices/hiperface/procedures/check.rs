@@ -15,7 +15,7 @@ pub type HiperfaceStepResult = crate::analysis::check::StepResult<CheckStep, Che
 pub enum CheckStep {
     /// Restart (53h), including the waiting times in the manual.
     Restart,
-    /// Status codes, read with 50h until the queue is empty.
+    /// Status codes, read with command 50h until the queue is empty.
     Status,
     /// Type label (52h) and serial number (56h).
     Identity,
@@ -25,7 +25,7 @@ pub enum CheckStep {
     Limits,
     /// Status and content (commands 4Ch and 4Ah) of every data field.
     DataFields,
-    /// Repeated requests and damaged or late replies since the start of the session.
+    /// Line errors since the start of the session: repeated requests, and damaged or late replies.
     Line,
 }
 

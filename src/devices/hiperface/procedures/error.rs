@@ -131,7 +131,7 @@ impl Error {
         }
     }
 
-    /// Returns whether the encoder has no position to report at the moment.
+    /// Returns whether the encoder currently has no position to report.
     pub fn is_without_position(&self) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.invalidates_position()))
     }

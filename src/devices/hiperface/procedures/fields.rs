@@ -1,4 +1,4 @@
-//! Reads data fields (4Ch, 4Ah). A long transfer that the line damages is split in half.
+//! Reads data fields (commands 4Ch and 4Ah). A long transfer that the line damages is split in half.
 
 use super::error::ReplyDamage;
 use super::identify::read_type_label;

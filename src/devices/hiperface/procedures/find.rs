@@ -1,8 +1,8 @@
 //! Searches for encoders with unknown settings.
 //!
 //! The search listens for a second before it sends the first byte. If any bytes are received, a machine may be running,
-//! and nothing is sent. The search probes with 52h, because 50h would remove codes from the status queue of an encoder.
-//! The broadcast address is tried last, and only if the user states that a single encoder is connected, because several
+//! and nothing is sent. The search sends 52h, because 50h would remove codes from an encoder's status queue. The
+//! broadcast address is tried last, and only if the user states that a single encoder is connected, because several
 //! encoders would reply at the same time.
 
 use std::fmt;

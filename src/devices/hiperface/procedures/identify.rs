@@ -17,7 +17,7 @@ pub struct Identity {
     /// Free memory (4Eh), or `None` if the encoder does not support the command.
     pub memory: Option<FreeMemory>,
     pub name: String,
-    /// Periods and turns, as specified by the user, the extended label or the table of encoder types.
+    /// Periods and turns, which are specified by the user, the extended label or the table of encoder types.
     pub geometry: Option<Geometry>,
     /// Whether the encoder is a kit without a bearing, whose code tracks are aligned with 63h, or `None` if unknown.
     pub kit: Option<bool>,
@@ -123,7 +123,7 @@ pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
     master.request_with_time(&Request::ReadTypeLabel).map(|timed| timed.sender)
 }
 
-/// Reads the complete data field FFh. Its size is read with 4Ch and its content with 4Ah and code 0.
+/// Reads the complete data field FFh: its size with command 4Ch, and its content with command 4Ah and code 0.
 ///
 /// # Errors
 /// Returns an error if the exchange fails or the encoder has no extended label.

@@ -41,7 +41,7 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
 #[derive(Clone, Debug, PartialEq)]
 pub enum PolledSample {
     Position(PositionReading),
-    /// The encoder replies, but has no position to report at the moment.
+    /// The encoder replies, but currently has no position to report.
     NoPosition {
         at: Moment,
         codes: Vec<StatusCode>,
@@ -87,7 +87,7 @@ impl WatchedReading {
     }
 }
 
-/// Reads a watched value once. A rejection is not treated as an error.
+/// Reads a watched value once. If the encoder rejects the request, the reading contains the rejection.
 ///
 /// # Errors
 /// Returns an error if the exchange fails.

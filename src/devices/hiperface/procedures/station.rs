@@ -112,11 +112,11 @@ pub struct Station {
     pub geometry: Option<Geometry>,
     /// Status codes to display, in the order in which they were read. They are removed once displayed.
     pub codes_met: Vec<StatusCode>,
-    /// Status codes for the logbook. This is their only copy, because 50h removes them from the encoder.
+    /// Status codes for the logbook. This is their only copy, because command 50h removes them from the encoder.
     codes_read: Vec<StatusCode>,
     /// Type and serial number of the encoder that was identified last.
     pub identified: Option<(u8, String)>,
-    /// Number of missing or damaged replies to 50h. Each of them may have contained a status code.
+    /// Number of missing or damaged replies to command 50h. Each of them may have contained a status code.
     pub(super) unanswered_codes: u32,
     /// Whether every value is read twice because it will be stored. This applies even to a line without errors.
     pub(super) thorough: bool,
@@ -177,8 +177,8 @@ impl Station {
         std::mem::take(&mut self.codes_read)
     }
 
-    /// Returns the number of missing or damaged replies to 50h since the last call, and resets it. Each of these
-    /// replies may have contained a status code.
+    /// Returns the number of missing or damaged replies to command 50h since the last call, and resets it. Each of
+    /// these replies may have contained a status code.
     pub fn take_missed_code_count(&mut self) -> u32 {
         std::mem::take(&mut self.unanswered_codes)
     }

@@ -1,4 +1,4 @@
-//! Reads all values that are displayed for an encoder in a single job.
+//! A survey, which reads all values that are displayed for an encoder in one job.
 
 use super::fields::separate_value_error;
 use super::{
@@ -20,12 +20,11 @@ pub struct Survey {
     /// Quality of the line at the end of the survey.
     pub line: LineQuality,
     pub counter: Option<u32>,
-    /// Position, or `None` if the encoder permanently does not report a position.
+    /// Position, or `None` if it could not be read. A temporary lack of a position is still a sample.
     pub position: Option<PolledSample>,
 }
 
-/// Reads the status queue and then all other values. Features that the encoder type does not support do not cause an
-/// error.
+/// Reads the status queue, and then all other values. Features that the encoder type does not support cause no error.
 ///
 /// # Errors
 /// Returns an error if the exchange fails, or if the encoder rejects a command that every type supports.

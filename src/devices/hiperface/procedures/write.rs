@@ -51,8 +51,8 @@ impl Write for EncoderWriter<'_, '_> {
     type Written = WrittenChanges;
     type EndState = EndState;
 
-    /// Checks that the plan was made for this encoder. The memory is compared as well, because two new encoders can
-    /// have the same identity.
+    /// Checks that the plan was made for this encoder. The memory is compared too, because two new encoders can have
+    /// the same identity.
     fn confirm_base(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let label = read_type_label(master)?;

@@ -1,6 +1,6 @@
-//! Commutation offset as stored by this program in a data field. The manual does not define a format. The sixteen bytes
-//! fill a block of the EEPROM, and a backup recognises them as a mounting value. See SICK 8010701, commutation, and
-//! section 5 of the project's sine/cosine reference.
+//! Commutation offset in a data field, in the format of this program. The manual does not define a format. The sixteen
+//! bytes fill a block of the EEPROM, and a backup recognises them as a mounting value. See SICK 8010701, commutation,
+//! and section 5 of the project's sine/cosine reference.
 
 use super::HiperfaceProfile;
 use crate::analysis::commutation::ElectricalAngle;

@@ -1,4 +1,4 @@
-//! HIPERFACE profiles: the saved content of an encoder, comparing it, and restoring it.
+//! HIPERFACE profiles: the saved content of an encoder, and how it is compared and restored.
 
 #![warn(missing_docs)]
 

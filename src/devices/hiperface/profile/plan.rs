@@ -125,7 +125,7 @@ impl Op {
     }
 
     /// Returns the changed item with its old and new value, for the logbook. Field statuses and line settings are
-    /// recorded as bytes. Access codes are recorded without a value.
+    /// recorded as bytes, and access codes without any value.
     pub fn changed_item(&self) -> ChangedItem {
         let byte = |byte: u8| Some(format!("{byte:02X}"));
         let number = |number: u32| Some(number.to_string());

@@ -46,7 +46,7 @@ pub struct ProfileIdentity {
     pub options: u8,
     /// Content of data field FFh.
     pub extended_label: Option<Vec<u8>>,
-    /// Unknown profile entries, preserved when the profile is saved.
+    /// Profile entries that this program does not know. They are kept when the profile is saved.
     pub unknown: UnknownValues,
 }
 
@@ -57,7 +57,7 @@ pub struct Interface {
     pub address: u8,
     /// Stored interface settings.
     pub settings: LineSettings,
-    /// Unknown profile entries, preserved when the profile is saved.
+    /// Profile entries that this program does not know. They are kept when the profile is saved.
     pub unknown: UnknownValues,
 }
 
@@ -68,7 +68,7 @@ pub struct RecordedValues {
     pub position: Option<u32>,
     /// Value of the counter.
     pub counter: Option<u32>,
-    /// Unknown profile entries, preserved when the profile is saved.
+    /// Profile entries that this program does not know. They are kept when the profile is saved.
     pub unknown: UnknownValues,
 }
 

@@ -1,5 +1,4 @@
-//! Data fields, which are the partitions of the encoder's EEPROM (manual, "Datenspeicherung und Verwaltung", figure
-//! 28).
+//! Data fields, the partitions of the encoder's EEPROM (manual, "Datenspeicherung und Verwaltung", figure 28).
 
 use std::fmt;
 
@@ -9,7 +8,7 @@ pub const EXTENDED_LABEL_FIELD: u8 = 0xFF;
 /// Maximum number of data bytes in a request with command 4Ah or 4Bh.
 pub const MAX_TRANSFER: usize = 128;
 
-/// Number of one of the encoder's four access codes, 0 to 3.
+/// Number of an access code, 0 to 3. An encoder has four access codes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AccessCodeNumber(u8);
 
@@ -64,7 +63,7 @@ impl fmt::Debug for AccessCode {
     }
 }
 
-/// Size of a data field, which is a multiple of 16 bytes from 16 to 128.
+/// Size of a data field: a multiple of 16 bytes, from 16 to 128.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FieldSize(u8);
 
@@ -72,7 +71,7 @@ impl FieldSize {
     /// Size in bytes of a block, the unit of memory allocation.
     pub const BLOCK: usize = 16;
 
-    /// Creates a size from a number of bytes, or returns `None` unless it is a multiple of 16 from 16 to 128.
+    /// Creates a size from a number of bytes, which must be a multiple of 16 from 16 to 128. Returns `None` otherwise.
     pub fn from_bytes(bytes: usize) -> Option<Self> {
         if !bytes.is_multiple_of(Self::BLOCK) {
             return None;
@@ -161,7 +160,7 @@ impl DataFieldStatus {
         DataFieldStatus(if writable { self.0 | Self::WRITE_ENABLE } else { self.0 & !Self::WRITE_ENABLE })
     }
 
-    /// Returns a copy of the status with another access code. `required` becomes bit CE.
+    /// Returns a copy of the status with another access code. `required` sets bit CE.
     #[must_use]
     pub const fn with_code(self, code: AccessCodeNumber, required: bool) -> Self {
         let rest = self.0 & !(Self::CODE_REQUIRED | 0x30);

@@ -1,5 +1,5 @@
-//! The position word, which is right-aligned and has five bits for the steps within a signal period (manual, "Position
-//! lesen").
+//! The position word. It is right-aligned, and its five lowest bits are the step within a signal period (manual,
+//! "Position lesen").
 
 use std::fmt;
 

@@ -138,7 +138,7 @@ pub enum RequestError {
 }
 
 impl RequestError {
-    /// Returns the status code with which an encoder replies to such a request.
+    /// Returns the status code that an encoder sends in reply to such a request.
     pub fn status(self) -> StatusCode {
         match self {
             RequestError::Command(_) => StatusCode::UNKNOWN_COMMAND,
@@ -190,8 +190,8 @@ impl Request {
     /// Parses a request.
     ///
     /// # Errors
-    /// Returns a [`RequestError`] for the first check that fails. As in an encoder (`U`: not documented), the command
-    /// is checked first, then the number of arguments, then their ranges.
+    /// Returns a [`RequestError`] for the first check that fails. The command is checked first, then the number of
+    /// arguments, then their ranges. The order in an encoder is not documented (`U`).
     pub fn parse(frame: &Frame<'_>) -> Result<Self, RequestError> {
         let command = Command::from_byte(frame.command)
             .filter(|_| frame.command & Frame::ERROR_BIT == 0)

@@ -3,7 +3,7 @@
 
 use crate::devices::hiperface::protocol::Geometry;
 
-/// An encoder model with factory settings. Data field 0 is filled as by a motor manufacturer.
+/// An encoder model with factory settings. Data field 0 contains what a motor manufacturer would write.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
     /// Name used in `sim:?model=`.
@@ -11,7 +11,7 @@ pub struct Model {
     /// Type code in the reply to 52h. FFh refers to the extended label.
     pub encoder_type: u8,
     pub geometry: Geometry,
-    /// Whether the encoder has no bearing and therefore supports command 63h.
+    /// Whether the encoder has no bearing. Only such an encoder supports command 63h.
     pub kit: bool,
     pub serial_number: &'static str,
     pub firmware_version: &'static str,

@@ -163,7 +163,7 @@ impl LinkForm {
         [own, Self::link_entries()].concat()
     }
 
-    /// Fills in the input field for a parameter. Returns `false` if no input field can show the value.
+    /// Fills in the input field for a parameter. Returns `false` if there is no input field for the value.
     fn fill_entry(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("model", LinkKind::Virtual) {
             value.clone_into(&mut self.model);

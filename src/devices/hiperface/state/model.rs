@@ -1,4 +1,4 @@
-//! Implementation of the studio's device traits for HIPERFACE encoders.
+//! Implements the application's device traits for HIPERFACE encoders.
 
 use std::convert::Infallible;
 

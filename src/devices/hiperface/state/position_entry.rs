@@ -1,5 +1,5 @@
-//! Entry of a position in steps, degrees, turns and degrees, or millimetres. A position that is shown in one of these
-//! units and parsed in the same unit yields the same number of steps.
+//! Entry of a position in steps, degrees, turns and degrees, or millimetres. Parsing a displayed position in the same
+//! unit yields the same number of steps.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
@@ -15,7 +15,7 @@ const NANOMETRES: u128 = 1_000_000;
 pub enum PositionUnit {
     #[default]
     Steps,
-    /// Degrees from position 0, which exceed 360 in an encoder with several turns.
+    /// Degrees from position 0. They exceed 360 in an encoder with several turns.
     Degrees,
     /// Whole turns, and degrees within the turn.
     TurnsAndDegrees,

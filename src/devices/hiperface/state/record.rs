@@ -65,7 +65,7 @@ impl Record {
         self.last.as_ref().filter(|_| !self.refused)
     }
 
-    /// Returns whether the encoder has no position to report at the moment.
+    /// Returns whether the encoder currently has no position to report.
     pub fn is_position_refused(&self) -> bool {
         self.refused
     }

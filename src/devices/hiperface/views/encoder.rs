@@ -1,4 +1,4 @@
-//! The encoder page: identity, error queue, device check, extended label, wiring.
+//! The encoder page: identity, error queue, device check, extended label and wiring.
 
 use egui::{RichText, Ui};
 

@@ -1,5 +1,5 @@
 //! The setup page: position, synchronisation, address, line settings, access codes and restart. Every permanent change
-//! is reviewed first.
+//! is reviewed before it is written.
 
 use egui::Ui;
 

@@ -1,5 +1,5 @@
-//! Reads the status queue. 50h removes a code from the encoder, so a lost reply may have contained a code. Therefore,
-//! late replies are accepted, and codes that may have been lost are counted.
+//! Reads the status queue. Command 50h removes a code from the encoder, so a lost reply may have contained a code.
+//! Therefore, late replies are accepted, and codes that may have been lost are counted.
 
 use super::Master;
 use crate::devices::hiperface::procedures::Error;
@@ -9,14 +9,14 @@ use crate::devices::hiperface::protocol::{Answer, Reply, Request, StatusCode};
 const MAX_CODES: usize = 5;
 /// Number of replies without a new code after which the reading ends.
 const MAX_REPEATED: u32 = 5;
-/// Length of a reply to 50h in bytes: address, command, one to four codes, checksum.
+/// Length of a reply to command 50h in bytes: address, command, one to four codes, checksum.
 const REPLY: std::ops::RangeInclusive<usize> = 4..=7;
 
-/// Status codes in a reply to 50h, and whether more codes follow.
+/// Status codes in a reply to command 50h, and whether more codes follow.
 type Codes = (Vec<StatusCode>, bool);
 
 impl Master<'_> {
-    /// Reads the complete status queue. The request 50h is repeated until the error bit in the reply is clear.
+    /// Reads the complete status queue. Command 50h is repeated until the error bit in the reply is clear.
     ///
     /// # Errors
     /// Returns an error if every attempt fails or the user cancels. The station then holds the codes received so far,
@@ -78,8 +78,8 @@ impl Master<'_> {
         }
     }
 
-    /// Records the status codes in a reply to 50h. A reply that equals an earlier one may be a late duplicate, so it is
-    /// ignored. The actual reply may then be missing.
+    /// Records the status codes in a reply to command 50h. A reply that equals an earlier one may be a late duplicate,
+    /// so it is ignored. The actual reply may then be missing.
     fn record_reply_codes(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
         if seen.contains(&codes) {
             return;
@@ -94,7 +94,7 @@ impl Master<'_> {
         Ok(self.line.receive_late_bytes(&mut self.station.line, tries, quiet)?)
     }
 
-    /// Finds replies to 50h among skipped bytes.
+    /// Finds replies to command 50h among skipped bytes.
     fn find_replies(&self, bytes: &[u8]) -> Vec<Codes> {
         let (mut rest, mut found) = (bytes, Vec::new());
         while let [_, behind @ ..] = rest {
@@ -109,9 +109,9 @@ impl Master<'_> {
         found
     }
 
-    /// Parses the reply to 50h at the start of the bytes, and returns the bytes after it. The checksum of a reply can
-    /// also match after its first bytes, such as 01h and 11h from address 40h. A length at which the bytes end or
-    /// another reply begins therefore takes precedence.
+    /// Parses the reply to command 50h at the start of the bytes, and returns the bytes after it. The checksum of a
+    /// reply can also match after its first bytes, such as 01h and 11h from address 40h. A length at which the bytes
+    /// end or another reply begins therefore takes precedence.
     fn parse_status_reply<'b>(&self, bytes: &'b [u8]) -> Option<(Codes, &'b [u8])> {
         let replies = REPLY.filter_map(|length| bytes.split_at_checked(length)).filter_map(|(frame, behind)| {
             let answer = Request::ReadStatus.parse_reply(self.station.address, frame).ok()?;

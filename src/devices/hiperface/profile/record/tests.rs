@@ -98,7 +98,7 @@ fn profile_errors_name_their_location() {
     }
 }
 
-/// Users may store their own entries, of any structure, in `extra` (issue 22.17).
+/// Users may keep their own entries of any structure in `extra` (issue 22.17).
 #[test]
 fn user_entries_are_kept() {
     let text = SHORT

@@ -3,7 +3,7 @@
 use super::{PlanError, RestoreOptions};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 
-/// Checks that the profile was read from this encoder. The check always fails for an encoder without a serial number.
+/// Checks that the profile was read from this encoder. An encoder without a serial number always fails the check.
 ///
 /// # Errors
 /// Returns [`PlanError::OtherDevice`] or [`PlanError::TypeMismatch`] if the profile was read from another encoder.
