@@ -159,14 +159,14 @@ pub enum TaskResult {
     /// A profile was not saved because these comments in its file would be lost.
     WouldLose(Box<SaveRequest>, Vec<String>),
     TableWritten(RecorderOwner, ExportResult),
-    /// A picture, a report or a trace has been saved, or could not be saved. `message` names what was saved.
-    /// A report was written, or the reason why there is none.
+    /// A report was written, or could not be created or written.
     ReportWritten {
         path: PathBuf,
         result: Result<Result<(), FileError>, Text>,
     },
     /// The company name and logo were checked for use in reports. Contains the reason if they cannot be used.
     CompanyChecked(Box<Settings>, Result<(), Text>),
+    /// A picture, a report or a trace was saved, or could not be saved. `message` names what was saved.
     FileSaved {
         message: Text,
         path: PathBuf,

@@ -73,7 +73,7 @@ impl Studio {
         }
     }
 
-    /// Starts a task that checks the logo. The company name and the logo are then saved.
+    /// Starts a task that checks the logo. If the logo can be used, the form is saved.
     fn check_company(&mut self, name: &str, logo: &str) {
         let Some(form) = &mut self.company_form else { return };
         form.is_checking = true;

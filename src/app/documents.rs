@@ -1,4 +1,4 @@
-//! Opening profiles. They are read in a task and added to the open devices.
+//! Opening of profiles, which are read in a task and added to the open devices.
 
 use std::path::{Path, PathBuf};
 

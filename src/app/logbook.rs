@@ -41,7 +41,7 @@ pub struct LogbookMatches {
     pub has_more: bool,
     /// Devices with entries, ordered by kind and serial number.
     pub devices: Vec<DeviceKey>,
-    /// Assets to which a device was ever assigned, in order.
+    /// Assets to which a device was ever assigned, sorted by name.
     pub assets: Vec<String>,
     /// Damaged file that was replaced. Its entries are missing.
     pub damaged: Option<PathBuf>,

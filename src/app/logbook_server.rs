@@ -116,7 +116,7 @@ impl Studio {
         }
     }
 
-    /// Updates the state of the exchange. An unreachable server is reported once until it has been reached again.
+    /// Updates the state of the exchange. An unreachable server is reported only once until it can be reached again.
     pub(super) fn show_exchange(&mut self, received: bool, state: ServerExchange) {
         let before = std::mem::replace(self.logbook.exchange_mut(), state);
         if received {

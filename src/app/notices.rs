@@ -17,8 +17,8 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Returns for how much longer a notice is displayed that has been visible for `shown`. Returns `None` if it stays
-    /// until the user closes it.
+    /// Returns the remaining display time of a notice that has been visible for `shown`, or `None` if it stays until
+    /// the user closes it.
     pub fn display_time(self, shown: Duration) -> Option<Duration> {
         let seconds = match self {
             Severity::Note | Severity::Good => 6,

@@ -28,7 +28,7 @@ enum KeyState {
     #[default]
     Nothing,
     Down,
-    /// Time at which this key was released or another key was pressed, not yet long enough ago.
+    /// Time at which this key was released or another key was pressed. It is still too recent for a fresh press.
     Released(f64),
     Up,
 }

@@ -23,11 +23,11 @@ use crate::profile::{
 };
 use crate::store::{DeviceKey, EntryId, EntryKind, EntryUid, FileError, Intent, Logbook, LogbookError, Outcome, Store};
 
-/// Maximum time for an exchange with the logbook server. After that, only the write cycles known to this computer
+/// Maximum time for an exchange with the logbook server. If it fails, only the write cycles known to this computer
 /// count.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// Maximum limit of write cycles for which a memory counts as wearing out quickly. Write cycles missing from the
+/// Highest limit of write cycles at which a memory is considered to wear out quickly. Write cycles missing from the
 /// logbook could then use up all that are left.
 const QUICKLY_WORN: u64 = 10_000;
 
@@ -40,7 +40,7 @@ pub struct ApprovedPlan<P> {
     pub consent: Consent,
     /// Whether to write even if the device is worn, or its write cycles are unknown.
     pub force_wear: bool,
-    /// The entry of the logbook that the write undoes, if any.
+    /// The logbook entry that the write undoes, if any.
     pub undoes: Option<EntryUid>,
 }
 

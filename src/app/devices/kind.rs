@@ -60,7 +60,7 @@ pub trait DeviceType: DeviceModel + Sized {
         true
     }
 
-    /// Creates a device from an opened profile and its tables, or an empty device.
+    /// Creates a device from an opened profile and its tables, or a device without data.
     fn create(
         session: Session<Self::Device>,
         profile: Option<(&Self::Profile, Self::Tables)>,

@@ -61,7 +61,7 @@ pub fn setting_error_text(error: &ConfigError) -> Text {
     }
 }
 
-/// Returns the reason why a file is not a valid profile. `kinds` explains values that a device rejects.
+/// Returns the reason why a file is not a valid profile. `kinds` explain the values that they reject.
 pub fn profile_error_text(error: &ProfileError, kinds: KindRegistry) -> Text {
     match error {
         ProfileError::Syntax { line, column, what } => syntax_error_text(*line, *column, syntax_problem(what)),

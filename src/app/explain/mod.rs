@@ -24,7 +24,7 @@ use crate::store::{AssetNameError, FileError, FileErrorKind, LogbookError, Store
 use crate::units::Parity;
 use crate::worker::{NotStarted, OpenError};
 
-/// Maximum number of remarks of one kind that are listed.
+/// Maximum number of listed remarks of the same kind.
 const MAX_LISTED_REMARKS: usize = 3;
 
 /// Lists the first few items and states how many more there are.
@@ -135,7 +135,7 @@ pub fn store_error_text(error: &StoreError) -> Text {
     }
 }
 
-/// Returns the reason why a profile cannot be read. `kinds` explains values that a device rejects.
+/// Returns the reason why a profile cannot be read. `kinds` explain the values that they reject.
 pub fn profile_file_error_text(path: &Path, error: &ProfileError, kinds: KindRegistry) -> Text {
     let path = path.display();
     match error {

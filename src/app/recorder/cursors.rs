@@ -99,8 +99,7 @@ impl Recorder {
 
     /// Returns the sample of a line nearest to a time, or `None` if nothing was recorded around that time.
     pub fn sample_at(&self, line: &Series, time: SampleTime) -> Option<Sample> {
-        /// Fraction of the visible range, as a divisor, by which a cursor may be outside the recording and still read
-        /// the first or last sample.
+        /// Divisor of the visible range. A cursor that far outside the recording still reads the first or last sample.
         const EDGE_DIVISOR: i64 = 200;
         let history = self.history(line)?;
         let all = history.indices();

@@ -54,7 +54,7 @@ pub struct ExportResult {
     pub rows: Result<Option<u64>, FileError>,
 }
 
-/// How far the samples of a group have been passed on.
+/// How far the samples of a group have been passed on to the export thread.
 #[derive(Debug)]
 struct ExportPosition {
     group: GroupId,

@@ -67,7 +67,7 @@ impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> Draft
 #[derive(Debug)]
 pub(crate) struct ActiveDraft<E> {
     session: SessionId,
-    /// Edits passed on for storage most recently.
+    /// Last edits passed on for storage.
     kept: E,
     busy: bool,
     /// Whether the edits may have changed since they were last passed on for storage.

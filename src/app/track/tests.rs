@@ -232,8 +232,7 @@ fn a_value_no_longer_watched_keeps_its_samples() {
     assert_eq!(steps(&track, "nothing"), [4.0]);
 }
 
-/// More than two minutes of data are kept when another device is connected. Otherwise the user is asked before they are
-/// lost (issue 21.12).
+/// More than two minutes of data are kept when another device is connected (issue 21.12).
 #[test]
 fn minutes_of_another_device_are_kept() {
     let meaning = PositionScales::for_steps_per_turn(None, 1000.0);

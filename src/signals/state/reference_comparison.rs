@@ -29,10 +29,10 @@ pub struct Part {
     pub differential_deg: f64,
     /// INL in mechanical degrees, as a ± value.
     pub integral_deg: f64,
-    /// Total deviation over the reference angle, both in mechanical degrees. Each section of the curve is represented
-    /// by its minimum and maximum.
+    /// Total deviation by reference angle, both in mechanical degrees. Each section of the curve is represented by its
+    /// minimum and maximum.
     pub deviation: Vec<(f64, f64)>,
-    /// Deviation averaged over a period, over the reference angle, both in mechanical degrees.
+    /// Deviation averaged over a period, by reference angle. Both are in mechanical degrees.
     pub mean: Vec<(f64, f64)>,
 }
 

@@ -76,7 +76,7 @@ fn median(values: &[f64]) -> f64 {
 
 /// Converts a peak amplitude in volts to an rms level in decibels relative to one volt.
 pub fn to_decibel_volts(peak_v: f64) -> f64 {
-    /// Lowest level in decibels. Added to one volt in a double, a lower amplitude would make no difference.
+    /// Lowest level in decibels, at which an amplitude is practically zero.
     const MIN_DECIBELS: f64 = -160.0;
     (20.0 * (peak_v / std::f64::consts::SQRT_2).log10()).max(MIN_DECIBELS)
 }

@@ -327,8 +327,8 @@ mod tests {
         assert_eq!(nothing.compute_result().unwrap_err().id(), "synchronise.no_signal");
     }
 
-    /// Quadrature counters with a phase match section 4. The same applies to the speed limit of 29 rpm for 1 ms with
-    /// 1024 periods.
+    /// Positions from quadrature counters match section 4, and so does the speed limit of 29 rpm for 1 ms with 1024
+    /// periods.
     #[test]
     fn counters_and_check_speed_are_computed() {
         for (quarters, phase, fine) in [("43", "0.76", 10.76), ("44", "0.98", 10.98), ("43", "0.02", 11.02)] {
