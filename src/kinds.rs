@@ -1,4 +1,4 @@
-//! The kinds of device that the program supports. No other file lists them.
+//! The device kinds that the program supports. No other file lists them.
 
 mod kind;
 

@@ -85,9 +85,9 @@ pub trait ParameterGroup: Default {
 ///
 /// ```ignore
 /// parameters! {
-///     /// The gateway.
+///     /// Location of a device behind a gateway.
 ///     pub struct Place: UrlError {
-///         /// The unit that the gateway is asked for.
+///         /// Unit to request from the gateway.
 ///         pub unit: u8 = 1, "unit" => Whole(Quantity::Unit, 0..=255), "connect.unit";
 ///         pub known: bool = false;
 ///     }

@@ -93,8 +93,8 @@ impl Motor {
     }
 }
 
-/// Returns the value for command 43h that sets the present position to period `period` (method 2). The lowest five bits
-/// are the upper bits of the phase, as the encoder requires. Returns `None` beyond 2²⁷ periods.
+/// Returns the position to set with command 43h so that the shaft is in period `period` (method 2). The lowest five
+/// bits are the upper bits of the phase, as the encoder requires. Returns `None` beyond 2²⁷ periods.
 pub fn preset_position(period: u32, phase: Phase) -> Option<u32> {
     if period >> 27 == 0 { Some(period << 5 | phase.step(5)) } else { None }
 }

@@ -87,8 +87,8 @@ enum Direction {
 }
 
 impl AnglePath {
-    /// Number of quarter periods by which an angle must move back for a reversal. Noise moves the angle back by less
-    /// than this.
+    /// Number of quarter periods by which an angle must move back to count as a reversal. Noise causes smaller
+    /// movements.
     const REVERSAL_QUARTERS: i64 = 3;
 
     fn starting_at(first: UnwrappedAngle) -> Self {
@@ -176,14 +176,14 @@ fn quadrant_of(sine: f64, cosine: f64) -> i32 {
 }
 
 impl Coverage {
-    /// Follows the samples in order. The angle must move by less than half a period between consecutive samples.
-    /// Returns `None` without samples.
+    /// Measures how the samples cover the ellipse. The angle must change by less than half a period between consecutive
+    /// samples. Returns `None` without samples.
     pub fn measure(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> Option<Self> {
         Coverage::measure_without(sine, cosine, &[], &[], ellipse)
     }
 
-    /// Follows the samples in order, except the ranges in `left_out`, which are ordered and do not overlap. Each index
-    /// in `breaks` is the first sample after a gap, across which the angle is not followed.
+    /// Measures how the samples cover the ellipse, excluding the ranges in `left_out`, which must be ordered and must
+    /// not overlap. Each index in `breaks` is the first sample after a gap, across which the angle is not followed.
     pub(super) fn measure_without(
         sine: &[f64],
         cosine: &[f64],

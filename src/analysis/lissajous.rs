@@ -59,7 +59,7 @@ impl PlotSquare {
 }
 
 impl SampleDensity {
-    /// Creates an empty density of `side` × `side` cells. `side` is limited to the range 1 to [`MAX_CELLS`]. Returns
+    /// Creates an empty density with `side` × `side` cells. `side` is limited to the range 1 to [`MAX_CELLS`]. Returns
     /// `None` for an empty square.
     pub fn new(square: PlotSquare, side: usize) -> Option<Self> {
         let PlotSquare { cosine_v, sine_v, half_v } = square;

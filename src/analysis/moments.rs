@@ -4,7 +4,7 @@
 
 use super::ellipse::{Ellipse, FitError};
 
-/// Maximum sum of both powers.
+/// Largest sum of the powers of x and y.
 const ORDER: usize = 4;
 /// Number of powers in a row of the table.
 const ROW: usize = ORDER + 1;

@@ -17,7 +17,7 @@ use super::coverage::Coverage;
 use super::ellipse::{Ellipse, EllipseCorrection};
 use super::outliers::remaining_ranges;
 
-/// Number of fitted harmonics of the period.
+/// Number of harmonics that are fitted to the error over a period.
 pub const HARMONICS: usize = 8;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -144,8 +144,7 @@ fn harmonics_at(angle: f64) -> Terms {
     terms
 }
 
-/// Returns the harmonics in radians and the rms of the residual in degrees. Returns `None` if there are too few
-/// samples.
+/// Returns the harmonics in radians and the RMS residual in degrees. Returns `None` if there are too few samples.
 fn fit_harmonics(
     samples: &Samples<'_>,
     left_out: &[Range<usize>],

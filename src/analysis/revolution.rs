@@ -90,7 +90,7 @@ impl Revolution {
     }
 }
 
-/// Unwraps a measured angle.
+/// State for unwrapping a measured angle.
 struct AngleUnwrapper {
     whole: f64,
     last: Option<f64>,

@@ -10,7 +10,7 @@ use super::position_error::{PositionError, Samples};
 
 /// Minimum number of octants of a period that must contain samples (U).
 pub const MIN_OCTANTS: u32 = 6;
-/// Maximum rms distance from the ellipse, relative to the amplitude. Above it, the samples do not form an ellipse. A
+/// Maximum RMS distance from the ellipse, relative to the amplitude. Above it, the samples do not form an ellipse. A
 /// cloud of noise around one point has 0.4 or more, while a residual of 0.02 already indicates a poor signal.
 pub const LARGEST_RESIDUAL: f64 = 0.25;
 
@@ -48,7 +48,7 @@ pub enum AnalysisError {
     /// The samples are too far from the ellipse to be a sine and a cosine.
     #[error("the samples deviate from the ellipse by {share:.2} of the amplitude")]
     NoSignal {
-        /// Rms distance from the ellipse as a fraction of the amplitude.
+        /// RMS distance from the ellipse as a fraction of the amplitude.
         share: f64,
     },
 }

@@ -26,7 +26,7 @@ pub struct Synchroniser {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SynchronisedPosition {
-    /// Number of whole periods, which is below the number in the range.
+    /// Number of whole periods, always less than the number in the range.
     pub period: u64,
     pub phase: Phase,
     /// Correction of the absolute position in periods: −1, 0 or 1.

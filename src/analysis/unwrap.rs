@@ -19,12 +19,12 @@ pub struct UnwrappedPosition {
 }
 
 impl PositionUnwrapper {
-    /// Creates the state for an encoder that wraps from `range` − 1 to 0. Returns `None` for a range below 2.
+    /// Creates an unwrapper for an encoder that wraps from `range` − 1 to 0. Returns `None` for a range below 2.
     pub fn rotary(range: i64) -> Option<Self> {
         (range >= 2).then_some(PositionUnwrapper { range: Some(range), last: None, gap: false })
     }
 
-    /// Creates the state for an encoder that does not wrap. Positions are returned unchanged.
+    /// Creates an unwrapper for an encoder that does not wrap. Positions are returned unchanged.
     pub fn without_wrap() -> Self {
         PositionUnwrapper { range: None, last: None, gap: false }
     }

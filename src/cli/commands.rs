@@ -15,7 +15,7 @@ use crate::app::{Text, TypeMap};
 use crate::profile::{Body, KeptItem};
 use crate::report::Report;
 
-/// Commands that a kind of device may support.
+/// Commands that a device kind may support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CommandId {
     /// Search for devices.
@@ -86,9 +86,9 @@ impl CommandId {
     }
 }
 
-/// A kind of device on the command line. Unsupported commands are reported as incorrect usage.
+/// A device kind on the command line. Unsupported commands are reported as incorrect usage.
 pub trait DeviceCommands: ProfileCommands {
-    /// Returns the name of this kind of device on the command line and in profiles.
+    /// Returns the name of this device kind on the command line and in profiles.
     fn name(&self) -> &'static str;
 
     /// Returns a one-sentence description for the help text.
@@ -104,12 +104,12 @@ pub trait DeviceCommands: ProfileCommands {
         None
     }
 
-    /// Returns the options that this kind of device adds to a command. Several kinds may share an option.
+    /// Returns the options that this device kind adds to a command. Several kinds may share an option.
     fn options(&self, _command: CommandId) -> Vec<Arg> {
         Vec::new()
     }
 
-    /// Returns the options that this kind of device adds to every command and to the window. Several kinds may share an
+    /// Returns the options that this device kind adds to every command and to the window. Several kinds may share an
     /// option.
     fn common_options(&self) -> Vec<Arg> {
         Vec::new()
@@ -138,7 +138,7 @@ pub trait DeviceCommands: ProfileCommands {
         Vec::new()
     }
 
-    /// Returns the reason why other kinds of device reject an option of this kind. Returns `None` if no specific reason
+    /// Returns the reason why other device kinds reject an option of this kind. Returns `None` if no specific reason
     /// can be given.
     fn refused_option(&self, _option: &str) -> Option<String> {
         None
@@ -194,7 +194,7 @@ pub trait ProfileCommands: Sync {
     }
 }
 
-/// A command that belongs to one kind of device or to another part of the program.
+/// A command that belongs to one device kind or to another part of the program.
 pub trait CliCommand: Sync {
     /// Returns the command with its options and help.
     fn command(&self) -> clap::Command;
@@ -213,7 +213,7 @@ pub trait CliCommand: Sync {
     }
 }
 
-/// A protocol whose captured bytes `decode` explains. Several kinds of device may share it.
+/// A protocol whose captured bytes `decode` explains. Several device kinds may share it.
 pub trait ProtocolDecoder: Sync {
     /// Returns the name of the protocol on the command line.
     fn name(&self) -> &'static str;
@@ -228,7 +228,7 @@ pub trait ProtocolDecoder: Sync {
     fn decode(&self, output: &Output, decode: &DecodeArgs) -> Result;
 }
 
-/// All commands that kinds of device, protocols and other parts of the program provide.
+/// All commands that device kinds, protocols and other parts of the program provide.
 #[derive(Clone, Copy)]
 pub struct Commands {
     devices: &'static [&'static dyn DeviceCommands],
@@ -263,18 +263,18 @@ impl Commands {
         self.protocols
     }
 
-    /// Returns the options that kinds of device add to every command and to the window.
+    /// Returns the options that device kinds add to every command and to the window.
     pub(super) fn common_options(self) -> impl Iterator<Item = Arg> {
         self.devices.iter().flat_map(|device| device.common_options())
     }
 
-    /// Returns an explanation why the chosen kind of device does not accept an option.
+    /// Returns an explanation why the chosen device kind does not accept an option.
     pub(super) fn option_rejection(self, option: &str, chosen: &str) -> String {
         let own = self.devices.iter().find_map(|device| device.refused_option(option));
         own.unwrap_or_else(|| format!("{option} is not for {chosen} devices"))
     }
 
-    /// Returns an error message if a given common option does not exist for the chosen kind of device.
+    /// Returns an error message if a given common option does not exist for the chosen device kind.
     pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &KindOptions) -> Option<String> {
         let own = chosen.common_options();
         let foreign = self.common_options().find(|option| {
@@ -293,7 +293,7 @@ impl Commands {
         self.protocols.iter().copied().find(|protocol| protocol.name() == name)
     }
 
-    /// Returns the kind of device with this name.
+    /// Returns the device kind with this name.
     ///
     /// # Errors
     /// Returns an error if the name is unknown.
@@ -302,7 +302,7 @@ impl Commands {
         named.ok_or_else(|| Failure::Failed(vec![format!("There are no commands for {name} devices.")]))
     }
 
-    /// Returns an error message if a given option does not exist for the chosen kind of device or protocol.
+    /// Returns an error message if a given option does not exist for the chosen device kind or protocol.
     pub(super) fn foreign_option(self, command: CommandId, chosen: &str, given: &KindOptions) -> Option<String> {
         let has = |device: &&&dyn DeviceCommands, id: &clap::Id| {
             device.options(command).iter().any(|option| option.get_id() == id)
@@ -322,12 +322,12 @@ impl Commands {
     }
 }
 
-/// Values of the options that kinds of device add to a command.
+/// Values of the options that device kinds add to a command.
 #[derive(Clone)]
 pub struct KindOptions(ArgMatches);
 
 impl KindOptions {
-    /// Parses the options that a kind of device has added into its own type.
+    /// Parses the options that a device kind has added into its own type.
     pub(crate) fn read<O: FromArgMatches>(&self) -> Result<O> {
         parse(&self.0)
     }

@@ -1,4 +1,4 @@
-//! Common part of the `decode` command for all kinds of devices: parses captured bytes and prints their meaning.
+//! Common part of the `decode` command for all device kinds: parses captured bytes and prints their meaning.
 
 use serde_json::{Map, Value as Json, json};
 

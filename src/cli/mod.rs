@@ -76,7 +76,7 @@ pub struct Window {
 }
 
 /// Runs the command given by the arguments of a process, which start with the program name. Without a command, requests
-/// the window. `kinds` are the kinds of device with their profiles, and `commands` are the available commands.
+/// the window. `kinds` are the device kinds with their profiles, and `commands` are the available commands.
 pub fn run(words: impl IntoIterator<Item = OsString>, kinds: KindRegistry, commands: Commands) -> Invocation {
     let arguments = match args::parse_arguments(words, commands) {
         Ok(arguments) => arguments,

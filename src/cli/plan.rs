@@ -1,5 +1,5 @@
-//! Output of write plans on the command line, for all kinds of device. Each line shows an old and a new value, followed
-//! by the cost and the result.
+//! Output of write plans on the command line, for all device kinds. Each line shows an old and a new value, followed by
+//! the cost and the result.
 
 use std::path::PathBuf;
 

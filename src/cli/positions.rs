@@ -1,4 +1,4 @@
-//! Repeated readings for the `position` command of all kinds of device, with a count and an interval.
+//! Repeated readings for the `position` command of all device kinds, with a count and an interval.
 
 use std::time::{Duration, Instant};
 

@@ -1,5 +1,5 @@
-//! Profile commands for all kinds of device: `diff`, `verify`, and the common parts of `save` and `restore`. The
-//! content of the file determines the kind.
+//! Profile commands for all device kinds: `diff`, `verify`, and the common parts of `save` and `restore`. The content
+//! of the file determines the kind.
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use crate::profile::{Body, Comparison, Profile, ProfileDocument, RestoreOptions}
 use crate::store::{Event, read_text, write_atomically};
 use crate::worker::commit::PlannedWrite;
 
-/// Reads a profile of any kind of device for display or comparison.
+/// Reads a profile of any device kind for display or comparison.
 pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?;
     print_profile_note(output, path, &document)?;

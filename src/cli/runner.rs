@@ -31,7 +31,7 @@ pub trait CliDevice: Kind {
     /// Whether the line allows only one master. A connected drive may be a second one. `--only-master` confirms that no
     /// drive is connected.
     const HAS_ONE_MASTER: bool = false;
-    /// Commands of this kind of device.
+    /// Commands of this device kind.
     const COMMANDS: &'static dyn DeviceCommands;
 
     /// Returns whether there may be another master on the line of a link. If so, the user is asked before the first

@@ -54,7 +54,7 @@ pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Res
     kind.restore(common, output, &restore, profile)
 }
 
-/// Returns an instruction for an item that cannot be undone, with a command if this kind of device has one.
+/// Returns an instruction for an item that cannot be undone, with a command if this device kind has one.
 fn instruction(kind: &dyn DeviceCommands, kept: &KeptItem) -> String {
     let general = match &kept.redo {
         Redo::Write(value) => format!("write {value} again"),

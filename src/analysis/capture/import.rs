@@ -152,7 +152,7 @@ impl TableImport {
         self.first_left_out.get_or_insert((row, why));
     }
 
-    /// Calls the splitter once and returns the number of bytes used.
+    /// Calls the CSV splitter once and returns the number of bytes that it has used.
     fn split_next_row(&mut self, bytes: &[u8]) -> Result<usize, CaptureError> {
         let row = self.row.get_mut(self.written..).unwrap_or_default();
         let ends = self.ends.get_mut(self.ended..).unwrap_or_default();
@@ -275,7 +275,7 @@ impl ColumnChoice {
         }
     }
 
-    /// Returns the content of a column without surrounding spaces.
+    /// Returns the field of a row in the given column, without surrounding spaces.
     fn field<'r>(&self, row: &'r [u8], ends: &[usize], line: u64, column: usize) -> Result<&'r [u8], CaptureError> {
         let at = column.saturating_sub(1);
         let start = at.checked_sub(1).and_then(|before| ends.get(before)).copied().unwrap_or(0);
@@ -303,7 +303,7 @@ pub(super) fn to_integer(value: f64) -> Option<i64> {
 /// Values that SCPI instruments send for an overload (9.9E37) and for "not a number" (9.91E37). See SCPI-99, 7.2.1.
 const NO_VALUE: std::ops::RangeInclusive<f64> = 9.9e37..=9.91e37;
 
-/// Parses a field without surrounding spaces.
+/// Parses a field that has no surrounding spaces.
 pub(super) fn parse_number(field: &[u8], comma: bool) -> CellNumber {
     let field = field.strip_prefix(b"+").filter(|rest| rest.first() != Some(&b'-')).unwrap_or(field);
     let parsed = match field.iter().position(|byte| *byte == b',') {

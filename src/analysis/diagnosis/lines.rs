@@ -32,7 +32,7 @@ const MIN_PERIODS: f64 = 8.0;
 const HARMONICS: (usize, usize) = (25, 5);
 /// Number of lines on each side of a harmonic that belong to it in a Hann window.
 const HARMONIC_HALF_WIDTH: usize = 3;
-/// Lines next to the signal's peak and above this fraction of it belong to the signal.
+/// Fraction of the signal's peak above which neighbouring lines belong to the signal.
 const WIDTH: f64 = 0.01;
 /// Number of neighbouring lines on each side from which the noise is determined.
 const NEIGHBOURS: usize = 50;
@@ -247,7 +247,7 @@ impl Complex {
     }
 }
 
-/// Measures a single frequency in both channels and in the radial component.
+/// Measurement of a single frequency in both channels and in the radial component.
 struct FrequencyProbe<'a> {
     sine: &'a [f64],
     cosine: &'a [f64],

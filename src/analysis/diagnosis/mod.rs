@@ -34,9 +34,9 @@ const SAME_LEVEL_V: f64 = 0.1;
 const RAILS_V: (f64, f64) = (0.5, 4.5);
 /// Fraction of samples excluded from the fit above which spikes are reported as a warning.
 const MANY_SPIKES: f64 = 1e-3;
-/// Minimum number of consecutive outliers that indicate an intermittent contact. Fewer outliers are a spike.
+/// Minimum number of consecutive outliers that indicate an intermittent contact. Fewer outliers count as a spike.
 const INTERMITTENT_SAMPLES: usize = 16;
-/// Amplitude modulation over a revolution at which a notice and a warning are reported.
+/// Thresholds of the amplitude modulation over a revolution, for a notice and for a warning.
 const MODULATION: (f64, f64) = (0.03, 0.1);
 
 /// Fraction of the residual's mean square that other findings must account for.

@@ -12,7 +12,7 @@ use crate::analysis::signal_analysis::Analysis;
 const SECTORS: usize = 64;
 /// Maximum number of samples examined for harmonics.
 const SAMPLES: usize = 1 << 18;
-/// Orders examined in the averaged distance from the ellipse. The fit absorbs the first two.
+/// Orders examined in the averaged distance from the ellipse. The ellipse fit absorbs the first two orders.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=8;
 const REVOLUTION_SECTORS: usize = 36;
 /// Number of samples per period sufficient to follow the angle.

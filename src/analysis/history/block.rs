@@ -90,7 +90,7 @@ impl ValueRange {
 #[derive(Debug)]
 pub(super) struct SampleBlock<T> {
     values: Vec<T>,
-    /// All `BUCKETS` buckets. A bucket is valid once its samples are complete.
+    /// Buckets of all levels. A bucket is valid once all of its samples have been appended.
     buckets: Box<[Bucket]>,
     /// Bucket for the whole block, valid once the block is full.
     top: Bucket,

@@ -1,5 +1,4 @@
-//! Flags of single samples, and the flags of a block with a summary for each group of samples. Flags are independent of
-//! the values.
+//! Flags of single samples, and the flags of a block with a summary for each group of samples.
 
 use std::ops::{BitOr, BitOrAssign, Range};
 

@@ -1,5 +1,4 @@
-//! Construction of the clap command line from the common part and from the options and commands of all kinds of
-//! devices.
+//! Construction of the clap command line from the common part and from the options and commands of all device kinds.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -10,7 +9,7 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Subcommand};
 use super::{COMMON_HEADING, Cli, Command, CommonArgs};
 use crate::cli::commands::{CliCommand, CommandId, Commands, DeviceCommands};
 
-/// Display order of options added by a kind of device. They follow the shared options.
+/// Display order of options added by a device kind. They follow the shared options.
 const AFTER_SHARED: usize = 200;
 
 pub(in crate::cli) struct Arguments {
@@ -74,7 +73,7 @@ pub fn command(commands: Commands) -> clap::Command {
     extended.subcommands(commands.kind_commands().map(|own| own.command()))
 }
 
-/// Adds the options of all kinds of devices to a shared command.
+/// Adds the options of all device kinds to a shared command.
 fn add_kind_options(command: clap::Command, id: CommandId, commands: Commands) -> clap::Command {
     let mut command = command;
     // Change the argument in place, because `mut_arg` would move it after the other arguments.
@@ -101,7 +100,7 @@ fn add_kind_options(command: clap::Command, id: CommandId, commands: Commands) -
     if help.is_empty() { command } else { command.after_long_help(help.join("\n\n")) }
 }
 
-/// Returns the parser for the kinds of devices that a command accepts. `decode` also accepts protocols.
+/// Returns the parser for the device kinds that a command accepts. `decode` also accepts protocols.
 fn kind_name_parser(id: CommandId, commands: Commands) -> PossibleValuesParser {
     let devices = commands.devices().iter().filter(|device| id != CommandId::Find || device.is_searchable());
     let devices = devices.map(|device| PossibleValue::new(device.name()).help(device.description()));
@@ -110,8 +109,8 @@ fn kind_name_parser(id: CommandId, commands: Commands) -> PossibleValuesParser {
     PossibleValuesParser::new(devices.chain(protocols).collect::<Vec<_>>())
 }
 
-/// Returns the parser for the actions of all kinds of devices. The help of an action states its meaning for each kind
-/// that supports it.
+/// Returns the parser for the actions of all device kinds. The help of an action states its meaning for each kind that
+/// supports it.
 fn action_parser(commands: Commands) -> PossibleValuesParser {
     let single = commands.devices().iter().map(|device| (device.name(), device.action_values()));
     let combined = commands.devices().iter().map(|device| (device.name(), device.combined_actions()));
@@ -130,7 +129,7 @@ fn action_parser(commands: Commands) -> PossibleValuesParser {
     PossibleValuesParser::new(values.collect::<Vec<_>>())
 }
 
-/// Returns a summary that lists the kinds of devices for each command.
+/// Returns a summary that lists the device kinds for each command.
 fn command_summary(commands: Commands) -> String {
     let devices = commands.devices();
     let list = |is: &dyn Fn(&dyn DeviceCommands) -> bool| {

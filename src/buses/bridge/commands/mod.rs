@@ -1,4 +1,4 @@
-//! The virtual adapter of the command `simulate`.
+//! The virtual adapter for the `simulate` command.
 
 use crate::buses::bridge::sim::Adapter;
 use crate::cli::simulate::ServableDevice;

@@ -38,13 +38,13 @@ pub(crate) fn virtual_adapter(query: &str) -> Adapter {
     Adapter::from_pairs(&query.split('&').filter_map(pair).collect::<Vec<_>>(), attachable_kinds()).unwrap()
 }
 
-/// Position frames as received.
+/// Stream format that yields the position frames as received.
 pub(crate) struct RawFrames;
 
 impl StreamFormat for RawFrames {
     type Samples = Vec<u64>;
 
-    /// 20 000 frames per second. A frame with 43 clocks takes 21.5 µs at 2 MHz, in addition to 27 µs of waiting time.
+    /// A stream of 20 000 frames per second. At 2 MHz, a frame of 43 clocks takes 21.5 µs, plus 27 µs of waiting.
     fn stream_request(&self) -> StreamRequest {
         StreamRequest::Biss { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, period_us: 50 }
     }

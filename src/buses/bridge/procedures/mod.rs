@@ -172,8 +172,8 @@ pub(crate) struct Adapter<'m, 'a> {
 }
 
 impl Adapter<'_, '_> {
-    /// Reads the identity of the adapter. This is done once per session, since it ends streams. The supply is not
-    /// switched.
+    /// Reads the identity of the adapter. This is done only once per session, because it ends all streams. The supply
+    /// is left unchanged.
     ///
     /// # Errors
     /// Returns [`AdapterError::Version`] if the adapter uses another version of the protocol, or another [`Failure`] if
@@ -233,8 +233,7 @@ impl Adapter<'_, '_> {
         Ok(())
     }
 
-    /// Sends a request and repeats it once if there is no reply. The request must have the same effect if it is
-    /// repeated.
+    /// Sends a request, and repeats it once if there is no reply. The request must be idempotent.
     ///
     /// # Errors
     /// Returns an error if there is no reply, or not the expected one.
@@ -259,7 +258,7 @@ impl Adapter<'_, '_> {
         self.request_within(request, Duration::ZERO)
     }
 
-    /// Sends a request once that takes the adapter up to `duration`. Returns `None` if there is no reply.
+    /// Sends a request once and allows the adapter up to `duration` to process it. Returns `None` if there is no reply.
     ///
     /// # Errors
     /// Returns an error if the reply is not the expected one.

@@ -4,7 +4,7 @@
 
 use std::collections::VecDeque;
 
-/// Interpolates consecutive cosine samples.
+/// State for interpolating consecutive cosine samples.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SkewCorrection {
     /// Delay of the cosine as a fraction of the interval, above 0 and below 1.

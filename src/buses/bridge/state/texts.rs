@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// Message catalogue of the adapter. The common catalogue provides all other IDs.
+/// Message catalogue of the adapter. All other message IDs are in the common catalogue.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/bridge.ron"));

@@ -1,6 +1,6 @@
 //! Parsing and emitting packets field by field.
 
-/// A structure of EtherNet/IP, named in errors.
+/// An EtherNet/IP structure, as named in error messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "each has its English name")]
 pub enum Structure {
@@ -48,7 +48,7 @@ pub enum Structure {
     Path,
 }
 
-/// A field that allows only some values, named in errors.
+/// A field that allows only certain values, as named in error messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "each has its English name")]
 pub enum PacketField {

@@ -16,7 +16,7 @@ fn bytes(text: &str) -> Vec<u8> {
     parse_hex(text).unwrap()
 }
 
-/// Frames of reference 9: RegisterSession and its reply, a request in a session, and ListIdentity.
+/// The frames are from reference 9: RegisterSession and its reply, a request in a session, and ListIdentity.
 #[test]
 fn published_frames_match() {
     let zeros = "00 ".repeat(20);
@@ -63,7 +63,7 @@ fn a_reply_matches_only_its_own_request() {
     assert_eq!(Frame::unregister_session(SESSION).emit()[..8], bytes("66 00 00 00 78 56 34 12"));
 }
 
-/// CIP requests of reference 9.
+/// The CIP requests are from reference 9.
 #[test]
 fn published_requests_match() {
     let cases = [
@@ -177,9 +177,9 @@ fn published_connection_matches() {
     assert_eq!(ForwardClose::parse(&Request::parse(&bytes(text)).unwrap().data), Ok(close));
 }
 
-/// Composed by hand from the fields of the two replies: serial 0001, vendor 1234h, serial number ABCDh. These are
-/// followed by 0 words and a reserved byte, or by the remaining words of the path and a reserved byte. The rejection
-/// has status 01 and one extended status word, 0106h.
+/// The two replies are composed by hand from their fields: connection serial 0001, vendor 1234h and serial number
+/// ABCDh, followed by 0 words and a reserved byte, or by the number of remaining path words and a reserved byte. The
+/// rejection has status 01 and one extended status word, 0106h.
 #[test]
 fn a_connection_ends_or_is_refused() {
     let text = "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00";
@@ -202,7 +202,7 @@ fn a_connection_ends_or_is_refused() {
     assert_eq!(ForwardOpen::parse(&wrong), Err(PacketError::Value { what: Structure::ForwardOpen, field, got: 8 }));
 }
 
-/// Network parameters of all sizes in the table of reference 7, bit by bit, and of the multicast variant.
+/// Covers all sizes in the table of reference 7, bit by bit, and the multicast variant.
 #[test]
 fn published_network_parameters_match() {
     use NetworkType::{Multicast, PointToPoint};
@@ -240,7 +240,7 @@ fn published_network_parameters_match() {
     assert_eq!((other.transport_class(), other.trigger(), other.is_server()), (3, Trigger::Application, true));
 }
 
-/// Cyclic packets of reference 9 in both directions.
+/// The cyclic packets are from reference 9, in both directions.
 #[test]
 fn published_cyclic_packets_match() {
     let to_target = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 16 00 01 00 01 00 00 00 39 04 64 64 00 80 02 00 00 00 \
@@ -267,10 +267,10 @@ fn published_cyclic_packets_match() {
     assert!(IoPacket::parse(&turned, RealTimeFormat::Modeless).is_err(), "the address comes first");
 }
 
-/// Composed by hand from the fields of the identity item: version 1; socket with AF_INET, port 44818 = AF12h,
-/// 192.168.1.5 and eight zeros; vendor 1010 = 03F2h, type 12, product 1, revision 1.2, status 0030h, serial number 4711
-/// = 1267h, a name of 10 characters, and state 3. The item has 2 + 16 + 14 + 1 + 10 + 1 = 44 = 2Ch bytes, and the data
-/// of the frame have 2 + 4 + 44 = 50 = 32h bytes.
+/// The item is composed by hand from its fields: version 1; socket with AF_INET, port 44818 = AF12h, 192.168.1.5 and
+/// eight zeros; vendor 1010 = 03F2h, type 12, product 1, revision 1.2, status 0030h, serial number 4711 = 1267h, a name
+/// of 10 characters, and state 3. It has 2 + 16 + 14 + 1 + 10 + 1 = 44 = 2Ch bytes, and the data of the frame have 2 +
+/// 4 + 44 = 50 = 32h bytes.
 #[test]
 fn an_identity_item_is_parsed() {
     let item = "01 00 00 02 AF 12 C0 A8 01 05 00 00 00 00 00 00 00 00 F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 0A 48 49 50 \
@@ -302,8 +302,9 @@ fn an_identity_item_is_parsed() {
     assert_eq!(expected.identity.attribute_bytes(8), None);
 }
 
-/// Composed by hand: addresses such as C0A80105h = 192.168.1.5 with the low byte first, a name of three characters with
-/// its length in two bytes, and a byte that fills the word. The low four bits of the control are the source.
+/// The attributes are composed by hand: addresses such as C0A80105h = 192.168.1.5 with the low byte first, a name of
+/// three characters with its length in two bytes, and a padding byte. The low four bits of the configuration control
+/// are the address source.
 #[test]
 fn the_interface_configuration_is_parsed() {
     let text = "05 01 A8 C0 00 FF FF FF 01 01 A8 C0 00 00 00 00 00 00 00 00 03 00 6C 61 6E 00";
