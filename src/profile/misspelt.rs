@@ -71,8 +71,8 @@ impl Reading {
     }
 }
 
-/// Returns the number of wrong letters if a name looks like a misspelling of `intended`. Only a few letters may be
-/// wrong, or one name must be a prefix of the other. Case, hyphens and underscores are ignored.
+/// Returns the number of wrong letters, or `None` if the name does not look like a misspelling of `intended`. Only a
+/// few letters may be wrong, or one name must be a prefix of the other. Case, hyphens and underscores are ignored.
 pub(super) fn edit_distance(name: &str, intended: &str) -> Option<usize> {
     let plain = |text: &str| -> Vec<char> {
         text.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()

@@ -1,4 +1,4 @@
-//! Undoes a write from the logbook, but only where the device still has the written value. A value that has changed
+//! Undoes a write from the logbook, provided that the device still has the written values. A value that has changed
 //! since is not overwritten.
 
 use std::collections::BTreeMap;

@@ -80,12 +80,12 @@ pub(super) fn plan_report(prepared: &Prepared) -> PlanReport {
     )
 }
 
-/// Returns the operations as JSON. Items that share an EEPROM write cycle are grouped under one cost.
+/// Returns the operations as JSON. The EEPROM write cycle that several changes share is counted in their last entry.
 pub(super) fn operations_json(plan: &InterbusPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(operation_steps).map(|step| step.json()).collect()
 }
 
-/// Returns one line of text per operation, with the old and new values.
+/// Returns the operations as text, one line per change with the old and new value.
 pub(super) fn change_lines(plan: &InterbusPlan) -> String {
     plan::step_lines(plan.ops.iter().flat_map(operation_steps)).text()
 }

@@ -35,7 +35,7 @@ pub const fn wear_limit(cost: u64) -> u64 {
 /// returns to its previous mode unless the job selects another mode.
 #[derive(Debug)]
 pub enum InterbusJob {
-    /// Reads the IN word once the connection is open. Nothing is sent to the encoder.
+    /// Reads the IN word as soon as a window has connected. Nothing is sent to the encoder.
     Hello,
     /// Reads everything that can be read without selecting a cam program.
     Survey,

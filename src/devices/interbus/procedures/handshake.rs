@@ -21,7 +21,7 @@ pub enum WordReply {
     Runs,
     Busy,
     Echoed,
-    /// A late echo of an earlier word. It is ignored unless it persists.
+    /// Late echo of an earlier word, unless it persists.
     OldEcho,
     Value(Value),
     Error(ErrorWord),

@@ -12,7 +12,7 @@ pub struct ModeSwitch {
     pub sent: Vec<StartupMode>,
 }
 
-/// Persistent record of mode switches and EEPROM write cycles, by serial number. A job continues even if a record
+/// Persistent record of mode switches and EEPROM write cycles, by serial number. Reading continues even if a record
 /// cannot be saved.
 pub trait Journal {
     /// Returns whether any encoder has not been returned to its mode.

@@ -15,7 +15,7 @@ pub enum EntryError {
     /// The program, the cam or the marked item does not exist.
     #[error(transparent)]
     Item(#[from] ItemError),
-    /// The marked item is a measured value, so it cannot be restored.
+    /// The marked item is a measured value and not a setting.
     #[error("{0} is a measured value and cannot be specific to a mounting")]
     Measured(Item),
 }

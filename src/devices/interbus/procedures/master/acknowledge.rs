@@ -61,8 +61,8 @@ impl Master<'_> {
         self.wait_for_acknowledgement(command, tried, false)
     }
 
-    /// Sends a word until its echo is stable. An encoder that keeps running without an echo has also accepted it (`U`:
-    /// not documented).
+    /// Sends a word until its echo is stable. It also counts as accepted if the encoder keeps running without an echo
+    /// (`U`: not documented).
     pub(super) fn send_mode_command(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.wait_until_value_cleared()?;
