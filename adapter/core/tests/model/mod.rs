@@ -35,7 +35,7 @@ pub(crate) struct Model {
     pub(crate) sent_us: u64,
     pub(crate) reply: Vec<u32>,
     pub(crate) reply_delay_us: u64,
-    /// Start times of all single frames in microseconds.
+    /// Start times of all frames outside streams, in microseconds.
     pub(crate) frames: Vec<u64>,
 }
 

@@ -205,7 +205,7 @@ impl Line {
     }
 }
 
-/// Sets up a state machine of a PIO block as a pacer.
+/// Sets up a state machine of a PIO block as a pacer, which starts the frames of a stream.
 macro_rules! pacer {
     ($block:ident, $machine:ident) => {{
         let program = $block.install(&pio::pio_file!("pio/pacer.pio").program)?;

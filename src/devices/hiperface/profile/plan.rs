@@ -45,7 +45,7 @@ pub enum Op {
         /// New status.
         to: DataFieldStatus,
     },
-    /// Writes bytes of a field with command 4Bh.
+    /// Writes bytes to a field with command 4Bh.
     Store {
         /// Field number.
         field: u8,

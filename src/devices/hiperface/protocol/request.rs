@@ -35,7 +35,7 @@ pub enum Request {
         /// Access code 0.
         code0: AccessCode,
     },
-    /// Reads bytes of a data field (4Ah).
+    /// Reads bytes from a data field (4Ah).
     ReadData {
         /// Data field number. FFh is the extended label.
         field: u8,
@@ -46,7 +46,7 @@ pub enum Request {
         /// Access code of the field. The encoder ignores it if CE is 0.
         code: AccessCode,
     },
-    /// Writes bytes of a data field (4Bh).
+    /// Writes bytes to a data field (4Bh).
     StoreData {
         /// Data field number.
         field: u8,

@@ -18,7 +18,7 @@ pub enum StatusClass {
     Data,
     /// The position is unreliable.
     Position,
-    /// Message from the monitoring of temperature, transmitter or signals.
+    /// Message from monitoring the temperature, the transmitter or the signals.
     Monitoring,
     /// Code that is not listed.
     Unknown,

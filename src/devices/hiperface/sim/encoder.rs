@@ -62,7 +62,7 @@ pub(super) struct ReceivedCharacter {
     pub(super) intact: bool,
 }
 
-/// A reply that the encoder starts to send.
+/// A reply that the encoder begins to send.
 #[derive(Clone)]
 pub(super) struct Transmission {
     pub(super) start: Moment,
@@ -213,7 +213,7 @@ impl Encoder {
         }
     }
 
-    /// Replaces the simulated faults. The counts of frames and stores are kept.
+    /// Replaces the simulated faults, but keeps the counts of frames and stores.
     pub(super) fn set_faults(&mut self, faults: SimulatedFaults) {
         self.silent = faults.silent_after().is_some_and(|frames| frames <= self.frames_processed);
         self.faults = faults;

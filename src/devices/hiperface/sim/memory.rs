@@ -115,7 +115,7 @@ impl Memory {
         if status.is_writable() { Ok(()) } else { Err(StatusCode::WRITE_PROTECTED) }
     }
 
-    /// Writes bytes of a field (4Bh).
+    /// Writes bytes to a field (4Bh).
     ///
     /// # Errors
     /// Returns any error that [`check_store_request`](Self::check_store_request) returns. In this case, no data is
