@@ -74,7 +74,7 @@ impl Clock for VirtualClock {
 mod tests {
     use super::*;
 
-    /// A clock whose sleeps end at ticks of 15.625 ms.
+    /// A clock whose sleeps end only at ticks of 15.625 ms.
     #[derive(Default)]
     struct Ticking(VirtualClock);
 

@@ -21,7 +21,7 @@ pub enum LinkErrorKind {
     /// The user has no permission to open the target.
     #[error("permission denied")]
     Permission {
-        /// User group with permission, if the system reports one.
+        /// User group that has permission, if the system reports one.
         group: Option<String>,
     },
     /// Another program is using the target.

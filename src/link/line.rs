@@ -38,7 +38,7 @@ pub(crate) enum LineError {
 }
 
 impl LineError {
-    /// Converts the error to the error type of a device.
+    /// Converts the error to a device's error type.
     pub(crate) fn into_device_error<E>(self, cancelled: E, never_silent: E, link: fn(LinkError) -> E) -> E {
         match self {
             LineError::Cancelled => cancelled,
@@ -222,7 +222,7 @@ impl<'a> SerialLine<'a> {
     }
 
     /// Skips the late replies to all unanswered requests. The first late byte shows how late replies are. Bytes are
-    /// skipped until a reply to the last request could no longer arrive and the line is silent for `quiet`.
+    /// skipped until even a reply to the last request would have arrived and the line is silent for `quiet`.
     ///
     /// # Errors
     /// Returns a [`LineError`] if the line is never silent or the connection fails.

@@ -74,7 +74,8 @@ pub trait ByteLink: Send {
     /// Returns an error if the connection was lost.
     fn check_connection(&mut self) -> Result<(), LinkError>;
 
-    /// Returns the time of the first start bit of the last reply, or `None` if the connection does not measure it.
+    /// Returns the time of the first start bit of the last reply, or `None` if the connection does not measure this
+    /// time.
     fn reply_start(&self) -> Option<Moment> {
         None
     }
@@ -128,8 +129,8 @@ impl CancelToken {
         self.0.requested.load(Ordering::SeqCst)
     }
 
-    /// Counts a transaction that is about to begin, and returns whether the transaction is cancelled. This function
-    /// must be called before each transaction.
+    /// Counts a transaction that is about to begin, and returns whether it is cancelled. This function must be called
+    /// before each transaction.
     pub fn stops_transaction(&self) -> bool {
         let left = self.0.fuse.load(Ordering::SeqCst);
         if left == 0 {
@@ -147,7 +148,7 @@ pub struct Ctx<'a, W: ?Sized = dyn ByteLink> {
     pub wire: &'a mut W,
     /// Clock for waits and time stamps.
     pub clock: &'a dyn Clock,
-    /// Flag by which the user cancels the procedure.
+    /// Flag that cancels the procedure.
     pub cancel: &'a CancelToken,
     /// Trace of the frames on the connection.
     pub trace: &'a mut Trace,

@@ -3,8 +3,8 @@
 
 use thread_priority::{Error, ThreadPriority};
 
-/// Requests real-time priority for the calling thread until it ends. Returns whether the system granted the request. On
-/// Linux, the user needs the `rtprio` permission.
+/// Requests real-time priority for the calling thread, until the thread ends. Returns whether the system granted the
+/// request. On Linux, the user needs the `rtprio` permission.
 pub fn request_realtime_priority() -> bool {
     let asked = request_realtime();
     if let Err(error) = &asked {

@@ -16,7 +16,7 @@ struct Measured {
 }
 
 impl ReplyTimes {
-    /// Records the time between a request and its reply. Late replies are included.
+    /// Records the time between a request and its reply, even if the reply was late.
     pub(crate) fn record(&self, took: Duration) {
         let took = u64::try_from(took.as_micros()).unwrap_or(u64::MAX);
         self.0.sum.fetch_add(took, Ordering::Relaxed);

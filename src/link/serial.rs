@@ -20,7 +20,7 @@ pub struct PortExample {
     pub bridge: &'static str,
 }
 
-/// Example of a port name on this operating system, with links to it.
+/// An example of a port name on this operating system, with links to it.
 pub const PORT_EXAMPLE: PortExample = if cfg!(windows) {
     PortExample { port: "COM3", serial: "serial:COM3", bridge: "bridge:COM3" }
 } else {

@@ -63,7 +63,7 @@ impl ByteLink for SimLink {
     }
 }
 
-/// Factory for datagram channels to a virtual device.
+/// A factory for datagram channels to a virtual device.
 pub struct SimPort {
     device: Arc<Mutex<dyn DatagramDevice>>,
     clock: Arc<dyn Clock>,

@@ -93,7 +93,7 @@ pub fn write_entry(file: &mut impl Write, entry: &TraceEntry) -> io::Result<()> 
     writeln!(file, "{}", entry_line(entry.at, entry.direction, &entry.bytes))
 }
 
-/// Formats a line of a trace file without the line ending. `bytes` are hexadecimal, with `**` for masked bytes.
+/// Formats a line of a trace file without the line ending. `bytes` must be hexadecimal, with `**` for masked bytes.
 pub fn entry_line(at: Moment, direction: Direction, bytes: impl fmt::Display) -> String {
     let sign = match direction {
         Direction::Sent => '>',

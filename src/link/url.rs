@@ -22,7 +22,7 @@ pub enum LinkScheme {
     Bridge,
     /// A Modbus/TCP gateway that gives access to process data.
     Modbus,
-    /// EtherNet/IP. Explicit messages use TCP, and cyclic data are datagrams.
+    /// EtherNet/IP, with explicit messages over TCP and cyclic data in datagrams.
     Enip,
 }
 
@@ -216,7 +216,7 @@ impl LinkUrl {
 const MODBUS_PORT: &str = ":502";
 const ENIP_PORT: &str = ":44818";
 
-/// Returns whether the target is a host without a port. The host may be an IPv6 address in brackets.
+/// Returns whether the target is a host without a port number. The host may be an IPv6 address in brackets.
 fn has_no_port(target: &str) -> bool {
     !target.is_empty() && (!target.contains(':') || target.ends_with(']'))
 }

@@ -31,7 +31,7 @@ impl Echo {
         }
     }
 
-    /// Stores whether the adapter echoes, unless this is already known.
+    /// Stores whether there was an echo, unless this is already known.
     pub(crate) fn record_echo(&mut self, echo_heard: bool) {
         if *self == Echo::Unknown {
             *self = if echo_heard { Echo::On } else { Echo::Off };

@@ -25,9 +25,9 @@ pub struct LineState {
     /// Counters and reply times since the start of the session.
     pub quality: LineQuality,
     pub(crate) quiet_until: Moment,
-    /// Start of the first failed attempt since the last valid reply.
+    /// Start of the first failed attempt since the last valid reply, if any.
     pub(super) troubled_since: Option<Moment>,
-    /// Time of the first request that is still unanswered.
+    /// Time of the first unanswered request, if any.
     pub(super) outstanding_since: Option<Moment>,
     pub(super) last_sent: Moment,
 }

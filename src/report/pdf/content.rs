@@ -1,4 +1,4 @@
-//! Layout of the content of a report: heading, sections and signature lines.
+//! Layout of a report's content: heading, sections and signature lines.
 
 use krilla::image::Image;
 
@@ -27,7 +27,7 @@ const FACT_GAP: f32 = 2.5;
 const KEPT_LINES: usize = 6;
 /// Maximum line length of a paragraph, in points.
 const MEASURE: f32 = 425.2;
-/// Size of a drawing unit in points, unless the drawing is wider than the page.
+/// Size of a drawing unit in points, unless the drawing would be wider than the page.
 const DRAWING_UNIT: f32 = 0.75;
 /// Height of the space above a signature line, in points.
 const SIGNATURE_ROOM: f32 = 45.0;

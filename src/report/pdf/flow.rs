@@ -1,4 +1,4 @@
-//! Placement of content on pages. A new page begins wherever the next part does not fit.
+//! Placement of content on pages. A new page begins whenever the next item does not fit.
 
 use super::canvas::{Colour, PageMark};
 use super::typeface::{Face, Typefaces};

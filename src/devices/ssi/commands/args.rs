@@ -19,7 +19,7 @@ pub(crate) enum Ssi {
     Export(SsiExportArgs),
 }
 
-/// Help text about the entries of a handwritten profile.
+/// Help text that explains the entries of a handwritten profile.
 const PROFILE: &str = "\
 Entries of the frame in a profile (omitted entries have their default values):
   clocks: 27                       number of bits in a burst, 1 to 64

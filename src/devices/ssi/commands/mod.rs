@@ -136,7 +136,7 @@ fn create_simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn
     Ok(Box::new(adapter))
 }
 
-/// Returns an error for a command that SSI encoders do not support. The error names the alternative.
+/// Returns an error for a command that SSI encoders do not support. The error suggests an alternative.
 fn unsupported_command<T>(command: &str, instead: &str) -> Result<T> {
     Err(Failure::Usage(format!("{command} is not available for {KIND} devices, which send only a position: {instead}")))
 }

@@ -1,4 +1,4 @@
-//! Running jobs on an SSI encoder behind an adapter.
+//! Runs jobs on an SSI encoder behind an adapter.
 
 use super::SsiCommands;
 use super::layout::SelectedLayout;
@@ -19,7 +19,7 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Ssi>;
 
 impl CliDevice for Ssi {
-    /// Settings for reading words, taken from the link unless an option overrides them.
+    /// Settings for reading SSI words, taken from the link unless an option overrides them.
     type Context = ClockSettings;
     const COMMANDS: &'static dyn DeviceCommands = &SsiCommands;
 

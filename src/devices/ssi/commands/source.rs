@@ -1,4 +1,4 @@
-//! Input frames of a command: arguments, a file, or standard input.
+//! Frames given to a command: as arguments, in a file, or on standard input.
 
 use std::io::Read;
 use std::path::Path;
@@ -14,7 +14,7 @@ use crate::store::MAX_TEXT;
 const INPUT: &str = "-";
 
 /// Reads frames from a file, or from standard input if the path is `-`. A frame written as a number has `clocks` bits.
-/// Incomplete bursts are reported in a remark.
+/// A remark reports incomplete bursts.
 pub(super) fn read(output: &Output, path: &Path, clocks: u8) -> Result<Frames> {
     let frames = if path == Path::new(INPUT) {
         parse_frame_file(&input()?, "standard input".to_owned(), clocks)

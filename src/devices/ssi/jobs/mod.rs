@@ -24,18 +24,18 @@ pub struct Ssi {
     wire: Box<dyn ByteLink>,
     station: Station,
     motor: Option<Motor>,
-    /// Interval between streamed words in microseconds, or `None` if words are requested one at a time.
+    /// Interval between streamed SSI words in microseconds, or `None` if words are requested one at a time.
     streamed_us: Option<u32>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum SsiJob {
-    /// Identifies the adapter, switches on the encoder supply if requested, and configures how words are read.
+    /// Identifies the adapter, switches on the encoder supply if requested, and configures how SSI words are read.
     Hello,
-    /// Changes the settings for reading words. A running stream continues with the new settings.
+    /// Changes the settings for reading SSI words. A running stream continues with the new settings.
     Set(ClockSettings),
     Read,
-    /// Runs the device check, which compares words with the layout.
+    /// Runs the device check, which compares SSI words with the layout.
     Check(Box<Layout>),
 }
 
@@ -47,7 +47,7 @@ pub enum SsiOutput {
     Check(Vec<check::SsiStepResult>),
 }
 
-/// The only step of any job, which is reading words.
+/// The only step of any job, which is reading SSI words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JobStep;
 
@@ -59,7 +59,7 @@ impl JobInterruption for Error {
     }
 }
 
-/// Maximum interval at which words are streamed. At longer intervals, each word is requested individually.
+/// Maximum interval at which SSI words are streamed. At longer intervals, each word is requested individually.
 const STREAMING_INTERVAL: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Ssi {

@@ -1,4 +1,4 @@
-//! Opening a session with an SSI encoder from a link.
+//! Opens a session with an SSI encoder from a link.
 
 use std::sync::Arc;
 

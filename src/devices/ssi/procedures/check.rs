@@ -63,7 +63,7 @@ pub enum CheckFinding {
     },
 }
 
-/// Reads a series of words and checks them.
+/// Reads a series of SSI words and checks them.
 ///
 /// # Errors
 /// Returns an error from the adapter if no words arrive.
@@ -163,7 +163,8 @@ fn check_supply(identity: &Identity) -> SsiStepResult {
     SsiStepResult { step: CheckStep::Supply, verdict, findings: vec![finding] }
 }
 
-/// Evaluates the motion of the shaft from the distances between positions, which are measured in the shorter direction.
+/// Evaluates the motion of the shaft from the distances between positions. Each distance is measured in the shorter
+/// direction.
 fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
     let all = u128::from(layout.position_code().last_position()) + 1;
     let apart = |one: u64, other: u64| {

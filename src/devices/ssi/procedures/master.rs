@@ -32,8 +32,8 @@ impl<'a> Master<'a> {
         Master { line: SerialLine::new(ctx), station }
     }
 
-    /// Identifies the adapter, switches on the encoder supply if requested, and configures how words are read. Steps
-    /// that are already done are skipped.
+    /// Identifies the adapter, switches on the encoder supply if requested, and configures how SSI words are read.
+    /// Steps that are already done are skipped.
     ///
     /// # Errors
     /// Returns [`AdapterError::Version`], [`AdapterError::NoSsi`] or [`AdapterError::NoSupply`] if the adapter is not
@@ -50,7 +50,7 @@ impl<'a> Master<'a> {
         Ok(Identity { hello, asking: self.station.asking, clock_hz, supply: self.station.supply })
     }
 
-    /// Changes the settings for reading words.
+    /// Changes the settings for reading SSI words.
     ///
     /// # Errors
     /// Returns any error that [`identify`](Self::identify) returns. In this case, the previous settings stay in effect.
@@ -62,7 +62,7 @@ impl<'a> Master<'a> {
         self.identify().inspect_err(|_| self.station.asking = before)
     }
 
-    /// Reads a single word.
+    /// Reads a single SSI word.
     ///
     /// # Errors
     /// Returns any error that [`identify`](Self::identify) returns.
@@ -79,7 +79,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Reads the next word of a series of single requests.
+    /// Reads the next word in a series of single requests.
     ///
     /// # Errors
     /// Returns any error that [`identify`](Self::identify) returns.
@@ -88,7 +88,7 @@ impl<'a> Master<'a> {
         Ok(Words { first: self.station.count(), ..word })
     }
 
-    /// Returns the next words of a stream. The stream is started if it is not running.
+    /// Returns the next words of a stream, which is started if it is not running.
     ///
     /// `period_us` is the interval between words in microseconds. If the adapter does not support it, its shortest
     /// interval is used.
@@ -173,7 +173,7 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(Supply::POWER_UP)?)
     }
 
-    /// Sends the settings for reading words to the adapter if they have changed. The clock is limited to `fastest`.
+    /// Sends the settings for reading SSI words to the adapter if they have changed. The clock is limited to `fastest`.
     /// Returns the actual clock frequency in hertz.
     fn set_clocks(&mut self, fastest: u32) -> Result<u32, Error> {
         let asking = self.station.asking;
@@ -244,8 +244,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Marks the adapter as not configured after an error, because it may have been reset. A cancellation is not such
-    /// an error.
+    /// Marks the adapter as not configured after an error other than a cancellation, because it may have been reset.
     fn handle_possible_reset(&mut self, error: Error) -> Error {
         if error != Error::Cancelled {
             self.station.forget_settings();

@@ -1,4 +1,4 @@
-//! Reading words from an SSI encoder behind an adapter with the bridge protocol, one by one or as a stream. The encoder
+//! Reads words from an SSI encoder behind an adapter with the bridge protocol, one by one or as a stream. The encoder
 //! has no memory and no commands. The layout (`protocol/ssi`) defines the meaning of the words.
 
 pub mod check;

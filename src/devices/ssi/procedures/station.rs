@@ -1,4 +1,4 @@
-//! State of an adapter and the settings for reading words, which are kept between the jobs of a session.
+//! State of an adapter and the settings for reading SSI words, which are kept between the jobs of a session.
 
 use std::fmt;
 use std::time::Duration;
@@ -47,7 +47,7 @@ impl Default for ClockSettings {
     }
 }
 
-/// Identity of the adapter, and the current settings for reading words.
+/// Identity of the adapter, and the current settings for reading SSI words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     pub hello: Hello,
@@ -70,7 +70,7 @@ pub struct Station {
     pub(super) flow: Option<SampleStream>,
     /// Time of the last word received in an earlier stream.
     pub(super) streamed_until: Option<SampleTime>,
-    /// Number of individually requested words since the settings last changed.
+    /// Number of individually requested SSI words since the settings last changed.
     pub(super) asked: u64,
 }
 
@@ -82,7 +82,7 @@ pub struct Supply {
 }
 
 impl Supply {
-    /// Time from power-up until words are valid. The manual does not specify this time (`U`).
+    /// Time from power-up until SSI words are valid. The manual does not specify this time (`U`).
     pub(super) const POWER_UP: Duration = Duration::from_millis(500);
     /// Supply voltages of SSI encoders in millivolts, from 5 V minus 10 % to 30 V. See SICK SSI description, TTK70.
     const RANGE: std::ops::RangeInclusive<u16> = 4_500..=30_000;

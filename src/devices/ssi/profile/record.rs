@@ -44,14 +44,16 @@ pub struct UnknownEntries {
     pub(super) reading: UnknownValues,
     pub(super) parity: UnknownValues,
     pub(super) repeat: UnknownValues,
-    /// Unknown entries by the name of the error bit, so they stay with the bit if the order changes.
+    /// Unknown entries of error bits, keyed by the name of the bit, so that they stay with the bit if the order
+    /// changes.
     pub(super) errors: Vec<(String, UnknownValues)>,
     pub(super) patterns: Vec<(String, UnknownValues)>,
 }
 
 impl Default for ReadingSettings {
-    /// Returns the clock frequency for 50 m of cable, and a pause that suits every family. An ATM60 with any number of
-    /// steps needs more than 200 µs. See SICK SSI description 2.7 and reference section 5.
+    /// Returns the clock frequency for 50 m of cable, and a pause that suits every family. If its
+    /// number of steps is not a power of two, an ATM60 needs more than 200 µs. See SICK SSI description 2.7 and reference
+    /// section 5.
     fn default() -> Self {
         ReadingSettings { clock_hz: 400_000, pause_us: 250, cable_metres: None, synchronous: false }
     }

@@ -201,7 +201,7 @@ fn take_unknown_by_name(kept: &mut VecDeque<&(String, UnknownValues)>, name: &st
     at.and_then(|at| kept.remove(at)).map(|(_, unknown)| unknown.clone()).unwrap_or_default()
 }
 
-/// Returns the number of clocks that the position takes up, without the zeros after it.
+/// Returns the number of clocks for the position, without the zeros after it.
 fn default_area_clocks(frame: &FrameDescriptor) -> u8 {
     let coding = frame.range.last_position().ok().and_then(|last| PositionCode::new(frame.code, last).ok());
     let bits = coding.map_or(0, |coding| coding.bits());

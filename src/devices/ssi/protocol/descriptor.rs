@@ -25,8 +25,8 @@ pub struct FrameDescriptor {
     /// Number of zeros between multiturn and singleturn. The number must be 0 if the range has no separate bits for
     /// turns and steps.
     pub between: u8,
-    /// Whether the area is delayed by one clock. A zero is sent first, and the last bit of the area is lost. See SICK
-    /// SSI description 3.4, SSI-SHIFT-RIGHT.
+    /// Whether the area is delayed by one clock. A zero is sent before it, and its last bit is lost. See SICK SSI
+    /// description 3.4, SSI-SHIFT-RIGHT.
     pub shift_right: bool,
     /// Error and warning bits, at most 8.
     pub errors: Vec<ErrorBit>,
@@ -64,12 +64,12 @@ pub struct ErrorBit {
     /// Whether the bit is active at 0.
     #[serde(default)]
     pub active_low: bool,
-    /// Whether each transfer clears the bit. If so, the bit reports events since the previous transfer.
+    /// Whether each transfer clears the bit. Such a bit reports events since the previous transfer.
     #[serde(default)]
     pub cleared_by_transfer: bool,
 }
 
-/// Effect of an error bit or of a pattern on the position.
+/// Effect of an error bit or a pattern on the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BitMeaning {

@@ -63,8 +63,8 @@ struct Edge {
     rises: bool,
 }
 
-/// Extracts the frames from a recording, in which the times must not decrease. Swapped clock wires are recognised by
-/// the idle level.
+/// Extracts the frames from a recording whose times never decrease. Swapped clock wires are recognised by the idle
+/// level.
 ///
 /// # Errors
 /// Returns a [`BurstError`] if the recording contains no frames.

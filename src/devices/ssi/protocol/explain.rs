@@ -13,8 +13,8 @@ pub enum Role {
     Multiturn(u8),
     /// Singleturn bit with the given number, where 0 is the lowest.
     Singleturn(u8),
-    /// Bit of the code word with the given number, where 0 is the lowest. Used if multiturn and singleturn have no
-    /// separate bits.
+    /// Bit of the code word with the given number, where 0 is the lowest. It is used if multiturn and singleturn have
+    /// no separate bits.
     Position(u8),
     /// Error bit, given by its index in the descriptor's list.
     Error(usize),
@@ -56,12 +56,12 @@ pub enum FrameFinding {
     },
     /// All bits are 1.
     StuckHigh {
-        /// Whether another flag also shows that the frame is not a position.
+        /// Whether another flag confirms that the frame is not a position.
         sure: bool,
     },
     /// All bits are 0.
     StuckLow {
-        /// Whether another flag also shows that the frame is not a position.
+        /// Whether another flag confirms that the frame is not a position.
         sure: bool,
     },
     /// The code word does not represent a position.

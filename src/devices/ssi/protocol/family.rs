@@ -79,8 +79,8 @@ pub struct StepLimits {
     pub per_turn: u32,
     /// Maximum number of steps in total.
     pub total: u32,
-    /// Maximum numerator and denominator of the number of turns that a round axis covers, or `None` if the family does
-    /// not support round axes.
+    /// Maximum numerator and denominator of the number of turns on a round axis, or `None` if the family does not
+    /// support round axes.
     #[serde(default)]
     pub revolutions: Option<(u32, u32)>,
 }

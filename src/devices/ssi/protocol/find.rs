@@ -119,7 +119,7 @@ impl LayoutProposal {
 pub struct ClassEvidence {
     /// Score from 0 to 1, which depends on how well the layout explains the frames and how common it is.
     pub score: f64,
-    /// Number of frames that are consistent with their neighbours.
+    /// Number of frames that are consistent with the frames next to them.
     pub explained: usize,
     /// Median distance between consecutive frames in steps of the lowest bit.
     pub steps_a_frame: i64,
@@ -129,7 +129,7 @@ pub struct ClassEvidence {
     pub jumps: usize,
     /// Number of frames in which a constant bit has another value or the code word is invalid.
     pub misfits: usize,
-    /// Number of position bits from the highest bit that changed to the lowest bit.
+    /// Number of position bits, from the highest bit that changed to the lowest bit.
     pub bits_seen: u8,
 }
 
@@ -178,7 +178,7 @@ struct Group {
     bits: f64,
 }
 
-/// Finds the layouts that fit frames of `clocks` bits. The frames must be right-justified, and they must have been read
+/// Finds the layouts that fit frames of `clocks` bits. The frames must be right-justified and must have been read
 /// consecutively at equal intervals.
 pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     let newest = frames.get(frames.len().saturating_sub(MAX_FRAMES)..).unwrap_or_default();
@@ -239,7 +239,8 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     search(doubt, verdict::merge_classes(&words, groups))
 }
 
-/// Returns whether two readings result in the same motion. It may be reversed, or scaled by a small power of two.
+/// Returns whether two interpretations of the frames result in the same motion. It may be reversed, or scaled by a
+/// small power of two.
 fn is_same_motion(one: &Motion, other: &Motion) -> bool {
     let halvings = |motion: &Motion| {
         let steps =

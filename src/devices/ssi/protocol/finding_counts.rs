@@ -1,4 +1,4 @@
-//! Counts of the findings in frames. Every frame must be counted, because the next transfer clears some error bits.
+//! Counts of findings in frames. Every frame must be counted, because the next transfer clears some error bits.
 
 use super::explain::FrameFinding;
 use super::layout::{Flags, FrameReading, Layout};

@@ -41,9 +41,9 @@ pub struct Layout {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct BitPart {
-    /// Number of bits in the word after the part.
+    /// Number of bits in the word that follow this part.
     pub(super) in_word: u8,
-    /// Number of bits in the code word after the part.
+    /// Number of bits in the code word that follow this part.
     pub(super) in_code: u8,
     pub(super) mask: u64,
 }
@@ -77,12 +77,12 @@ impl Flags {
     /// Every bit is 0.
     pub const ALL_ZEROS: Flags = Flags(1 << 21);
 
-    /// Returns the flag of error bit `index` of the descriptor.
+    /// Returns the flag for the error bit with this index in the descriptor.
     pub const fn error(index: usize) -> Flags {
         if index < 8 { Flags(1 << index) } else { Flags::NONE }
     }
 
-    /// Returns the flag of pattern `index` of the descriptor.
+    /// Returns the flag for the pattern with this index in the descriptor.
     pub const fn pattern_flag(index: usize) -> Flags {
         if index < 4 { Flags(1 << (8 + index)) } else { Flags::NONE }
     }
@@ -142,7 +142,7 @@ impl Layout {
         &self.descriptor
     }
 
-    /// Returns the code of the positions. It is binary if a Gray code covers more than the position.
+    /// Returns the code of the positions, or binary if a Gray code covers more than the position.
     pub const fn position_code(&self) -> &PositionCode {
         &self.coding
     }
@@ -152,7 +152,7 @@ impl Layout {
         self.descriptor.clocks
     }
 
-    /// Returns whether the shift to the right drops the lowest bit of the position.
+    /// Returns whether the right shift drops the lowest bit of the position.
     pub const fn loses_lowest_bit(&self) -> bool {
         self.lost
     }
@@ -162,8 +162,7 @@ impl Layout {
         self.invalid
     }
 
-    /// Returns the frame for a position, or `None` beyond the last position. The error bits in `flags` are active in
-    /// it.
+    /// Returns the frame for a position, or `None` beyond the last position. The error bits in `flags` are active.
     ///
     /// The frame is right-justified: the bit of the first clock is the highest.
     pub fn encode(&self, position: u64, flags: Flags) -> Option<u64> {

@@ -16,7 +16,7 @@ pub enum Range {
         /// Width of the singleturn field, 0 to 32 bits.
         singleturn: u8,
     },
-    /// Arbitrary numbers of steps per turn and of turns.
+    /// Any number of steps per turn, and any number of turns.
     Steps {
         /// Steps per turn, at least 2.
         per_turn: u32,
@@ -195,8 +195,8 @@ impl Range {
         self.count_from_zero(raw, per_turn, Direction::Clockwise)
     }
 
-    /// Returns the position for a counting direction and a preset, which is the position at the zero point of the
-    /// shaft. A preset after the last position wraps. See reference section 5, "Direction" and "preset".
+    /// Returns the position for a counting direction and a preset. The preset is the position at the zero point of the
+    /// shaft, and wraps if it is beyond the last position. See reference section 5, "Direction" and "preset".
     pub fn position_with_preset(&self, raw: u64, per_turn: u64, direction: Direction, preset: u64) -> u64 {
         let last = self.last_position().unwrap_or(0);
         let position = u128::from(self.count_from_zero(raw, per_turn, direction)) + u128::from(preset);

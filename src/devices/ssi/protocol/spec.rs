@@ -3,10 +3,10 @@
 
 use crate::expected::AllowedValues;
 
-/// The reason why a word does not describe a layout.
+/// The reason why a layout specification is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SpecError {
-    /// A part is not of the form `name=value`.
+    /// A part of the specification is not of the form `name=value`.
     #[error("\"{word}\" is not NAME=VALUE; names: {names}", names = names.join(", "))]
     Form {
         /// The invalid part.

@@ -17,10 +17,10 @@ pub struct Times {
     pub monoflop: (f64, f64),
     /// Maximum clock frequency in hertz.
     pub most_hz: u32,
-    /// Times of asynchronous operation, or `None` if they are unknown.
+    /// Times in asynchronous operation, or `None` if they are unknown.
     #[serde(default)]
     pub asynchronous: Option<AsynchronousTimes>,
-    /// Times of synchronous operation, or `None` if the family does not support it.
+    /// Times in synchronous operation, or `None` if the family does not support it.
     #[serde(default)]
     pub synchronous: Option<SynchronousTimes>,
     /// Times for a number of steps that is not a power of two, if they differ.
@@ -28,7 +28,7 @@ pub struct Times {
     pub any_steps: Option<AnySteps>,
 }
 
-/// Times of asynchronous operation, in which the encoder samples positions independently of the transfers.
+/// Times in asynchronous operation, in which the encoder samples positions independently of the transfers.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AsynchronousTimes {
@@ -45,7 +45,7 @@ pub struct AsynchronousTimes {
     pub pause_varies: Option<f64>,
 }
 
-/// Times of synchronous operation, in which the clock of the host triggers the sampling of a position.
+/// Times in synchronous operation, in which the host's clock triggers the sampling of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SynchronousTimes {
@@ -67,9 +67,9 @@ pub struct SynchronousTimes {
 pub enum SamplingMoment {
     /// The position is sampled a certain time after the last clock.
     Behind {
-        /// Time from the last clock until the position is sampled, in microseconds.
+        /// Time from the last clock until the encoder starts to sample the position, in microseconds.
         starts: f64,
-        /// Time from the sampling until the position is ready, in microseconds.
+        /// Time from the start of sampling until the position is ready, in microseconds.
         ready: f64,
     },
     /// The position is sampled at the first falling edge, and is sent in the next burst.

@@ -12,8 +12,8 @@ pub const DEFAULT_ENCODER: &str = "atm60,code=gray";
 
 parameters! {
     pub struct Settings: ConfigError {
-        /// Family and settings of the encoder. If the host clocks fewer bits, it receives a part of the frame. If it
-        /// clocks more bits, zeros follow the frame.
+        /// Family and settings of the encoder. A host that clocks fewer bits receives a part of the frame. A host that
+        /// clocks more bits receives zeros after the frame.
         encoder: Option<Encoder> = None,
             "ssi" => OptionalValue(CustomNotation(AllowedValues::Family, Encoder::parse)),
             "connect.ssi_layout" like "atm60,code=gray";

@@ -1,4 +1,4 @@
-//! The virtual SSI encoder: the words that it sends at a position of the shaft, and its simulated faults. The virtual
+//! The virtual SSI encoder: the words that it sends at each shaft position, and its simulated faults. The virtual
 //! adapter clocks the words and turns the shaft.
 //!
 //! | file | content |

@@ -1,4 +1,4 @@
-//! Tests of the virtual SSI encoder and its settings from the perspective of a host.
+//! Tests of the virtual SSI encoder and its settings, as seen by a host.
 
 use std::time::Duration;
 

@@ -17,7 +17,7 @@ pub enum SsiAction {
     AddErrorBit,
     RemoveErrorBit(usize),
     Try(TrialInput),
-    /// Sets the number of clocks per word for a search. `None` selects the number in the layout.
+    /// Sets the number of clocks per word for a search. `None` selects the number of the layout.
     SetClocks(Option<u8>),
     Find,
     /// Asks for a file with frames, and searches for their layout.

@@ -1,5 +1,5 @@
-//! An open SSI encoder or layout: the layout being designed, a trial frame, the words read, and the result of a search.
-//! The encoder has no memory, so nothing is written to it.
+//! An open SSI encoder or layout: the layout being designed, a trial frame, the words read, and the search result. The
+//! encoder has no memory, so nothing is written to it.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub struct Encoder {
     pub session: Session<Ssi>,
     pub designer: LayoutDesigner,
     pub trial: TrialFrame,
-    /// Whether the last word read is displayed instead of the trial frame.
+    /// Whether the last word read is displayed in place of the trial frame.
     pub(super) follows: bool,
     pub record: Record,
     pub hunt: SearchState,
@@ -145,12 +145,12 @@ impl Encoder {
         })
     }
 
-    /// Returns whether the layout is a profile that is or can be stored in a file.
+    /// Returns whether the layout belongs to a profile rather than to a link.
     pub fn is_profile(&self) -> bool {
         !matches!(self.session.source, Source::Link(_))
     }
 
-    /// Returns the reason why the adapter cannot read the current layout.
+    /// Returns the reason why the last change to the layout was rejected, if any.
     pub fn layout_rejection(&self) -> Option<&Text> {
         self.designer.problem()
     }

@@ -1,4 +1,4 @@
-//! Handling events from the line: identity of the adapter, words, and loss of the connection.
+//! Handles events from the line: identity of the adapter, words, and loss of the connection.
 
 use std::convert::Infallible;
 
@@ -67,7 +67,7 @@ impl Encoder {
         }
     }
 
-    /// Reads a single word for display, unless words are already being polled.
+    /// Reads a single SSI word for display, unless words are already being polled.
     fn refresh_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {
             self.submit(SsiJob::Read, services);

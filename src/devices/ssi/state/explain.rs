@@ -35,7 +35,7 @@ pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     }]
 }
 
-/// Returns the reason for the loss of the connection, or `None` if the error does not end the connection.
+/// Returns the reason why the connection was lost, or `None` if the error does not end the connection.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     match error {
         JobError::Link(error) => Some(link_error_text(error)),

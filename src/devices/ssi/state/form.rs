@@ -110,7 +110,7 @@ impl Group {
         }
     }
 
-    /// Returns whether error bits can be added. This requires a frame without a family.
+    /// Returns whether error bits can be added, which requires a frame without a family.
     pub fn accepts_error_bits(&self) -> bool {
         self.rows.iter().any(|row| row.field == Field::Lead)
     }

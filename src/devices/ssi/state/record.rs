@@ -16,10 +16,10 @@ use crate::devices::ssi::procedures::Words;
 use crate::devices::ssi::protocol::{BitMeaning as Says, FindingCounts, Flags, FrameDescriptor, Layout, Range};
 use crate::units::Moment;
 
-/// Number of words stored for searches and for decoding with another layout.
+/// Number of SSI words stored for searches and for decoding with another layout.
 const MAX_STORED_WORDS: usize = 40_000;
 
-/// Words read from an encoder, decoded with its layout.
+/// SSI words read from an encoder, decoded with its layout.
 pub struct Record {
     track: DeviceRecorder<Infallible>,
     layout: Layout,
@@ -38,7 +38,7 @@ pub struct Record {
 pub struct ReceivedWord {
     pub at: Moment,
     pub clocks: u8,
-    /// Decoded word, or `None` if its number of clocks differs from the layout.
+    /// Decoded word, or `None` if its number of clocks differs from that of the layout.
     pub decoded: Option<Decoded>,
     /// Right-justified word as received.
     pub word: u64,
@@ -204,7 +204,7 @@ impl Record {
         &self.tally
     }
 
-    /// Hides all previous findings. They remain hidden if the words are decoded again.
+    /// Hides all previous findings, even if the words are decoded again.
     pub(super) fn reset_tally(&mut self) {
         self.tally.reset();
         self.forgotten = self.last.as_ref().map(|last| last.at);

@@ -79,7 +79,7 @@ pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
     parse_frame_file(&text, name, clocks)
 }
 
-/// Parses the text of a file like [`read_frames`]. `name` is the name of its origin.
+/// Parses the text of a file like [`read_frames`]. `name` is stored as the origin of the frames.
 ///
 /// # Errors
 /// Returns an error with the line number if a line is not a frame.

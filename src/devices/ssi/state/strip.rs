@@ -90,7 +90,7 @@ pub enum Handle {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellState {
     pub bit: bool,
-    /// Effect on the position, if the bit is an active error bit, or is 1 instead of 0.
+    /// Effect on the position if the bit is an active error bit, or a 1 that should be 0.
     pub tells: Option<BitMeaning>,
 }
 
@@ -224,7 +224,7 @@ impl Field {
 }
 
 impl Handle {
-    /// Returns whether the handle is located on a clock and not between two clocks.
+    /// Returns whether the handle is located on a clock, rather than between two clocks.
     pub const fn is_on_clock(self) -> bool {
         matches!(self, Handle::Error(_) | Handle::Parity | Handle::Position)
     }

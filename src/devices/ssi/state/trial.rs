@@ -49,7 +49,7 @@ impl TrialFrame {
         Decoded::decode(layout, self.frame)
     }
 
-    /// Sets the position of the frame. Error bits are kept.
+    /// Sets the position in the frame, and keeps the error bits.
     pub(super) fn set_position(&mut self, layout: &Layout, position: u64) {
         let errors = error_bits(layout, layout.decode(self.frame).flags);
         match layout.encode(position, errors) {
@@ -61,7 +61,7 @@ impl TrialFrame {
         }
     }
 
-    /// Sets the position of the frame to a turn and a step within the turn.
+    /// Sets the position in the frame to a turn and a step within the turn.
     pub(super) fn set_turn_and_step(&mut self, layout: &Layout, turns: u64, steps: u64) {
         match layout.descriptor().range.position(turns, steps) {
             Some(position) => self.set_position(layout, position),

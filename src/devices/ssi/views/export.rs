@@ -1,4 +1,5 @@
-//! The export page: the layout in formats of other programs, to copy or save. Pictures are shown as pictures.
+//! The export page, on which the layout can be copied or saved in the formats of other programs. Pictures are shown as
+//! drawings.
 
 use egui::{FontId, Ui};
 

@@ -1,5 +1,5 @@
-//! The search page. It shows the layouts that fit the last frames read, or the frames in a file. Results are ranked and
-//! explained. Layouts that the frames cannot distinguish form a class, with the motion that would distinguish them.
+//! The search page, which ranks and explains the layouts that fit the last frames read or the frames in a file. Layouts
+//! that the frames cannot distinguish form a class, which states the motion that would distinguish them.
 
 use egui::{RichText, Ui};
 
@@ -23,7 +23,7 @@ pub(super) struct FindUiState {
 
 /// Maximum number of classes shown. The others fit even worse.
 const CLASSES: usize = 6;
-/// Number of members of a class that are shown before it is expanded.
+/// Number of layouts of a class that are shown before it is expanded.
 const MEMBERS: usize = 4;
 
 pub(super) fn page_ui(

@@ -1,4 +1,4 @@
-//! The list of the recorded frames in a search, decoded with the current layout.
+//! The list of recorded frames in a search, decoded with the current layout.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -71,7 +71,7 @@ fn decoded_summary(theme: &Theme, number: usize, decoded: &Decoded, digits: usiz
     }
 }
 
-/// Formats a row of the list. Numbers are right-aligned in columns of fixed width.
+/// Formats a row of the list, with right-aligned numbers in columns of fixed width.
 fn row([number, frame, position, turns, steps]: &[&str; 5], digits: usize) -> String {
     let width = (digits + 2).max(8);
     format!("{number:>5}  {frame:<width$} {position:>10} {turns:>11} {steps:>9}")

@@ -25,7 +25,7 @@ pub(super) struct TrialUiState {
 }
 
 impl TrialUiState {
-    /// Returns whether the user is typing. This is not the case if a rejected entry is still shown.
+    /// Returns whether the user is typing. A rejected entry that is still shown does not count.
     fn is_typing(&self) -> bool {
         let numbers = [&self.position, &self.turns, &self.steps];
         self.bits.is_some() || numbers.into_iter().flatten().any(|(_, problem)| problem.is_none())

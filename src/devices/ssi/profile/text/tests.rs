@@ -44,7 +44,7 @@ fn a_handwritten_profile_parses() {
     assert_eq!(named, of_family("ahm36"));
 }
 
-/// Returns a profile whose frame has every possible feature.
+/// Returns a profile whose frame uses every feature.
 fn full_profile() -> SsiProfile {
     let error = |name: &str, clock, meaning, active_low| ErrorBit {
         name: name.to_owned(),

@@ -30,7 +30,7 @@ pub enum UnsupportedProperty {
     Inverted,
 }
 
-/// The reason why a frame has no format string, or a format string does not describe a frame.
+/// The reason why a frame cannot be converted to a LinuxCNC format string, or a format string to a frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
     /// LinuxCNC cannot decode a frame with this property.

@@ -159,7 +159,7 @@ impl<D: Dialect> Writer<'_, D> {
         }
     }
 
-    /// Writes the Gray conversion of a code that occupies only a part of the word.
+    /// Adds statements that convert a Gray code occupying only a part of the word.
     fn decode_inner_gray(&mut self, layout: &Layout) {
         let d = self.dialect;
         let (bits, behind) = layout.gray;

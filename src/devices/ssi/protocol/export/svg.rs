@@ -14,7 +14,7 @@ const CLOCK: &str = "#1a5fb4";
 const DATA: &str = "#26a269";
 const BITS: &str = "#b8dcff";
 
-/// Returns the print colour of a field, on which black text is legible.
+/// Returns the print colour of a field, which is light enough for black text.
 fn role_colour(role: Role) -> &'static str {
     match role {
         Role::Zero => "#eeeeee",

@@ -1,6 +1,6 @@
 //! Names of a family's settings in error messages.
 
-/// Name of a family's setting in an error message.
+/// The name of a family's setting, as it appears in error messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingName {
     /// Frame that has exactly the width of the position.

@@ -23,8 +23,8 @@ const RESET_FUNCTIONS: [ResetSettingFn; 12] = [
 ];
 
 impl Family {
-    /// Returns the fewest settings with which this family sends exactly this frame, or `None` if it cannot. Direction
-    /// and preset keep their factory setting, because they are not part of a frame.
+    /// Returns the smallest set of settings with which this family sends exactly this frame, or `None` if it cannot.
+    /// Direction and preset keep their factory settings, because they are not part of a frame.
     pub fn settings_for_frame(&self, frame: &FrameDescriptor) -> Option<Settings> {
         let asked = self.derived_settings(frame);
         let aligns: Vec<Option<Alignment>> =
@@ -51,7 +51,8 @@ impl Family {
         })
     }
 
-    /// Returns the settings that follow directly from a frame. These are all settings except the alignment.
+    /// Returns the settings that follow directly from a frame. The alignment and the location of the error bits are
+    /// left open.
     fn derived_settings(&self, frame: &FrameDescriptor) -> Settings {
         let asked = Settings {
             code: Some(frame.code),

@@ -118,8 +118,7 @@ fn frames_match_the_reference() {
     }
 }
 
-/// If the whole 25-bit frame is sent one clock later, its last bit is lost (reference section 8, "full, SHIFT-RIGHT
-/// only").
+/// Delaying the whole 25-bit frame by one clock loses its last bit (reference section 8, "full, SHIFT-RIGHT only").
 #[test]
 fn shifting_right_alone_loses_the_last_bit() {
     let layout = resolve("atm60,shift=1").unwrap().layout;
@@ -134,8 +133,8 @@ fn shifting_right_alone_loses_the_last_bit() {
     }
 }
 
-/// The pattern is tested before the frame is decoded. A frame with only some of these ones is suspicious, but its
-/// position remains valid (reference section 6, trap 1).
+/// The pattern is tested before the frame is decoded. A frame in which only some of its ones are set is suspicious, but
+/// its position remains valid (reference section 6, trap 1).
 #[test]
 fn the_kh53_has_an_error_pattern() {
     for code in ["binary", "gray"] {
@@ -177,8 +176,8 @@ fn a_safety_fault_and_a_stuck_line_are_distinguished() {
     assert_eq!(excess.to_findings(excess.decode(0)), [FrameFinding::StuckLow { sure: true }, FrameFinding::Code]);
 }
 
-/// The frame of an AFS60 becomes shorter if the resolution is reduced, whereas the frame of an AHS36 does not
-/// (reference section 6, trap 5).
+/// At a lower resolution, the frame of an AFS60 becomes shorter, whereas that of an AHS36 does not (reference section
+/// 6, trap 5).
 #[test]
 fn only_some_frames_shrink_with_the_resolution() {
     let clocks = |text: &str| resolve(text).unwrap().layout.clock_count();

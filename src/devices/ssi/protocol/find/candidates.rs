@@ -11,7 +11,7 @@ use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 use crate::devices::ssi::protocol::family::{Families, Settings};
 use crate::devices::ssi::protocol::layout::Layout;
 
-/// Weight of a frame that belongs to no family. For comparison, a changed setting of a family has a weight of 0.8.
+/// Weight of a frame that belongs to no family. A changed setting of a family, in comparison, has a weight of 0.8.
 pub(super) const NO_FAMILY_WEIGHT: f64 = 2.0;
 pub(super) const EXCHANGE_WEIGHT: f64 = 2.0;
 pub(super) const PADDED: f64 = 1.5;
@@ -28,7 +28,8 @@ pub(super) struct LayoutCandidate {
 /// Callback that tests a candidate layout with its weight, and keeps the layout if it fits.
 pub(super) type TestCandidateFn<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 'a;
 
-/// Returns the layouts that fit the reading and yield the motion of the probe, in no particular order.
+/// Returns the layouts that fit the interpretation of the frames and yield the motion of the probe, in no particular
+/// order.
 pub(super) fn group_members(
     probe: &LayoutProbe<'_>,
     read: &FrameNumbers,
@@ -67,7 +68,7 @@ fn possible_inversions(read: &FrameNumbers) -> &'static [bool] {
     }
 }
 
-/// Returns the parity as the encoder sends it. Swapped wires change the parity of an odd number of bits.
+/// Returns the parity as sent by the encoder. Swapped wires invert the parity if it covers an odd number of bits.
 pub(super) fn encoder_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
     let turned = |parity: Parity| inverted && parity.clock % 2 == 1;
     reading.parity.map(|parity| Parity { even: parity.even != turned(parity), ..parity })
@@ -79,7 +80,7 @@ pub(super) fn find_ambiguous_parity(reading: &Reading, inverted: bool) -> Option
     encoder_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
 }
 
-/// Returns whether nearly all steps are even numbers. The lowest bit then carries no information.
+/// Returns whether nearly all steps are even, so that the lowest bit carries no information.
 pub(super) fn has_only_even_steps(read: &FrameNumbers) -> bool {
     let steps = read.motion.steps.iter().zip(&read.motion.uneven);
     let steps = steps.filter(|(_, uneven)| uneven.unsigned_abs() <= read.motion.limit).filter_map(|(step, _)| *step);

@@ -79,8 +79,8 @@ pub(super) fn try_custom_frames(
     }
 }
 
-/// Returns the frames that could be mistaken for one with this parity bit. In one of them, the code covers a zero at
-/// its end. In the other, it covers an error bit.
+/// Returns the two frames that could be mistaken for one with this parity bit. In one, the code covers a zero at its
+/// end. In the other, it covers an error bit.
 fn parity_variants(frame: &FrameDescriptor, parity: Parity) -> [FrameDescriptor; 2] {
     let none = FrameDescriptor { parity: None, ..frame.clone() };
     let mut errors = frame.errors.clone();
@@ -91,7 +91,7 @@ fn parity_variants(frame: &FrameDescriptor, parity: Parity) -> [FrameDescriptor;
     ]
 }
 
-/// Returns the possible ranges for a reading with the given number of bits, each with its weight.
+/// Returns the possible ranges of positions with the given number of bits, each with its weight.
 fn possible_ranges(read: &FrameNumbers, bits: u8) -> Vec<(Range, f64)> {
     let reading = &read.reading;
     if let Some((steps, _)) = reading.steps {

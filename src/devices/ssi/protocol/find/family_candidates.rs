@@ -86,7 +86,7 @@ pub(super) fn try_families(
     }
 }
 
-/// Returns the settings whose position ends at the last clock of the reading, or one clock earlier.
+/// Returns the settings whose position ends at the last clock that was found, or one clock earlier.
 fn find_resolutions(
     turns: &[Option<u8>],
     family: &Family,

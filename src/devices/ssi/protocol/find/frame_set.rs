@@ -29,7 +29,7 @@ pub(super) struct Bit {
     pub(super) unusual: usize,
     /// Number of changes between consecutive frames.
     pub(super) changes: usize,
-    /// Whether the bit held its unusual value for longer than a disturbance lasts.
+    /// Whether the bit deviated from its usual value for longer than a disturbance lasts.
     pub(super) moves: bool,
 }
 
@@ -69,8 +69,8 @@ impl FrameSet {
         self.word_counts().len()
     }
 
-    /// Returns whether nearly all frames have one of a few values, because the shaft stood still or jittered. Disturbed
-    /// frames are tolerated.
+    /// Returns whether the shaft stood still or only jittered, so that nearly all frames have one of a few values.
+    /// Disturbed frames are tolerated.
     pub(super) fn is_at_rest(&self) -> bool {
         let mut counts: Vec<usize> = self.word_counts().into_values().collect();
         counts.sort_unstable_by(|a, b| b.cmp(a));

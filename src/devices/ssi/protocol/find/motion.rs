@@ -57,8 +57,7 @@ impl Motion {
         }
     }
 
-    /// Returns whether the step with the given index is not a jump. Index 0 is the step from the first frame to the
-    /// second.
+    /// Returns whether a step is not a jump. Index 0 is the step from the first frame to the second.
     pub(super) fn is_even(&self, index: usize) -> bool {
         let within = self.uneven.get(index).is_some_and(|uneven| uneven.unsigned_abs() <= self.limit);
         within && self.steps.get(index).is_some_and(Option::is_some)
@@ -76,7 +75,7 @@ impl Motion {
     }
 }
 
-/// Returns the information content of all differences in bits. Each difference is encoded as a group of similar sizes
+/// Returns the information content in bits of all differences. Each difference is encoded as a group of similar sizes
 /// and an index within the group. The more frequent a group is, the fewer bits it needs.
 fn information_bits(uneven: &[i64]) -> f64 {
     // Groups by the number of bits, separately for differences below and above 0.

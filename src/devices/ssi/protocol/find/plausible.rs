@@ -26,8 +26,7 @@ const TURNS: [(u8, f64); 9] =
 /// Minimum number of step bits in multiturn encoders.
 const FEW_STEPS: u8 = 8;
 
-/// Returns the weight of a combination of turn bits and step bits. The less common the combination, the higher the
-/// weight.
+/// Returns the weight of a combination of turn bits and step bits. Less common combinations have a higher weight.
 pub(super) fn width_penalty(multiturn: u8, singleturn: u8) -> f64 {
     let of = |table: &[(u8, f64)], bits: u8, other: f64| {
         table.iter().find(|(known, _)| *known == bits).map_or(other, |(_, weight)| *weight)
@@ -37,7 +36,7 @@ pub(super) fn width_penalty(multiturn: u8, singleturn: u8) -> f64 {
     of(&STEPS, singleturn, 2.5) + of(&TURNS, multiturn, 2.5) + few + many
 }
 
-/// Returns the usual divisions of the bits into turns and steps, most common first.
+/// Returns the usual ways to divide the bits into turns and steps, most common first.
 pub(super) fn common_bit_splits(bits: u8, most: usize) -> Vec<(u8, u8)> {
     let mut all: Vec<(u8, u8)> =
         (0..bits).map(|turns| (turns, bits - turns)).filter(|(turns, steps)| *turns <= 32 && *steps <= 32).collect();

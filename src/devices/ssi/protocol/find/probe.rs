@@ -13,7 +13,7 @@ const MAX_MISFIT_PERCENT: usize = 4;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct TrialReading {
     pub(super) positions: Vec<u64>,
-    /// Whether the positions of the layout decrease while those of the reading increase.
+    /// Whether the positions of the layout decrease while the numbers found in the frames increase.
     pub(super) backwards: bool,
     pub(super) never_odd: bool,
 }
@@ -63,8 +63,8 @@ impl<'a> LayoutProbe<'a> {
         self.seen.clocks
     }
 
-    /// Tests whether the steps of a layout match those of the reading, forwards or backwards, up to a power of two.
-    /// Returns `None` if the steps do not match.
+    /// Tests whether the steps of a layout match those found in the frames, in either direction and up to a power of
+    /// two. Returns `None` if they do not match.
     pub(super) fn try_layout(&self, layout: &Layout) -> Option<TrialReading> {
         let form = Flags::CODE.union(Flags::PADDING).union(Flags::PARITY).union(Flags::REPEAT);
         let invalid =
@@ -106,7 +106,7 @@ impl<'a> LayoutProbe<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Scale {
     backwards: bool,
-    /// Power of two by which the layout's steps are larger than those of the reading.
+    /// Power of two by which the layout's steps are larger than those found in the frames.
     twice: i8,
 }
 

@@ -10,13 +10,13 @@ use super::step_counts::{possible_codes, unusual_step_cost};
 use crate::devices::ssi::protocol::code::{Code, PositionCode, gray_to_binary, low_bits_mask};
 use crate::devices::ssi::protocol::descriptor::Parity;
 
-/// Number of frames in the first test of each reading. They are taken in runs of consecutive frames.
+/// Number of frames in the first test of each interpretation, taken as runs of consecutive frames.
 const FIRST_TEST_FRAMES: usize = 620;
 const RUN_LENGTH: usize = 31;
-/// Number of the best readings that are tested with all frames.
+/// Number of the best interpretations, which are tested with all frames.
 const BEST_READINGS: usize = 8;
-/// Maximum number of bits by which a reading may need more information than the best one. Readings within this limit
-/// are also tested with other numbers of steps.
+/// Maximum number of bits by which an interpretation may need more information than the best one. Within this limit, it
+/// is also tested with other numbers of steps.
 const NEAR_BITS: f64 = 400.0;
 /// Minimum number of changes per thousand frames for a clock to be considered the lowest bit of the position.
 const LAST_PERMILLE: usize = 10;
@@ -118,7 +118,7 @@ impl Reading {
         (self.first..=self.last).contains(&clock) && self.gap.is_none_or(|(from, to)| !(from..=to).contains(&clock))
     }
 
-    /// Returns whether all constant bits outside the position have their usual values in a frame.
+    /// Returns whether all constant bits outside the position have their usual values in this frame.
     fn has_usual_bits(&self, seen: &FrameSet, index: usize) -> bool {
         let word = seen.words().get(index);
         let usual = |word: &u64, clock: u8| (word >> (seen.clocks - clock) & 1 == 1) == seen.bit(clock).usual;
@@ -234,7 +234,7 @@ pub(super) fn best_readings(seen: &FrameSet) -> Vec<FrameNumbers> {
     all
 }
 
-/// Returns whether a bit before the position changes where the numbers wrap. Such a bit is the true highest bit.
+/// Returns whether a bit before the position changes whenever the numbers wrap. Such a bit is the true highest bit.
 fn is_missing_highest_bit(seen: &FrameSet, read: &FrameNumbers) -> bool {
     let round = read.reading.wrap_after();
     let moving = (1..read.reading.first).rev().find(|clock| seen.bit(*clock).moves);
@@ -250,7 +250,7 @@ fn is_missing_highest_bit(seen: &FrameSet, read: &FrameNumbers) -> bool {
     at_end * 2 >= changes && near * 4 < round
 }
 
-/// Returns all readings that begin at a possible first clock of the position and end at a possible lowest bit.
+/// Returns all interpretations that begin at a possible first clock of the position and end at a possible lowest bit.
 fn possible_readings(seen: &FrameSet) -> Vec<Reading> {
     let moving: Vec<u8> = seen.bits().filter(|(_, bit)| bit.moves).map(|(clock, _)| clock).collect();
     let often = LAST_PERMILLE * seen.words().len() / 1000;

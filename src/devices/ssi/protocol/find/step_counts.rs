@@ -1,5 +1,5 @@
-//! Search for a number of steps that is not a power of two, after which positions wrap. The number is derived from
-//! numbers that never occur and from the size of backward jumps.
+//! Search for a number of steps that is not a power of two, after which positions wrap. It is derived from numbers that
+//! never occur and from the size of backward jumps.
 
 use super::motion::{Motion, median};
 use super::reading::{FrameNumbers, Reading};
@@ -44,8 +44,8 @@ fn number_extremes(read: &FrameNumbers) -> Vec<(u64, u64)> {
     [0, few].into_iter().filter_map(pair).collect()
 }
 
-/// Returns the numbers of steps that make the motion most even: the most common one and the largest one. Returns `None`
-/// if none of them is better than the full range of the bits.
+/// Returns two numbers of steps that make the motion most even: the most common one and the largest one. Returns `None`
+/// if neither is better than the full range of the bits.
 fn best_step_counts(read: &FrameNumbers, reading: &Reading, least: &[u64], whole: u64) -> Option<(u64, u64)> {
     let lowest = *least.iter().min()?;
     let fits = |steps: &u64| {

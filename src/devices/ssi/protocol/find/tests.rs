@@ -1,4 +1,4 @@
-//! Tests with frames of turning, stationary and disturbed shafts, generated from the layouts to be found, and with
+//! Tests with frames of turning, stationary and disturbed shafts, which were generated from known layouts, and with
 //! independent recordings.
 
 #[path = "../../../../../tests/tools/ssi_recordings.rs"]
@@ -125,8 +125,8 @@ fn noise_and_stuck_lines_yield_no_layout() {
     assert_eq!(find(&[], 25, &families).doubt, Some(SearchUncertainty::Standing));
 }
 
-/// Frames without a family are recognised: Gray excess in which the shaft passes the end of the range, and a frame with
-/// a parity bit.
+/// Frames without a family are recognised, both Gray excess that passes the end of the range and a frame with a parity
+/// bit.
 #[test]
 fn encoders_of_no_family_are_found() {
     let families = Families::built_in();
@@ -172,8 +172,8 @@ fn disturbed_frames_do_not_hide_the_layout() {
     assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &truth)));
 }
 
-/// Returns the frames of a file in `tests/vectors/ssi_find` with their intended positions, which are `None` for
-/// disturbed frames.
+/// Returns the frames of a file in `tests/vectors/ssi_find` and their true positions, which are `None` for disturbed
+/// frames.
 fn recording(text: &str) -> (u8, Vec<u64>, Vec<Option<u64>>) {
     let lines = text.lines().filter(|line| !line.starts_with('#')).map(|line| line.split_once(' ').unwrap());
     let rows: Vec<(&str, &str)> = lines.collect();
@@ -182,7 +182,7 @@ fn recording(text: &str) -> (u8, Vec<u64>, Vec<Option<u64>>) {
     (rows[0].0.len() as u8, frames, meant)
 }
 
-/// Returns whether a layout decodes every undisturbed frame as intended.
+/// Returns whether a layout decodes every undisturbed frame correctly.
 fn reads(proposal: &LayoutProposal, frames: &[u64], meant: &[Option<u64>]) -> bool {
     let read =
         |(frame, meant): (&u64, &Option<u64>)| meant.is_none_or(|own| proposal.layout.decode(*frame).position == own);

@@ -1,4 +1,4 @@
-//! Validation of a descriptor, and calculation of the shifts and masks of its layout.
+//! Validates a descriptor, and calculates the shifts and masks of its layout.
 
 use super::{BitPart, Flags, Layout};
 use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode, low_bits_mask};
@@ -85,7 +85,7 @@ pub enum LayoutError {
         /// Operation that applies to these clocks.
         done: WordOperation,
     },
-    /// The shift drops the lowest bit, which only binary and Gray allow.
+    /// The shift drops the lowest bit, which is allowed only in binary and Gray code.
     #[error("shifting to the right drops the lowest bit, without which this code cannot be decoded")]
     Lost,
     /// The frame has too few clocks for the repetition.

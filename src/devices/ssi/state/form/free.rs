@@ -159,8 +159,8 @@ fn apply_range_input(range: &Range, field: Field, input: &FieldInput) -> Option<
     })
 }
 
-/// Returns the frame with the given numbers of zeros before and within the position. The parts after the position move
-/// with it.
+/// Returns the frame with the given numbers of zeros before and within the position. The parts after the position are
+/// moved accordingly.
 fn with_padding(before: &FrameDescriptor, lead: u8, between: u8) -> Option<FrameDescriptor> {
     let by = i16::from(lead) + i16::from(between) - i16::from(before.lead) - i16::from(before.between);
     let moved = |clock: u8| u8::try_from(i16::from(clock) + by).ok();

@@ -45,7 +45,7 @@ pub fn field(strip: &Strip, field: &Field) -> Text {
     }
 }
 
-/// Returns the label below a field. A field of zeros is labelled with the number of zeros only.
+/// Returns the label below a field. The label of zeros is only their number.
 pub fn name(strip: &Strip, own: &Field) -> Text {
     if own.is_zero_field() { TEXTS.text("ssi.strip_behind").with("count", own.count()) } else { field(strip, own) }
 }

@@ -205,7 +205,7 @@ fn moving_boundaries_yields_the_formats_of_the_manual() {
     assert!(apart.strip_handles().contains(&Handle::TurnsEnd) && !apart.strip_handles().contains(&Handle::Split));
 }
 
-/// A TTK70 with 31 clocks, and a KH53, whose pattern consists of all bits of the frame.
+/// A TTK70 is extended to 31 clocks. The pattern of a KH53 becomes longer together with its frame.
 #[test]
 fn extending_the_frame_adds_zeros() {
     let ttk = family("ttk70", &Settings::default());

@@ -1,4 +1,4 @@
-//! Tests that operate the widgets like a user, through accessible labels, keys and pointer.
+//! Tests that operate the widgets like a user, through accessible labels, the keyboard and the pointer.
 
 mod bit_strip;
 mod timing_diagram;

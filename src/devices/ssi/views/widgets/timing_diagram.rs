@@ -154,7 +154,7 @@ impl Picture<'_> {
         self.theme.palette.muted.into()
     }
 
-    /// Draws the labels of moments and breaks, and a vertical line through all rows for each moment.
+    /// Draws the labels of events and breaks, and a vertical line through all rows for each event.
     fn draw_guides(&self, flags: &[(f32, Arc<Galley>, bool)], put: &[LabelPlacement]) {
         for ((x, galley, is_moment), put) in flags.iter().zip(put) {
             let top = self.rows.flags - (put.level + 1) as f32 * TEXT_HEIGHT;

@@ -1,4 +1,4 @@
-//! Handles of a bit strip: input by pointer and keyboard.
+//! Pointer and keyboard input for the handles of a bit strip.
 
 use egui::accesskit::Role;
 use egui::{CursorIcon, Id, Key, Modifiers, Rect, Response, Sense, Ui, Vec2, WidgetInfo};
@@ -111,8 +111,8 @@ pub(super) fn tab_offset(strip: &Strip, handle: Handle) -> f32 {
     field_side(handle) * if has_second_tab(strip, handle) { SECOND_TAB_DISTANCE } else { TAB_DISTANCE }
 }
 
-/// Returns whether the tab of a handle is the second one at its edge. The boundary between turns and steps is closer to
-/// the edge than the handle for zeros between them.
+/// Returns whether the tab of a handle is the second one at its edge. The tab for the boundary between turns and steps
+/// is closer to the edge than the one for zeros between them.
 fn has_second_tab(strip: &Strip, handle: Handle) -> bool {
     handle == Handle::BetweenEnd && strip.strip_handles().contains(&Handle::Split)
 }

@@ -67,15 +67,15 @@ impl OverflowingName {
         NameTag { field: self.index, line: self.line, level, left, leader, galley: self.galley }
     }
 
-    /// Returns whether the name does not overlap another name at this offset and level.
+    /// Returns whether the name overlaps no other name at this offset and level.
     fn has_no_overlap(&self, tags: &[NameTag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let own = tags.iter().filter(|tag| tag.line == self.line && tag.level == level);
         own.map(NameTag::horizontal_span).all(|(from, to)| right + NAME_SPACING <= from || to + NAME_SPACING <= left)
     }
 
-    /// Returns whether the name does not overlap another name, does not cross the leader line of a lower name, and has
-    /// a clear path for its own leader line.
+    /// Returns whether the name overlaps no other name, does not cross the leader line of a lower name, and leaves a
+    /// clear path for its own leader line.
     fn is_free(&self, tags: &[NameTag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let mut others = tags.iter().filter(|tag| tag.line == self.line);
@@ -111,8 +111,8 @@ impl NameTag {
     }
 }
 
-/// Returns the names of all fields, and the number of rows of names below each line of cells. `rows` has not been
-/// placed yet, because the height of a line depends on the result.
+/// Returns the names of all fields, and the number of rows of names below each line of cells. `rows` has no position
+/// yet, because the height of a line depends on the result.
 pub(super) fn name_tags(
     ui: &Ui,
     theme: &Theme,
@@ -176,7 +176,7 @@ pub(super) fn name_tags(
     (tags, levels)
 }
 
-/// Returns the verdict for the effect of a bit on the position.
+/// Returns the verdict that corresponds to the effect of a bit on the position.
 pub(super) const fn meaning_verdict(meaning: BitMeaning) -> Verdict {
     match meaning {
         BitMeaning::Invalid => Verdict::Fault,

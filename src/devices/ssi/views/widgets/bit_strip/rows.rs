@@ -1,5 +1,5 @@
-//! Arrangement of the cells in a bit strip. They are on one line if there is enough room, and otherwise on several
-//! lines of whole bytes.
+//! Arrangement of the cells in a bit strip. They are on one line if there is enough room, or else on several lines of
+//! whole bytes.
 
 use egui::{Pos2, Rect, Vec2, pos2};
 
@@ -51,7 +51,8 @@ impl Rows {
         usize::from(clocks.max(1).div_ceil(self.columns))
     }
 
-    /// Places the rows at a top left corner. There is space for `names[line]` rows of names below each line.
+    /// Places the rows with their top left corner at a point. There is space for `names[line]` rows of names below each
+    /// line.
     pub(super) fn at_origin(mut self, origin: Pos2, names: &[usize]) -> Self {
         self.origin = origin + Vec2::new(SIDE_MARGIN, 0.0);
         let mut top = 0.0;
@@ -107,8 +108,8 @@ impl Rows {
         Rect::from_min_max(pos2(run.left(), run.bottom()), pos2(run.right(), run.bottom() + LANE_HEIGHT))
     }
 
-    /// Returns the edge after a clock. If a part begins at this edge, the edge of the next clock's cell is returned,
-    /// which may be on the next line.
+    /// Returns the edge after a clock. If a part begins at this edge, this is the edge of the next clock's cell, which
+    /// may be on the next line.
     pub(super) fn edge_rect(&self, clock: u8, begins: bool, clocks: u8) -> Rect {
         let begins = clock == 0 || begins && clock < clocks;
         let cell = self.cell_rect(if begins { clock + 1 } else { clock });

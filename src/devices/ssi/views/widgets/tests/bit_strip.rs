@@ -1,4 +1,4 @@
-//! Tests of the strip of an SSI frame with keys and pointer.
+//! Tests of the bit strip with the keyboard and the pointer.
 
 use egui::{Key, Vec2};
 use egui_kittest::Harness;

@@ -1,4 +1,4 @@
-//! Tests of the timing diagram with accessible values and the pointer.
+//! Tests of the timing diagram through its accessible values and the pointer.
 
 use std::time::Duration;
 

@@ -22,8 +22,8 @@ impl Axis {
         Axis { pieces: pieces.to_vec(), left: room.min, scale }
     }
 
-    /// Returns the x coordinate of a time. For a time that is omitted, this is the middle of its break. For a time
-    /// outside the axis, it is the nearest end.
+    /// Returns the x coordinate of a time. An omitted time is in the middle of its break, and a time outside the axis
+    /// is at the nearest end.
     pub(super) fn x(&self, at: f64) -> f32 {
         let mut left = self.left;
         for (number, piece) in self.pieces.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Placement of labels without overlaps. Labels of moments are above their lines, and labels of times are next to their
-//! bars.
+//! Placement of labels without overlaps. Labels of events are above their lines, and labels of durations are next to
+//! their bars.
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LabelExtent {
@@ -16,7 +16,7 @@ pub(super) struct LabelPlacement {
 /// Minimum distance between labels, and between a label and a line.
 const LABEL_SPACING: f32 = 6.0;
 
-/// Places the labels of moments on as few rows as possible. No label overlaps another one or crosses the line of a
+/// Places the labels of events on as few rows as possible. No label overlaps another one or crosses the line of a
 /// higher label. If this is impossible, each label has a separate row.
 pub(super) fn place_labels(flags: &[LabelExtent], (from, to): (f32, f32)) -> Vec<LabelPlacement> {
     for levels in 1..=flags.len() {
@@ -70,7 +70,7 @@ pub(super) struct Bar {
     pub(super) width: f32,
 }
 
-/// Places the bars of times in lanes. A label starts within its bar if it fits, and is placed beside it otherwise.
+/// Places the bars of durations in lanes. A label starts within its bar if it fits, and is placed beside it otherwise.
 pub(super) fn place_bars(bars: &[Bar], (from, to): (f32, f32)) -> Vec<LabelPlacement> {
     let mut taken: Vec<(usize, f32, f32)> = Vec::new();
     let mut put = Vec::new();
