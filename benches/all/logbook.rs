@@ -1,7 +1,7 @@
 //! Measures the time to open the view of a logbook with 100,000 entries (goal: 200 ms) and to search it (goal: 50 ms).
 //! If `ENCODER_STUDIO_LOGBOOK` names the database of a logbook server, the benchmark fills it with entries and also
-//! measures the time to send all entries, to copy them to a new bench, and to open and search the view if new entries
-//! are fetched from the server first. The naive alternative searches on the server.
+//! measures the time to send all entries, to copy them to another computer's logbook, and to open and search the view
+//! if new entries are fetched from the server first. The naive alternative searches on the server.
 
 use std::path::Path;
 use std::time::{Duration, Instant};

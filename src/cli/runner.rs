@@ -70,7 +70,7 @@ pub struct Runner<D: CliDevice> {
     worker: Worker<D>,
     /// The user's files.
     pub(super) store: Store,
-    /// Whether Ctrl-C was pressed. Unlike the worker's cancellation flag, it does not apply to a single job only.
+    /// Whether Ctrl-C was pressed. Unlike the worker's cancellation flag, which applies to a single job, it stays set.
     interrupted: Arc<AtomicBool>,
     patience: SlowReplyNotice,
     pub remarks: Vec<D::DeviceMessage>,

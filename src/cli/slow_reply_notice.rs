@@ -8,7 +8,7 @@ use crate::link::ReplyTimes;
 const FIRST_NOTICE_DELAY: Duration = Duration::from_secs(3);
 /// Interval between checks after the first notice.
 const CHECK_INTERVAL: Duration = Duration::from_millis(500);
-/// Reply time above which a device counts as slow.
+/// Reply time from which a device is considered slow.
 const SLOW_REPLY_TIME: Duration = Duration::from_millis(100);
 
 pub struct ReplyTiming {

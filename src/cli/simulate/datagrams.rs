@@ -1,4 +1,4 @@
-//! Serves a virtual device over TCP and UDP on the same port number. Packets are sent at exact times by sleeping,
+//! Serves a virtual device over TCP and UDP on the same port number. The sending thread sleeps until a packet is due,
 //! because socket time-outs only have the resolution of the system tick.
 
 use std::io::ErrorKind;

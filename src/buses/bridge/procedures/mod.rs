@@ -127,7 +127,7 @@ impl AdapterState {
         self.hello.as_ref()
     }
 
-    /// Sets whether the encoder supply stays on after the session.
+    /// Sets what happens to the encoder supply after the session.
     pub fn set_supply_after_session(&mut self, after: SupplyAfterSession) {
         self.power.after = after;
     }
@@ -334,8 +334,8 @@ impl Adapter<'_, '_> {
     }
 }
 
-/// Limits of the offset between the adapter's clock and the local clock in nanoseconds. They result from the fact that
-/// the adapter reads its clock between a request and the reply.
+/// Bounds of the offset between the adapter's clock and the local clock in nanoseconds. Each exchange narrows them,
+/// because the adapter reads its clock between the request and the reply.
 #[derive(Clone, Copy, Debug, Default)]
 struct ClockOffsetBounds {
     bounds: Option<(i128, i128)>,

@@ -74,7 +74,7 @@ mod tests {
     }
 
     proptest! {
-        /// Accepted sequence numbers never go back, whatever the order of the packets.
+        /// Accepted sequence numbers never go back, in whatever order the packets arrive.
         #[test]
         fn accepted_sequence_numbers_only_increase(start: u32, order in proptest::collection::vec(0u32..1000, 1..200)) {
             let mut arrivals = PacketTracker::default();

@@ -4,7 +4,8 @@
 pub const SYNC: u8 = 0x80;
 /// Address of the encoder.
 pub const NODE: u8 = 0x01;
-/// Maximum accepted payload length in bytes. No message in the manual exceeds five bytes (`U`).
+/// Maximum accepted payload length in bytes. The limit is an assumption (`U`), because no message in the manual exceeds
+/// five bytes.
 pub const MAX_PAYLOAD: usize = 64;
 
 /// A frame with a valid checksum. The meaning of the payload depends on the command.
