@@ -76,7 +76,7 @@ pub enum PathSegment {
 pub struct DrawingLabel {
     /// Horizontal position of the label, to which `align` refers.
     pub x: DrawingLength,
-    /// Baseline.
+    /// Vertical position of the baseline.
     pub y: DrawingLength,
     /// Font size.
     pub size: u32,

@@ -13,7 +13,7 @@ pub enum NetworkType {
     Null,
     /// Packets to all listeners, encoded as 1.
     Multicast,
-    /// Packets to one other node only, encoded as 2.
+    /// Packets to a single node, encoded as 2.
     PointToPoint,
     /// Reserved, encoded as 3.
     Reserved,
@@ -28,7 +28,7 @@ pub enum NetworkPriority {
     High,
     /// Scheduled priority, encoded as 2 and used for cyclic data.
     Scheduled,
-    /// Urgent, encoded as 3.
+    /// Urgent priority, encoded as 3.
     Urgent,
 }
 
@@ -41,9 +41,9 @@ pub struct Transport(u8);
 pub enum Trigger {
     /// Cyclic production, encoded as 0.
     Cyclic,
-    /// Production on a change of state, encoded as 1.
+    /// Production triggered by a change of state, encoded as 1.
     ChangeOfState,
-    /// Production by the application, encoded as 2.
+    /// Production triggered by the application, encoded as 2.
     Application,
     /// A reserved value.
     Unknown(u8),
@@ -136,7 +136,7 @@ impl NetworkParameters {
 }
 
 impl Transport {
-    /// Transport of cyclic data: class 1 with cyclic trigger, as the client.
+    /// Transport of cyclic data: class 1, cyclic trigger, target as the client.
     pub const CYCLIC: Transport = Transport(0x01);
 
     /// Creates the transport from a received byte.

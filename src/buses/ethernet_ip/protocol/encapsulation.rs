@@ -32,18 +32,18 @@ pub enum Body {
     Empty,
     /// Data of a RegisterSession request or reply.
     Register {
-        /// Protocol version, which is 1.
+        /// Protocol version, always 1.
         version: u16,
-        /// Options, which are 0.
+        /// Options, always 0.
         options: u16,
     },
     /// Items of a list reply.
     List(ItemList),
     /// Data of a SendRRData or SendUnitData request or reply.
     Data {
-        /// Interface handle, which is 0 for CIP.
+        /// Interface handle, 0 for CIP.
         interface: u32,
-        /// Time-out in seconds. The value is 0 if CIP has its own time-out.
+        /// Time-out in seconds, or 0 if CIP has its own time-out.
         timeout_s: u16,
         /// Address item and data item.
         items: ItemList,

@@ -34,7 +34,7 @@ pub struct Revision {
 /// The item with the identity of a device, type 000Ch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IdentityItem {
-    /// Version of the encapsulation protocol, which is 1.
+    /// Version of the encapsulation protocol, always 1.
     pub version: u16,
     /// Address for explicit messages.
     pub socket: SocketAddress,

@@ -45,7 +45,7 @@ pub enum Item {
 /// A socket address in network byte order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SocketAddress {
-    /// Address family, which is 2 for IPv4.
+    /// Address family, 2 for IPv4.
     pub family: u16,
     /// Port number.
     pub port: u16,
