@@ -53,7 +53,7 @@ fn a_link_of_only_one_kind_opens_in_its_tab() {
     }
 }
 
-/// A link opens in the tab in which it was used before, so that a BiSS encoder is not opened as a HIPERFACE encoder.
+/// A link opens in the tab where it was last used, so a BiSS encoder is not opened as a HIPERFACE encoder.
 #[test]
 fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
     let (port, adapter) = ("serial:/dev/nowhere", "bridge:/dev/nowhere");
@@ -82,8 +82,8 @@ fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
     }
 }
 
-/// The status bits of the encoder mark a position as invalid over both interfaces. The configuration pin transmits no
-/// status bits with a position, so they are read from the registers.
+/// The encoder's status bits mark a position as invalid. The configuration pin transmits no status bits with a
+/// position, so they are read from the registers.
 #[test]
 fn a_position_is_marked_over_either_interface() {
     for link in ["sim:", "sim:?bridge=on"] {

@@ -1,4 +1,4 @@
-//! Tests with a BiSS encoder that is exchanged for another one, and with a connection that two sessions request.
+//! Tests of replacing a BiSS encoder with another one, and of two sessions that request the same connection.
 
 use crate::biss_support::command;
 use crate::tabs::Tabs as _;
@@ -44,7 +44,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
     });
 }
 
-/// If there are no edits, a notice reports only that the plan was discarded.
+/// Without edits, the notice reports only that the plan was discarded.
 #[test]
 fn a_plan_for_one_encoder_is_discarded_for_another_with_a_notice() {
     let served = ServedDevice::new("serial=1");

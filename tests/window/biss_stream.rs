@@ -1,4 +1,4 @@
-//! Tests of the position stream of a BiSS adapter: 20 000 frames per second are shown without loss.
+//! Tests of the position stream from a BiSS adapter: 20 000 frames per second are shown without loss.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -12,8 +12,8 @@ use crate::biss_support::is_read;
 use crate::screen::Screen;
 use crate::support::{Desk, Outside};
 
-/// A link to a virtual adapter that reads a frame about every 50 µs: 43 clocks take 21.5 µs at 2 MHz, followed by a
-/// wait of 27 µs. The shaft turns five times per second.
+/// A link to a virtual adapter that reads a frame about every 50 µs: 43 clocks at 2 MHz take 21.5 µs, followed by a
+/// pause of 27 µs. The shaft turns five times per second.
 const LINK: &str = "sim:?bridge=on&clock=2000000&rpm=300";
 const FAST: Duration = Duration::from_micros(50);
 
@@ -32,7 +32,7 @@ fn recorded(encoder: &Encoder) -> (Vec<(i64, i64)>, usize) {
 }
 
 /// Checks that the streamed positions are 50 µs apart and follow the shaft: 655 360 steps per second are 32.768 steps
-/// per frame. The times have a tolerance because they slightly follow the clock of this computer between two packets.
+/// per frame. The times have a tolerance, because between two packets they drift with this computer's clock.
 #[track_caller]
 fn check(encoder: &Encoder, seconds: f64) {
     let (samples, breaks) = recorded(encoder);

@@ -17,14 +17,14 @@ pub(crate) fn is_read(studio: &Studio) -> bool {
     studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
 }
 
-/// Starts the application, opens a link in the BiSS tab, and waits until the encoder has been read.
+/// Starts the application, opens a link in the BiSS tab and waits until the encoder has been read.
 pub(crate) fn open(link: &str) -> Desk {
     let mut desk = Desk::fresh("");
     connect(&mut desk, link);
     desk
 }
 
-/// Opens a link in the BiSS tab, and waits until the encoder has been read.
+/// Opens a link in the BiSS tab and waits until the encoder has been read.
 pub(crate) fn connect(desk: &mut Desk, link: &str) {
     desk.act(Action::ShowTab(crate::tabs::BISS));
     desk.studio.start_with(Some(link.parse().unwrap()), None);

@@ -1,5 +1,5 @@
-//! Tests of writing to a BiSS encoder from the window: edits with their review, and procedures in which the user turns
-//! the motor.
+//! Tests of writing to a BiSS encoder from the window: reviewed edits, and procedures in which the user turns the
+//! motor.
 
 use crate::biss_support::command;
 use crate::tabs::Tabs as _;
@@ -25,7 +25,7 @@ fn until_planned(desk: &mut Desk) {
     desk.until("the plan is there", |studio| is_read(studio) && studio.biss().is_some_and(planned));
 }
 
-/// Consents to the displayed plan, which starts the write.
+/// Consents to the plan in the review, which starts the write.
 fn write(desk: &mut Desk) {
     let own = encoder(desk);
     let plan =

@@ -1,4 +1,4 @@
-//! Tests that the window never waits for a link that hangs, a disk that does not answer or is full, or unread events.
+//! Tests that the window never waits for a hanging link, a hanging or full disk, or unread events.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
@@ -16,7 +16,7 @@ use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, Re
 
 use crate::support::{Desk, HANGING, PORT, SLOW, is_review};
 
-/// Creates a named pipe that is neither read nor written, so that opening it waits forever.
+/// Creates a named pipe with no reader or writer, so opening it waits forever.
 fn pipe(path: &Path) {
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
@@ -104,7 +104,7 @@ fn a_hanging_disk_blocks_nothing() {
     assert_eq!(desk.notice_ids(Severity::Warning), ["file.no_file", "file.no_file"], "a pipe is no profile");
 }
 
-/// If the settings cannot be saved and the disk reports no error, closing the window waits only for a limited time.
+/// The disk neither saves the settings nor reports an error. Closing waits only for a limited time.
 #[cfg(unix)]
 #[test]
 fn a_hanging_disk_does_not_keep_the_window_open() {
@@ -122,7 +122,7 @@ fn a_hanging_disk_does_not_keep_the_window_open() {
     assert!(desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst) > before, "the window is told to look");
 }
 
-/// If the disk does not even answer the search for a draft, closing the window waits only for a limited time.
+/// The disk does not even respond to the search for a draft. Closing the window waits only for a limited time.
 #[cfg(unix)]
 #[test]
 fn a_hanging_draft_does_not_keep_the_window_open() {
@@ -157,7 +157,7 @@ fn an_unwritable_folder_is_reported() {
     desk.until_ready();
 }
 
-/// Returns the ID of the message that says why an edit is not written.
+/// Returns the text ID of the reason why an edit is not written.
 fn refused(desk: &mut Desk) -> &'static str {
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -179,8 +179,8 @@ fn without_a_backup_nothing_is_written() {
     assert_eq!((desk.wire().wear(), desk.edits()), (0, vec![(0, 0, b'X')]));
 }
 
-/// Without a logbook, the previous write cycles are unknown. A write then needs a permission, which only the review
-/// offers (issue 22.4).
+/// Without the logbook, the number of write cycles is unknown. A write then requires a permission, which is available
+/// only in the review (issue 22.4).
 #[test]
 fn without_a_logbook_a_write_needs_a_permission_and_warns() {
     let mut desk = Desk::new_form("");
@@ -201,7 +201,7 @@ fn without_a_logbook_a_write_needs_a_permission_and_warns() {
     desk.until("the list says why", |studio| matches!(studio.hiperface().unwrap().session.writes, Some(Err(_))));
 }
 
-/// Waits for a condition without processing events, so that they stay unread.
+/// Waits for a condition without processing events, so they stay unread.
 fn without_polling(condition: impl Fn() -> bool) {
     let began = Instant::now();
     while !condition() {
@@ -227,8 +227,8 @@ fn unread_samples_and_frames_are_counted_and_the_newest_kept() {
     assert!(desk.notice_ids(Severity::Warning).is_empty());
 }
 
-/// Below 2,000 frames per second, every frame is in the trace. A drawn window takes new frames at least eight times per
-/// second. This test is stricter: it lets a whole second of frames (1,000 readings of two frames each) wait ten times
+/// At up to 2,000 frames per second, every frame is in the trace. A window takes new frames at least eight times per
+/// second. This test is stricter: ten times, a full second of frames (1,000 readings of two frames each) has to wait
 /// (issue 26).
 #[test]
 fn two_thousand_frames_a_second_are_all_in_the_trace() {

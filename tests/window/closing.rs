@@ -1,4 +1,4 @@
-//! Tests that Escape first stops a running job and then closes the dialog, and that closing with unsaved data asks
+//! Tests of Escape, which stops a running job before it closes the dialog, and of closing with unsaved data, which asks
 //! once.
 
 use encoder_studio::app::DeviceCommand;

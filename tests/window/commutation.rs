@@ -1,5 +1,5 @@
 //! Tests of the commutation assistant: requirements, readings, the offset, both ways to store it, and failures. The
-//! numbers are from section 5 of the sine/cosine reference or were calculated separately.
+//! expected numbers are from section 5 of the sine/cosine reference or were calculated separately.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::analysis::quality::Verdict;
@@ -15,8 +15,8 @@ use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, Re
 use crate::support::Desk;
 use crate::texts;
 
-/// A virtual SKM36 at rest, 100.75 periods from its zero, at 128 periods per turn. Its sine and cosine counts are 409
-/// and 511.
+/// A virtual SKM36 at rest, 100.75 periods from zero, with 128 periods per turn. Its sine and cosine counts are 409 and
+/// 511.
 const AT_REST: &str = "position=3224";
 
 impl Desk {
@@ -149,7 +149,7 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
     assert!(english.iter().any(|line| line == "Offset: 53.4288° el. = 25FE68F7h"), "{english:?}");
 }
 
-/// A typed fine position of 339.02 with 1024 periods and 4 pole pairs is enough for the offset (reference, section 5).
+/// The user types a fine position of 339.02 with 1024 periods and 4 pole pairs (reference, section 5).
 #[test]
 fn a_typed_position_yields_the_offset_of_the_reference() {
     let mut desk = Desk::fresh("");
@@ -263,7 +263,7 @@ fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
     assert_eq!(desk.offset(), Err("commutation.no_reading"));
 }
 
-/// A step is 112.5° electrical with 16 periods and 5 pole pairs, and 14° with 128 and 4 (reference, section 5).
+/// With 16 periods and 5 pole pairs, a step is 112.5° electrical. With 128 and 4, it is 14° (reference, section 5).
 #[test]
 fn method_2_is_refused_if_its_step_is_too_large() {
     let mut desk = Desk::new_form(AT_REST);

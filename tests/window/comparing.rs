@@ -1,5 +1,4 @@
-//! The comparison of any two of a device, a profile, a file, a backup and an entry of the logbook, and the values that are
-//! taken over from it.
+//! Compares any two of a device, a profile, a file, a backup and a logbook entry, and copies values from left to right.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +16,7 @@ use crate::each_kind::{CASES, command, shown, write};
 use crate::screen::Screen;
 use crate::support::Desk;
 
-/// The connected encoder, and a profile of it in which the byte at address 0 of field 0 differs: E became X.
+/// The connected encoder and the path of a profile in which the byte at address 0 of field 0 is X instead of E.
 fn with_changed_profile() -> (Desk, PathBuf) {
     let mut desk = Desk::new_form("");
     let path = desk.outside.path("mine.ron");
@@ -129,7 +128,7 @@ fn a_write_of_the_logbook_is_a_moment_to_compare_with() {
     assert_eq!((&row.left, &row.right), (&bytes(b"E"), &bytes(b"Y")));
 }
 
-/// Issue 30: single items are taken over from the left into the edits of the right, by the names of `read`.
+/// Single items are copied from the left side into the edits on the right, with the item names of `read` (issue 30).
 #[test]
 fn values_are_taken_over_into_the_edits_of_every_kind() {
     for case in CASES {
@@ -167,7 +166,7 @@ fn values_are_taken_over_into_the_edits_of_every_kind() {
     }
 }
 
-/// The names of items say more than the items, in both languages.
+/// Items have names that are more readable than their keywords, in both languages.
 #[test]
 fn items_of_every_kind_have_names() {
     for case in CASES {

@@ -1,4 +1,4 @@
-//! Tests of the connection dialog: its form rejects invalid values, and its search finds an encoder with unknown
+//! Tests of the connection dialog: the form rejects invalid values, and the search finds an encoder with unknown
 //! settings.
 
 use encoder_studio::app::DeviceCommand;
@@ -31,7 +31,7 @@ fn edit(desk: &mut Desk, change: impl FnOnce(&mut LinkForm)) {
     desk.connect(Connect::edit_form(form));
 }
 
-/// Before the first byte on a serial line, the program asks whether a drive is on the line. Such a drive may have been
+/// Before the first byte on a serial line, the program asks whether a drive is on the line, because it could have been
 /// silent since it read the encoder at power-up. After "yes" or "not sure", nothing is opened, searched or polled
 /// (issue 22.30).
 #[test]
@@ -67,8 +67,8 @@ fn the_user_must_rule_out_a_drive_before_the_first_byte() {
     desk.until_read();
 }
 
-/// A search also asks about a drive before its first byte. An encoder that the search finds is opened without another
-/// question (issue 22.30).
+/// A search also asks about a drive before its first byte. The encoder it finds is opened without asking again (issue
+/// 22.30).
 #[test]
 fn a_search_asks_about_a_drive_before_its_first_byte() {
     let mut desk = Desk::fresh("");
@@ -90,7 +90,7 @@ fn a_search_asks_about_a_drive_before_its_first_byte() {
     desk.until_read();
 }
 
-/// A change that makes one entry of the form invalid.
+/// Makes one entry of the form invalid.
 type Slip = fn(&mut LinkForm);
 
 #[test]
@@ -147,7 +147,7 @@ fn each_kind_shows_a_valid_example_link() {
     assert!(dialog(&desk).example_link().starts_with("serial:"), "a pin is reached otherwise than a bus");
 }
 
-/// The form follows a typed link, and the link follows the form. A link that is invalid for this device is reported.
+/// A typed link updates the form, and the form updates the link. A link that is invalid for this device is reported.
 #[test]
 fn a_link_can_be_typed_or_pasted() {
     let mut desk = Desk::fresh("");
@@ -236,7 +236,7 @@ fn the_dialog_starts_with_the_last_used_link() {
     assert!(desk.studio.connect.is_none());
 }
 
-/// Starts a search for two encoders whose settings differ from the initial values of the form: 19200 baud, odd parity,
+/// Starts a search for two encoders whose settings differ from the form's initial values: 19200 baud, odd parity,
 /// addresses 43h and 44h. If `hold` is given, the cable is held before the request with that number.
 fn searching(hold: Option<usize>) -> Desk {
     let mut desk = Desk::fresh("encoders=2&address=0x43&settings=0xF5");
@@ -348,7 +348,7 @@ fn a_search_on_an_open_wire_closes_it_first() {
     desk.until_written();
 }
 
-/// A link with an invalid or missing parameter opens the tab of a device kind that uses links of this scheme.
+/// A link with an invalid or missing parameter opens the tab of a device kind that uses its scheme.
 #[test]
 fn an_invalid_link_is_reported_by_the_kind_of_its_scheme() {
     for (link, tab) in [
@@ -364,7 +364,7 @@ fn an_invalid_link_is_reported_by_the_kind_of_its_scheme() {
     }
 }
 
-/// A late answer applies only to the search that asked the question, and not to a dialog that was opened later.
+/// A late answer applies only to the search that asked, and not to a dialog opened later.
 #[test]
 fn a_late_answer_about_another_master_starts_no_search() {
     let mut desk = Desk::fresh("");

@@ -1,6 +1,6 @@
-//! Tests that edits survive a crash: they are saved to disk as they are made, and return with their device or profile.
-//! The device kind of the tests stands for all kinds. Cases that need a type, or a device without a serial number, use
-//! HIPERFACE.
+//! Tests that edits survive a crash: they are saved to disk as they are made, and restored with their device or
+//! profile. The test kind stands for all kinds. HIPERFACE is used for cases that need a type, or a device without a
+//! serial number.
 
 use std::fs;
 
@@ -38,7 +38,7 @@ fn edits(desk: &Desk) -> usize {
     shown(&desk.studio).unwrap().edit_count()
 }
 
-/// Returns the value that [`NOVO`] edits first.
+/// Returns the first value that [`NOVO`] edits.
 fn value(desk: &Desk) -> u16 {
     shown(&desk.studio).unwrap().get::<Encoder>().unwrap().wanted().unwrap()[1]
 }
@@ -86,7 +86,7 @@ fn an_unwritable_draft_is_reported_once() {
     assert_eq!(value(&desk), 4);
 }
 
-/// The notice of restored edits disappears when they are written. The result is in the review and in the log.
+/// The notice about restored edits disappears when they are written. The result is in the review and in the log.
 #[test]
 fn a_write_ends_the_notice_of_restored_edits() {
     let mut desk = connected();
@@ -100,7 +100,7 @@ fn a_write_ends_the_notice_of_restored_edits() {
     assert_eq!(desk.notice_count("novo.written"), 1);
 }
 
-/// The edits of a profile are in its file once it is saved, so its draft is removed.
+/// Once a profile has been saved, its file contains the edits, so its draft is removed.
 #[test]
 fn saving_a_profile_removes_its_draft() {
     let mut desk = connected();
@@ -133,7 +133,7 @@ fn saving_a_profile_removes_its_draft() {
     }
 }
 
-/// A second window with the same encoder neither adopts nor overwrites the draft of the first one.
+/// A second window with the same encoder neither adopts nor overwrites the first one's draft.
 #[test]
 fn a_draft_has_one_owner() {
     let mut desk = connected();

@@ -1,5 +1,5 @@
-//! Tests of how often the window is drawn while nothing changes. Only the clock of the frames counts: each frame is
-//! drawn at the time that the previous one requested (issue 22.32).
+//! Tests of how often the window is drawn while nothing changes. Time is simulated: each frame is drawn at the time
+//! that the previous one requested (issue 22.32).
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -16,14 +16,14 @@ use crate::support::Outside;
 const SIZE: [f32; 2] = [1280.0, 900.0];
 /// Duration of an observation in seconds.
 const WATCHED: f64 = 10.0;
-/// Maximum delay in seconds of a repaint that counts as immediate.
+/// Delay in seconds up to which a repaint counts as immediate.
 const AT_ONCE: f64 = 1.0 / 60.0;
-/// Maximum number of frames for a text cursor, which is drawn and hidden at most twice per second.
+/// Maximum number of frames for a text cursor, which blinks at most once per second.
 const BLINKS: usize = 2 * WATCHED as usize + 2;
 /// Maximum number of frames for live values, which are drawn every 50 ms.
 const LIVE: usize = (WATCHED / 0.05) as usize + 2;
 
-/// A named state of the window, and the function that brings the window into this state.
+/// A named state of the window, and the function that puts the window into it.
 type Situation = (&'static str, fn(&mut Screen));
 
 const SITUATIONS: [Situation; 8] = [
@@ -61,14 +61,14 @@ fn pictures(screen: &mut Screen) -> usize {
     }
 }
 
-/// Returns a window with an encoder that has been read and edited, so that there is something to review and to lose.
+/// Returns a window with an encoder that has been read and edited, so there are edits to review and to lose.
 fn edited() -> Screen {
     let mut screen = Screen::new_form(SIZE);
     screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
     screen
 }
 
-/// Waits until all temporary changes have ended, such as notices, animations and results from threads.
+/// Waits for all temporary changes to end, such as notices, animations and results from threads.
 fn settle(screen: &mut Screen) {
     for _ in 0..2 {
         screen.until("nothing runs", |studio| !studio.is_working());
@@ -81,8 +81,8 @@ fn settle(screen: &mut Screen) {
     }
 }
 
-/// An idle window requests no frames. Releasing the keys used to request another frame in every frame, even where no
-/// keys are held (issue 22.32).
+/// An idle window requests no frames. Previously, the release of keys requested a new frame in every frame, even when
+/// no keys were held (issue 22.32).
 #[test]
 fn nothing_is_drawn_while_nothing_changes() {
     for (what, begin) in SITUATIONS {
@@ -101,7 +101,7 @@ fn nothing_is_drawn_while_nothing_changes() {
     }
 }
 
-/// A window without a device is drawn only when something changes, on every tab (issue 22.32).
+/// Without a device, the window is drawn only when something changes, on every tab (issue 22.32).
 #[test]
 fn a_window_without_a_device_is_drawn_when_something_changes() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SIZE);
@@ -127,7 +127,7 @@ fn a_window_without_a_device_is_drawn_when_something_changes() {
     }
 }
 
-/// A window with a device that has been read and is not polled is drawn only when something changes (issue 22.32).
+/// With a device that is not polled, the window is drawn only when something changes (issue 22.32).
 #[test]
 fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
     type Ready = fn(&Studio) -> bool;
@@ -156,8 +156,7 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
     }
 }
 
-/// Live values are drawn only as often as they change, whatever dialog is open and even in the background
-/// (issue 22.32).
+/// Live values are drawn only as often as they change, with any dialog open and even in the background (issue 22.32).
 #[test]
 fn live_values_in_a_background_window_keep_the_frame_rate() {
     let mut screen = in_hand();

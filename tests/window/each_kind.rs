@@ -1,5 +1,5 @@
-//! The common behaviour of every kind of device, with the same words for all: edits are kept, writes end before
-//! anything closes, and every link that the connection dialog accepts leads to its device.
+//! The behaviour common to every kind of device, with the same texts for all: edits are kept, writes end before
+//! anything closes, and every link accepted by the connection dialog leads to its device.
 
 use crate::tabs::Tabs as _;
 use std::path::Path;
@@ -23,16 +23,16 @@ use crate::novo::state::Action as Novo;
 use crate::support::{ADAPTER, DRIVE, Desk, GATE, KIT, NOVO_PORT, PORT};
 use crate::wire::Wire;
 
-/// A kind of device at a cable.
+/// A kind of device connected by a cable.
 pub(crate) struct Case {
     pub(crate) tab: Tab,
     scheme: &'static str,
     port: &'static str,
-    /// The command that stores the edits.
+    /// The command byte that stores the edits.
     writes: u8,
-    /// A command that reading everything begins with.
+    /// A command byte with which reading everything begins.
     reads: u8,
-    /// An encoder like the one at the cable, with another serial number.
+    /// Settings of another encoder on the cable, which differs in its serial number.
     other: &'static str,
 }
 
@@ -53,12 +53,12 @@ pub(crate) const CASES: [Case; 5] = [
     Case { tab: crate::tabs::HIPERDRIVE, scheme: "enip", port: DRIVE, writes: 0x10, reads: 0x0E, other: "serial=42" },
 ];
 
-/// The invented kind, which represents all if one is enough.
+/// The test kind, which stands for all kinds if one is enough.
 pub(crate) const NOVO: Case =
     Case { tab: crate::tabs::NOVEL, scheme: "serial", port: NOVO_PORT, writes: b'W', reads: b'R', other: "serial=42" };
 
 impl Case {
-    /// Returns a studio in which its encoder is connected and read.
+    /// Returns a studio whose encoder is connected and has been read.
     pub(crate) fn desk(&self) -> Desk {
         let mut desk = Desk::with_novo();
         self.connect(&mut desk);
@@ -84,7 +84,7 @@ impl Case {
         }
     }
 
-    /// Connects again, after which it is not known whether the machine is still at standstill.
+    /// Reconnects, after which it is no longer known whether the machine is at standstill.
     fn reconnect(&self, desk: &mut Desk) {
         command(desk, DeviceCommand::Reconnect);
         until_ready(desk);
@@ -99,7 +99,7 @@ impl Case {
         }
     }
 
-    /// Holds the line at the store command, and starts the reviewed write.
+    /// Holds the line at the store command and starts the reviewed write.
     fn write_until_held(&self, desk: &mut Desk) {
         let plan = planned(desk);
         let wire = self.wire(desk);
@@ -156,7 +156,7 @@ impl Case {
         desk.until("it is saved", |_| path.exists());
     }
 
-    /// Reads the data that are not read on connection.
+    /// Reads the data that are not read when connecting.
     pub(crate) fn read_all(&self, desk: &mut Desk) {
         let id = shown(&desk.studio).unwrap().id();
         match self.tab {
@@ -181,7 +181,7 @@ impl Case {
         desk.act(Action::Chosen(question, path.to_path_buf()));
     }
 
-    /// Returns an entry of a profile by which its device is of another type; `None` if there is only one type.
+    /// Returns a profile entry that makes the device another type, or `None` if there is only one type.
     fn other_type(&self) -> Option<(&'static str, &'static str)> {
         Some(match self.tab {
             // There is one type of it.
@@ -242,7 +242,7 @@ pub(crate) fn until_stage(desk: &mut Desk, wanted: impl Fn(&Stage) -> bool) {
     });
 }
 
-/// Reviews the edits; returns the plan.
+/// Reviews the edits and returns the plan.
 #[track_caller]
 fn planned(desk: &mut Desk) -> PlanId {
     command(desk, DeviceCommand::Review);
@@ -407,7 +407,7 @@ fn escape_stops_a_running_job_before_closing_anything() {
     }
 }
 
-/// Returns the action that accepts the form as it is.
+/// Returns the action that accepts the form without changes.
 fn edited<F: FormModel>(dialog: &Dialog) -> Connect {
     Connect::edit_form(dialog.form_as::<F>().unwrap().clone())
 }
@@ -464,8 +464,8 @@ fn every_kind_of_link_opens_its_device_typed_or_from_the_form() {
     }
 }
 
-/// Issue 22.9: a profile of another type with the same serial number is rejected; an explicit permission is offered,
-/// and with it the review shows the types.
+/// A profile of another type with the same serial number is rejected unless the user permits it explicitly. The review
+/// then shows both types (issue 22.9).
 #[test]
 fn another_type_of_device_needs_a_separate_permission() {
     for case in CASES {
@@ -493,8 +493,8 @@ fn another_type_of_device_needs_a_separate_permission() {
     }
 }
 
-/// Issue 22.14: data that were read can be saved after the connection is lost, for every kind. A profile needs all of
-/// them: missing data are named, and nothing is saved.
+/// Data that were read can still be saved after the connection is lost. A profile needs all data: if some are missing,
+/// they are named and nothing is saved (issue 22.14).
 #[test]
 fn read_values_can_be_saved_after_the_line_is_lost() {
     for case in CASES {

@@ -1,4 +1,4 @@
-//! Tests of the HIPERDRIVE tab by actions: reading, edited parameters, a write with its review, and the motion locks
+//! Tests of the HIPERDRIVE tab through actions: reading, edited parameters, a reviewed write, and the motion locks
 //! after it.
 
 use crate::tabs::Tabs as _;
@@ -77,7 +77,7 @@ fn sets(desk: &Desk) -> usize {
     lines.iter().filter(|line| line.meaning.iter().any(|text| text.id() == "hd_asked.set")).count()
 }
 
-/// Returns a device that answers a discovery request on the network.
+/// Returns a device that replies to a discovery request on the network.
 fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> DiscoveredDevice {
     let identity = Identity {
         vendor,
@@ -275,8 +275,7 @@ fn a_discovered_device_fills_the_form() {
     assert_eq!(desk.studio.connect.as_ref().unwrap().typed_link(), "enip:10.0.0.9:2222", "there is none");
 }
 
-/// An HDA30 has 512 turns in each direction, which are 33 554 432 steps, or 204 800 steps at 400 steps per turn
-/// (reference, section 5).
+/// An HDA30 has 512 turns in each direction: 33 554 432 steps, or 204 800 at 400 steps per turn (reference, section 5).
 #[test]
 fn limits_may_span_the_full_range_of_the_drive() {
     let mut desk = read("sim:");

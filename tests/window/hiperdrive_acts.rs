@@ -1,6 +1,6 @@
-//! Test support for requests that move a drive. They are repeated, as a user would do, if a busy computer has delayed
-//! them: a window that is not updated for 250 ms stops its motion on purpose, and so does a test whose thread is
-//! delayed. Any other end of a motion fails the test.
+//! Test support for requests that move a drive. A window that is not updated for 250 ms stops its motion on purpose,
+//! and so does a test on a busy computer. Such requests are therefore repeated. Any other end of a motion fails the
+//! test.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -13,21 +13,21 @@ use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive,
 use crate::hiperdrive::{act, drive, unit};
 use crate::support::{Desk, LONG};
 
-/// Returns the number of the last action of a drive and how the action ended.
+/// Returns the number of a drive's last action and how it ended.
 pub(crate) fn last_end(studio: &Studio, drive: DriveNumber) -> Option<(u64, ActionEnd)> {
     studio.hiperdrive().and_then(|own| own.moves.drive(drive)?.ended)
 }
 
-/// Returns whether an action of a drive has ended after `since` because it was no longer refreshed.
+/// Returns whether an action has ended after `since` because it was no longer refreshed.
 pub(crate) fn has_lapsed(studio: &Studio, drive: DriveNumber, since: Option<(u64, ActionEnd)>) -> bool {
     let end = last_end(studio, drive);
     end != since && matches!(end, Some((_, ActionEnd::Stale)))
 }
 
-/// Maximum number of attempts for an action that ends because it was not refreshed in time.
+/// Maximum number of attempts for an action that was not refreshed in time.
 pub(crate) const ATTEMPTS: usize = 20;
 
-/// Waits until a drive may move. The motion rules are read repeatedly on threads, and a press before that is rejected.
+/// Waits until a drive may move. Threads read the motion rules repeatedly, and a press before that is rejected.
 #[track_caller]
 pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
     let began = Instant::now();
@@ -43,8 +43,8 @@ pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
     }
 }
 
-/// Repeats a motor request until a condition holds. If a busy computer has delayed the refresh for 250 ms, which ends
-/// the motion, the request is repeated, as a user would do. After any other end it is not repeated.
+/// Repeats a motor request until a condition holds. It is repeated only if a busy computer has delayed the refresh for
+/// 250 ms, which ends the motion.
 #[track_caller]
 pub(crate) fn drive_until(
     desk: &mut Desk,
@@ -55,7 +55,7 @@ pub(crate) fn drive_until(
     act_until(desk, |own| Hiperdrive::Drive(motor(own)), what, condition);
 }
 
-/// Repeats an action of the shown drive under the same conditions as [`drive_until`].
+/// Repeats an action of the selected drive under the same conditions as [`drive_until`].
 #[track_caller]
 pub(crate) fn act_until(
     desk: &mut Desk,
@@ -91,8 +91,8 @@ pub(crate) fn set_off(desk: &mut Desk) {
     );
 }
 
-/// Returns the value that `look` observes while the shown drive moves. If the motion ends during the observation
-/// because it was not refreshed, both are repeated.
+/// Returns the value of `look` while the selected drive moves. Both are repeated if the motion meanwhile ends because
+/// it was not refreshed.
 #[track_caller]
 pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk) -> T) -> T {
     let shown = unit(desk).drive();
@@ -111,12 +111,12 @@ pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk)
     panic!("it has lapsed {ATTEMPTS} times");
 }
 
-/// Returns the IDs of all warnings except the one about a motion that was not refreshed.
+/// Returns the text IDs of all warnings except the one about a motion that was not refreshed.
 pub(crate) fn warned(desk: &Desk) -> Vec<&'static str> {
     desk.notice_ids(Severity::Warning).into_iter().filter(|id| *id != "hd_end.stale").collect()
 }
 
-/// Refreshes the jog with every poll until a condition holds.
+/// Refreshes the jog at every poll until a condition holds.
 #[track_caller]
 pub(crate) fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) -> bool) {
     let began = Instant::now();
@@ -128,8 +128,8 @@ pub(crate) fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) 
     }
 }
 
-/// Holds a pad until a condition holds. If a busy computer delays the refresh for 250 ms, the jog ends, and the pad is
-/// released and pressed again after `prepare`. Any other end is a failure.
+/// Holds a jog pad until a condition holds. If a busy computer delays the refresh for 250 ms, the jog ends, and the pad
+/// is pressed again after `prepare`. Any other end is a failure.
 #[track_caller]
 pub(crate) fn hold_pad_until(
     desk: &mut Desk,

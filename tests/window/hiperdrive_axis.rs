@@ -1,6 +1,5 @@
-//! Tests of the set-up of an axis as one run, by actions with a virtual drive: from a drive that was never requested to
-//! limits in millimetres that have survived a power cycle. The tests also cover the motion locks on the way and the
-//! state after a cancellation.
+//! Tests of the set-up of an axis in one run, from a drive without a reference to limits in millimetres that have
+//! survived a power cycle. The tests also cover the motion locks and the state after a cancellation.
 
 mod bench;
 mod foreign;
@@ -64,8 +63,8 @@ fn nothing_moves_before_the_limits_are_confirmed() {
     assert_eq!(position(&mut desk), before);
 }
 
-/// A confirmation applies to the limits that the user saw when pressing the button, even if the window learns at the
-/// same moment that they are outdated.
+/// A confirmation applies to the limits shown when the user pressed the button, even if the window learns at that
+/// moment that they are outdated.
 #[test]
 fn limits_changed_since_they_were_shown_are_not_confirmed() {
     let mut desk = at_jog_step();
@@ -126,8 +125,8 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     assert!(report.contains("The set-up was cancelled") && !report.contains("Nothing was written"), "{report}");
 }
 
-/// A recall (parameter 47 = −2) affects only the adapter. The scale and the limits of the drive remain, and no text
-/// claims otherwise (issue 21.6 d).
+/// A recall (parameter 47 = −2) affects only the adapter. The drive keeps its scale and limits, and no text claims
+/// otherwise (issue 21.6 d).
 #[test]
 fn a_recall_does_not_change_the_drive() {
     let mut desk = confirmed();
@@ -140,7 +139,7 @@ fn a_recall_does_not_change_the_drive() {
     assert_eq!((axis(&desk).step(), axis(&desk).invalidated_step()), (AxisStep::Jog, Some(AxisStep::Request)));
 }
 
-/// The jog pads of the set-up and the Motion page have separate speed and torque settings (issue 21.6 a).
+/// The set-up and the Motion page have separate speed and torque settings for their jog pads (issue 21.6 a).
 #[test]
 fn the_jog_pads_of_the_setup_have_a_separate_effort() {
     let mut desk = new_form("sim:");
@@ -166,8 +165,8 @@ fn the_jog_pads_of_the_setup_have_a_separate_effort() {
     }
 }
 
-/// A typed pitch is not used as the spindle pitch until the user leaves the step with it. Text that is not confirmed is
-/// not remembered (issue 21.6 f).
+/// A typed spindle pitch is not used until the user completes the step. Text that is not confirmed is not remembered
+/// (issue 21.6 f).
 #[test]
 fn a_pitch_applies_only_after_confirmation() {
     let mut desk = new_form("sim:");
@@ -186,7 +185,7 @@ fn a_pitch_applies_only_after_confirmation() {
     assert_eq!((axis(&desk).step(), axis(&desk).invalidated_step()), (AxisStep::Confirm, Some(AxisStep::Scale)));
 }
 
-/// A new run reports the changes left by an interrupted one, even after the program was restarted (issue 21.6 h).
+/// A new run reports the changes left by an interrupted one, even after a restart of the program (issue 21.6 h).
 #[test]
 fn a_new_run_lists_changes_left_by_an_aborted_one() {
     let mut desk = at_jog_step();
@@ -250,8 +249,8 @@ fn a_reconnection_is_not_a_power_cycle() {
     assert_eq!(axis(&desk).setup_end(), Some(SetupEnd::Done));
 }
 
-/// A fault during the test step is reported with its code, disables motion, and can be acknowledged in that step
-/// (issue 21.6 g).
+/// A fault during the test step is reported with its code, prevents motion, and can be acknowledged in that step (issue
+/// 21.6 g).
 #[test]
 fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
     let mut desk = at_test_step(FRESH, 1, false);
@@ -314,8 +313,8 @@ fn the_result_is_saved_as_a_report() {
     assert_eq!(desk.notice_ids(Severity::Good).last(), Some(&"report.saved"));
 }
 
-/// The complete run works on a drive of a hub even if each write is first rejected and then loses its connection
-/// halfway (issue 21.6).
+/// The complete run works on a hub drive even if each write is first rejected and then interrupted by a lost connection
+/// (issue 21.6).
 #[test]
 fn a_hub_drive_is_set_up_despite_refusals_and_lost_lines() {
     let desk = until_saved_with("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3, true);
@@ -326,8 +325,8 @@ fn a_hub_drive_is_set_up_despite_refusals_and_lost_lines() {
     assert_eq!([152, 154, 156, 160].map(|own| read(&desk, own)), [0, 256, 1, 33_488_896]);
 }
 
-/// The last step on a drive of a hub reports its end correctly even if its write is rejected and then interrupted
-/// before the supply is switched off (issue 21.6).
+/// The last step on a hub drive reports its end correctly even if its write is rejected and then interrupted before the
+/// supply is switched off (issue 21.6).
 #[test]
 fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
     let mut desk = until_saved("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3);

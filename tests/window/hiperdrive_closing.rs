@@ -1,6 +1,6 @@
-//! Tests of a window that closes, or is ended by the system, while a drive moves: the drive stops first and is switched
-//! off, and its connection is closed. Questions come after that (issue 21.1). The tests read the state from the drive
-//! itself.
+//! Tests of a window that is closed, or ended by the system, while a drive moves. First, the drive stops and is
+//! switched off, and its connection is closed. Questions come after that (issue 21.1). The tests read the state from
+//! the drive itself.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -42,7 +42,7 @@ fn until_released(desk: &Desk) {
     assert_eq!((drive_state(desk).0, drive_state(desk).1), (State::NotReady, true));
 }
 
-/// A closing window without edits asks no question. It waits for the drive to stop, and nothing moves afterwards
+/// Without edits, closing the window asks no question. It waits for the drive to stop, and nothing moves afterwards
 /// (issue 21.1).
 #[test]
 fn a_closing_window_releases_the_drives_first() {
@@ -61,7 +61,7 @@ fn a_closing_window_releases_the_drives_first() {
     }
 }
 
-/// The question about unsaved edits comes after the stop, and nothing resumes if the user answers no (issue 21.1).
+/// The question about unsaved edits appears after the stop, and nothing resumes if the answer is no (issue 21.1).
 #[test]
 fn the_close_question_follows_the_stop_and_nothing_resumes() {
     let mut desk = moving();
@@ -89,7 +89,7 @@ fn the_close_question_follows_the_stop_and_nothing_resumes() {
     until_released(&desk);
 }
 
-/// A termination signal from the system closes the window without a question (issue 21.1).
+/// A termination signal closes the window without a question (issue 21.1).
 #[test]
 fn a_signal_closes_without_asking() {
     let mut desk = moving();
@@ -102,7 +102,7 @@ fn a_signal_closes_without_asking() {
     until_released(&desk);
 }
 
-/// Drives are released even if the window is not updated, for example because the display does not answer (issue 21.1).
+/// Drives are released even if the window is not updated, such as when the display hangs (issue 21.1).
 #[test]
 fn drives_are_released_without_the_window() {
     let desk = moving();
@@ -114,8 +114,8 @@ fn drives_are_released_without_the_window() {
     assert!(!brakes.wait_for_window(Duration::ZERO));
 }
 
-/// Closing a session stops its own drive and leaves the motion of other sessions alone. Closing the window waits for
-/// the closed session (issue 21.1).
+/// Closing a session stops its own drive and does not affect motion in other sessions. Closing the window waits for the
+/// closed session (issue 21.1).
 #[test]
 fn closing_a_session_stops_its_motion() {
     let mut desk = in_control("sim:");
@@ -141,7 +141,7 @@ fn closing_a_session_stops_its_motion() {
     assert_eq!((status.state(), open), (State::NotReady, false));
 }
 
-/// After control was given up, closing the window has nothing to wait for (issue 21.1).
+/// Once control has been given up, closing the window does not have to wait (issue 21.1).
 #[test]
 fn a_window_without_control_closes_immediately() {
     let mut desk = in_control("sim:");

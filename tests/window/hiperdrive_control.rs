@@ -1,5 +1,5 @@
-//! Tests of control over HIPERDRIVE drives, by actions. They cover the loss of control, the messages about it, and
-//! parameters that another master changes in the meantime.
+//! Tests of control over HIPERDRIVE drives through actions: loss of control, messages about it, and parameters that
+//! another master changes meanwhile.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -26,7 +26,7 @@ fn set(desk: &Desk, of: u16, value: i64) {
     target.with_station(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
 }
 
-/// Stops the cyclic packets of the device, which still answers messages.
+/// Stops the device's cyclic packets, while it still answers messages.
 fn fall_silent(desk: &Desk) {
     unit(desk).target.clone().unwrap().with_station(|station| station.close(Moment::default()));
 }
@@ -78,8 +78,8 @@ fn limits_set_by_another_master_under_control_are_read_and_applied() {
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
 
-/// A reference set by another master is read under control, because everything based on the old reference becomes
-/// invalid (issue 21.6).
+/// A reference set by another master must be read, because everything based on the old reference becomes invalid (issue
+/// 21.6).
 #[test]
 fn a_reference_set_by_another_master_under_control_is_read() {
     let mut desk = in_control("sim:");
@@ -152,8 +152,8 @@ fn nothing_moves_until_everything_is_read_again_under_control() {
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
 }
 
-/// The table shows live values. Reference: 4096 steps are a sixteenth of a turn (section 4), and such a move ends with
-/// status 3E37h or the same with the other acknowledge bit (section 9).
+/// 4096 steps are a sixteenth of a turn (reference, section 4). Such a move ends with status 3E37h, or the same with
+/// the acknowledge bit inverted (section 9).
 #[test]
 fn the_table_shows_live_values_of_the_drive() {
     let mut desk = in_control("sim:");

@@ -1,5 +1,5 @@
-//! Tests of the separate drives of a hub: text typed for one drive, messages about it, and its motion while another one
-//! is shown.
+//! Tests of the individual drives of a hub: text typed for a drive, messages about it, and its motion while another
+//! drive is selected.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -31,7 +31,7 @@ fn moves(studio: &Studio, drive: DriveNumber) -> bool {
     studio.hiperdrive().unwrap().state(drive) == Some(State::Moving)
 }
 
-/// The speed, the torque and *Endless* of one drive do not apply to another (issue 21.7).
+/// One drive's speed, torque and *Endless* setting do not apply to another drive (issue 21.7).
 #[test]
 fn settings_of_one_drive_do_not_apply_to_another() {
     let mut desk = in_control(HUB);
@@ -60,7 +60,7 @@ fn settings_of_one_drive_do_not_apply_to_another() {
     assert_eq!((unit(&desk).moves.move_speed_torque(ONE), unit(&desk).moves.jog_speed_torque(ONE)), (slow, slow));
 }
 
-/// A second motion is rejected with a message and does not end a running one, whichever drive it is for (issue 21.7).
+/// A second motion is rejected with a message and does not end a running one, on any drive (issue 21.7).
 #[test]
 fn a_second_motion_waits_for_the_end_of_the_first() {
     let mut desk = in_control(HUB);
@@ -110,7 +110,7 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
     });
 }
 
-/// A paused move is not discarded by a request to another drive (issue 21.7).
+/// A request to another drive does not discard a paused move (issue 21.7).
 #[test]
 fn a_paused_job_is_not_discarded_by_another_drive() {
     let mut desk = in_control(HUB);
@@ -138,8 +138,7 @@ fn a_paused_job_is_not_discarded_by_another_drive() {
     desk.until("it stands", |studio| !studio.is_moving());
 }
 
-/// Messages name the drive if it belongs to a hub. A single adapter has only one drive, which needs no name
-/// (issue 21.7).
+/// Messages include the drive number on a hub. An adapter has only one drive, which needs no number (issue 21.7).
 #[test]
 fn messages_name_the_drive() {
     for (link, own, named) in [(HUB, two(), Some("drive 2")), ("sim:", ONE, None)] {
@@ -161,8 +160,7 @@ fn messages_name_the_drive() {
     }
 }
 
-/// The speed and torque sent for the running move are shown apart from those that were set during the move
-/// (issue 21.7).
+/// The speed and torque sent for the running move are shown separately from those set meanwhile (issue 21.7).
 #[test]
 fn the_pending_speed_is_shown_apart_from_the_sent_one() {
     let mut desk = in_control("sim:");
@@ -224,8 +222,8 @@ fn target(screen: &Screen) -> Node<'_> {
     screen.harness.query_all_by(is_it).last().unwrap()
 }
 
-/// Moves drive 1, runs `then`, and returns what `look` observes while the drive still moves. A delayed window stops its
-/// motion, so that a busy computer may need several attempts.
+/// Moves drive 1, runs `then`, and returns what `look` observes while the drive still moves. Several attempts may be
+/// needed, because a delayed window stops its motion.
 fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: impl Fn(&Screen) -> bool) -> bool {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     let own = |action| Action::device(id, action);
@@ -245,7 +243,7 @@ fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: i
     panic!("it never moved for long enough");
 }
 
-/// Text typed for one drive stays in the entries of that drive (issue 21.7).
+/// Text typed for one drive stays with that drive (issue 21.7).
 #[test]
 fn typed_values_are_kept_per_drive() {
     let mut screen = on_screen();
@@ -265,7 +263,7 @@ fn has_entry(screen: &Screen, text: &str) -> bool {
     screen.harness.query_all_by(|node| node.value().is_some_and(|own| own.contains(text))).next().is_some()
 }
 
-/// The buttons that select a drive show the state of that drive, whichever drive is shown (issue 21.7).
+/// Each button that selects a drive shows that drive's state, whichever drive is selected (issue 21.7).
 #[test]
 fn drive_buttons_show_the_drive_states() {
     let mut screen = on_screen();
@@ -286,7 +284,7 @@ fn drive_buttons_show_the_drive_states() {
     assert!(says(&screen, "drive 1, Fault"));
 }
 
-/// A speed that is typed during a motion is marked as not sent in its entry (issue 21.7).
+/// A speed typed during a motion is marked as not sent (issue 21.7).
 #[test]
 fn a_speed_typed_during_a_motion_is_marked_as_not_sent() {
     let mut screen = on_screen();

@@ -1,4 +1,4 @@
-//! Tests of the jog panel: what is visible without scrolling, what its speed buttons set, and what the travel bar says.
+//! Tests of the jog panel: visibility without scrolling, the speed presets, and the travel bar.
 
 use egui::Rect;
 use egui::accesskit::Role;
@@ -19,7 +19,7 @@ const BELOW: f32 = 170.0;
 /// Height of everything above the page, in points.
 const ABOVE: f32 = 155.0;
 
-/// Opens a window of this size that is in control of the drives of a virtual device.
+/// Opens a window of this size with control over the drives of a virtual device.
 pub(crate) fn in_control_on_screen(link: &str, size: [f32; 2]) -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, link, size);
     screen.until("it is read", |studio| {
@@ -47,7 +47,7 @@ fn preset<'s>(screen: &'s Screen, percent: &str) -> Node<'s> {
     screen.harness.query_all_by(move |node| node.label().as_ref() == Some(&label)).next().unwrap()
 }
 
-/// Returns the entry of the jog speed, which is the first speed entry on the page.
+/// Returns the jog speed entry, which is the first speed entry on the page.
 fn typed_speed(screen: &Screen) -> Node<'_> {
     let label = screen.say("hd_effort.speed");
     let is_it = move |node: &AccessKitNode<'_>| node.role() == Role::TextInput && node.label().as_ref() == Some(&label);
@@ -63,7 +63,7 @@ fn what_is_needed(screen: &Screen) -> Rect {
     [pads, states].into_iter().flatten().fold(travel(screen).rect(), Rect::union)
 }
 
-/// The pads, the state and the travel bar are visible together: at 1280 × 800 with an open trace, and at 1024 × 640
+/// The pads, the state and the travel bar are visible together: at 1280 × 800 with the trace open, and at 1024 × 640
 /// after at most one scroll (issue 26.2).
 #[test]
 fn pads_state_and_travel_are_seen_together() {
@@ -74,7 +74,7 @@ fn pads_state_and_travel_are_seen_together() {
     assert!(needed.bottom() <= ABOVE + 2.0 * page, "{needed:?}");
 }
 
-/// Tab continues from a speed preset that was clicked (issue 26).
+/// Tab moves on from a speed preset that was clicked (issue 26).
 #[test]
 fn tab_continues_after_a_clicked_preset() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 800.0]);
@@ -85,7 +85,7 @@ fn tab_continues_after_a_clicked_preset() {
     assert!(preset(&screen, "100").accesskit_node().is_focused());
 }
 
-/// A preset sets the speed without starting a motion. It also replaces typed text, even if that is not a percentage
+/// A preset sets the speed but does not start a motion. It also replaces typed text, even if that is not a percentage
 /// (issue 26.2).
 #[test]
 fn a_preset_sets_the_speed_and_begins_nothing() {
@@ -112,7 +112,7 @@ fn a_preset_sets_the_speed_and_begins_nothing() {
     assert!(screen.is_enabled("hd_jog.up") && speed(&screen) == 10);
 }
 
-/// The jog speed is 10 % after every connection, not only after the start of the program (issue 26.2).
+/// The jog speed is 10 % after every connection, not only after a program start (issue 26.2).
 #[test]
 fn every_connection_begins_slowly() {
     let mut desk = in_control("sim:");
@@ -126,8 +126,8 @@ fn every_connection_begins_slowly() {
     assert_eq!(unit(&desk).moves.jog_speed_torque(ONE), SpeedTorque::DEFAULT_JOG);
 }
 
-/// The travel bar shows the limits, the position and the target in the user's unit. Outside the limits, it shows the
-/// way back in (issue 26.2).
+/// The travel bar shows the limits, the position and the target in the user's unit. If the position is outside the
+/// limits, it shows the way back (issue 26.2).
 #[test]
 fn the_travel_bar_names_the_way_back_in() {
     let inside = in_control_on_screen("sim:?position=65536", [1280.0, 800.0]);

@@ -1,4 +1,4 @@
-//! Tests of keys that are held, keys that stop a motion, and key repeats, which start nothing (issue 21.2). The events
+//! Tests of held keys, keys that stop a motion, and key repeats, which must not start anything (issue 21.2). The events
 //! are those of the window system. egui reports the first repeat after a window change as a new press.
 
 use crate::tabs::Tabs as _;
@@ -33,14 +33,14 @@ fn up(screen: &mut Screen, key: Key) {
     screen.harness.step();
 }
 
-/// Sends eight repeats of a held key, one in each frame.
+/// Sends eight repeats of a held key, one per frame.
 fn repeats(screen: &mut Screen, key: Key) {
     for _ in 0..8 {
         down(screen, key);
     }
 }
 
-/// Takes the keyboard focus from the window. The window system then also reports a release of a key that is still down.
+/// Takes the keyboard focus from the window, which also causes a release event for a key that is still down.
 fn leave(screen: &mut Screen, key: Key) {
     screen.harness.input_mut().focused = false;
     picture(screen, [event(key, false), Event::WindowFocused(false)]);
@@ -68,8 +68,7 @@ fn is_held(screen: &Screen) -> bool {
     screen.studio().hiperdrive().unwrap().moves.is_held()
 }
 
-/// Returns a window in which a jog pad has the keyboard focus and Space has been released, so that the next press
-/// counts.
+/// Returns a window with the keyboard focus on a jog pad. Space has been released, so the next press counts.
 fn on_pad() -> Screen {
     let mut screen = in_hand();
     focus(&mut screen, "hd_jog.up");
@@ -79,8 +78,8 @@ fn on_pad() -> Screen {
     screen
 }
 
-/// A key that is held in another window starts no motion when this window gets the keyboard focus. Before the fix, the
-/// drive ran in 8 of 8 attempts (issue 21.2).
+/// The key is held in another window until this window gets the keyboard focus. Before the fix, the drive ran in 8 of 8
+/// attempts (issue 21.2).
 #[test]
 fn a_key_held_in_another_window_moves_nothing_when_focus_returns() {
     for key in [Key::Space, Key::Enter] {
@@ -98,7 +97,7 @@ fn a_key_held_in_another_window_moves_nothing_when_focus_returns() {
     }
 }
 
-/// A jog that ends because the window loses the keyboard focus does not start again while the key is held (issue 21.2).
+/// When the window loses the keyboard focus, the jog ends. It must not restart while the key is held (issue 21.2).
 #[test]
 fn a_jog_ended_by_a_window_change_does_not_restart() {
     let mut screen = on_pad();
@@ -121,7 +120,7 @@ fn a_jog_ended_by_a_window_change_does_not_restart() {
     assert!(!is_motion_active(screen.studio()));
 }
 
-/// A held key presses a button that starts a motion only once. A key that was held in another window does not press it
+/// A held key presses a button that starts a motion only once. A key that was held in another window must not press it
 /// at all (issue 21.2).
 #[test]
 fn a_key_repeat_presses_no_button() {
@@ -143,8 +142,8 @@ fn a_key_repeat_presses_no_button() {
     assert!(!is_motion_active(screen.studio()), "held since then");
 }
 
-/// A key held on a speed preset sets the speed once and moves nothing. The repeats after the focus has moved on press
-/// no pad (issue 26).
+/// A key held on a speed preset sets the speed once and moves nothing. Its repeats press no pad when the focus moves on
+/// (issue 26).
 #[test]
 fn a_key_held_on_a_speed_preset_moves_nothing() {
     for key in [Key::Enter, Key::Space] {
@@ -166,7 +165,7 @@ fn a_key_held_on_a_speed_preset_moves_nothing() {
     }
 }
 
-/// Some systems repeat a key by an immediate release and press. Even if the two arrive in frames that are far apart,
+/// Some systems repeat a key as a release followed by a press. Even if the two arrive in frames that are far apart,
 /// they start no motion (issue 21.2).
 #[test]
 fn a_key_repeat_split_over_two_frames_moves_nothing() {
@@ -195,7 +194,7 @@ fn a_key_repeat_split_over_two_frames_moves_nothing() {
     assert!(is_motion_active(screen.studio()), "a fresh act");
 }
 
-/// Space stops a motion whichever widget has the keyboard focus, and presses nothing (issue 21.2).
+/// Space stops a motion whichever widget has the focus, and does not press that widget (issue 21.2).
 #[test]
 fn space_stops_motion_with_any_focus() {
     let mut screen = in_hand();
@@ -219,7 +218,7 @@ fn space_stops_motion_with_any_focus() {
     }
 }
 
-/// In a text entry, Space types a character and also stops a moving drive (issue 21.2).
+/// In a text entry, Space types a space and also stops a moving drive (issue 21.2).
 #[test]
 fn space_in_a_text_entry_is_typed_and_stops_motion() {
     for moves in [false, true] {
@@ -265,7 +264,7 @@ fn any_key_during_a_pointer_jog_stops() {
     }
 }
 
-/// The write button accepts a key only after that key was released while the review was open (issue 22.29).
+/// The write button accepts a key only if it was released while the review was open (issue 22.29).
 #[test]
 fn a_review_accepts_a_key_only_after_its_release() {
     let mut screen = in_hand();
@@ -284,8 +283,8 @@ fn a_review_accepts_a_key_only_after_its_release() {
     screen.until("it is written", |studio| !studio.selected_device().unwrap().is_dirty());
 }
 
-/// A barcode scanner that sends Enter within milliseconds of the last digit writes nothing, even if *Write* has the
-/// keyboard focus and both keys arrive in one frame or in two (issue 22.29).
+/// A barcode scanner sends Enter within milliseconds of the last digit, in the same frame or the next. Even with the
+/// focus on *Write*, nothing is written (issue 22.29).
 #[test]
 fn a_barcode_scanner_writes_nothing() {
     let mut screen = in_hand();

@@ -1,5 +1,5 @@
 //! Tests of drives that the user moves from the window: the start of a motion, its refresh, and every way in which it
-//! ends. The standstill is read from the drive itself.
+//! ends. Standstill is read from the drive itself.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -57,7 +57,7 @@ fn jog(desk: &mut Desk) {
     hold_pad_until(desk, press, "it moves", |_| {}, moves);
 }
 
-/// Waits for the standstill without polling the window, because the stop has already been requested.
+/// Waits for standstill without polling the window, because the stop has already been requested.
 #[track_caller]
 fn until_standstill(desk: &Desk) {
     let began = Instant::now();
@@ -224,7 +224,7 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     assert_eq!(warned(&desk).last(), Some(&"hd_refused.endless"));
 }
 
-/// The factory scale is 65,536 steps per turn. Moves start at 25 % of 35 rpm (parameter 166): 35 turns in 4 minutes.
+/// A turn has 65,536 steps by default. At 25 % of 35 rpm (parameter 166), 35 turns take 4 minutes.
 #[test]
 fn distance_and_duration_of_a_move_are_estimated() {
     let desk = in_control("sim:");
@@ -312,8 +312,8 @@ fn limits_set_by_another_master_are_read_before_any_motion() {
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
 
-/// A drive outside its limits reports it, and the pad that leads further out is blocked with its reason. The user can
-/// permit it for one press at a time, at 10 % speed and 25 % torque (issue 21.4).
+/// The pad that leads further out is blocked and shows the reason. The user can permit it for one press at a time, at
+/// 10 % speed and 25 % torque (issue 21.4).
 #[test]
 fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     let mut desk = in_control("sim:?position=33488896&defect=runs-on");
@@ -359,8 +359,8 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     assert!(unit(&desk).check_can_jog(ONE, up).is_err());
 }
 
-/// If only status bit 15 reports a position outside the limits and the position is well inside, the way back is
-/// unknown. Nothing moves, and each pad can be permitted for one press (issue 21.4).
+/// Only status bit 15 reports a position outside the limits, so the way back is unknown. Nothing moves unless the user
+/// permits a pad for one press (issue 21.4).
 #[test]
 fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
     let mut desk = in_control("sim:?defect=says-outside");

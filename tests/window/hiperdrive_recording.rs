@@ -1,4 +1,4 @@
-//! Tests that recordings of HIPERDRIVE drives are kept after any change on the page.
+//! Tests that recordings of HIPERDRIVE drives survive any change on the page.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -18,7 +18,7 @@ fn recorder(desk: &Desk) -> &Recorder {
     unit(desk).recording().recorder()
 }
 
-/// Returns the number of samples in the line with a matching heading, or 0 if there is no such line.
+/// Returns the number of samples in the line with a matching heading, or 0 if there is none.
 fn samples(recorder: &Recorder, is_it: impl Fn(&str) -> bool) -> u64 {
     let line = recorder.series().iter().find(|line| is_it(&line.heading));
     let all = line.and_then(|line| recorder.history(line)).map(|history| history.indices());
@@ -38,7 +38,7 @@ fn until_recorded(desk: &mut Desk, more: u64) {
     });
 }
 
-/// Each drive of a hub keeps its own recording while another drive is shown (issue 21.12).
+/// Each drive of a hub keeps its own recording while another drive is selected (issue 21.12).
 #[test]
 fn each_drive_of_a_hub_has_a_recording() {
     let mut desk = read("sim:?hub=4&drives=1,0,1");
@@ -84,7 +84,7 @@ fn a_recording_survives_unit_and_scale_changes() {
     assert!(samples(recorder(&desk), |heading| heading.starts_with("position until ")) >= before);
 }
 
-/// The exported table of one drive is complete even if another drive is shown during the export (issue 21.12).
+/// One drive's exported table is complete even if another drive is selected during the export (issue 21.12).
 #[test]
 fn a_table_is_exported_while_another_drive_is_shown() {
     let mut desk = read("sim:?hub=4&drives=1,0,1");

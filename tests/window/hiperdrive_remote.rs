@@ -1,5 +1,5 @@
-//! Tests of a window that is operated over a remote desktop: motion that lasts until it is stopped ends, and cannot be
-//! started.
+//! Tests of a window that is operated over a remote desktop. Motion that continues until it is stopped ends, and cannot
+//! be started.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,7 +16,7 @@ use crate::tabs::Tabs as _;
 
 const PRESS: MotorCommand = MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false };
 
-/// Starts the application with a flag that simulates remote operation.
+/// Starts the application with simulated remote operation.
 fn studio(outside: &Outside, remote: &Arc<AtomicBool>) -> Studio {
     let remote = remote.clone();
     let is_remote = Arc::new(move || remote.load(Ordering::SeqCst));

@@ -1,5 +1,5 @@
-//! Tests that the motion rules of a controlled drive are read repeatedly, whatever is polled and shown. If they cannot
-//! be read, nothing moves.
+//! Tests that the motion rules of a controlled drive are read repeatedly, whatever is polled and displayed. If they
+//! cannot be read, nothing moves.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -78,7 +78,7 @@ fn a_newly_selected_drive_moves_only_with_freshly_read_limits() {
     });
 }
 
-/// A connection that damages every message reply while the flag is set. Cyclic packets are unchanged.
+/// A connection that damages every reply while the flag is set. Cyclic packets are unchanged.
 struct Damaging(Box<dyn ByteLink>, Arc<AtomicBool>);
 
 impl ByteLink for Damaging {
@@ -187,7 +187,7 @@ fn has_fault_notice(studio: &Studio) -> bool {
     studio.services.log.current().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.fault"))
 }
 
-/// A fault notice of drive 1, which failed while it moved, does not end when drive 2, which failed before, recovers.
+/// Drive 1 failed while it moved, and drive 2 failed earlier. The notice about drive 1 must stay when drive 2 recovers.
 #[test]
 fn a_fault_notice_does_not_end_with_another_drives_recovery() {
     let mut desk = in_control("sim:?hub=4&drives=1,1&requested=1");
@@ -216,7 +216,7 @@ fn a_fault_notice_does_not_end_with_another_drives_recovery() {
     drive_until(&mut desk, |_| MotorCommand::Acknowledge, "all have recovered", |studio| !has_fault_notice(studio));
 }
 
-/// The notice of a fault does not end with a reading of all states that began before the fault.
+/// A reading of all states that began before the fault must not end the notice of the fault.
 #[test]
 fn a_reading_from_before_a_fault_does_not_end_its_notice() {
     let mut desk = in_control("sim:?hub=4&drives=1,1,1,1&requested=1");
@@ -239,7 +239,7 @@ fn a_reading_from_before_a_fault_does_not_end_its_notice() {
     }
 }
 
-/// A drive that is locked for two reasons has only one place to confirm its limits.
+/// Even if a drive is locked for two reasons, its limits are confirmed in only one place.
 #[test]
 fn limits_are_confirmed_in_one_place() {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);

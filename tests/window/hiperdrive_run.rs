@@ -1,4 +1,4 @@
-//! Tests of runs at a constant speed: their own speed and torque, and the condition for an endless run.
+//! Tests of constant-speed runs: their speed and torque settings, and the condition for an endless run.
 
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
@@ -20,8 +20,8 @@ fn effort(speed: u8, torque: u8) -> SpeedTorque {
     SpeedTorque { speed: Percent::new(speed).unwrap(), torque: Percent::new(torque).unwrap() }
 }
 
-/// A run has its own speed and torque, which start as low as those of a jog. Runs used to share the values of moves,
-/// which start at 25 % speed and 100 % torque (issue 26).
+/// A run has its own speed and torque, which start as low as those of a jog. Previously, it used those of a move, which
+/// start at 25 % speed and 100 % torque (issue 26).
 #[test]
 fn a_run_has_its_own_speed_and_torque() {
     let mut desk = in_control("sim:");
@@ -52,8 +52,7 @@ fn shows(screen: &Screen, words: &str) -> bool {
     screen.harness.query_all_by_label(words).next().is_some()
 }
 
-/// The card of an endless run shows the condition for it even while the condition is met, and names the parameters that
-/// do not meet it (issue 26).
+/// The endless run card always shows the condition and names the parameters that do not meet it (issue 26).
 #[test]
 fn the_condition_of_an_endless_run_is_on_its_card() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 1400.0]);

@@ -1,4 +1,4 @@
-//! Tests of STOP and Esc pressed in panic: the first press ends the motion, and the next one has no other effect.
+//! Tests of repeated STOP and Esc presses: the first ends the motion, a quick second one does nothing else.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -18,7 +18,7 @@ use crate::hiperdrive::ONE;
 use crate::screen::Screen;
 use crate::support::LONG;
 
-/// Returns a window in which an encoder is polled in one session, and a drive is under control in another.
+/// Returns a window that polls an encoder in one session and controls a drive in another.
 pub(crate) fn in_hand() -> Screen {
     let mut screen = Screen::new_form([1280.0, 1200.0]);
     screen.click("live.start");
@@ -83,7 +83,7 @@ pub(crate) fn pointer(screen: &mut Screen, pos: Pos2, pressed: bool) {
     screen.harness.step();
 }
 
-/// Waits for the standstill without drawing a frame.
+/// Waits for standstill without drawing a frame.
 pub(crate) fn until_stopped(screen: &Screen) {
     let motion = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone();
     let began = Instant::now();
@@ -94,7 +94,7 @@ pub(crate) fn until_stopped(screen: &Screen) {
     }
 }
 
-/// Returns a window whose drive was stopped by a press of STOP, and the position of the button, which is still down.
+/// Returns a window whose drive was stopped with STOP, and the position of the button, which is still down.
 fn stopped_by_a_press() -> (Screen, Pos2) {
     let mut screen = moving();
     let place = stop(&screen);
@@ -176,7 +176,7 @@ fn a_click_after_the_page_stop_stops_nothing_else() {
     assert!(is_watched(&screen));
 }
 
-/// The pause button resumes a paused move. A quick second press in panic does not resume it, but a later one does.
+/// The pause button resumes a paused move. A quick second click must not resume it, but a later one does.
 #[test]
 fn a_quick_second_click_on_pause_does_not_resume() {
     let mut screen = moving();
@@ -208,7 +208,7 @@ fn a_quick_second_click_on_pause_does_not_resume() {
         .until("it goes on", |studio| matches!(studio.hiperdrive().unwrap().moves.phase(ONE), Some(Phase::Moving(_))));
 }
 
-/// Esc also stops a motion if a modifier is down.
+/// Esc stops a motion even with a modifier key held.
 #[test]
 fn escape_with_a_modifier_stops() {
     for modifiers in [Modifiers::CTRL, Modifiers::ALT, Modifiers::SHIFT] {
@@ -221,7 +221,7 @@ fn escape_with_a_modifier_stops() {
     }
 }
 
-/// If Esc is already down when a motion starts, the repeat of the key stops the motion.
+/// Esc is held down when a motion starts. Its key repeat stops the motion.
 #[test]
 fn held_escape_stops_a_newly_started_motion() {
     let mut screen = in_hand();
@@ -234,7 +234,7 @@ fn held_escape_stops_a_newly_started_motion() {
     assert!(matches!(ended, Some((_, ActionEnd::Stopped))) && is_watched(&screen), "{ended:?}");
 }
 
-/// Returns a window that polls a drive which another master moves.
+/// Returns a window that polls a drive moved by another master.
 fn moved_by_another_master() -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
     let own = |studio: &Studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready());
@@ -248,7 +248,7 @@ fn moved_by_another_master() -> Screen {
     screen
 }
 
-/// Esc cannot stop the motion of another master, so it closes the open dialog.
+/// Esc cannot stop the other master's motion, so it closes the open dialog.
 #[test]
 fn escape_closes_dialogs_while_another_master_moves_a_drive() {
     let mut screen = moved_by_another_master();
@@ -259,7 +259,7 @@ fn escape_closes_dialogs_while_another_master_moves_a_drive() {
     assert!(screen.studio().hiperdrive().unwrap().session.is_polling(), "nothing else was open");
 }
 
-/// STOP is disabled because it cannot stop the drive. A click on it does not end the polling either.
+/// STOP is disabled because it cannot stop the drive. A click on it does not end polling either.
 #[test]
 fn stop_is_disabled_while_only_another_master_moves_a_drive() {
     let mut screen = moved_by_another_master();
@@ -282,8 +282,7 @@ fn stop_is_disabled_while_only_another_master_moves_a_drive() {
     assert!(!is_disabled(&screen));
 }
 
-/// An action for another device kind was meant for something that does not exist in this session. It is reported, and
-/// the motion stops (issue 23).
+/// The action cannot apply to a device of this kind. It is reported, and the motion stops (issue 23).
 #[test]
 fn an_action_of_another_kind_is_reported_and_stops_motion() {
     let mut screen = moving();

@@ -1,5 +1,5 @@
-//! Tests of the INTERBUS tab by actions: reading, edited parameters and cams, a write with its review, cam tables, and
-//! the question before a running machine is disturbed.
+//! Tests of the INTERBUS tab through actions: reading, edited parameters and cams, a reviewed write, cam tables, and
+//! the confirmation before a running machine is disturbed.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;
@@ -76,7 +76,7 @@ fn cam(number: u8) -> CamNumber {
     CamNumber::new(number).unwrap()
 }
 
-/// Reviews and writes the edits, and returns the cost that the plan states.
+/// Reviews and writes the edits, and returns the write cost in the plan.
 #[track_caller]
 fn write(desk: &mut Desk) -> String {
     wish(desk, DeviceCommand::Review);
@@ -135,8 +135,8 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     assert!(encoder(&desk).refusal.is_some() && !encoder(&desk).is_dirty());
 }
 
-/// The plot shows positions within the range, like the rows beside it. A turn of the shaft is the whole range
-/// (issue 26).
+/// The plot shows positions within the range, like the values next to it. A turn of the shaft is the whole range (issue
+/// 26).
 #[test]
 fn the_plot_shows_the_position_of_the_rows() {
     let mut desk = read("sim:?steps=3600&revolutions=1&rpm=60");

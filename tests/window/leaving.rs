@@ -1,5 +1,5 @@
-//! Tests of sessions that are closed, opened again or ended by a panic: the results of their work are reported, and
-//! closing waits for them within limits.
+//! Tests of sessions that are closed, reopened or ended by a panic. The results of their work are reported, and closing
+//! waits for them for a limited time.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -55,8 +55,8 @@ fn a_wire_is_reopened_only_after_its_write_has_ended() {
     assert_eq!(desk.encoder().staged.device_byte(0, 0), Some(b'X'));
 }
 
-/// Closing the window waits until the edit of a closed session is on disk. The draft file is a named pipe, so that the
-/// write completes only when the test reads it.
+/// Closing the window waits until a closed session's edit is on disk. The draft file is a named pipe, so the write
+/// completes only when the test reads it.
 #[cfg(unix)]
 #[test]
 fn the_draft_of_a_closed_session_is_awaited() {
@@ -75,7 +75,7 @@ fn the_draft_of_a_closed_session_is_awaited() {
     desk.until("it may close", |studio| studio.can_close());
 }
 
-/// A link that opens only after a later attempt has connected is not used.
+/// A link must not be used if it opens only after a later attempt has connected.
 #[test]
 fn a_link_from_an_earlier_attempt_is_not_used() {
     let mut desk = Desk::fresh("");

@@ -1,4 +1,4 @@
-//! Tests of the logbook page with real widgets: entries with old and new values, the filter, backups and notes.
+//! Tests of the logbook page using the real widgets: entries with old and new values, the filter, backups and notes.
 
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::{Action, DeviceCommand, FileQuestion, LOGBOOK_TAB, Language, Studio, Tab, Text};
@@ -18,7 +18,7 @@ fn entry_count(studio: &Studio) -> Option<usize> {
     studio.logbook().matches()?.as_ref().ok().map(|matches| matches.entries.len())
 }
 
-/// Returns a screen that shows the logbook after X was written instead of E at address 0 of data field 0.
+/// Returns a screen with the logbook after a write of X instead of E at address 0 of data field 0.
 fn after_a_write() -> Screen {
     let mut screen = Screen::new_form(SIZE);
     screen.ask(HiperfaceAction::Put { field: 0, address: 0, bytes: vec![0x58] });
@@ -66,7 +66,7 @@ fn a_write_is_shown_with_old_and_new_values_and_its_backup() {
     assert_ne!(screen.studio().settings.tab, LOGBOOK_TAB);
 }
 
-/// A write is undone as on the command line, but from the device page and after a review (issue 30).
+/// A write is undone as on the command line, but with a review on the device page (issue 30).
 #[test]
 fn a_write_is_undone_after_a_review() {
     let mut screen = after_a_write();
@@ -84,7 +84,7 @@ fn a_write_is_undone_after_a_review() {
     assert_eq!((undone.kind, undone.items[0].new.as_deref()), (EntryKind::Restore, Some("45")));
 }
 
-/// The entries of an undo and of the undone write refer to each other, and each has a link to the other (issue 30).
+/// The entries of an undo and of the undone write contain links to each other (issue 30).
 #[test]
 fn an_undo_and_its_write_lead_to_each_other() {
     let mut screen = after_a_write();
@@ -128,7 +128,7 @@ fn an_undo_and_its_write_lead_to_each_other() {
     assert!(screen.shows(&already) && !screen.has_button("review.write"));
 }
 
-/// An undo lists values that have changed since the write, and does not allow a write in this case (issue 30).
+/// If values have changed since the write, the undo lists them and cannot be written (issue 30).
 #[test]
 fn an_undo_refuses_a_value_that_has_changed_since() {
     let mut screen = after_a_write();
@@ -177,7 +177,7 @@ fn an_undo_requires_the_device_and_a_write() {
     assert!(!screen.is_enabled("undo.button"));
 }
 
-/// A backup that is not on this computer is listed with the name of the computer that made the write (issue 30).
+/// A missing backup is listed with the name of the computer that made the write (issue 30).
 #[test]
 fn the_bench_of_a_missing_backup_is_named() {
     let mut screen = after_a_write();
@@ -199,7 +199,7 @@ fn the_bench_of_a_missing_backup_is_named() {
     }
 }
 
-/// Another program that uses the logbook for a long time does not delay the first reading (issue 30).
+/// The first reading is not delayed while another program uses the logbook for a long time (issue 30).
 #[test]
 fn a_logbook_in_use_does_not_delay_the_first_reading() {
     let outside = crate::support::Outside::new("");
@@ -267,7 +267,7 @@ fn entries_are_searched_and_the_filter_survives_another_tab() {
     assert!(screen.shows(&screen.say("logbook.no_match")));
 }
 
-/// A profile saved in the window is recorded like a profile saved by a command, and its entry is found by the asset
+/// A profile saved in the window is recorded like one saved by a command, and its entry can be found by the asset
 /// (issue 26).
 #[test]
 fn a_saved_profile_is_recorded_and_found_by_its_asset() {

@@ -1,4 +1,4 @@
-//! The form for the server of the logbook, and the line of the page that tells whether entries are shared.
+//! Tests of the logbook server form, and of the line on the page that shows whether entries are shared.
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
@@ -7,7 +7,7 @@ use encoder_studio::app::{Action, LOGBOOK_TAB, Language, ServerAction, Studio};
 use crate::screen::Screen;
 
 const SIZE: [f32; 2] = [1024.0, 640.0];
-/// No server listens on this port, which only the system's own services may use.
+/// A port on which no server listens. It is reserved for system services.
 const CLOSED: &str = "postgres://bench@127.0.0.1:1/logs";
 
 fn type_into(screen: &mut Screen, label: &'static str, text: &str) {

@@ -1,4 +1,4 @@
-//! Tests of a stopped write, a pulled cable and an exchanged encoder: edits remain, and never go to another encoder.
+//! Tests of a stopped write, a lost cable and a replaced encoder: edits never go to another encoder.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -132,7 +132,7 @@ fn a_cable_pulled_while_reading_is_reported_once() {
     assert_eq!(frames.back().unwrap().bytes, "40 46 06", "what passed at last is shown");
 }
 
-/// Another encoder on the same cable does not get the edits. They return with the encoder that they were made for.
+/// Another encoder on the same cable does not receive the edits. They return with the encoder for which they were made.
 #[test]
 fn edits_return_only_with_their_own_encoder() {
     let mut desk = Desk::at_port("");
@@ -170,7 +170,7 @@ fn serial(studio: &Studio) -> Option<&str> {
     Some(&identity.serial.serial_number)
 }
 
-/// If the encoder is exchanged behind a connected adapter, no link is lost. The exchange is noticed before planning.
+/// The encoder behind a connected adapter is replaced, which does not break the link.
 #[test]
 fn an_encoder_swapped_behind_the_adapter_is_detected_before_planning() {
     let mut desk = Desk::at_port("");
@@ -186,7 +186,7 @@ fn an_encoder_swapped_behind_the_adapter_is_detected_before_planning() {
     assert_eq!(desk.wire().wear(), 0);
 }
 
-/// If there are no edits, a notice reports only that the plan was discarded.
+/// Without edits, the notice reports only that the plan was discarded.
 #[test]
 fn a_plan_for_a_swapped_encoder_is_discarded_with_a_notice() {
     let mut desk = Desk::at_port("");
@@ -198,7 +198,7 @@ fn a_plan_for_a_swapped_encoder_is_discarded_with_a_notice() {
     assert_eq!((desk.notice_count("session.plan_of_another"), desk.notice_count("session.other_encoder")), (1, 0));
 }
 
-/// If the reading after the reconnection is stopped, the encoder is not identified and does not get the edits.
+/// If the reading after a reconnection is stopped, the encoder is not identified and does not receive the edits.
 #[test]
 fn a_stopped_reading_offers_no_edits_to_another_encoder() {
     let mut desk = Desk::at_port("");
@@ -243,7 +243,7 @@ fn a_new_address_is_used_by_this_and_the_next_session() {
     assert_eq!(desk.encoder().session.source, encoder_studio::app::session::Source::Link(link.parse().unwrap()));
 }
 
-/// If the cable is pulled after the address was changed and before it is read back, the new address is used.
+/// The cable is disconnected after the address was changed and before it is read back. The new address is used.
 #[test]
 fn a_change_by_an_interrupted_write_is_followed() {
     let mut desk = Desk::at_port("");
@@ -306,7 +306,7 @@ fn changed_settings_are_followed_after_the_restart() {
     assert_eq!(*desk.phase(), Phase::Connected);
 }
 
-/// A link that is open without answers counts neither as connected nor as lost.
+/// An open link without replies counts neither as connected nor as lost.
 #[test]
 fn a_silent_encoder_is_not_shown_as_connected() {
     let mut desk = Desk::at_port("");
@@ -416,7 +416,7 @@ fn live_values_continue_around_a_job_and_end_with_the_cable() {
     assert_eq!(desk.notice_ids(Severity::Error), ["link.lost"], "once");
 }
 
-/// A failure that arrives after polling was restarted belongs to the earlier polling and does not end the new one.
+/// A late failure belongs to the earlier polling and does not end the new one.
 #[test]
 fn a_late_failure_does_not_affect_newer_live_values() {
     let mut desk = Desk::at_port("");

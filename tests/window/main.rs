@@ -1,5 +1,5 @@
-//! Tests that use the window like a user. Some tests apply actions to the state without drawing, and others operate the
-//! real widgets through their accessible labels. Each module tests one behaviour.
+//! Tests that operate the window as a user does. Some apply actions to the state without drawing, and others operate
+//! the real widgets through their accessible labels. Each module tests one behaviour.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod biss;

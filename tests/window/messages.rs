@@ -1,4 +1,4 @@
-//! Tests that messages appear and disappear on a page without moving anything that can be clicked.
+//! Tests that messages appear and disappear on a page without moving anything clickable.
 
 use egui::Rect;
 use egui::accesskit::Role;

@@ -1,4 +1,4 @@
-//! Tests with random clicks, drags and keys in windows of every size: nothing panics, the window keeps answering, and
+//! Tests with random clicks, drags and keys in windows of every size. Nothing panics, the window keeps responding, and
 //! nothing is written without consent. The same seeds give the same sequences.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};

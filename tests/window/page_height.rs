@@ -1,4 +1,4 @@
-//! Tests that each page can be seen completely in a small window after at most one scroll.
+//! Tests that each page can be seen completely in a small window after scrolling at most once.
 
 use egui::Role;
 use egui_kittest::kittest::Queryable;
@@ -8,7 +8,7 @@ use crate::screen::Screen;
 use crate::tabs::{BISS, HIPERDRIVE, INTERBUS, SSI, Tabs as _};
 
 const SIZE: [f32; 2] = [1024.0, 640.0];
-/// Left and right edge of a page between the navigation and the Live panel.
+/// Left and right edges of a page between the navigation and the Live panel.
 const PAGE: (f32, f32) = (160.0, 764.0);
 /// Height of the header, in points.
 const HEADER: f32 = 48.0;
@@ -16,7 +16,7 @@ const HEADER: f32 = 48.0;
 const STATUS: f32 = 36.0;
 /// Height of the drive bar above the page, in points.
 const BAR: f32 = 88.0;
-/// Pages that are not checked because a table, an editor or a text in them scrolls by itself.
+/// Pages that are not checked, because a table, an editor or text on them scrolls separately.
 const SCROLLED: [&str; 5] = ["page.registers", "page.memory", "page.data", "page.export", "page.parameters"];
 
 /// Returns the lower end of the page's content, even if it is not visible.

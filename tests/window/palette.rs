@@ -1,4 +1,4 @@
-//! Tests of the command palette: Ctrl+K, a few letters, Enter.
+//! Tests of the command palette: Ctrl+K, a few letters, and Enter.
 
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable;

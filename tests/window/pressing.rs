@@ -1,6 +1,5 @@
-//! Tests that a press and its release reach the same button and that the keyboard focus remains, whatever appears or
-//! disappears elsewhere in the window. Clicks on a drive's button used to be lost while its limits were read
-//! (issue 21.7).
+//! Tests that a press and its release reach the same button and that the keyboard focus stays, whatever appears or
+//! disappears elsewhere. Previously, clicks on a drive's button were lost while its limits were read (issue 21.7).
 
 use std::collections::BTreeMap;
 
@@ -16,8 +15,7 @@ use crate::support::{DRIVE, GATE, KIT, Outside, PORT, is_review};
 
 const SIZE: [f32; 2] = [1280.0, 900.0];
 
-/// The tested device kinds: the tab, the scheme and the target of the link, and a command that is sent to read the
-/// device.
+/// The tested kinds: the tab, the scheme and target of the link, and a command sent when the device is read.
 const KINDS: [(Tab, &str, &str, u8); 4] = [
     (crate::tabs::HIPERFACE, "serial", PORT, 0x52),
     (crate::tabs::BISS, "serial", KIT, 0x01),
@@ -59,7 +57,7 @@ fn ready(screen: &mut Screen) {
     });
 }
 
-/// A notice or a running job that appears or disappears does not move the buttons (issue 21.7).
+/// A notice or a running job appears or disappears (issue 21.7).
 #[test]
 fn notices_and_progress_do_not_move_buttons() {
     for (tab, scheme, port, reads) in KINDS {
@@ -94,7 +92,7 @@ fn notices_and_progress_do_not_move_buttons() {
     }
 }
 
-/// A click counts even if a notice appears or disappears between its press and its release (issue 21.7).
+/// A notice appears or disappears between the press and the release (issue 21.7).
 #[test]
 fn a_click_counts_despite_layout_changes_during_it() {
     for comes in [true, false] {
@@ -120,7 +118,7 @@ fn a_click_counts_despite_layout_changes_during_it() {
     }
 }
 
-/// If a button of the review has the keyboard focus while the plan is made, no button of the completed plan has it
+/// A button of the review has the keyboard focus while the plan is made. When the plan is complete, no button has it
 /// (issue 22.29).
 #[test]
 fn a_review_becoming_ready_ignores_a_key_pressed_before() {

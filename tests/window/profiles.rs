@@ -1,4 +1,4 @@
-//! Tests of profiles that are saved from an encoder, opened beside it, or edited without one.
+//! Tests of profiles that are saved from an encoder, opened next to one, or edited without one.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -90,7 +90,7 @@ fn saving_suggests_a_file_named_after_the_encoder() {
     assert_eq!(desk.studio.take_path_question(), Some(FileQuestion::Open));
 }
 
-/// A save that is requested during another one is rejected, and the first one goes to its own file.
+/// A save requested during another one is rejected. The first one still goes to its own file.
 #[test]
 fn a_refused_save_does_not_redirect_another() {
     let mut desk = Desk::new_form("");
@@ -127,7 +127,7 @@ fn an_unreadable_profile_is_reported_and_not_changed() {
     assert_eq!(desk.studio.devices().len(), 1);
 }
 
-/// A profile of a newer schema has unknown parts, which would be lost with a save (issue 22.17).
+/// Saving would lose the parts of a newer schema that are unknown to this version (issue 22.17).
 #[test]
 fn a_profile_of_a_newer_schema_is_neither_saved_nor_written() {
     let (mut desk, path) = saved();
@@ -205,12 +205,12 @@ fn a_profile_is_restored_to_another_encoder_only_with_permission() {
     assert_eq!(desk.wire().wear(), 0);
 }
 
-/// Returns the sheet of the displayed review.
+/// Returns the data of the displayed review.
 fn sheet(desk: &Desk) -> ReviewSheet {
     desk.studio.selected_device().unwrap().review_sheet().unwrap()
 }
 
-/// Edits a profile and plans to write it to another encoder, which is rejected because its serial number differs.
+/// Edits a profile and plans to write it to another encoder, which is rejected because the serial number differs.
 fn refused_by_another(desk: &mut Desk, path: &std::path::Path, edits: &[(usize, &[u8])]) {
     desk.open(&format!("serial:{OTHER_PORT}"));
     desk.until_read();
@@ -229,22 +229,22 @@ fn until_refused(desk: &mut Desk) {
     desk.until_ready();
 }
 
-/// Plans to write a commutation offset to another encoder, and permits its serial number and its type.
+/// Plans to write a commutation offset to another encoder, and permits its serial number and type.
 fn onto_another(desk: &mut Desk, path: &std::path::Path) {
     refused_by_another(desk, path, &[(0, b"CO1"), (20, b"?")]);
     allow_another(desk);
     desk.until_planned();
 }
 
-/// Permits another serial number, then another type, because the other encoder is an SKS36.
+/// Permits another serial number and then another type, because the other encoder is an SKS36.
 fn allow_another(desk: &mut Desk) {
     desk.toggle(Permit::OtherDevice);
     until_refused(desk);
     desk.toggle(Permit::TypeMismatch);
 }
 
-/// The review names the values of another mounting that must be set up again, before the write, at its end, and after
-/// an interruption (issue 22.7).
+/// The review lists the values that depend on the mounting and must be set up again: before the write, at its end, and
+/// after an interruption (issue 22.7).
 #[test]
 fn values_of_another_mounting_are_named_until_the_end() {
     let (mut desk, path) = saved();
@@ -278,7 +278,7 @@ fn values_of_another_mounting_are_named_until_the_end() {
     assert!(matches!(sheet(&desk).stage, Stage::Done { .. }) && sheet(&desk).redo.is_some());
 }
 
-/// The review asks about bytes of unknown meaning, and leaves them unchanged by default (issue 22.8).
+/// The review asks about bytes of unknown meaning and by default leaves them unchanged (issue 22.8).
 #[test]
 fn the_review_asks_about_bytes_of_unknown_meaning() {
     let (mut desk, path) = saved();
@@ -299,7 +299,7 @@ fn the_review_asks_about_bytes_of_unknown_meaning() {
     assert!(sheet(&desk).lines.is_empty() && sheet(&desk).redo.is_none());
 }
 
-/// A different encoder type is named, and needs an explicit permission (issue 22.9).
+/// The review names the other encoder type, which requires an explicit permission (issue 22.9).
 #[test]
 fn another_type_of_encoder_needs_a_separate_permission() {
     let (mut desk, path) = saved();
@@ -313,7 +313,7 @@ fn another_type_of_encoder_needs_a_separate_permission() {
     assert!(sheet(&desk).warnings.iter().any(|text| text.id() == "review.other_type"));
 }
 
-/// Values that were read can be saved after the connection is lost. The file says they are not current (issue 22.14).
+/// The file states that the values are not current (issue 22.14).
 #[test]
 fn read_values_can_be_saved_after_the_line_is_lost() {
     let mut desk = Desk::at_port("");
@@ -341,7 +341,7 @@ fn read_values_can_be_saved_after_the_line_is_lost() {
     assert!(!desk.studio.selected_device().unwrap().is_savable());
 }
 
-/// An existing file at a typed path is replaced only after a question.
+/// The user types the path of an existing file.
 #[test]
 fn an_existing_file_is_replaced_only_after_confirmation() {
     let mut desk = Desk::new_form("");
@@ -368,7 +368,7 @@ fn an_existing_file_is_replaced_only_after_confirmation() {
     assert!(desk.studio.question.is_none());
 }
 
-/// A relative path leads to the same file while the window is open, however it was entered (issue 22.24).
+/// While the window is open, a relative path always refers to the same file, however it was entered (issue 22.24).
 #[test]
 fn a_relative_path_is_saved_to_the_same_file() {
     let (mut desk, path) = saved();
@@ -402,7 +402,7 @@ fn a_relative_path_is_saved_to_the_same_file() {
     assert_eq!(desk.encoder().session.data_source(), home.join("rel.ron").display().to_string());
 }
 
-/// A link to a recording leads to the same file at the next start, from any folder (issue 22.24).
+/// At the next start, the link refers to the same recording, whatever the current folder (issue 22.24).
 #[test]
 fn a_link_to_a_recording_is_remembered_with_its_full_path() {
     let mut desk = Desk::fresh("");

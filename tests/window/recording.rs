@@ -1,4 +1,4 @@
-//! Tests of the recordings of a polled encoder, and of the actions on them.
+//! Tests of the recording of a polled encoder, and of the actions for it.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
@@ -32,7 +32,7 @@ fn line<'a>(recorder: &'a Recorder, name: &str) -> &'a Series {
     recorder.series().iter().find(|line| line.heading == name).unwrap()
 }
 
-/// Returns the minimum and the maximum of the complete recording of a line, in its unit.
+/// Returns the minimum and maximum of a line over the whole recording, in its unit.
 fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
     let line = line(recorder, name);
     let history = recorder.history(line).unwrap();
@@ -40,7 +40,7 @@ fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
     (statistics.min.to_f64() * line.factor(), statistics.max.to_f64() * line.factor())
 }
 
-/// The end of the range of 4096 turns causes no spike. Without unwrapping, position and speed would jump by 4096 turns.
+/// At the end of the range of 4096 turns, position and speed would jump without unwrapping.
 #[test]
 fn a_wrap_at_the_end_of_the_range_is_no_spike() {
     let mut desk = Desk::new_form("rpm=600&position=16600000");
@@ -198,8 +198,7 @@ fn reading_a_position_while_polling_disturbs_nothing() {
     assert!(slowest > 590.0 && fastest < 610.0, "{slowest} {fastest}");
 }
 
-/// Closing a session discards its recording, so the window asks first if the recording is two minutes long or longer
-/// (issue 21.12).
+/// Closing a session discards its recording, so the window asks first if it is at least two minutes long (issue 21.12).
 #[test]
 fn closing_a_session_with_minutes_of_recording_asks_first() {
     let mut desk = Desk::new_form("");

@@ -1,4 +1,4 @@
-//! Settings remembered from one start to the next, and an invalid file.
+//! Tests of settings that are remembered from one start to the next, and of an invalid settings file.
 
 use std::fs;
 
@@ -16,7 +16,7 @@ fn kept(desk: &mut Desk) {
     });
 }
 
-/// The program starts again as it does by itself: no setting is changed.
+/// Restarts the program without changing any setting.
 fn restarted(desk: Desk) -> Desk {
     let Desk { studio, outside } = desk;
     drop(studio);
@@ -100,7 +100,7 @@ fn unreadable_settings_are_not_overwritten() {
     assert_eq!(desk.notice_ids(Severity::Warning).len(), 1);
 }
 
-/// The disk answers late: its settings apply, except for those that the user has changed meanwhile.
+/// Settings loaded late apply, except for those that the user has changed in the meantime.
 #[cfg(unix)]
 #[test]
 fn settings_that_load_late_apply_and_are_not_overwritten() {

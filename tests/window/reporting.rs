@@ -1,4 +1,4 @@
-//! *Report…*: the same page set as on the command line.
+//! Tests of *Report…*, which creates the same page as the command line.
 
 use std::fs;
 use std::path::Path;
@@ -22,20 +22,20 @@ fn is_told(studio: &Studio, id: &str) -> bool {
     studio.services.log.notices().any(|own| own.texts.iter().any(|text| text.id() == id))
 }
 
-/// Returns the page without the time of printing.
+/// Returns the page without its creation time.
 fn without_time(page: &str) -> String {
     let (before, rest) = page.split_once("class=\"printed\">").unwrap();
     format!("{before}{}", rest.split_once('<').unwrap().1)
 }
 
-/// Asks for the report of the device that is shown.
+/// Requests a report for the selected device.
 fn ask(desk: &mut Desk) -> FileQuestion {
     let id = desk.studio.selected_device().unwrap().id();
     desk.act(Action::Command(id, DeviceCommand::AskReport));
     desk.studio.take_file_question().unwrap()
 }
 
-/// Chooses a file for the report of the device that is shown, and waits until it is written.
+/// Chooses a file for the selected device's report and waits until it is written.
 fn report(desk: &mut Desk, path: &Path) {
     let question = ask(desk);
     assert!(matches!(question, FileQuestion::Report { .. }), "{question:?}");
@@ -92,7 +92,7 @@ fn a_report_of_a_device_shows_what_was_read() {
     assert!(fs::read(path).unwrap().starts_with(b"%PDF"));
 }
 
-/// Returns the report that the command line makes.
+/// Returns the report created by the command line.
 fn report_of_command(desk: &Desk, language: &str, subject: &Path) -> String {
     let (other, home) = (desk.outside.path("other.html"), desk.outside.path("home"));
     let ran = Command::new(env!("CARGO_BIN_EXE_encoder-studio"))
@@ -137,7 +137,7 @@ fn a_capture_has_the_same_report_in_the_window_and_on_the_command_line() {
     }
 }
 
-/// Issue 30: what the session has found out is in its report; no profile contains it.
+/// The report contains results from the session that are not part of any profile (issue 30).
 #[test]
 fn a_report_of_a_device_contains_the_results_of_the_session() {
     let mut desk = Desk::new_form("");
@@ -163,7 +163,7 @@ fn a_report_of_a_device_contains_the_results_of_the_session() {
     assert!(!page.contains(">Device check<"), "it was not checked");
 }
 
-/// Issue 30: the company of reports is set in the window as well.
+/// The company shown in reports can also be set in the window (issue 30).
 #[test]
 fn the_company_is_set_in_a_form() {
     let mut screen = Screen::new_form([1024.0, 640.0]);

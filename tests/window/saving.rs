@@ -1,5 +1,5 @@
-//! Tests of saving to an open file: changes by others cause a question, and the user's comments between the entries are
-//! kept.
+//! Tests of saving to an open file. If others have changed it, the program asks. The user's comments between the
+//! entries are kept.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -18,7 +18,7 @@ use encoder_studio::profile::ChangedSide;
 
 use crate::support::Desk;
 
-/// A profile that a user has written in a form that the program would not write.
+/// A profile that a user has formatted differently from the program.
 const OWN: &str = "// bench 3\r\n(schema: 1, device: \"hiperface\",\r\n  note: \"as wired\", // ours\r\n  identity: (serial_number: \"A1\", encoder_type: 0x37),\r\n  interface: (settings: 0xE4, address: 0x40),\r\n  fields: [(number: 0, status: 0xC8, // the motor\r\n    bytes: [\"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"])], // end\r\n)\r\n";
 
 fn opened(text: &str) -> (Desk, PathBuf) {
@@ -31,7 +31,7 @@ fn opened(text: &str) -> (Desk, PathBuf) {
     (desk, path)
 }
 
-/// Returns whether a profile from a file is shown.
+/// Returns whether a profile from a file is selected.
 fn is_open(studio: &Studio) -> bool {
     studio.selected_device().is_some_and(|own| *own.phase() == Phase::Offline)
 }
@@ -59,7 +59,7 @@ fn is_asked(studio: &Studio) -> bool {
     studio.diverged.is_some()
 }
 
-/// Saving writes the open file without a question. Saving to another file asks for its path (issue 22.25).
+/// Saving writes the open file without asking. Saving to another file asks for its path (issue 22.25).
 #[test]
 fn saving_writes_the_open_file_and_save_as_asks_for_another() {
     let (mut desk, path) = opened(OWN);
@@ -79,8 +79,8 @@ fn saving_writes_the_open_file_and_save_as_asks_for_another() {
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
 }
 
-/// Changes that were made with an editor are not replaced without a question, and each answer has the stated effect
-/// (issue 22.25).
+/// The file has been changed in an editor. It is not replaced without a question, and each answer does what its label
+/// says (issue 22.25).
 #[test]
 fn saving_over_a_changed_file_asks_first() {
     let theirs = OWN.replace("as wired", "as rewired").replace("01 02", "AA 02").replace("// end", "// theirs");
@@ -140,7 +140,7 @@ fn saving_over_a_changed_file_asks_first() {
     assert_eq!(file_text(&path), theirs);
 }
 
-/// Changed comments alone are not a difference, and are kept. A deleted file is written again, and an invalid one is
+/// Changes to comments alone are not a difference, and are kept. A deleted file is written again, and an invalid one is
 /// reported (issue 22.25).
 #[test]
 fn only_changed_values_count_as_a_difference() {
@@ -181,7 +181,7 @@ fn only_changed_values_count_as_a_difference() {
     assert_eq!(file_text(&path), newer);
 }
 
-/// Before a save, the window names the comments that have no place in the saved text (issue 22.26).
+/// Before saving, the window lists the comments that would be lost (issue 22.26).
 #[test]
 fn saving_asks_before_losing_comments() {
     let rows = "\"00 01 02 03 04 05 06 07\", // name plate\r\n\"08 09 0A 0B 0C 0D 0E 0F\"";
@@ -204,7 +204,7 @@ fn saving_asks_before_losing_comments() {
     assert!(file_text(&path).starts_with("// bench 3\r\n") && file_text(&path).contains("// the motor\r\n"));
 }
 
-/// The byte order mark of a file is kept (issue 22.26).
+/// A byte order mark at the start of the file is kept (issue 22.26).
 #[test]
 fn a_byte_order_mark_is_kept() {
     let (mut desk, path) = opened(&format!("\u{FEFF}{OWN}"));
@@ -214,7 +214,7 @@ fn a_byte_order_mark_is_kept() {
     assert_eq!(file_text(&path), format!("\u{FEFF}{}", OWN.replace("\"00 01", "\"58 01")));
 }
 
-/// A save dismisses the earlier notices about its document, but not those about another one (issue 22.28).
+/// A save dismisses earlier notices about its own document, but not about others (issue 22.28).
 #[test]
 fn a_save_dismisses_the_notices_of_its_document() {
     let (mut desk, path) = opened(OWN);
@@ -250,8 +250,8 @@ fn a_save_dismisses_the_notices_of_its_document() {
     assert_eq!(*desk.phase(), Phase::Offline);
 }
 
-/// A measuring range that ends below the cams of a profile is reported on every page, and again when the profile is
-/// saved (issue 22.28).
+/// A measuring range that ends below a cam is reported on every page, and again when the profile is saved (issue
+/// 22.28).
 #[test]
 fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
     let mut desk = Desk::fresh("");
@@ -280,8 +280,8 @@ fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
     assert_eq!(file_text(&path), text.replace("steps: 3600", "steps: 1800"));
 }
 
-/// Restored edits keep the changes that a colleague made to the closed file, for layouts, parameters and cams alike.
-/// The same applies if the open file is only read again (issue 22.27).
+/// Changes that others make to a closed file are kept when the edits are restored, for layouts, parameters and cams
+/// alike, and also when the open file is reloaded (issue 22.27).
 #[test]
 fn restored_edits_keep_changes_by_others() {
     let ssi = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
@@ -332,8 +332,7 @@ fn restored_edits_keep_changes_by_others() {
     }
 }
 
-/// Restored edits that give no valid layout together with the changes of a colleague are dropped with a notice
-/// (issue 22.27).
+/// Edits that are invalid together with the changes made by others are dropped with a notice (issue 22.27).
 #[test]
 fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
@@ -359,7 +358,7 @@ fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
     assert_eq!(file_text(&path), theirs);
 }
 
-/// A draft of an earlier version, which contains the complete layout, can still be opened (issue 22.27).
+/// A draft of an earlier version contains the complete layout (issue 22.27).
 #[test]
 fn a_draft_of_a_complete_layout_still_opens() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";

@@ -1,5 +1,4 @@
-//! Test support: the real window, operated through its accessible labels. The labels are looked up in the table of
-//! texts.
+//! Test support: the real window, operated through its accessible labels, which are looked up in the text catalogues.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -18,7 +17,7 @@ use encoder_studio::ui::{Window, install_fonts};
 use crate::support::{LONG, Outside, asks_for_drive, log, only_master};
 use crate::texts;
 
-/// The window as displayed by the program.
+/// The window as the program displays it.
 pub(crate) struct Shown(Window);
 
 impl eframe::App for Shown {
@@ -33,7 +32,7 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
-    /// Opens a window that connects to this link, or to the virtual encoder if there is none.
+    /// Opens a window that connects to this link, or to the virtual encoder if none is given.
     pub(crate) fn opened(outside: Outside, link: Option<&str>, size: [f32; 2]) -> Self {
         let mut studio = outside.studio();
         studio.start_with(link.map(|link| link.parse::<LinkUrl>().unwrap()), None);
@@ -50,7 +49,7 @@ impl Screen {
         Screen { harness, outside }
     }
 
-    /// Creates a window that connects to this link in this tab.
+    /// Creates a window that connects to this link in the given tab.
     pub(crate) fn opened_in(tab: Tab, link: &str, size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), Some("serial:/dev/nothing"), size);
         screen.act(Action::ShowTab(tab));
@@ -60,7 +59,7 @@ impl Screen {
         screen
     }
 
-    /// Creates a window in which the virtual encoder is connected and has been read.
+    /// Creates a window in which the virtual encoder has been connected and read.
     pub(crate) fn new_form(size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), None, size);
         screen.until("the encoder is read", |studio| {
@@ -126,7 +125,7 @@ impl Screen {
         text.to_string_in(self.language())
     }
 
-    /// Returns the button with this label. If there are several, the last one is drawn on top.
+    /// Returns the button with this label. If there are several, returns the last one, which is drawn on top.
     #[track_caller]
     pub(crate) fn button(&self, id: &'static str) -> Node<'_> {
         self.buttons(id).last().unwrap_or_else(|| panic!("there is no button {:?}", self.say(id)))
@@ -141,7 +140,7 @@ impl Screen {
         self.buttons(id).next().is_some()
     }
 
-    /// Checks that no visible text is in the other language, is a text id, or has an argument that was not filled in.
+    /// Checks that no visible text is in the other language, is a text ID, or has a placeholder without a value.
     #[track_caller]
     pub(crate) fn check_language(&self) {
         let foreign = texts::foreign_to(self.language());
@@ -175,7 +174,7 @@ impl Screen {
         self.only_master();
     }
 
-    /// Answers the question about a drive on the line, if the window asks it. These tests have no drive.
+    /// Confirms that no drive is on the line, if the window asks. These tests have no drive.
     fn only_master(&mut self) {
         if asks_for_drive(self.studio()) {
             self.studio().mailbox().send(Action::Confirm);

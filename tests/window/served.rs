@@ -1,4 +1,4 @@
-//! Test support: an adapter that is reached over a network, as a real one would be.
+//! Test support: an adapter that is reached over a network like a real one.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -11,14 +11,14 @@ use encoder_studio::kinds::attachable_kinds;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::Moment;
 
-/// An adapter on a TCP port that serves one connection after another.
+/// An adapter on a TCP port that serves one connection at a time.
 pub(crate) struct ServedDevice {
     port: u16,
     /// The requests that were received.
     heard: Arc<Mutex<Vec<Request>>>,
-    /// Whether the connection is to be closed.
+    /// Whether the connection must be closed.
     cut: Arc<Mutex<bool>>,
-    /// The adapter that is to replace the current one.
+    /// The adapter that must replace the current one.
     other: Arc<Mutex<Option<Adapter>>>,
 }
 
@@ -52,7 +52,7 @@ impl ServedDevice {
         *self.cut.lock().unwrap() = true;
     }
 
-    /// Exchanges the device behind the connection, and waits until that is done.
+    /// Replaces the device behind the connection and waits until that is done.
     pub(crate) fn exchange(&self, query: &str) {
         *self.other.lock().unwrap() = Some(adapter(query));
         while self.other.lock().unwrap().is_some() {

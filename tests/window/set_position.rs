@@ -1,5 +1,5 @@
-//! Tests of setting the position of a HIPERFACE encoder: the units of the entry, the review, and what restores a
-//! position.
+//! Tests of setting the position of a HIPERFACE encoder: the units of the entry, the review, and whether a restore
+//! includes the position.
 
 use egui::Role;
 use egui_kittest::Node;
@@ -41,8 +41,7 @@ fn choose(screen: &mut Screen, unit: &'static str) {
     screen.steps();
 }
 
-/// A position can be entered in every unit. The virtual SKM36 has 4096 steps per turn: 10,240 steps are two turns and
-/// 180°, or 900°.
+/// The virtual SKM36 has 4096 steps per turn: 10,240 steps are two turns and 180°, or 900°.
 #[test]
 fn a_position_can_be_entered_in_every_unit() {
     let mut screen = setup();
@@ -60,8 +59,8 @@ fn a_position_can_be_entered_in_every_unit() {
     assert_eq!(value(&screen, "position_card.wanted"), "900,000");
 }
 
-/// The review names the position in turns and degrees, and the access code. The card says that nothing restores the
-/// position.
+/// The review states the position in turns and degrees, and the access code. The card states that a restore does not
+/// include the position.
 #[test]
 fn the_review_of_a_position_names_turns_and_the_access_code() {
     let mut screen = setup();

@@ -1,5 +1,5 @@
-//! Tests of the shell of the window: the lower panel and the line below it, what keeps its place while messages come
-//! and go, and live values that start automatically.
+//! Tests of the parts around the page: the lower panel and the status line, widgets that must not move while messages
+//! come and go, and live values that start automatically.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use crate::tabs::Tabs as _;
 const LARGE: [f32; 2] = [1280.0, 800.0];
 const SMALL: [f32; 2] = [1024.0, 640.0];
 
-/// Starts the application with the default settings, and connects to a link if one is given.
+/// Starts the application with the default settings and, if a link is given, connects to it.
 fn usual(query: &str, link: Option<&str>) -> Desk {
     let outside = Outside::new(query);
     let mut desk = Desk { studio: outside.usual_studio(), outside };
@@ -28,7 +28,7 @@ fn is_live(studio: &Studio) -> bool {
     studio.selected_device().is_some_and(|device| device.is_polling())
 }
 
-/// Returns the rectangles of these buttons on the open page.
+/// Returns the rectangles of the given buttons on the open page.
 fn places(screen: &Screen, ids: &[&'static str]) -> Vec<Rect> {
     ids.iter().map(|id| screen.button(id).rect()).collect()
 }
@@ -153,7 +153,7 @@ fn live_values_that_were_stopped_stay_so_at_the_next_start() {
     desk.until("it starts again", is_live);
 }
 
-/// Live values that start automatically change nothing, because only positions are read over the line.
+/// Live values that start automatically only send requests for the position.
 #[test]
 fn live_values_that_start_by_themselves_only_read() {
     let mut desk = usual("", None);
@@ -281,7 +281,7 @@ fn the_trace_is_searched_and_paused() {
     assert!(count(&screen, read_position) > before);
 }
 
-/// A clicked frame is shown with all of its bytes beside the list, and the arrow keys select its neighbours.
+/// A clicked frame is shown with all of its bytes next to the list. The arrow keys select its neighbours.
 #[test]
 fn a_selected_frame_is_shown_with_its_bytes() {
     use egui_kittest::kittest::Queryable;
@@ -316,7 +316,7 @@ fn a_selected_frame_is_shown_with_its_bytes() {
     assert!(!screen.shows("0000  "));
 }
 
-/// A saved trace contains the frames of the list, in the format that `replay:` reads.
+/// A saved trace contains the frames in the list, in the format read by `replay:`.
 #[test]
 fn the_trace_is_saved_as_a_recording() {
     let mut desk = usual("", Some("sim:"));
@@ -334,7 +334,7 @@ fn the_trace_is_saved_as_a_recording() {
     assert!(text.starts_with("# encoder-studio trace 1\n"));
 }
 
-/// While the window asks for a path, the dialog is on top, and the key of the lower panel has no effect.
+/// While the window asks for a path, the dialog is on top, and the key for the lower panel has no effect.
 #[test]
 fn the_key_of_the_lower_panel_waits_for_dialogs() {
     let mut screen = Screen::new_form(SMALL);

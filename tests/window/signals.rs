@@ -1,4 +1,4 @@
-//! Tests of the Signals tab without drawing: captures are read, corrected, rejected and cancelled.
+//! Tests of the Signals tab without drawing: captures that are read, corrected, rejected and cancelled.
 
 use crate::tabs::Tabs as _;
 use std::fmt::Write as _;
@@ -33,7 +33,7 @@ impl Desk {
         path
     }
 
-    /// Opens a capture as the window does, and waits until it has been read.
+    /// Opens a capture as the window does and waits until it has been read.
     #[track_caller]
     fn open_capture(&mut self, path: &std::path::Path) {
         self.act(Action::Open(path.to_owned()));
@@ -46,7 +46,7 @@ impl Desk {
     }
 }
 
-/// Returns the text of a capture that draws a circle of 0.5 V: `periods` periods of 100 samples each, 10 µs apart.
+/// Returns a capture of a circle with an amplitude of 0.5 V: `periods` periods of 100 samples each, 10 µs apart.
 pub(crate) fn circle(periods: usize) -> String {
     let mut text = "time [ms];SIN;COS\n".to_owned();
     for at in 0..=100 * periods {

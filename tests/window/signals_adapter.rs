@@ -1,5 +1,5 @@
-//! Tests of sine and cosine through an adapter: the virtual one and one on a network, the displayed values, and the
-//! message if there is no adapter.
+//! Tests of sine and cosine from the virtual adapter and from one on a network: the displayed values, and the message
+//! if there is no adapter.
 
 use crate::tabs::Tabs as _;
 use std::time::Instant;
@@ -28,8 +28,7 @@ fn recorded(studio: &Studio) -> (u64, usize) {
     (history.indices().end, history.indices().filter(is_break).count())
 }
 
-/// Samples from the virtual adapter are analysed like a capture. The adapter samples an encoder with 0.5 V and 1024
-/// periods that makes one turn in ten seconds.
+/// The adapter samples an encoder with 0.5 V and 1024 periods that makes one turn in ten seconds.
 #[test]
 fn the_virtual_adapter_is_measured_like_a_capture() {
     let mut desk = Desk::fresh("");
@@ -135,8 +134,8 @@ fn a_valid_adapter_link_is_remembered_and_an_invalid_one_is_not() {
     assert!(!desk.studio.signals().source().is_running());
 }
 
-/// The encoder is supplied only in the way that the user chooses. The virtual adapter with `supply=switched` supplies
-/// it only on command; 0.3 W at 8 V are 37 mA.
+/// The encoder supply is switched only as the user chooses. With `supply=switched`, the virtual adapter switches it on
+/// only by command. 0.3 W at 8 V are 37 mA.
 #[test]
 fn the_encoder_is_supplied_only_as_chosen() {
     let mut desk = Desk::fresh("");

@@ -1,5 +1,5 @@
-//! Tests of a capture with a reference encoder and an absolute position: DNL, INL and the offset, as values and as
-//! drawn.
+//! Tests of a capture with a reference encoder and an absolute position: DNL, INL and the offset, as numbers and in
+//! charts.
 
 use crate::tabs::Tabs as _;
 use std::fmt::Write as _;
@@ -12,8 +12,8 @@ use encoder_studio::sim::sine_cosine::Quantity;
 use crate::screen::Screen;
 use crate::support::{Desk, HANGING, Outside};
 
-/// Returns a capture as text. It covers 1.25 revolutions with 64 periods each. It has an eccentricity of 0.01°, an
-/// offset of 1 % and an absolute position that is 3 steps ahead.
+/// Returns a capture as text. It covers 1.25 revolutions of 64 periods each, with an eccentricity of 0.01°, an offset
+/// of 1 % and an absolute position that leads by 3 steps.
 fn table() -> String {
     let mut text = "time,sin,cos,angle,absolute\n".to_owned();
     let tau = std::f64::consts::TAU;

@@ -1,4 +1,4 @@
-//! Tests of the calculators of the Signals tab, operated like a user by typing and reading.
+//! Tests of the calculators in the Signals tab, operated by typing and reading as a user does.
 
 use crate::tabs::Tabs as _;
 use egui::Key;
@@ -9,7 +9,7 @@ use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use crate::screen::Screen;
 use crate::support::{Desk, HANGING, Outside};
 
-/// Window size in which a complete page is drawn.
+/// Window size that fits a complete page.
 const TALL: [f32; 2] = [1400.0, 1600.0];
 
 impl Screen {
@@ -32,8 +32,8 @@ impl Screen {
     }
 }
 
-/// The input circuit is calculated while the user types. Reference, section 1: 512 periods at 12 000/min are 102.4 kHz,
-/// which lag by 16.825° after 10 kΩ and 47 pF.
+/// According to section 1 of the reference, 512 periods at 12 000/min are 102.4 kHz, with a lag of 16.825° after 10 kΩ
+/// and 47 pF.
 #[test]
 fn the_input_circuit_is_computed_while_typing() {
     let mut screen = Screen::calculator("page.input_circuit");
@@ -56,8 +56,7 @@ fn the_input_circuit_is_computed_while_typing() {
     assert!(screen.shows("338,6 kHz"));
 }
 
-/// Numeric entries use the decimal separator of the language, both initially and after the language is changed (issue
-/// 26).
+/// Number entries use the decimal separator of the language, even after the language is changed (issue 26).
 #[test]
 fn entries_are_shown_with_the_decimal_sign_of_the_language() {
     let mut screen = Screen::calculator("page.synchronise");
@@ -74,8 +73,8 @@ fn entries_are_shown_with_the_decimal_sign_of_the_language() {
     assert_eq!(phase(&screen), "0,25");
 }
 
-/// Both positions are synchronised while the user types. Reference, section 4: A = 2A5Fh and φ = 0.02 are 339.02 of
-/// 1024 periods. A fifth of a period further, φ is half a period off.
+/// According to section 4 of the reference, A = 2A5Fh and φ = 0.02 are 339.02 of 1024 periods. A fifth of a period
+/// further, φ is half a period off.
 #[test]
 fn absolute_and_analog_positions_are_synchronised_while_typing() {
     let mut screen = Screen::calculator("page.synchronise");
@@ -106,8 +105,7 @@ fn absolute_and_analog_positions_are_synchronised_while_typing() {
     assert!(screen.shows(&screen.say("help.synchronise")));
 }
 
-/// Both positions are read from the selected encoder. The virtual SKM36 at step 24 has counts of 409 and 511 according
-/// to its own signals.
+/// The virtual SKM36 at step 24 has counts of 409 and 511, as in its own signals.
 #[test]
 fn both_positions_are_read_from_the_selected_encoder() {
     let mut screen = Screen::opened(Outside::new("position=3224"), None, TALL);

@@ -34,8 +34,8 @@ fn time_on_hold_is_a_gap_in_the_scope() {
     assert!(after.contains(&count) && !breaks.contains(&count), "{count}: {after:?}");
 }
 
-/// The number of periods per turn is not assumed. Until the user enters it, there is no speed and no error in seconds
-/// of arc. The periods of the virtual encoder do not apply to a capture (issue 22.13).
+/// Until the user enters the periods per turn, there is no speed and no error in seconds of arc. The periods of the
+/// virtual encoder do not apply to a capture (issue 22.13).
 #[test]
 fn periods_are_not_assumed() {
     let mut desk = Desk::fresh("");

@@ -1,4 +1,4 @@
-//! Tests of the real widgets of the Signals tab, found by their accessible labels.
+//! Tests of the real widgets in the Signals tab, found by their accessible labels.
 
 use crate::tabs::Tabs as _;
 use egui::{Key, Modifiers};

@@ -1,4 +1,4 @@
-//! Tests of the SSI tab by actions: designing a layout, an encoder at the virtual adapter, and the search for a layout.
+//! Tests of the SSI tab through actions: layout design, an encoder on the virtual adapter, layout search.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;
@@ -175,8 +175,8 @@ fn a_layout_is_saved_opened_and_survives_a_crash() {
     assert_eq!((own.range, own.code), (Range::Bits { multiturn: 12, singleturn: 12 }, Code::Gray));
 }
 
-/// The sheet and the table are in the language of the window, while C and structured text are programs. The terms of TM
-/// PosInput are those of its German manual.
+/// The data sheet and the table are in the language of the window. C and structured text are programs, so they are not
+/// translated. The terms for TM PosInput are those of its German manual.
 #[test]
 fn exports_are_in_the_language_of_the_window() {
     let mut desk = layout();
@@ -417,7 +417,7 @@ fn the_virtual_encoder_sends_the_edited_layout() {
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36", "the layout stays");
 }
 
-/// The error bit of an AHS36 with 12 bits is on clock 15, or follows the position on clock 13 (reference, section 8).
+/// The error bit of a 12-bit AHS36 is on clock 15, or follows the position on clock 13 (reference, section 8).
 #[test]
 fn dragging_a_boundary_changes_the_family_settings() {
     let mut desk = layout();

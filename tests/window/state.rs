@@ -1,5 +1,4 @@
-//! Tests of the start of the program: the virtual encoder is connected and read, polling is off, and nothing is sent
-//! without a request.
+//! Tests of the program start: the virtual encoder is connected and read, polling is off, and nothing is sent unasked.
 
 use encoder_studio::app::DeviceCommand;
 use std::time::Duration;

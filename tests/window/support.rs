@@ -1,4 +1,4 @@
-//! Test support for the state of the window: a studio in a separate environment, with two cables and a link that hangs
+//! Test support for the state of the window: a studio in its own environment, with two cables and a link that hangs
 //! forever.
 
 use crate::tabs::Tabs as _;
@@ -32,12 +32,12 @@ use crate::novo::jobs::Novo;
 use crate::texts;
 use crate::wire::{TestLink, Wire};
 
-/// A time limit longer than any test, to detect a thread that hangs.
+/// A time limit longer than any test, to detect a hanging thread.
 pub(crate) const LONG: Duration = Duration::from_secs(20);
 /// The reply margin of `sim:` links.
 pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 
-/// The environment of a test: a folder, and the devices to which its links lead.
+/// The environment of a test: a folder and the devices to which links connect.
 pub(crate) struct Outside {
     pub(crate) folder: tempfile::TempDir,
     wires: BTreeMap<String, Arc<Wire>>,
@@ -45,13 +45,13 @@ pub(crate) struct Outside {
     /// Whether links to [`SLOW`] open.
     pub(crate) opens: Arc<AtomicBool>,
     pub(crate) patience: GracePeriods,
-    /// The devices that answer a discovery request on the network.
+    /// The devices that reply to a discovery request on the network.
     pub(crate) found: Vec<DiscoveredDevice>,
     /// The program with its device kinds.
     pub(crate) program: Program,
 }
 
-/// The port of the encoder that `begin` finds. `sim:` leads to it as well.
+/// The port of the encoder that `begin` finds. The link `sim:` leads to it as well.
 pub(crate) const PORT: &str = "/dev/enc0";
 /// A port with another encoder.
 pub(crate) const OTHER_PORT: &str = "/dev/enc1";
@@ -68,7 +68,7 @@ pub(crate) const ADAPTER: &str = "/dev/adapter0";
 pub(crate) const GATE: &str = "gate:502";
 /// The address of an adapter with a HIPERDRIVE drive.
 pub(crate) const DRIVE: &str = "drive:44818";
-/// A port with an encoder of the device kind of the tests.
+/// A port with an encoder of the test kind.
 pub(crate) const NOVO_PORT: &str = "/dev/novo0";
 /// Device servers in front of [`PORT`], [`KIT`] and [`ADAPTER`], as named in links.
 pub(crate) const SERVERS: [(&str, &str); 3] = [("moxa:4001", PORT), ("moxa:4002", KIT), ("tcp:adapter:5000", ADAPTER)];
@@ -176,7 +176,7 @@ impl Outside {
         }
     }
 
-    /// Creates a studio whose live values start only on request, so that a test knows what is sent on the line.
+    /// Creates a studio that does not start live values by itself, so a test knows what is sent on the line.
     pub(crate) fn studio(&self) -> Studio {
         let mut studio = self.usual_studio();
         studio.settings.live_stopped = true;
@@ -193,14 +193,14 @@ impl Outside {
     }
 }
 
-/// A studio in its environment.
+/// A studio with its environment.
 pub(crate) struct Desk {
     pub(crate) studio: Studio,
     pub(crate) outside: Outside,
 }
 
 impl Desk {
-    /// Returns the number of recorded positions that have no valid value.
+    /// Returns the number of recorded positions without a valid value.
     pub(crate) fn bad_positions(&self) -> u64 {
         let recorder = &self.encoder().recording().recorder();
         let history = recorder.history(&recorder.series()[0]).unwrap();
@@ -213,13 +213,13 @@ impl Desk {
         Desk { studio: outside.studio(), outside }
     }
 
-    /// Creates a studio that has not been started, with the device kind of the tests added.
+    /// Creates a studio with the test kind that has not been started.
     pub(crate) fn with_novo() -> Self {
         let outside = Outside { program: crate::tabs::with_novo(), ..Outside::new("") };
         Desk { studio: outside.studio(), outside }
     }
 
-    /// Creates a studio with short grace periods for closing, connected to an encoder at [`PORT`] that has been read.
+    /// Creates a studio with short timeouts for closing. It is connected to an encoder at [`PORT`] that has been read.
     pub(crate) fn impatient(query: &str) -> Self {
         let mut outside = Outside::new(query);
         let milliseconds = Duration::from_millis;
@@ -309,7 +309,7 @@ impl Desk {
         }
     }
 
-    /// Polls until the displayed encoder has been read and nothing is running.
+    /// Polls until the selected encoder has been read and nothing is running.
     #[track_caller]
     pub(crate) fn until_read(&mut self) {
         self.until("the encoder is read", |studio| {
@@ -318,7 +318,7 @@ impl Desk {
         self.settle();
     }
 
-    /// Polls until the displayed encoder is ready for the next job.
+    /// Polls until the selected encoder is ready for the next job.
     #[track_caller]
     pub(crate) fn until_ready(&mut self) {
         self.until("ready", |studio| studio.hiperface().is_some_and(|own| own.session.is_ready()));
@@ -333,7 +333,7 @@ impl Desk {
         texts::check_all(&self.studio);
     }
 
-    /// Polls until the displayed edits are on disk.
+    /// Polls until the edits of the selected device are on disk.
     #[track_caller]
     pub(crate) fn until_kept(&mut self) {
         let folder = self.outside.path("data/drafts");
@@ -385,7 +385,7 @@ impl Desk {
         self.settle();
     }
 
-    /// Consents to the displayed plan.
+    /// Consents to the plan in the review.
     pub(crate) fn write_as_shown(&mut self) {
         let nothing = HiperfacePlan { base: Base::default(), ops: Vec::new() };
         let shown = self.encoder().session.review.as_ref().and_then(Review::prepared_plan);
@@ -393,7 +393,7 @@ impl Desk {
         self.ask(Hiperface::Write(id));
     }
 
-    /// Grants a permission in the review, or revokes it.
+    /// Toggles a permission in the review.
     pub(crate) fn toggle(&mut self, permit: Permit) {
         let session = self.encoder().session.id;
         self.act(Action::Review(session, ReviewAction::Toggle(permit)));
@@ -408,20 +408,20 @@ impl Desk {
         self.until_written();
     }
 
-    /// Returns the IDs of the texts in all notices of at least the given severity.
+    /// Returns the text IDs in all notices of at least the given severity.
     pub(crate) fn notice_ids(&self, least: Severity) -> Vec<&'static str> {
         let notices = self.studio.services.log.notices().filter(|notice| notice.severity >= least);
         notices.flat_map(|notice| notice.texts.iter().map(encoder_studio::app::Text::id)).collect()
     }
 
-    /// Returns how many times a text was reported.
+    /// Returns how often a text was reported.
     pub(crate) fn notice_count(&self, id: &str) -> usize {
         self.notice_ids(Severity::Note).iter().filter(|own| **own == id).count()
     }
 }
 
-/// Answers the question about a drive on the line, if it is asked. These tests have no drive. The effect of the
-/// question is tested in `connecting`.
+/// Confirms that no drive is on the line, if asked. These tests have no drive; the question itself is tested in
+/// `connecting`.
 pub(crate) fn only_master(studio: &mut Studio) {
     if asks_for_drive(studio) {
         studio.handle_action(Action::Confirm);
@@ -437,7 +437,7 @@ pub(crate) fn is_review(studio: &Studio, wanted: impl Fn(&ReviewState) -> bool) 
     studio.hiperface().and_then(|encoder| encoder.session.review.as_ref()).is_some_and(|review| wanted(&review.state))
 }
 
-/// Returns all messages, to print them if a test fails.
+/// Returns all messages for the output of a failed test.
 pub(crate) fn log(studio: &Studio) -> String {
     let words = |notice: &encoder_studio::app::Notice| {
         let words: Vec<String> = notice.texts.iter().map(encoder_studio::app::Text::terminal_text).collect();

@@ -1,4 +1,4 @@
-//! Test support: the tabs of the program, and access to the content of each.
+//! Test support: the tabs of the program, with access to the content of each.
 
 use std::sync::OnceLock;
 
@@ -20,10 +20,10 @@ pub(crate) const SSI: Tab = Tab::named("Ssi");
 pub(crate) const INTERBUS: Tab = Tab::named("Interbus");
 pub(crate) const HIPERDRIVE: Tab = Tab::named("Hiperdrive");
 pub(crate) const SIGNALS: Tab = Tab::named("Signals");
-/// The tab of the kind defined in the tests.
+/// The tab of the test kind.
 pub(crate) const NOVEL: Tab = Tab::named("Novo");
 
-/// Returns the program with the device kind of the tests added to its own kinds.
+/// Returns the program with the test kind added to its own kinds.
 pub(crate) fn with_novo() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| Program::new(&[KINDS, &[NOVO]].concat(), &[signals::TAB], &[], &[]))
@@ -70,7 +70,7 @@ pub(crate) fn search_for(options: FindOptions) -> ConnectAction {
     ConnectAction::find::<EncoderSearchForm>(SearchAction::Search(options))
 }
 
-/// Returns the action that connects to the found encoder with this index.
+/// Returns the action that connects to the encoder with this index in the search results.
 pub(crate) fn choose(at: usize) -> ConnectAction {
     ConnectAction::find::<EncoderSearchForm>(SearchAction::Choose(at))
 }
@@ -80,17 +80,17 @@ pub(crate) fn discover() -> ConnectAction {
     ConnectAction::find::<DiscoveryFinder>(DiscoveryAction::Discover)
 }
 
-/// Returns the action that selects the discovered device with this index.
+/// Returns the action that selects the device with this index in the discovery results.
 pub(crate) fn choose_answer(at: usize) -> ConnectAction {
     ConnectAction::find::<DiscoveryFinder>(DiscoveryAction::Choose(at))
 }
 
-/// Returns the encoder search of a dialog, if there is one.
+/// Returns the encoder search of a dialog, if any.
 pub(crate) fn search(dialog: &ConnectDialog) -> Option<&Search> {
     dialog.finder_as::<EncoderSearchForm>()?.search.as_ref()
 }
 
-/// Returns the network discovery of a dialog, if there is one.
+/// Returns the network discovery of a dialog, if any.
 pub(crate) fn discovery(dialog: &ConnectDialog) -> Option<&Discovery> {
     dialog.finder_as::<DiscoveryFinder>()?.discovery.as_ref()
 }

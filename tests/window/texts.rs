@@ -1,5 +1,5 @@
-//! Test support that checks each text of these tests in both languages: it is in a catalogue, each of its placeholders
-//! has a value, and no ID occurs twice.
+//! Test support that checks the texts in both languages: each is in a catalogue, all of its placeholders have values,
+//! and no ID occurs twice.
 
 use crate::tabs::Tabs as _;
 use std::collections::{BTreeMap, BTreeSet};
@@ -42,7 +42,7 @@ static TABLE: LazyLock<BTreeMap<String, Row>> = LazyLock::new(|| {
     rows.into_iter().flatten().collect()
 });
 
-/// Returns the text with an id, from any catalogue.
+/// Returns the text with the given ID from any catalogue.
 #[track_caller]
 pub(crate) fn text(id: &'static str) -> Text {
     let own = CATALOGUES.into_iter().find(|own| own.ids().any(|known| known == id));
@@ -53,7 +53,7 @@ fn places(template: &str) -> impl Iterator<Item = &str> {
     template.split('{').skip(1).filter_map(|part| part.split_once('}')).map(|(name, _)| name)
 }
 
-/// Checks that the text is in its catalogue, has all its arguments, and is not empty in either language.
+/// Checks that a text is in its catalogue, has all arguments, and is not empty in either language.
 #[track_caller]
 pub(crate) fn check(text: &Text) {
     let row = TABLE.get(text.id()).unwrap_or_else(|| panic!("{} is not in the table", text.id()));
@@ -73,7 +73,7 @@ fn check_notice(notice: &Notice) {
     notice.texts.iter().for_each(check);
 }
 
-/// Checks every text that the window could currently show.
+/// Checks every text that the window could show at the moment.
 #[track_caller]
 pub(crate) fn check_all(studio: &Studio) {
     studio.services.log.notices().for_each(check_notice);
@@ -127,7 +127,7 @@ fn check_encoder(encoder: &Encoder) {
     sheet.needs.iter().chain(&sheet.warnings).chain(&sheet.cost).for_each(check);
 }
 
-/// Returns whether the words are a text ID, which the window shows if the catalogue has no such text.
+/// Returns whether a string is a text ID, which the window shows if no catalogue contains the text.
 pub(crate) fn is_name(words: &str) -> bool {
     let part = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_lowercase() || c == '_');
     words.split_once('.').is_some_and(|(area, name)| {
@@ -135,7 +135,7 @@ pub(crate) fn is_name(words: &str) -> bool {
     })
 }
 
-/// Returns texts that occur only in the other language and have no arguments.
+/// Returns texts without arguments that occur only in the other language.
 pub(crate) fn foreign_to(language: Language) -> BTreeSet<&'static str> {
     let own = |row: &'static Row| if language == Language::English { &row.en } else { &row.de };
     let other = |row: &'static Row| if language == Language::English { &row.de } else { &row.en };

@@ -1,5 +1,5 @@
-//! Tests of two windows that share a settings file, in this process and in separate processes. The changes of one
-//! window survive the writes of the other, and unconfirmed limits in one lock motion in the other.
+//! Tests of two windows that share a settings file, in this process and in separate ones. The changes of one window
+//! survive the writes of the other, and limits that are not confirmed in one lock motion in the other.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -29,7 +29,7 @@ fn two() -> (Desk, Desk) {
     (first, second)
 }
 
-/// Returns the settings that a newly opened window finds.
+/// Returns the settings that a new window would load.
 fn found(desk: &Desk) -> Settings {
     desk.outside.studio().settings
 }
@@ -47,7 +47,7 @@ fn poll_both_until(windows: [&mut Desk; 2], what: &str, condition: impl Fn(&Desk
     }
 }
 
-/// Returns whether the settings file contains all of these words.
+/// Returns whether the settings file contains all of the given words.
 fn settings_contain(desk: &Desk, words: &[&str]) -> bool {
     let text = fs::read_to_string(desk.outside.store().settings_path()).unwrap_or_default();
     words.iter().all(|word| text.contains(word))
@@ -82,8 +82,7 @@ fn is_locked(desk: &Desk) -> bool {
     unit(desk).moves.motion_locks(ONE).contains(&MotionLock::LimitsUnconfirmed)
 }
 
-/// Settings are merged by key, so the changes of each window survive, however often the windows write in turn
-/// (issue 21.11).
+/// Settings are merged by key, so each window's changes survive, however often the windows write in turn (issue 21.11).
 #[test]
 fn changes_of_each_window_survive_the_others_write() {
     let (mut first, mut second) = two();
@@ -106,8 +105,8 @@ fn changes_of_each_window_survive_the_others_write() {
     assert_eq!((first.studio.settings.language, second.studio.settings.theme), (Language::English, ColorScheme::Dark));
 }
 
-/// Limits that one window has marked are locked in another one that controls the drives, even if that one neither reads
-/// nor writes anything. They are also locked in a window that is opened later, whatever the others write (issue 21.11).
+/// Limits marked by one window are locked in another one that controls the drives, even if that one neither reads nor
+/// writes anything. They are also locked in a window opened later, whatever the others write (issue 21.11).
 #[test]
 fn limits_marked_by_another_window_are_locked() {
     let (mut first, mut second) = two();
@@ -131,8 +130,8 @@ fn limits_marked_by_another_window_are_locked() {
     assert!(is_locked(&later));
 }
 
-/// A confirmation of limits applies only to the window in which it was given. Another window keeps its lock, and marks
-/// the limits again if the scale changes again (issue 21.11).
+/// Limits are confirmed only for the window in which the user does so. Another window keeps its lock, and marks the
+/// limits again if the scale changes again (issue 21.11).
 #[test]
 fn limits_are_confirmed_in_each_window() {
     let (mut first, mut second) = two();
@@ -161,8 +160,8 @@ fn limits_are_confirmed_in_each_window() {
     assert!(settings_contain(&first, &["unconfirmed: [", "1,"]));
 }
 
-/// A value typed for a drive stays in its window, and is saved together with the values of the other window
-/// (issue 21.11).
+/// A value typed for a drive stays in its window, and is saved together with the values from the other window (issue
+/// 21.11).
 #[test]
 fn values_typed_for_a_drive_stay_in_their_window() {
     let (mut first, mut second) = two();
@@ -189,7 +188,7 @@ fn values_typed_for_a_drive_stay_in_their_window() {
 const FOLDER: &str = "ENCODER_STUDIO_TEST_FOLDER";
 const NAME: &str = "ENCODER_STUDIO_TEST_NAME";
 
-/// Runs an ignored test of this module as a second window in a separate process, which uses the same folder as `desk`.
+/// Runs an ignored test of this module in a separate process, as a second window that uses the same folder as `desk`.
 fn process(desk: &Desk, test: &str, name: &str) -> Child {
     let mut own = Command::new(env::current_exe().unwrap());
     own.args(["--ignored", "--exact", &format!("two_windows::{test}")]);
@@ -218,8 +217,8 @@ fn process_using_links() {
     }
 }
 
-/// Two processes that write six links each as fast as they can lose none of them. No more than twelve links are
-/// remembered (issue 21.11).
+/// Two processes write six links each as fast as they can, and none is lost. No more than twelve links are remembered
+/// (issue 21.11).
 #[test]
 fn concurrent_processes_lose_no_settings() {
     let desk = Desk::fresh("");
@@ -244,7 +243,7 @@ fn process_writing_forever() {
     }
 }
 
-/// A process that is killed at any moment while it writes leaves a complete file and no lock (issue 21.11).
+/// The process is killed at a random moment while it writes (issue 21.11).
 #[test]
 fn a_killed_process_leaves_a_complete_file_and_no_lock() {
     let mut desk = Desk::fresh("");
@@ -271,7 +270,7 @@ fn a_killed_process_leaves_a_complete_file_and_no_lock() {
     }
 }
 
-/// If the settings folder cannot be written, only the settings are lost, and motion remains possible (issue 21.11).
+/// If the settings folder is not writable, only the settings are lost. Motion is still possible (issue 21.11).
 #[cfg(unix)]
 #[test]
 fn unwritable_settings_do_not_prevent_motion() {

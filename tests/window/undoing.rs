@@ -1,5 +1,5 @@
-//! Tests of undoing a write from the logbook, for every kind of device with a memory, and of what the review says about
-//! a later undo before the write.
+//! Tests of undoing a write from the logbook, for every kind of device with a memory. Before a write, the review states
+//! whether it can be undone later.
 
 use encoder_studio::app::review::{ReviewSheet, Stage};
 use encoder_studio::app::{Action, DeviceCommand, Language, ReviewAction, Text};

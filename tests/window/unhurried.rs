@@ -1,5 +1,5 @@
 //! Test support: virtual HIPERDRIVE drives whose time passes more slowly. A motion that is not refreshed for 250 ms
-//! stops on purpose, and a frame that a busy computer draws in software may take longer than that.
+//! stops on purpose, but a busy computer without a graphics card may need longer for a frame.
 
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex};
@@ -14,7 +14,7 @@ use encoder_studio::worker::{OpenError, Session};
 
 use crate::support::MARGIN;
 
-/// Number of real seconds for one second of the session and its drives.
+/// Number of real seconds for one second of simulated time.
 const SLOWER: u32 = 2;
 
 struct Unhurried(RealClock);

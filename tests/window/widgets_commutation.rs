@@ -1,4 +1,4 @@
-//! Tests of the commutation page, operated like a user by ticking, typing and clicking.
+//! Tests of the commutation page, operated as a user does: by ticking, typing and clicking.
 
 use crate::tabs::Tabs as _;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -8,7 +8,7 @@ use encoder_studio::devices::hiperface::state::commutation::{CommutationAction a
 
 use crate::screen::Screen;
 
-/// Window size in which the complete page is drawn.
+/// Window size that fits the complete page.
 const TALL: [f32; 2] = [1400.0, 1800.0];
 
 impl Screen {

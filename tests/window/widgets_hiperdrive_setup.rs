@@ -1,4 +1,4 @@
-//! Tests of the indicators, the network page and the set-up of an axis, operated like a user and checked in both
+//! Tests of the indicators, the network page and the axis set-up, operated as a user does and checked in both
 //! languages.
 
 use crate::tabs::Tabs as _;
@@ -18,7 +18,7 @@ use encoder_studio::units::Moment;
 
 use crate::screen::Screen;
 
-/// Window size in which a complete page is drawn.
+/// Window size that fits a complete page.
 const TALL: [f32; 2] = [1280.0, 2400.0];
 
 fn page(link: &str, page: &'static str) -> Screen {
@@ -126,9 +126,8 @@ fn axis_setup_names_missing_steps_in_the_language() {
     assert!(screen.shows("Nothing was written."));
 }
 
-/// A pitch and a resolution set the scale, and the limits keep their positions. A spindle with a pitch of 4 mm and
-/// steps of 0.01 mm has 400 steps per turn, and 511 turns in each direction are 2044 mm, or 204400 steps (reference,
-/// section 5).
+/// The limits keep their physical positions. A spindle with a pitch of 4 mm and steps of 0.01 mm has 400 steps per
+/// turn, and 511 turns in each direction are 2044 mm, or 204400 steps (reference, section 5).
 #[test]
 fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     let mut screen = page("sim:", "page.parameters");
@@ -172,7 +171,7 @@ fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     }
 }
 
-/// A number can be typed into the table. An invalid one stays in its row with the reason, even after other rows were
+/// The user types a number into the table. An invalid one stays in its row with the reason, even after other rows were
 /// shown.
 #[test]
 fn parameters_can_be_typed_into_their_table() {
@@ -227,7 +226,7 @@ fn parameters_can_be_typed_into_their_table() {
     assert!(screen.harness.query_by_role_and_label(Role::TextInput, "158 Lower limit").is_none());
 }
 
-/// A step is not left by a second click that was meant for the previous step.
+/// A second click that was meant for the previous step must not leave the new one.
 #[test]
 fn a_step_is_shown_before_it_can_be_left() {
     let mut screen = page("sim:", "page.axis");
@@ -243,7 +242,7 @@ fn a_step_is_shown_before_it_can_be_left() {
     assert!(screen.is_enabled("hd_axis.back"));
 }
 
-/// A dialog blocks the controls below it, except for STOP.
+/// A dialog blocks the controls below it, but not STOP.
 #[test]
 fn stop_is_reachable_over_a_dialog() {
     let mut screen = page("sim:", "page.motion");
@@ -263,8 +262,7 @@ fn stop_is_reachable_over_a_dialog() {
     assert!(own.actual_values(own.drive()).unwrap().position < 30_000_000 && screen.studio().connect.is_some());
 }
 
-/// Whatever the drive reports, no clickable control moves, and the step remains until the user leaves it
-/// (issue 21.6 i).
+/// Whatever the drive reports, no clickable control moves, and the step stays until the user leaves it (issue 21.6 i).
 #[test]
 fn the_layout_of_a_step_does_not_shift() {
     let mut screen = page("sim:", "page.axis");

@@ -1,5 +1,4 @@
-//! Tests of keys, dropped files and the close button of the system, and of a window without changes, which requests no
-//! frame.
+//! Tests of keys, dropped files, the system's close button, and an idle window, which requests no frames.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;
@@ -14,7 +13,7 @@ use crate::support::PORT;
 
 const SIZE: [f32; 2] = [1280.0, 800.0];
 
-/// Returns the delay after which the window requests to be drawn again.
+/// Returns the delay until the next frame requested by the window.
 fn next_picture(screen: &Screen) -> Duration {
     screen.harness.output().viewport_output[&ViewportId::ROOT].repaint_delay
 }

@@ -1,5 +1,4 @@
-//! Tests of the cam page, operated like a user by pointer, by key, by typing and by pasting. The chart and the table
-//! agree.
+//! Tests of the cam page, operated by pointer, keys, typing and pasting. The chart and the table must agree.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -12,7 +11,7 @@ use encoder_studio::devices::interbus::state::{Edit, InterbusAction as Interbus}
 
 use crate::screen::Screen;
 
-/// Window size in which the chart and the table are drawn completely.
+/// Window size that fits the complete chart and table.
 const TALL: [f32; 2] = [1280.0, 1600.0];
 
 fn program() -> ProgramNumber {
@@ -54,7 +53,7 @@ impl Screen {
         self.harness.get_by_role_and_label(role, label)
     }
 
-    /// Returns the values that the chart and the table show for an edge.
+    /// Returns the values of an edge in the chart and in the table.
     fn edge_values(&self, label: &str) -> (String, String) {
         let value = |role| self.of_role(role, label).accesskit_node().value().unwrap_or_default();
         (value(Role::Slider), value(Role::TextInput))

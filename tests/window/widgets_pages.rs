@@ -1,4 +1,4 @@
-//! Tests that every page is drawn at both sizes, in both themes and languages, and that its next steps can be reached.
+//! Tests that every page is drawn at both sizes, in both themes and languages, with all next steps in reach.
 
 use crate::tabs::Tabs as _;
 use egui::{Key, Rect, Role, Vec2};
@@ -66,8 +66,8 @@ fn every_page_is_drawn_with_a_virtual_biss_encoder() {
     }
 }
 
-/// Values that were written in mode 04 and never saved are reported above the registers and above the data, with a
-/// button that returns to operation (issue 22.15).
+/// Values written in mode 04 but never saved are reported above the registers and the data, with a button that returns
+/// to operation (issue 22.15).
 #[test]
 fn unsaved_registers_are_reported_with_a_remedy() {
     let outside = Outside::new("");
@@ -97,7 +97,7 @@ fn unsaved_registers_are_reported_with_a_remedy() {
     assert!(!screen.has_button("lead_back_card.button"));
 }
 
-/// If an encoder rejects its position, the Live panel shows a message and still fits into a small window.
+/// If an encoder rejects a position request, the Live panel shows a message and fits into a small window.
 #[test]
 fn a_refused_position_keeps_the_panel_within_the_window() {
     let mut screen = Screen::opened(Outside::new("temperature=140&rpm=9000"), None, SMALL);
@@ -322,7 +322,7 @@ fn language_and_theme_change_with_one_click() {
     assert_eq!(screen.studio().settings.theme, ColorScheme::Dark);
 }
 
-/// If the system has no file dialogs, the user can type a path.
+/// The system has no file dialogs.
 #[test]
 fn a_path_can_be_typed_without_a_file_dialog() {
     let mut screen = Screen::new_form(SMALL);

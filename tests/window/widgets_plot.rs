@@ -1,4 +1,4 @@
-//! Tests of the plot in the window: its tools by their labels, its chart by the pointer and the keyboard.
+//! Tests of the plot in the window: its tools by their labels, and its chart by pointer and keyboard.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
@@ -13,7 +13,7 @@ use encoder_studio::app::{Language, RecorderOwner as Of, recorder};
 use crate::screen::Screen;
 use crate::support::Outside;
 
-/// Returns a window in which a turning encoder has been recorded for a while and is no longer polled.
+/// Returns a window with a recording of a turning encoder that is no longer polled.
 fn recorded() -> Screen {
     let mut screen = Screen::opened(Outside::new("rpm=600"), None, [1280.0, 800.0]);
     screen.until("it is read", |studio| {
@@ -36,7 +36,7 @@ fn chart(screen: &Screen) -> Rect {
     Rect::from_min_max(bounds.min, bounds.max)
 }
 
-/// Returns a point in the chart from relative coordinates, without the area of the axis labels.
+/// Returns a point in the chart from relative coordinates, excluding the area of the axis labels.
 fn inside(screen: &Screen, x: f32, y: f32) -> Pos2 {
     let chart = chart(screen);
     let chart = Rect::from_min_max(chart.min + egui::vec2(80.0, 10.0), chart.max - egui::vec2(10.0, 30.0));

@@ -1,4 +1,4 @@
-//! Tests of the pages of the SSI tab, operated like a user by keys and typed text.
+//! Tests of the pages in the SSI tab, operated by keys and typing.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -58,7 +58,7 @@ fn words_arriving_while_typing_do_not_replace_the_typed_text() {
     }
 }
 
-/// An export that is a picture is drawn, and its source is not shown. An export that is text is shown as text.
+/// A picture is drawn without showing its source, and text is shown as text.
 #[test]
 fn exports_are_shown_in_their_format() {
     let mut screen = layout();
@@ -75,8 +75,8 @@ fn exports_are_shown_in_their_format() {
     assert!(screen.shows("FUNCTION_BLOCK \"SSI_DECODE\""));
 }
 
-/// Frames from a file are listed and decoded with the layout, and a click loads a frame into the editor. The file
-/// contains frames of an AHM36 in Gray code (reference, section 8).
+/// Frames from a file are listed and decoded with the layout, and a click loads a frame into the editor. They are
+/// frames of an AHM36 in Gray code (reference, section 8).
 #[test]
 fn frames_of_a_file_are_listed_and_tried() {
     let mut screen = layout();
@@ -95,7 +95,7 @@ fn frames_of_a_file_are_listed_and_tried() {
     assert_eq!(screen.studio().ssi().unwrap().trial.frame(), 0x0D9_3EEC);
 }
 
-/// The strip, the position and the bits of the Frame page are visible without scrolling at 1280 × 800.
+/// The strip, the position and the bits are visible without scrolling at 1280 × 800.
 #[test]
 fn the_frame_page_fits_the_window() {
     let screen = layout();

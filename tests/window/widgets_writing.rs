@@ -1,5 +1,4 @@
-//! Tests of writing a byte with the real widgets: it is edited, reviewed, written and read back. The tests also cover
-//! STOP and the questions.
+//! Tests of writing a byte with the real widgets: editing, review, write and read-back, with STOP and the questions.
 
 use crate::tabs::Tabs as _;
 use egui::{Key, Modifiers};
@@ -81,9 +80,8 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
     assert!(!screen.encoder().staged.is_dirty());
 }
 
-/// Ctrl and Enter open the review even if both are pressed together. Ctrl is a separate key, and a key right before
-/// Enter made the press doubtful, so that Ctrl+Enter did nothing in the hex editor, which is not a text entry
-/// (issue 26).
+/// Previously, a key right before Enter made Enter doubtful, even if it was Ctrl. Ctrl+Enter therefore did nothing in
+/// the hex editor, which is not a text entry (issue 26).
 #[test]
 fn ctrl_and_enter_pressed_together_open_the_review() {
     let mut screen = Screen::new_form(SIZE);

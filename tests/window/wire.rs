@@ -1,5 +1,5 @@
-//! Test support: a cable to virtual encoders or to an adapter. They remain when the cable is pulled, and the cable can
-//! be held at a request.
+//! Test support: a cable to virtual encoders or to an adapter. They continue to exist when the cable is disconnected,
+//! and communication can be held at a request.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
@@ -20,7 +20,7 @@ use encoder_studio::units::{CharacterFormat, Moment};
 use crate::novo::sim::Virtual;
 use crate::support::LONG;
 
-/// A cable to virtual devices, which can be pulled and held.
+/// A cable to virtual devices that can be disconnected and held.
 pub(crate) struct Wire {
     target: String,
     end: End,
@@ -33,15 +33,15 @@ pub(crate) struct Wire {
 enum End {
     /// HIPERFACE encoders.
     Hiperface(Arc<Mutex<Bus>>),
-    /// The configuration pin of a BiSS encoder.
+    /// A BiSS encoder at its configuration pin.
     Pin(Arc<Mutex<UbicomPort>>),
-    /// An adapter on the bus of a BiSS encoder.
+    /// An adapter with a BiSS encoder.
     Adapter(Arc<Mutex<Adapter>>),
-    /// A gateway to an INTERBUS encoder.
+    /// A gateway with an INTERBUS encoder.
     Gateway(Arc<Mutex<Gateway>>),
     /// An adapter with a HIPERDRIVE drive.
     Target(Arc<Mutex<Target>>),
-    /// An encoder of the device kind of the tests.
+    /// An encoder of the test kind.
     Novo(Arc<Mutex<Virtual>>),
 }
 
@@ -57,7 +57,7 @@ impl End {
         }
     }
 
-    /// Returns the command of a request, or `None` for a packet to an adapter, which is not parsed.
+    /// Returns the command in a request, or `None` for a packet to an adapter, which is not parsed.
     fn command(&self, frame: &[u8]) -> Option<u8> {
         match self {
             End::Hiperface(_) => frame.get(1).copied(),
@@ -76,18 +76,17 @@ impl End {
 #[derive(Default)]
 struct State {
     unplugged: bool,
-    /// Whether the next frame that is sent causes a panic.
+    /// Whether the next frame to be sent causes a panic.
     deadly: bool,
-    /// Every frame that was sent.
+    /// Every frame sent.
     sent: Vec<Vec<u8>>,
-    /// Request at which communication is held: the command, and the number of requests with this command that pass
-    /// first.
+    /// The request at which communication is held: its command, and how many such requests pass first.
     hold: Option<(u8, usize)>,
     held: bool,
 }
 
 impl Wire {
-    /// Creates a cable to HIPERFACE encoders, which `query` describes like a `sim:` link.
+    /// Creates a cable to HIPERFACE encoders. `query` describes them as in a `sim:` link.
     pub(crate) fn new(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Hiperface(Arc::new(Mutex::new(bus(query)))))
     }
@@ -107,12 +106,12 @@ impl Wire {
         Self::to(target, End::Target(Arc::new(Mutex::new(drive(query)))))
     }
 
-    /// Creates a cable to an encoder of the device kind of the tests.
+    /// Creates a cable to an encoder of the test kind.
     pub(crate) fn to_novo(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Novo(Arc::new(Mutex::new(novo(query)))))
     }
 
-    /// Creates a cable to an adapter on the bus of a BiSS encoder.
+    /// Creates a cable to an adapter with a BiSS encoder.
     pub(crate) fn to_adapter(target: &str, query: &str) -> Arc<Self> {
         let adapter = Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap();
         Self::to(target, End::Adapter(Arc::new(Mutex::new(adapter))))
@@ -146,7 +145,7 @@ impl Wire {
         bus.lock().unwrap()
     }
 
-    /// Writes registers of a BiSS encoder directly, without the window.
+    /// Writes registers of a BiSS encoder directly, bypassing the window.
     pub(crate) fn enter(&self, entries: &[(&str, u8)]) {
         let End::Pin(port) = &self.end else { panic!("{} leads to no configuration pin", self.target) };
         let (now, mut port) = (self.clock.now(), port.lock().unwrap());
@@ -180,7 +179,7 @@ impl Wire {
         self.state().deadly = true;
     }
 
-    /// Holds the cable before a request with this command. `number` counts the following requests, starting with 1.
+    /// Holds the cable before a request with this command. `number` counts from the next request, starting with 1.
     pub(crate) fn hold_at(&self, command: u8, number: usize) {
         self.state().hold = Some((command, number - 1));
     }
@@ -202,27 +201,27 @@ impl Wire {
         self.changed.notify_all();
     }
 
-    /// Returns the number of frames that were sent.
+    /// Returns the number of frames sent.
     pub(crate) fn sent(&self) -> usize {
         self.state().sent.len()
     }
 
-    /// Returns how many times a command was sent.
+    /// Returns how often a command was sent.
     pub(crate) fn count(&self, command: u8) -> usize {
         self.state().sent.iter().filter(|frame| self.end.command(frame) == Some(command)).count()
     }
 
-    /// Returns how many times an OUT word was written to the gateway.
+    /// Returns how often an OUT word was written to the gateway.
     pub(crate) fn outs(&self) -> usize {
         self.state().sent.iter().filter(|frame| frame.get(7) == Some(&16)).count()
     }
 
-    /// Returns the bytes of a data field, read directly from the encoder.
+    /// Returns the bytes of a data field, read directly from the simulated encoder.
     pub(crate) fn field(&self, number: u8) -> Vec<u8> {
         self.bus().encoders()[0].memory().field_bytes(number).unwrap().to_vec()
     }
 
-    /// Returns the number of write cycles of the encoder's EEPROM.
+    /// Returns the number of write cycles used in the encoder's EEPROM.
     pub(crate) fn wear(&self) -> u64 {
         self.bus().encoders()[0].wear().total().into()
     }
@@ -255,14 +254,14 @@ impl Wire {
     }
 }
 
-/// The program's end of a cable.
+/// The host's end of the cable.
 pub(crate) struct TestLink {
     wire: Arc<Wire>,
     line: SimLink,
 }
 
 impl TestLink {
-    /// Connects to the cable, or returns an error if the cable is pulled.
+    /// Connects to the cable. Returns an error if it is disconnected.
     pub(crate) fn plug_into(wire: &Arc<Wire>) -> Result<Self, LinkError> {
         let missing = |_| LinkError::new(&wire.target, LinkErrorKind::NotFound);
         wire.check_plug().map_err(missing)?;

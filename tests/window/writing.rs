@@ -1,4 +1,4 @@
-//! Tests that an edit is reviewed, written and checked by reading it back, and that nothing is written without that.
+//! Tests that an edit is reviewed, written and read back, and that nothing is written without a review.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -16,7 +16,7 @@ use encoder_studio::store::{DeviceKey, Outcome, read_text};
 use crate::support::{Desk, is_review};
 use crate::texts;
 
-/// Address of the low byte of the rated current (01 22h at 18), after the speed on the name plate of the SKM36.
+/// Address of the low byte of the rated current (01 22h at 18), which follows the speed on the name plate of the SKM36.
 const RATED: usize = 19;
 
 #[test]
@@ -266,7 +266,7 @@ fn an_access_code_is_checked_and_never_shown() {
     assert_eq!(*desk.notice_ids(Severity::Note).last().unwrap(), "session.code_unused");
 }
 
-/// Lists and backups that were requested before the encoder was exchanged are dropped when they arrive.
+/// Lists and backups requested before the encoder was replaced are dropped when they arrive.
 #[test]
 fn late_results_for_another_encoder_are_dropped() {
     let mut desk = Desk::new_form("");
@@ -302,7 +302,7 @@ fn late_results_for_another_encoder_are_dropped() {
     assert!(desk.encoder().session.review.is_none() && !desk.encoder().session.is_busy());
 }
 
-/// Connects to an encoder that has a second data field, so that the first field is not the last one.
+/// Connects to an encoder that has a second data field, so the first field is not the last one.
 fn with_two_fields() -> Desk {
     let mut desk = Desk::new_form("");
     let status = DataFieldStatus::new(FieldSize::from_bytes(16).unwrap(), AccessCodeNumber::ZERO, true);
@@ -319,7 +319,7 @@ fn change(desk: &mut Desk, change: Change) {
     desk.ask(Hiperface::CloseReview);
 }
 
-/// Returns the message that says why a change cannot be planned.
+/// Returns the reason why a change cannot be planned.
 fn refused(desk: &mut Desk, change: Change) -> Text {
     let wear = desk.wire().wear();
     desk.ask(Hiperface::Plan(change));

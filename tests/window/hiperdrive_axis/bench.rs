@@ -1,4 +1,4 @@
-//! Test support for the set-up of an axis: its steps, successful and failed writes, and jogs.
+//! Test support for the axis set-up: its steps, successful and failed writes, and jogs.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -14,7 +14,7 @@ use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive,
 use crate::hiperdrive_acts::{ATTEMPTS, has_lapsed, hold_pad_until, last_end, until_free};
 use crate::support::Desk;
 
-/// A link to an adapter whose drive was never requested.
+/// A link to an adapter whose drive has no reference yet.
 pub(super) const FRESH: &str = "sim:?requested=0";
 
 pub(super) fn unit(desk: &Desk) -> &HiperdriveDevice {
@@ -51,7 +51,7 @@ pub(super) fn read(desk: &Desk, number: u16) -> i64 {
     }
 }
 
-/// Presses a pad as soon as the drive may move, and holds it until a condition holds.
+/// Presses a jog pad as soon as the drive may move, and holds it until a condition holds.
 #[track_caller]
 pub(super) fn held_until(
     desk: &mut Desk,
@@ -95,7 +95,7 @@ pub(super) fn consent(desk: &mut Desk) {
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
 }
 
-/// Consents to the plan of the current step, and closes the review after the write.
+/// Consents to the plan of the current step and closes the review after the write.
 #[track_caller]
 pub(super) fn write(desk: &mut Desk) {
     consent(desk);
@@ -114,7 +114,7 @@ pub(super) fn step_with_write(desk: &mut Desk) {
     write(desk);
 }
 
-/// Checks that the current step is complete, and goes to the next one, which must be `step`.
+/// Checks that the current step is complete and goes to the next one, which must be `step`.
 #[track_caller]
 pub(super) fn next(desk: &mut Desk, step: AxisStep) {
     let (axis, seen) = (axis(desk), seen(desk));
@@ -129,7 +129,7 @@ pub(super) fn edit(desk: &mut Desk, change: impl FnOnce(&mut LengthEntries)) {
     run(desk, Run::Edit(Box::new(entries)));
 }
 
-/// Waits for cyclic data, and returns the position of the axis in steps.
+/// Waits for cyclic data and returns the position of the axis in steps.
 #[track_caller]
 pub(super) fn position(desk: &mut Desk) -> i32 {
     let drive = unit(desk).drive();
@@ -143,7 +143,7 @@ pub(super) fn number(desk: &Desk, number: u16) -> i64 {
     unit(desk).parameter_value(unit(desk).drive(), number).unwrap()
 }
 
-/// Jogs until the axis has moved by at least this number of steps, and releases the pad.
+/// Jogs until the axis has moved by at least this number of steps and then releases the pad.
 #[track_caller]
 pub(super) fn jog(desk: &mut Desk, direction: Direction, steps: i32) {
     let from = position(desk);
@@ -161,8 +161,8 @@ pub(super) fn until_stopped(desk: &mut Desk) {
     });
 }
 
-/// Runs the write of the current step. `number` is the parameter as numbered for drive 1. If `rough` is true, the write
-/// is first rejected, then cut off halfway.
+/// Runs the write of the current step. `number` is the parameter number for drive 1. If `rough` is set, the write is
+/// first rejected and then cut off halfway.
 #[track_caller]
 pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
     for hindrance in [WriteFault::Refused, WriteFault::CutOff].into_iter().filter(|_| rough) {
@@ -218,8 +218,8 @@ pub(super) fn control(desk: &mut Desk) {
     });
 }
 
-/// Starts the application and advances the axis set-up to the step in which the user confirms the limits. The drive has
-/// 400 steps per turn and a pitch of 4 mm.
+/// Starts the application and advances the axis set-up to the confirmation of the limits. The drive has 400 steps per
+/// turn and a pitch of 4 mm.
 pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));

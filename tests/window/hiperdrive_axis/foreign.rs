@@ -1,4 +1,4 @@
-//! Tests in which another master sets the reference at another place to the same number, so that no parameter changes.
+//! Another master sets the reference to the same number at another position, so no parameter changes.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -7,7 +7,7 @@ use encoder_studio::sim::SimulatedFaults;
 
 use super::*;
 
-/// Advances the axis set-up until the position has been set to 128 steps, and then moves the shaft by 0.15 turns.
+/// Advances the axis set-up until the position has been set to 128 steps, and then jogs the shaft by 0.15 turns.
 fn other_mode_text() -> Desk {
     let mut desk = referenced("sim:?requested=0&timeout=250", 1, false);
     jog(&mut desk, Direction::Clockwise, 60);
@@ -22,8 +22,7 @@ fn set_by_another(desk: &Desk) {
     target.with_station(|station| station.write(Moment::default(), reference, &Value::Number(128)).unwrap());
 }
 
-/// A reference that another master sets again is detected: the position jumps at standstill, and everything based on
-/// the reference becomes invalid (issue 21.6 c).
+/// The position jumps at standstill, and everything based on the reference becomes invalid (issue 21.6 c).
 #[test]
 fn a_reference_changed_by_another_master_is_detected() {
     let mut desk = other_mode_text();
@@ -36,8 +35,8 @@ fn a_reference_changed_by_another_master_is_detected() {
     assert_eq!(axis(&desk).may_move(&seen(&desk)).unwrap_err().id(), "hd_axis.fallen");
 }
 
-/// If the position changes while the connection is lost, the axis may also have been moved. The change is therefore
-/// reported without a conclusion (issue 21.6 c).
+/// While the connection was lost, the axis may also have been moved. The change is therefore reported without stating a
+/// cause (issue 21.6 c).
 #[test]
 fn a_position_change_while_disconnected_is_reported() {
     let mut desk = other_mode_text();
