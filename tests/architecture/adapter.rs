@@ -1,10 +1,10 @@
-//! Rules for the adapter's workspace, which is separate from the main program. The codec and the core do not use an
-//! operating system or unsafe code, and every module is documented and short.
+//! Rules for the adapter's workspace, which is separate from the main program. The codec and the core use neither an
+//! operating system nor unsafe code, and every module is documented and short.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the source files in the given folders of the adapter's workspace, with their text.
+/// Returns the source files in the given folders of the adapter's workspace, with their content.
 pub(crate) fn adapter_sources(folders: &[&str]) -> Vec<(PathBuf, String)> {
     let mut files = Vec::new();
     for folder in folders {

@@ -1,5 +1,5 @@
 //! Architecture rules that the compiler does not check: layers use only lower ones, protocol code is pure, simulators
-//! do not use procedures, only the user gives consent, and every text is in a catalogue.
+//! do not use procedures, only the user can give consent, and every text is in a catalogue.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
@@ -15,7 +15,7 @@ mod words;
 use paths::{Used, paths};
 use places::{Owner, Place, modules_of};
 
-/// The only file that lists all devices and what the buses and Signals add.
+/// The only file that lists all devices and the parts added by buses and Signals.
 const LIST_OF_KINDS: &str = "src/kinds.rs";
 
 struct Source {
@@ -26,18 +26,18 @@ struct Source {
 }
 
 impl Source {
-    /// Returns the lines of code with their numbers, excluding comments and tests.
+    /// Returns the numbered lines of code, excluding comments and tests.
     fn code(&self) -> impl Iterator<Item = (usize, &str)> {
         self.without_tests().lines().enumerate().map(|(at, line)| (at + 1, line.split("//").next().unwrap_or_default()))
     }
 
-    /// Returns the text without a test module at the end of the file. `#[cfg(test)] mod tests;` may be anywhere.
+    /// Returns the text without a test module at the end of the file. `#[cfg(test)] mod tests;` is kept wherever it is.
     fn without_tests(&self) -> &str {
         let end = self.text.find("\n#[cfg(test)]\nmod tests {").unwrap_or(self.text.len());
         &self.text[..end]
     }
 
-    /// Returns the folder of the file below `src`.
+    /// Returns the folder of the file within `src`.
     fn folder(&self) -> Option<&str> {
         Some(self.path.strip_prefix("src/")?.rsplit_once('/')?.0)
     }
@@ -46,7 +46,7 @@ impl Source {
         self.path.contains("/tests") || self.path.contains("vectors")
     }
 
-    /// Returns the modules of other folders that the code uses, each with its location.
+    /// Returns the modules of other folders that the code uses, with their locations.
     fn uses(&self, text: &str) -> Vec<(Used, Place)> {
         let used = paths(&self.modules, text);
         let placed = used.into_iter().filter_map(|used| Place::of(&used.path).map(|place| (used, place)));
@@ -82,8 +82,8 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns whether a path is the list of devices that can be attached to the virtual adapter, which is needed to open
-/// an adapter. It is the only part of the list of kinds that a device, the tests of a bus and Signals may use.
+/// Returns whether a path is the list of devices for the virtual adapter, which is needed to open an adapter. Devices,
+/// bus tests and Signals may use no other part of the list of kinds.
 fn is_attachable_kinds(path: &[String]) -> bool {
     path == ["kinds", "attachable_kinds"]
 }
@@ -98,7 +98,7 @@ fn layers_use_only_lower_layers() {
     }
 }
 
-/// Layers on the same level use each other only where this list allows it.
+/// Layers on the same level may use each other only as listed here.
 #[test]
 fn modules_of_one_layer_use_each_other_only_where_allowed() {
     const ALLOWED: [(&str, &str); 4] =
@@ -113,8 +113,7 @@ fn modules_of_one_layer_use_each_other_only_where_allowed() {
     }
 }
 
-/// Folders of the core must not depend on each other in both directions, because they would effectively be a single
-/// folder. Subfolders count as part of a folder.
+/// Two folders that depend on each other would effectively be a single folder. Subfolders count as part of a folder.
 #[test]
 fn no_two_folders_of_the_core_use_each_other() {
     let sources: Vec<Source> = sources().into_iter().filter(|source| source.place.owner == Owner::Core).collect();
@@ -137,8 +136,7 @@ fn no_two_folders_of_the_core_use_each_other() {
     assert!(uses.is_empty(), "these use each other: {uses:?}");
 }
 
-/// Only a device itself and the list of kinds use the device. A bus is used by devices, and by Signals for an adapter's
-/// inputs. Signals is used only by the list of kinds.
+/// The list of kinds may use everything. Devices may use buses, and so may Signals for an adapter's inputs.
 #[test]
 fn devices_and_buses_are_used_only_where_allowed() {
     for source in sources() {
@@ -201,7 +199,7 @@ fn only_the_window_and_the_command_line_give_consent() {
     assert_eq!(found, ["src/app/session/memory.rs", "src/cli/consent.rs"]);
 }
 
-/// Operations are executed only with a confirmed plan. The single function that confirms a plan also saves the backup.
+/// Operations require a confirmed plan. The only function that confirms a plan also saves the backup.
 #[test]
 fn only_write_plan_confirms_a_plan() {
     let confirms = |source: &Source| source.code().any(|(_, code)| code.contains("ConfirmedPlan::confirm("));
@@ -222,7 +220,7 @@ fn every_module_is_documented_and_short() {
     }
 }
 
-/// Returns the ids of the texts in an owner's catalogue.
+/// Returns the text IDs in an owner's catalogue.
 fn ids_of(owner: &Owner) -> BTreeSet<String> {
     let name = match owner {
         Owner::Core => "common",
@@ -235,7 +233,7 @@ fn ids_of(owner: &Owner) -> BTreeSet<String> {
     names.map(|(name, _)| name.to_owned()).collect()
 }
 
-/// The text ids that a source file may use: those of its owner's catalogue, and the common ones.
+/// The text IDs that a source file may use: those in its owner's catalogue, and the common ones.
 struct Known(Vec<(Owner, BTreeSet<String>)>);
 
 impl Known {
@@ -300,12 +298,12 @@ fn only_the_window_draws() {
     }
 }
 
-/// The texts of the window come from the catalogues. A literal in a view may be the id of a text or invisible. A word
-/// consists of three or more letters that are not all capitals.
+/// All texts in the window come from the catalogues. A literal in a view must be a text ID or invisible. It counts as
+/// text if it contains three or more consecutive letters that are not all capitals.
 #[test]
 fn no_view_contains_a_literal_text() {
-    /// Code that precedes a literal which is an identifier for egui, an argument of a text, or a name for the system or
-    /// the compiler.
+    /// Code before a literal that is an identifier for egui, an argument of a text, or a name for the system or the
+    /// compiler.
     const NAMES: [&str; 21] = [
         "Id::unique(",
         "id_salt(",
@@ -332,7 +330,7 @@ fn no_view_contains_a_literal_text() {
     /// The name of the program, example inputs, and names from the manual.
     const ALLOWED: [&str; 7] =
         ["encoder-studio", "drop:0.01", "capture.trace", "atm60,code=gray", "error%1bposition%24ge", "nERR", "nWARN"];
-    /// Files that are not views: they have messages on the terminal, or names of renderers and fonts.
+    /// Files that are not views: they contain terminal messages or names of renderers and fonts.
     const NO_VIEWS: [&str; 3] = ["src/ui/renderer.rs", "src/ui/run.rs", "src/ui/theme.rs"];
     let sources = sources();
     let known = Known::read(&sources);
@@ -366,8 +364,7 @@ fn every_used_text_is_in_the_table() {
     }
 }
 
-/// Returns whether a string contains three or more consecutive letters that are not all capitals, outside format
-/// arguments.
+/// Returns whether a string has three or more consecutive letters that are not all capitals, outside format arguments.
 fn has_word(text: &str) -> bool {
     let mut bare = String::new();
     let mut rest = text;
@@ -388,7 +385,7 @@ struct Literal {
     text: String,
 }
 
-/// Returns the string literals of a source file, except those in comments and in the tests at its end.
+/// Returns the string literals in a source file, excluding comments and tests at its end.
 fn literals(source: &str) -> Vec<Literal> {
     let source = source.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     let characters: Vec<char> = source.chars().collect();
@@ -426,7 +423,7 @@ fn literals(source: &str) -> Vec<Literal> {
     found
 }
 
-/// Returns a text without escape sequences. The texts do not contain escape sequences for letters.
+/// Returns a text with escape sequences removed. No escape sequence in the texts stands for a letter.
 fn unescaped(text: &str) -> String {
     let mut characters = text.chars();
     let mut bare = String::new();

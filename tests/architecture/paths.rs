@@ -1,6 +1,6 @@
-//! Detection of paths to modules anywhere in the text of a file: after `use`, in a type, or in an expression.
+//! Finds paths to modules anywhere in a source file: after `use`, in a type, or in an expression.
 
-/// A path from the root of the crate, with the line on which it begins.
+/// A path from the crate root, with the line on which it begins.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Used {
     pub(crate) line: usize,
@@ -36,7 +36,7 @@ pub(crate) fn paths(module: &[String], text: &str) -> Vec<Used> {
     found
 }
 
-/// Reads a path after `before` with all its branches into `ends`, and returns the rest of the text.
+/// Collects a path after `before`, with all of its branches, in `ends`. Returns the rest of the text.
 fn read<'t>(text: &'t str, before: &[String], ends: &mut Vec<Vec<String>>) -> &'t str {
     let text = text.trim_start();
     if let Some(mut rest) = text.strip_prefix('{') {

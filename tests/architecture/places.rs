@@ -25,10 +25,10 @@ const LAYERS: [(&str, u8); 21] = [
     ("kinds", 6),
 ];
 
-/// Layers that the core does not have, because it knows neither the bytes nor the procedures of a device.
+/// Layers that the core must not have, because it does not know the bytes or procedures of any device.
 const NEVER_OF_THE_CORE: [&str; 2] = ["protocol", "procedures"];
 
-/// The modules of a device, a bus and Signals, with the layer of each.
+/// The modules of a device, a bus and Signals, with their layers.
 const MODULES: [(&str, &str); 8] = [
     ("protocol", "protocol"),
     ("profile", "profile"),
@@ -49,7 +49,7 @@ pub(crate) enum Owner {
     Signals,
 }
 
-/// The owner and layer of a module.
+/// A module's owner and layer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Place {
     pub(crate) owner: Owner,
@@ -57,7 +57,7 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// Returns the owner and layer of a module path from the crate root, or `None` if its first segment is not a
+    /// Returns the owner and layer for a module path from the crate root, or `None` if its first segment is not a
     /// module.
     pub(crate) fn of(path: &[String]) -> Option<Self> {
         let names: Vec<&str> = path.iter().map(String::as_str).collect();
@@ -92,7 +92,7 @@ fn layer_of_module(name: &str) -> Option<&'static str> {
     MODULES.iter().find(|(module, _)| *module == name).map(|(_, layer)| *layer)
 }
 
-/// Returns the module path of a file's path under `src`: for `app/hiperface/mod.rs`, it is `app`, `hiperface`.
+/// Returns the module path for a file path in `src`: `app`, `hiperface` for `app/hiperface/mod.rs`.
 pub(crate) fn modules_of(path: &str) -> Vec<String> {
     let mut modules: Vec<String> = path.trim_end_matches(".rs").split('/').map(ToOwned::to_owned).collect();
     if matches!(modules.last().map(String::as_str), Some("mod" | "lib")) {

@@ -42,7 +42,7 @@ const COMMENTS: &[&str] = &[
 const BEGINNINGS: &[&str] = &["Who ", "Where ", "That ", "Nobody ", "Somebody ", "Whoever "];
 const GERMAN: &[&str] = &["jemand", "lampe", "lampen", "leuchte", "leuchten", "verbindungsangabe"];
 
-/// Returns whether a text contains the given words as whole words.
+/// Returns whether a text contains the given words, matching only whole words.
 fn has(text: &str, words: &str) -> bool {
     let text = text.to_lowercase();
     text.match_indices(words).any(|(at, _)| {
@@ -51,7 +51,7 @@ fn has(text: &str, words: &str) -> bool {
     })
 }
 
-/// Returns the texts in a line of a catalogue, each with its language.
+/// Returns the texts in a catalogue line with their languages.
 fn texts(line: &str) -> impl Iterator<Item = (&'static str, &str)> {
     ["en", "terminal", "de"].into_iter().filter_map(move |language| {
         let begin = line.find(&format!("{language}: \""))? + language.len() + 3;
@@ -80,7 +80,7 @@ fn no_text_has_a_forbidden_word() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// Returns the text of a line's comment, and whether it is a doc comment.
+/// Returns the comment in a line, and whether it is a doc comment.
 fn comment(line: &str) -> Option<(bool, &str)> {
     let text = line.trim_start().strip_prefix("//")?;
     let is_doc = text.starts_with(['/', '!']);

@@ -1,4 +1,4 @@
-//! Parsers of bytes that devices and hosts send.
+//! Fuzz tests of the parsers for bytes from devices and hosts.
 
 use encoder_studio::bits::ByteOrder;
 use encoder_studio::buses::{bridge, ethernet_ip, ubicom};

@@ -1,4 +1,4 @@
-//! Virtual devices that receive random input. They must neither panic nor send without end.
+//! Fuzz tests of virtual devices. They must not panic or send without end.
 
 use std::time::Duration;
 
@@ -10,12 +10,10 @@ use encoder_studio::units::Moment;
 
 use crate::{fuzz, hex_lines};
 
-/// Maximum number of bytes that a device may send in a second and a half. An adapter that streams at full speed sends
-/// the most.
+/// Maximum number of bytes that a device may send in 1.5 s. An adapter that streams at full speed sends the most.
 const MOST: usize = 1_500_000;
 
-/// Passes an input to a device nine bytes at a time, polls it for another second, and returns the number of bytes that
-/// it sent.
+/// Passes an input to a device nine bytes at a time, polls it for another second, and returns the number of bytes sent.
 fn receive(device: &mut dyn ByteDevice, bytes: &[u8]) -> usize {
     let (mut now, mut sent) = (Moment::START, 0);
     device.connect(now);

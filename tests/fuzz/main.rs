@@ -1,6 +1,6 @@
-//! Damaged input for every parser of data from a device, a host or a file. No input makes a parser panic or hang, and
-//! everything that it reads is the same after it has been written and read again. The folder `corpus` has examples,
-//! most of them from the golden vectors. Each test reads the examples and a thousand random mutations of them.
+//! Fuzz tests of every parser for data from a device, a host or a file. No input may make a parser panic or hang, and
+//! everything it reads must be the same after writing and reading it again. The folder `corpus` contains examples, most
+//! of them from the golden vectors. Each test reads the examples and a thousand random mutations of them.
 //!
 //! `ENCODER_STUDIO_FUZZ_SECONDS=600 cargo test --release --test fuzz -- --nocapture` runs each parser for that time. An
 //! input that fails is printed and should be added to the corpus.
@@ -20,10 +20,10 @@ use mutation::mutate;
 
 /// Number of mutated inputs if no time is given.
 const ROUNDS: u64 = 1_000;
-/// Maximum time for one input, many times as long as the largest one takes.
+/// Maximum time for one input. The largest one takes only a fraction of it.
 const LIMIT: Duration = Duration::from_secs(5);
 
-/// Returns the examples of a file that contains one example per line in hexadecimal digits. `#` begins a comment.
+/// Returns the examples in a file with one example per line in hexadecimal. `#` begins a comment.
 fn hex_lines(text: &str) -> Vec<Vec<u8>> {
     let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default());
     let digits = |line: &str| line.chars().filter(|c| !c.is_whitespace()).collect::<String>();
@@ -59,7 +59,7 @@ fn fuzz(name: &str, examples: &[Vec<u8>], parse: impl Fn(&[u8])) {
     println!("{name}: {count} inputs");
 }
 
-/// Prints the input if the parser panics.
+/// A guard that prints the input if the parser panics.
 struct Shown<'a> {
     name: &'a str,
     input: &'a [u8],

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 
-/// Values at the limits of fields, and characters that structure texts.
+/// Values at the limits of fields, and characters with a meaning in the text formats.
 const SPECIAL: &[&[u8]] = &[
     &[0],
     &[0xFF],
@@ -36,7 +36,7 @@ const SPECIAL: &[&[u8]] = &[
     b"\xEF\xBB\xBF",
 ];
 
-/// Returns the example with up to six changes. A change may insert a part of `other`.
+/// Returns the example with up to six changes. A change may insert part of `other`.
 pub(crate) fn mutate(example: &[u8], other: &[u8], rng: &mut Rng) -> Vec<u8> {
     let mut bytes = example.to_vec();
     for _ in 0..rng.usize(1..=6) {

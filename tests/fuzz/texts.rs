@@ -1,4 +1,4 @@
-//! Parsers of files, links and entries.
+//! Fuzz tests of the parsers for files, links and user input.
 
 use encoder_studio::analysis::capture::{TableHints, TableImport, decode_head};
 use encoder_studio::app::Settings;
@@ -11,7 +11,7 @@ use encoder_studio::profile::ProfileDocument;
 
 use crate::fuzz;
 
-/// Returns all files of a folder of the project, also of those below it.
+/// Returns all files in a folder of the project and its subfolders.
 fn files(folder: &str) -> Vec<Vec<u8>> {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let mut found = Vec::new();

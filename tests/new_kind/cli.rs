@@ -1,4 +1,4 @@
-//! The added kind of device on the command line. The test binary runs the program in separate processes.
+//! The test kind on the command line. The test binary runs the program in separate processes.
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -8,10 +8,10 @@ use encoder_studio::cli::{Invocation, run as run_program};
 
 use super::desk::program;
 
-/// The environment variable that passes the program's arguments, one per line.
+/// The environment variable that contains the program's arguments, one per line.
 const ARGUMENTS: &str = "NEW_KIND_ARGUMENTS";
 
-/// Runs the program in a process created by [`start`]. Without arguments, the program requests the window.
+/// Runs the program in a process started by [`start`]. Without arguments, the program requests the window.
 #[test]
 fn the_program() {
     let arguments = std::env::var(ARGUMENTS).unwrap_or_default();
@@ -23,7 +23,7 @@ fn the_program() {
     }
 }
 
-/// Starts the program with these arguments in a separate process and folder.
+/// Starts the program with the given arguments in a separate process and folder.
 fn start(home: &Path, arguments: &[&str]) -> Child {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(["--exact", "cli::the_program", "--nocapture"]).env(ARGUMENTS, arguments.join("\n"));
@@ -31,7 +31,7 @@ fn start(home: &Path, arguments: &[&str]) -> Child {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Returns the exit status, standard output and standard error of a command.
+/// Runs a command and returns its exit status, standard output and standard error.
 fn run(home: &Path, arguments: &[&str]) -> (i32, String, String) {
     let output = start(home, arguments).wait_with_output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();

@@ -1,4 +1,4 @@
-//! The program with an additional kind of device, in the test environment.
+//! The program with the test kind, in the test environment.
 
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
@@ -14,7 +14,7 @@ use encoder_studio::store::Store;
 use super::novo::NOVO;
 use super::novo::state::{Action, Encoder};
 
-/// Returns the program with the kind appended to its own kinds.
+/// Returns the program with the test kind added to its own kinds.
 pub(crate) fn program() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| Program::new(&[KINDS, &[NOVO]].concat(), &[], &[], &[]))
@@ -106,7 +106,7 @@ impl Desk {
         found(self).unwrap()
     }
 
-    /// Writes the plan in the review and returns the stage that the review has reached.
+    /// Writes the reviewed plan and returns the final stage of the review.
     #[track_caller]
     pub(crate) fn write(&mut self) -> Stage {
         let Stage::Ready(plan) = self.until_stage(|stage| matches!(stage, Stage::Ready(_))) else { panic!("no plan") };

@@ -1,5 +1,5 @@
-//! A kind of device that is not part of the program: an encoder called Novo. One folder and one line register it from
-//! outside, and it uses only the interface that other kinds use.
+//! Tests that a kind of device can be added from outside the program. An invented encoder called Novo is registered by
+//! one folder and one line, and uses only the interface available to every kind.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 

@@ -1,4 +1,4 @@
-//! Integration of the test kind into the application and the window.
+//! Tests of the test kind in the application and the window.
 
 use eframe::{App, Frame};
 use egui::Role;
@@ -46,7 +46,7 @@ fn the_kind_is_offered_and_connects_from_the_dialog() {
     assert_eq!((desk.shown().tab(), desk.shown().name().as_str()), (Encoder::TAB, "Novo · 77"));
 }
 
-/// A secret parameter of a link appears in no message, name, setting or other file.
+/// A secret link parameter appears in no message, name, setting or other file.
 #[test]
 fn a_secret_parameter_is_neither_shown_nor_kept() {
     let mut desk = Desk::connected("?serial=77&pin=4711");
@@ -215,7 +215,7 @@ fn a_payload_of_another_kind_is_refused_and_reported() {
     assert_eq!(desk.shown().edit_count(), 1);
 }
 
-/// The window of the program.
+/// The window of the program under test.
 struct Shown(Window);
 
 impl App for Shown {

@@ -1,18 +1,17 @@
-//! Recordings of SSI encoders with many kinds of frames. They are built from bits without using the program's own
-//! decoding. The same seed yields the same recording. Each frame has its intended position, against which a layout can
-//! be checked.
+//! Generates recordings of SSI encoders with many kinds of frames. They are built bit by bit without the program's own
+//! decoding, and the same seed yields the same recording. Each frame has an expected position for checking a layout.
 
 use fastrand::Rng;
 
-/// The frames of one encoder, and their intended positions.
+/// The frames of one encoder and their expected positions.
 pub(crate) struct Recording {
-    /// Description of the frame's parts, for messages.
+    /// Description of the parts of a frame, for messages.
     pub(crate) what: String,
     /// Number of bits in a frame.
     pub(crate) clocks: u8,
     /// Frames, right-justified.
     pub(crate) frames: Vec<u64>,
-    /// Intended position of each frame, or `None` if the frame is damaged.
+    /// Expected position of each frame, or `None` if the frame is damaged.
     pub(crate) meant: Vec<Option<u64>>,
 }
 
@@ -40,7 +39,7 @@ enum Behind {
     LongError,
     /// A bit that toggles with each frame.
     Alive,
-    /// A number of bits that depend on the position but are not part of it.
+    /// Check bits, of the given number, which depend on the position but are not part of it.
     Check(u32),
     /// A random bit.
     Noise,
@@ -62,7 +61,7 @@ fn width_of(positions: u64) -> u32 {
 }
 
 impl Recording {
-    /// Creates the recording for a seed.
+    /// Generates the recording for a seed.
     pub(crate) fn of(seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed ^ 0x5851_F42D_4C95_7F2D);
         let (word, positions) = word(&mut rng);
@@ -129,7 +128,7 @@ impl Recording {
     }
 }
 
-/// Returns a random encoding and the number of positions.
+/// Returns a random encoding and its number of positions.
 fn word(rng: &mut Rng) -> (Word, u64) {
     let widths = [9, 10, 11, 12, 13, 14, 16, 17, 18, 20, 24, 25, 26, 30];
     let whole = 1 << widths[rng.usize(..widths.len())];

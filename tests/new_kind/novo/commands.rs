@@ -1,4 +1,4 @@
-//! The kind's part of the command line.
+//! The command-line part of the test kind.
 
 use encoder_studio::app::TypeMap;
 use encoder_studio::cli::{

@@ -94,7 +94,7 @@ impl DeviceType for Encoder {
     }
 }
 
-/// The dialog's form for a link to the virtual encoder or to an encoder at a device server.
+/// The connection form for the virtual encoder or an encoder behind a device server.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NovoForm {
     pub(crate) link: String,

@@ -1,4 +1,4 @@
-//! A Novo encoder in a session: its jobs, and its part of a write.
+//! The jobs of a session with a Novo encoder, including its part of a write.
 
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -18,12 +18,12 @@ use super::protocol::{KIND, POSITION, REPLY, Request, SERIAL, Values, address_of
 use super::sim::Virtual;
 use super::write::NovoWrite;
 
-/// Number of write cycles of its memory.
+/// Number of write cycles that the memory allows.
 pub(crate) const LIFE: u64 = 10_000;
 const TRIES: u16 = 3;
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// The encoder with its connection.
+/// A connected encoder.
 pub(crate) struct Novo(pub(crate) Box<dyn ByteLink>);
 
 /// Time and position of a sample.
@@ -32,7 +32,7 @@ pub(crate) type Sample = (Moment, u16);
 /// A change that the user wants to write.
 #[derive(Clone, Debug)]
 pub(crate) struct Change {
-    /// The serial number of the profile to restore; `None`: edits are written.
+    /// The serial number of the profile to restore, or `None` to write edits.
     pub(crate) restored: Option<u16>,
     pub(crate) values: Values,
     pub(crate) options: RestoreOptions,
@@ -79,7 +79,7 @@ pub(crate) enum Error {
 
 pub(crate) type JobError = worker::JobError<Error, Infallible, InterruptedWrite<Op, Error, WrittenChanges, ()>, ()>;
 
-/// Checks a link, as far as possible without opening it.
+/// Checks a link as far as possible without opening it.
 pub(crate) fn check(url: &LinkUrl) -> Result<(), OpenError> {
     match url.scheme {
         LinkScheme::Sim => Virtual::from_pairs(url.query.pairs()).map(drop)?,
@@ -148,7 +148,7 @@ impl Device for Novo {
     type DeviceMessage = Infallible;
     type Sample = Sample;
     type Watch = Infallible;
-    /// The item being written.
+    /// The index of the item being written.
     type JobStep = usize;
 
     fn run(&mut self, context: &mut SessionContext, job: Job, tell: Told<'_>) -> Result<Output, JobError> {

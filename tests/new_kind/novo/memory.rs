@@ -1,4 +1,4 @@
-//! Edits of a Novo encoder, which are preserved after a crash, reviewed, written, saved and restored.
+//! Edits of a Novo encoder, which can be preserved after a crash, reviewed, written, saved and restored.
 
 use encoder_studio::app::review::{OperationTexts, Permit, Reviewable};
 use encoder_studio::app::session::{

@@ -1,4 +1,4 @@
-//! An invented kind of encoder, called Novo.
+//! An invented kind of encoder called Novo.
 
 mod commands;
 mod device_type;
@@ -13,5 +13,5 @@ mod write;
 
 use encoder_studio::kinds::Kind;
 
-/// The entry of Novo encoders for the list of kinds.
+/// The entry for Novo encoders in the list of kinds.
 pub(crate) const NOVO: Kind = Kind { view: &view::NovoView, commands: &commands::NovoCommands, at_adapter: None };

@@ -1,4 +1,4 @@
-//! The profile of a Novo encoder: comparing it and planning its restore.
+//! Profiles of Novo encoders: comparing them and planning a restore.
 
 use encoder_studio::expected::AllowedValues;
 use encoder_studio::profile::{Comparison, Entries, Operation, Plan, Profile, ProfileError, Writer};
@@ -7,7 +7,7 @@ use super::protocol::{ITEMS, KIND, Values, name_of};
 
 const WORD: AllowedValues = AllowedValues::whole_range(0, 65_535);
 
-/// A profile with the identity and the stored values of an encoder.
+/// A profile with the identity and stored values of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NovoProfile {
     pub(crate) serial: u16,
@@ -60,7 +60,7 @@ impl Operation for Op {
     }
 }
 
-/// A plan with the serial number and values that were read, and the changes to them.
+/// A plan: the serial number and values that were read, and the changes to them.
 pub(crate) type NovoPlan = Plan<(u16, Values), Op>;
 
 pub(crate) fn plan(now: &NovoProfile, wanted: &Values) -> NovoPlan {

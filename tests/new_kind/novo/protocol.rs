@@ -1,5 +1,5 @@
-//! The bytes of a Novo encoder. `R` and an address request a word. `W`, an address and a word set it. The reply is the
-//! word at that address, followed by the exclusive or of all bytes of the request and the word.
+//! The protocol of a Novo encoder. `R` and an address read a word; `W`, an address and a word write it. The reply is
+//! the word at that address, followed by the XOR of all bytes of the request and the word.
 
 /// The name of the kind in profiles and on the command line.
 pub(crate) const KIND: &str = "novo";
@@ -11,7 +11,7 @@ pub(crate) const POSITION: u8 = 0x03;
 pub(crate) const FIRST: u8 = 0x10;
 /// Number of steps per turn.
 pub(crate) const TURN: u16 = 4096;
-/// Names of the stored values. Each is a word, and the addresses are consecutive.
+/// Names of the stored values. Each value is a word, and their addresses are consecutive.
 pub(crate) const ITEMS: [&str; 4] = ["zero", "filter", "least", "greatest"];
 /// Length of a reply in bytes.
 pub(crate) const REPLY: usize = 3;

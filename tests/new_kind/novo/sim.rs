@@ -14,14 +14,14 @@ parameters! {
     struct Settings: ConfigError {
         serial: u16 = 1001, "serial" => WholeNumbers(Quantity::Number, 0..=65535);
         rpm: f64 = 0.0, "rpm" => RPM;
-        /// Address of a value that can no longer be changed.
+        /// Address of a value that can no longer be changed, if any.
         stuck: Option<u8> = None, "stuck" => OptionalValue(WholeNumbers(Quantity::Address, 0..=255));
-        /// PIN that locks the encoder: no value can be changed.
+        /// PIN that locks the encoder, so no value can be changed.
         pin: Option<u16> = None, secret "pin" => OptionalValue(WholeNumbers(Quantity::Number, 0..=9999));
     }
 }
 
-/// A virtual Novo encoder with a steadily turning shaft. Its values are lost when it is dropped.
+/// A virtual Novo encoder with a shaft that turns steadily. Its values are lost when it is dropped.
 pub(crate) struct Virtual {
     settings: Settings,
     values: Values,
@@ -30,10 +30,10 @@ pub(crate) struct Virtual {
 }
 
 impl Virtual {
-    /// Names of the settings whose values are neither shown nor kept.
+    /// Names of the settings whose values are neither shown nor stored.
     pub(crate) const SECRETS: &'static [&'static str] = Settings::SECRETS;
 
-    /// Parses the query of a link.
+    /// Parses the query part of a link.
     pub(crate) fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let settings = setting::read(VirtualDevice::EncoderOf("Novo"), pairs)?;
         Ok(Virtual { settings, values: [0, 3, 0, 65535], asked: vec![], answers: vec![] })

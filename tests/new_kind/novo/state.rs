@@ -1,4 +1,4 @@
-//! A Novo encoder on the desk, or a profile of one.
+//! The application state of a Novo encoder or of its profile.
 
 use std::convert::Infallible;
 
@@ -26,14 +26,14 @@ pub(crate) static TEXTS: Catalogue = Catalogue::new(
 }"#,
 );
 
-/// The actions of this kind only.
+/// The actions that only this kind has.
 pub(crate) enum Action {
     Set(usize, u16),
 }
 
 impl DeviceAction for Action {}
 
-/// The profile as read, or as in a file.
+/// The profile read from the encoder or from a file.
 #[derive(Clone, Default)]
 pub(crate) struct Own(Option<NovoProfile>);
 
@@ -48,7 +48,7 @@ impl EditBase for Own {
 
 pub(crate) struct Encoder {
     pub(super) session: Session<Novo>,
-    /// The edits, by the number of the item.
+    /// The edits by item number.
     pub(crate) staged: Edits<Own>,
     pub(crate) last: Option<Sample>,
     pub(super) track: DeviceRecorder<Infallible>,
@@ -59,7 +59,7 @@ impl Encoder {
         Encoder { session, staged: Edits::default(), last: None, track: DeviceRecorder::default() }
     }
 
-    /// Returns the values with the edits; `None` before it was read.
+    /// Returns the values including the edits, or `None` if the encoder has not been read.
     pub(crate) fn wanted(&self) -> Option<Values> {
         let mut values = self.read()?.values;
         self.staged.iter().for_each(|(item, value)| values[item] = value);

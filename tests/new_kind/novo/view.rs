@@ -24,7 +24,7 @@ impl TabPage for Page {
     ];
 }
 
-/// Text typed for each item that has not become an edit.
+/// Text typed for each item that is not yet a valid edit.
 type Typed = [Option<(String, Option<Text>)>; ITEMS.len()];
 
 pub(crate) struct NovoView;
