@@ -51,8 +51,8 @@ pub struct UnknownEntries {
 }
 
 impl Default for ReadingSettings {
-    /// Returns the clock frequency for 50 m of cable, and a pause that suits every family. If its
-    /// number of steps is not a power of two, an ATM60 needs more than 200 µs. See SICK SSI description 2.7 and reference
+    /// Returns the clock frequency for 50 m of cable, and a pause that suits every family. An ATM60 needs a pause of
+    /// more than 200 µs if its number of steps is not a power of two. See SICK SSI description 2.7 and reference
     /// section 5.
     fn default() -> Self {
         ReadingSettings { clock_hz: 400_000, pause_us: 250, cable_metres: None, synchronous: false }

@@ -250,7 +250,7 @@ impl LayoutDesigner {
             return false;
         }
         self.problem = None;
-        // The layout was possible when the step was made.
+        // The layout was valid when the step was made.
         let Ok(design) = Design::from_profile(profile, &self.families, self.now.settings.as_ref()) else {
             return false;
         };

@@ -65,7 +65,7 @@ impl HasDraft for Encoder {
         match whole {
             Some(profile) => self.apply_edit(Edit::Whole(Box::new(profile))),
             None if edits.is_empty() => {}
-            // With the current file, the edits do not result in a possible frame.
+            // With the current file, the edits do not result in a valid frame.
             None => self.designer.show_rejection(TEXTS.text("ssi.draft_unfit")),
         }
     }
