@@ -1,4 +1,4 @@
-//! Errors of connections.
+//! Errors of connections to devices.
 
 use std::io;
 
@@ -48,7 +48,7 @@ pub enum LinkErrorKind {
 }
 
 impl LinkError {
-    /// Creates an error for `target`.
+    /// Creates an error of the given kind for `target`.
     pub fn new(target: impl Into<String>, kind: LinkErrorKind) -> Self {
         LinkError { target: target.into(), kind }
     }

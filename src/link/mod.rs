@@ -114,7 +114,7 @@ impl CancelToken {
         cancel
     }
 
-    /// Requests cancellation at the next possible point.
+    /// Requests cancellation at the next point where it is possible.
     pub fn request(&self) {
         self.0.requested.store(true, Ordering::SeqCst);
     }
@@ -144,7 +144,7 @@ impl CancelToken {
 
 /// The resources available to a procedure: connection, clock, cancellation flag and trace.
 pub struct Ctx<'a, W: ?Sized = dyn ByteLink> {
-    /// Connection to the device.
+    /// Connection over which frames are exchanged.
     pub wire: &'a mut W,
     /// Clock for waits and time stamps.
     pub clock: &'a dyn Clock,

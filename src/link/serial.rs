@@ -34,7 +34,7 @@ pub struct PortInfo {
     pub path: String,
     /// Manufacturer and product of the adapter as reported by the system. May be empty.
     pub description: String,
-    /// Serial number of a USB adapter.
+    /// Serial number of the adapter, if it is connected over USB.
     pub serial_number: Option<String>,
 }
 

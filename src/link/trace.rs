@@ -18,13 +18,13 @@ use crate::units::Moment;
 /// Direction of transmission.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// Sent by the computer to the device.
+    /// The computer sent the frame to the device.
     Sent,
-    /// Received by the computer from the device.
+    /// The computer received the frame from the device.
     Received,
 }
 
-/// A recorded frame.
+/// A frame recorded in a trace.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceEntry {
     /// Time at which the first byte was sent or received.

@@ -7,16 +7,16 @@ use std::str::FromStr;
 use crate::expected::AllowedValues;
 use crate::parameter::{ParameterValues, RejectedParameter};
 
-/// Kind of connection.
+/// The kind of connection that a link opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinkScheme {
     /// A virtual device in this process.
     Sim,
-    /// A serial port.
+    /// A serial port of this computer.
     Serial,
-    /// A serial device server.
+    /// A serial device server in the network.
     Tcp,
-    /// A recorded trace.
+    /// A recorded trace, which is played back.
     Replay,
     /// An adapter for clocked buses, at a serial port or a TCP address.
     Bridge,
@@ -80,7 +80,7 @@ pub enum Wire<'a> {
     Port(&'a str),
     /// Host and TCP port, as in the link.
     Host(&'a str),
-    /// Path of a file.
+    /// Path of a recorded trace.
     File(&'a str),
 }
 
@@ -99,7 +99,7 @@ pub enum UrlError {
     Device {
         /// Keyword before the colon.
         scheme: &'static str,
-        /// Allowed keywords.
+        /// Keywords that are allowed for the device.
         known: &'static str,
     },
     /// The port, host or file is missing.
@@ -125,11 +125,11 @@ pub enum UrlError {
     /// The link does not accept a parameter.
     #[error("{name} is not a parameter of {scheme}: links; valid parameters are {known}")]
     Unknown {
-        /// Name as written.
+        /// Name of the parameter as written.
         name: String,
         /// Keyword before the colon.
         scheme: &'static str,
-        /// Valid parameter names.
+        /// Names of the valid parameters.
         known: String,
     },
     /// A value is invalid.
@@ -139,7 +139,7 @@ pub enum UrlError {
         name: String,
         /// Value as written.
         value: String,
-        /// Allowed values.
+        /// Description of the allowed values.
         allowed: AllowedValues,
     },
 }

@@ -62,13 +62,13 @@ pub struct Labels {
 /// A section of a report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Section {
-    /// Heading.
+    /// Heading of the section.
     pub title: String,
     /// Content blocks in reading order.
     pub blocks: Vec<Block>,
 }
 
-/// A part of a section.
+/// A block of content in a section.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Block {
     /// A paragraph of text.
@@ -86,11 +86,11 @@ pub enum Block {
 /// A label with its value.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fact {
-    /// Label.
+    /// Label that describes the value.
     pub label: String,
     /// Value with its unit.
     pub value: String,
-    /// Style of the value.
+    /// Style in which the value is printed.
     pub style: CellStyle,
 }
 
@@ -134,7 +134,7 @@ pub struct Row {
     pub mark: Mark,
 }
 
-/// The verdict on a row.
+/// A verdict on a row of a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum Mark {
     /// The row has no verdict.

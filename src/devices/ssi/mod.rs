@@ -1,4 +1,4 @@
-//! SSI encoders and their frames.
+//! SSI encoders: their frames, jobs, profiles and views.
 
 pub mod commands;
 pub mod jobs;

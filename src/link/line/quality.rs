@@ -1,4 +1,4 @@
-//! Line quality: counters and reply times.
+//! Quality of a serial line: error counters and reply times.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -6,9 +6,9 @@ use std::time::Duration;
 /// Line quality measured since the start of the session.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LineQuality {
-    /// Number of requests sent, including repetitions.
+    /// Number of requests sent, including retries.
     pub requests: u64,
-    /// Number of valid replies.
+    /// Number of valid replies received.
     pub replies: u64,
     /// Number of repeated requests.
     pub retries: u64,

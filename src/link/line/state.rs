@@ -6,7 +6,7 @@ use super::{Echo, LineQuality};
 use crate::parameter::Milliseconds;
 use crate::units::Moment;
 
-/// Longest supported reply delay of a connection.
+/// Longest reply delay that is supported for a connection.
 pub(super) const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 
 /// Range of the extra time allowed for a reply beyond the protocol's worst case.

@@ -9,7 +9,7 @@ pub(super) const PAGE: (f32, f32) = (595.28, 841.89);
 pub(super) const MARGIN: f32 = 51.02;
 /// Bottom margin in points (22 mm). It contains the page number.
 pub(super) const BOTTOM: f32 = 62.36;
-/// Width of the content in points.
+/// Width of the content on a page in points.
 pub(super) const WIDTH: f32 = PAGE.0 - 2.0 * MARGIN;
 pub(super) const END: f32 = PAGE.1 - BOTTOM;
 /// Height of a line relative to the font size.
@@ -17,7 +17,7 @@ const LINE_HEIGHT: f32 = 1.4;
 /// Distance of the baseline from the top of a line, relative to the font size.
 const BASELINE: f32 = 1.05;
 
-/// A text style.
+/// Font, size and colour of a text.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Style {
     pub(super) face: Face,

@@ -59,7 +59,7 @@ pub(super) fn read_frame_argument(output: &Output, layout: &Layout, text: &str) 
     Ok(frames)
 }
 
-/// Parses a frame into right-justified bits.
+/// Parses a frame argument into right-justified bits.
 fn parse_frame_argument(layout: &Layout, text: &str) -> Result<u64> {
     parse_frame(text, layout.clock_count()).map_err(|error| match error {
         FrameTextError::Form(_) => Failure::Usage(error.to_string()),

@@ -44,7 +44,7 @@ pub enum CheckFinding {
         taken: u64,
         different: usize,
     },
-    /// A finding that occurs in `count` words.
+    /// A finding about `count` of the words.
     Said {
         finding: Said,
         count: u64,

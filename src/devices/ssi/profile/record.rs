@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::devices::ssi::protocol::{Direction, Family, FrameDescriptor, Range, ReadConditions, ResolvedFrame};
 use crate::profile::ron_text::UnknownValues;
 
-/// A profile of an SSI encoder.
+/// A profile of an SSI encoder: its frame, counting direction, preset and reading settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SsiProfile {
     /// User-defined name. It may be empty.
@@ -14,17 +14,17 @@ pub struct SsiProfile {
     pub family: Option<String>,
     /// Description of the frame. A description from a file has been validated.
     pub descriptor: FrameDescriptor,
-    /// Counting direction.
+    /// Direction of rotation in which positions increase.
     pub direction: Direction,
     /// Position at the zero point of the shaft, within the range of the frame.
     pub preset: u64,
-    /// Reading settings.
+    /// Settings with which the encoder is read.
     pub reading: ReadingSettings,
     /// Unknown entries, preserved when the profile is saved.
     pub unknown: UnknownEntries,
 }
 
-/// Settings for reading an encoder.
+/// Settings with which an SSI encoder is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadingSettings {
     /// Clock frequency in hertz, from 1000 to 20 000 000.

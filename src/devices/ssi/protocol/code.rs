@@ -2,18 +2,18 @@
 
 use serde::Deserialize;
 
-/// A position code.
+/// A code in which positions are transmitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Code {
-    /// Binary.
+    /// Binary code.
     Binary,
     /// Gray: one bit changes between adjacent positions.
     Gray,
     /// Gray excess: the middle part of a complete Gray code. A single bit changes even where positions wrap, for any
     /// even number of steps.
     GrayExcess,
-    /// BCD: four bits per decimal digit.
+    /// BCD, with four bits per decimal digit.
     Bcd,
 }
 
@@ -27,7 +27,7 @@ pub enum CodeError {
          range"
     )]
     Odd(u128),
-    /// The code word would exceed 64 bits.
+    /// The code word of the last position would exceed 64 bits.
     #[error("{0} decimal digits need more than 64 bits in BCD")]
     Digits(u32),
 }
@@ -79,7 +79,7 @@ impl PositionCode {
         Ok(PositionCode { code, last, bits, offset })
     }
 
-    /// Returns the code.
+    /// Returns the kind of code.
     pub const fn code(&self) -> Code {
         self.code
     }
@@ -89,7 +89,7 @@ impl PositionCode {
         self.bits
     }
 
-    /// Returns the last position.
+    /// Returns the highest position that the code can represent.
     pub const fn last_position(&self) -> u64 {
         self.last
     }

@@ -6,14 +6,14 @@ use serde::Deserialize;
 use super::code::Code;
 use super::range::Range;
 
-/// Description of a frame.
+/// Description of an SSI frame: the position, the bits around it, and their order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameDescriptor {
     /// Number of bits that the host clocks in, 1 to 64.
     pub clocks: u8,
     /// Range of positions.
     pub range: Range,
-    /// Position code.
+    /// Code of the position.
     pub code: Code,
     /// Bits that a Gray code covers.
     pub coded: GrayCoverage,
@@ -73,25 +73,25 @@ pub struct ErrorBit {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BitMeaning {
-    /// The position is invalid.
+    /// The position is invalid and must not be used.
     Invalid,
     /// The position is valid, but the device reports a warning.
     Warning,
 }
 
-/// Parity over all preceding bits.
+/// A parity bit over all preceding bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parity {
     /// Clock number of the parity bit, starting at 1.
     pub clock: u8,
-    /// Whether the parity is even.
+    /// Whether the parity is even rather than odd.
     pub even: bool,
 }
 
 /// Repetition of the frame within one clock burst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Repeat {
-    /// Number of clocks of the first transmission.
+    /// Number of clocks in the first transmission of the frame.
     pub word: u8,
     /// Number of zeros between the two transmissions, usually one.
     pub gap: u8,
@@ -101,7 +101,7 @@ pub struct Repeat {
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pattern {
-    /// Name of the word.
+    /// Name of the word, such as `overspeed or gap`.
     pub name: String,
     /// Bits of the complete frame as transmitted.
     pub word: Word,
@@ -109,13 +109,13 @@ pub struct Pattern {
     pub meaning: BitMeaning,
 }
 
-/// Bits of a complete frame.
+/// The bits of a complete frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Word {
-    /// All ones.
+    /// Every bit is 1.
     Ones,
-    /// Exactly these bits.
+    /// The bits have exactly these values.
     Bits(u64),
 }
 

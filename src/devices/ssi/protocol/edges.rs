@@ -30,13 +30,13 @@ pub struct ExtractedFrames {
 /// The reason why a recording contains no frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BurstError {
-    /// The clock never changes.
+    /// The clock line never changes.
     #[error("the clock has no edges")]
     NoClock,
     /// The clock never pauses.
     #[error("there is no pause between bursts")]
     NoPause,
-    /// No burst is complete.
+    /// No burst was recorded completely.
     #[error("no burst is complete")]
     Incomplete,
     /// Bursts are longer than the longest possible frame.

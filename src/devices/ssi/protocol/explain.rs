@@ -7,7 +7,7 @@ use super::range::Range;
 /// The role of a bit in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// Always 0.
+    /// The bit is always 0.
     Zero,
     /// Multiturn bit with the given number, where 0 is the lowest.
     Multiturn(u8),
@@ -18,7 +18,7 @@ pub enum Role {
     Position(u8),
     /// Error bit, given by its index in the descriptor's list.
     Error(usize),
-    /// The parity bit.
+    /// The bit is the parity bit.
     Parity,
     /// Repetition of the bit sent at this earlier clock.
     Again(u8),
@@ -31,35 +31,35 @@ pub struct Cell {
     pub clock: u8,
     /// Role of the bit.
     pub role: Role,
-    /// Transmitted bit.
+    /// Value of the transmitted bit.
     pub bit: bool,
 }
 
-/// A finding about a frame.
+/// A finding about a frame, such as an active error bit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FrameFinding {
     /// An error bit is active.
     Error {
-        /// Name of the bit.
+        /// Name of the error bit.
         name: String,
-        /// Effect on the position.
+        /// Effect of the error bit on the position.
         meaning: BitMeaning,
         /// Whether the bit covers the time since the previous transfer.
         cleared_by_transfer: bool,
     },
     /// The frame is a word with a special meaning.
     Pattern {
-        /// Name of the word.
+        /// Name of the special meaning.
         name: String,
-        /// Effect on the position.
+        /// Effect of the special meaning on the position.
         meaning: BitMeaning,
     },
-    /// All bits are 1.
+    /// All bits are 1, so the line may be stuck high.
     StuckHigh {
         /// Whether another flag confirms that the frame is not a position.
         sure: bool,
     },
-    /// All bits are 0.
+    /// All bits are 0, so the line may be stuck low.
     StuckLow {
         /// Whether another flag confirms that the frame is not a position.
         sure: bool,
@@ -68,7 +68,7 @@ pub enum FrameFinding {
     Code,
     /// A bit that should be 0 is 1.
     Padding,
-    /// The parity is wrong.
+    /// The parity bit does not match the other bits.
     Parity,
     /// The repetition differs from the first transmission.
     Repeat,
@@ -168,7 +168,7 @@ impl Layout {
         findings
     }
 
-    /// Returns whether the position may be used.
+    /// Returns whether the position in the frame is valid.
     pub fn is_valid(&self, reading: FrameReading) -> bool {
         let stuck =
             reading.flags.intersects(Flags::ALL_ONES.union(Flags::ALL_ZEROS)) && self.is_position_invalid(reading);

@@ -20,7 +20,7 @@ use super::code::Code;
 use super::descriptor::{ErrorBit, Pattern};
 use super::timing::Times;
 
-/// A family of SSI encoders.
+/// A family of SSI encoders with the frames, timing limits and signals that they have in common.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Family {
@@ -85,11 +85,11 @@ pub struct StepLimits {
     pub revolutions: Option<(u32, u32)>,
 }
 
-/// Frame that a family sends.
+/// A frame that a family sends up to a certain position width.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Frame {
-    /// Maximum width of the position in bits.
+    /// Maximum width of the position in bits for this frame.
     pub up_to: u8,
     /// Number of clocks for the position and the zeros around it. `None` means one clock per bit of the position.
     #[serde(default)]
@@ -124,7 +124,7 @@ pub enum Alignment {
     Tree13,
 }
 
-/// Location of the error bits.
+/// Location of the error bits in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorPlace {
@@ -163,11 +163,11 @@ pub struct FamilyError {
     pub line: usize,
     /// Column, counted from 1.
     pub column: usize,
-    /// Reason why the family is invalid.
+    /// Reason why the file is rejected.
     pub problem: FamilyProblem,
 }
 
-/// The reason why a family is invalid.
+/// The reason why a family file is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FamilyProblem {
     /// The file is not valid RON or lacks the expected structure. Contains the parser's message.
@@ -223,7 +223,7 @@ impl Family {
         self.german.get(english).map_or(english, String::as_str)
     }
 
-    /// Returns the factory setting of the code.
+    /// Returns the position code of the factory settings.
     pub fn code(&self) -> Code {
         self.codes.first().copied().unwrap_or(Code::Binary)
     }
@@ -270,7 +270,7 @@ impl Families {
         (Families(read), errors)
     }
 
-    /// Returns the built-in families.
+    /// Parses and returns the built-in families.
     pub fn built_in() -> Self {
         // A test checks that they can be read.
         Self::read(Self::BUILT_IN).0
@@ -288,7 +288,7 @@ impl Families {
         Families(all)
     }
 
-    /// Returns the family with this key.
+    /// Returns the family with the given key, if any.
     pub fn find_by_key(&self, key: &str) -> Option<&Family> {
         self.0.iter().find(|family| family.key == key)
     }

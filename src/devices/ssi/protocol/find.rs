@@ -46,10 +46,10 @@ const SAME_PERMILLE: usize = 995;
 /// is not compared with families.
 const NEAR_BITS: f64 = 300.0;
 
-/// Result of a search for layouts.
+/// The result of a search for the layout of recorded frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
-    /// Number of frames.
+    /// Number of recorded frames.
     pub frames: usize,
     /// Number of different frames.
     pub different: usize,
@@ -63,11 +63,11 @@ pub struct Search {
 /// The reason why the result of a search is uncertain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SearchUncertainty {
-    /// The shaft stood still or hardly moved.
+    /// The shaft was at rest or hardly moved.
     Standing,
     /// All bits of all frames have the same value.
     Stuck {
-        /// Whether the value is 1.
+        /// Whether all bits are 1, rather than 0.
         high: bool,
     },
     /// No interpretation of the frames yields steady motion. The data are not SSI, the line is disturbed, or the shaft
@@ -85,7 +85,7 @@ pub struct Class {
     /// Layouts in the class, most probable first. Factory settings come before changed ones, and usual widths before
     /// unusual ones.
     pub members: Vec<LayoutProposal>,
-    /// Evidence for the class.
+    /// Evidence for the layouts in the class.
     pub evidence: ClassEvidence,
     /// Shaft motions that would distinguish or confirm the layouts.
     pub open: Vec<OpenQuestion>,
@@ -97,7 +97,7 @@ pub struct LayoutProposal {
     /// Family key and settings, or `None` for a frame without a family. Swapped data wires are not a setting and appear
     /// only in the layout.
     pub family: Option<(String, Settings)>,
-    /// The frame.
+    /// Layout of the frame.
     pub layout: Layout,
 }
 
@@ -155,9 +155,9 @@ pub enum OpenQuestion {
     OtherSpeed,
     /// The number of steps is unknown. Turn the shaft slowly across the end of the range.
     PassTheEnd {
-        /// Minimum number of steps.
+        /// Minimum number of steps that fits the frames.
         least: u32,
-        /// Maximum number of steps.
+        /// Maximum number of steps that fits the frames.
         most: u32,
     },
     /// A bit changes without an explanation.

@@ -4,7 +4,7 @@ use super::explain::FrameFinding;
 use super::layout::{Flags, FrameReading, Layout};
 use crate::analysis::SampleTime;
 
-/// Counts of the findings in consecutive frames.
+/// Counters for the findings in consecutive frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FindingCounts {
     noted: Vec<CountedFinding>,
@@ -12,10 +12,10 @@ pub struct FindingCounts {
     before: (Flags, Vec<usize>),
 }
 
-/// A finding with its number of occurrences.
+/// A finding with the number and times of its occurrences.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CountedFinding {
-    /// The finding.
+    /// Finding that was counted.
     pub finding: FrameFinding,
     /// Number of occurrences. A finding about a single transfer is counted in every frame, and any other finding each
     /// time it begins.

@@ -9,13 +9,13 @@ pub enum FrameTextError {
     /// The number of bits differs from the number of clocks.
     #[error("{text} {} {bits} bits; the layout has {clocks} clocks", if *.is_number { "needs" } else { "has" })]
     Bits {
-        /// String as entered.
+        /// String as entered by the user.
         text: String,
         /// Number of bits in the string. For a number, this is the number of bits that it needs.
         bits: u32,
-        /// Number of clocks in the layout.
+        /// Number of clocks that the layout requires.
         clocks: u8,
-        /// Whether the string is a number.
+        /// Whether the string is a number, rather than a sequence of bits.
         is_number: bool,
     },
 }

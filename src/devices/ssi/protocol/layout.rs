@@ -48,7 +48,7 @@ pub(super) struct BitPart {
     pub(super) mask: u64,
 }
 
-/// A decoded frame.
+/// A decoded frame: its position and flags.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameReading {
     /// Position, or 0 if [`Flags::CODE`] is set and there is no position.
@@ -62,13 +62,13 @@ pub struct FrameReading {
 pub struct Flags(pub(super) u32);
 
 impl Flags {
-    /// No flags.
+    /// The empty set of flags.
     pub const NONE: Flags = Flags(0);
     /// The code word is invalid: a BCD digit is above 9, or a word is not part of the Gray excess code.
     pub const CODE: Flags = Flags(1 << 16);
     /// A bit that should be 0 is 1. The layout or the number of clocks is wrong, or the line is disturbed.
     pub const PADDING: Flags = Flags(1 << 17);
-    /// The parity is wrong.
+    /// The parity bit does not match the other bits.
     pub const PARITY: Flags = Flags(1 << 18);
     /// The repetition differs from the first transmission.
     pub const REPEAT: Flags = Flags(1 << 19);

@@ -27,10 +27,10 @@ pub enum Range {
     RoundAxis {
         /// Total number of steps, at least 2.
         steps: u32,
-        /// Number of turns.
+        /// Number of turns that the round axis covers.
         revolutions: Fraction,
     },
-    /// A linear encoder.
+    /// A linear encoder, whose positions are lengths.
     Length {
         /// Width of the position, 1 to 64 bits.
         bits: u8,
@@ -67,15 +67,15 @@ pub enum RangeError {
     Wide {
         /// `multiturn`, `singleturn` or `position`.
         field: &'static str,
-        /// Requested width in bits.
+        /// Requested width of this part in bits.
         bits: u8,
-        /// Maximum width in bits.
+        /// Maximum width of this part in bits.
         limit: u8,
     },
     /// The range has only one position.
     #[error("the range has only a single position: specify bits or steps")]
     Empty,
-    /// The numerator or denominator is zero.
+    /// The numerator or denominator of the revolutions is zero.
     #[error("the numerator and denominator of revolutions must be greater than 0, not {0}/{1}")]
     Fraction(u32, u32),
 }
@@ -83,7 +83,7 @@ pub enum RangeError {
 /// Location of a position on the shaft or scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Location {
-    /// A location on a shaft.
+    /// Location on the shaft of a rotary encoder.
     Shaft {
         /// Whole turns.
         turns: u64,
@@ -92,7 +92,7 @@ pub enum Location {
         /// Angle within the turn in degrees, 0 to 360.
         degrees: f64,
     },
-    /// A location on a scale.
+    /// Location on the scale of a linear encoder.
     Length {
         /// Distance from the zero of the scale, in millimetres.
         millimetres: f64,

@@ -9,30 +9,30 @@ pub enum SpecError {
     /// A part of the specification is not of the form `name=value`.
     #[error("\"{word}\" is not NAME=VALUE; names: {names}", names = names.join(", "))]
     Form {
-        /// The invalid part.
+        /// Text of the invalid part.
         word: String,
-        /// Valid names.
+        /// Names that are valid in this specification.
         names: &'static [&'static str],
     },
-    /// A name is unknown.
+    /// The specification contains an unknown name.
     #[error("there is no \"{name}\"; names: {names}", names = names.join(", "))]
     Name {
         /// The unknown name.
         name: String,
-        /// Valid names.
+        /// Names that are valid in this specification.
         names: &'static [&'static str],
     },
-    /// A value is invalid.
+    /// The value of a setting is invalid.
     #[error("{name} must be {expected}, not \"{value}\"")]
     Value {
         /// Name of the setting.
         name: String,
-        /// The expected value.
+        /// Description of the valid values.
         expected: AllowedValues,
         /// The invalid value.
         value: String,
     },
-    /// A setting occurs twice.
+    /// The same setting occurs twice.
     #[error("{0} is specified twice")]
     Twice(String),
 }

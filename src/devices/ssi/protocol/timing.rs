@@ -106,9 +106,9 @@ pub struct ReadConditions {
 /// Times and violated limits under certain read conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
-    /// Duration of a clock period.
+    /// Duration of one clock period.
     pub period: Duration,
-    /// Duration of all clocks of a burst.
+    /// Total duration of the clocks in a burst.
     pub burst: Duration,
     /// Time from the start of one burst to the start of the next.
     pub cycle: Duration,
@@ -148,20 +148,20 @@ pub enum Warning {
     },
     /// The pause is shorter than the encoder requires, so the encoder sends the old position or is not ready.
     PauseShort {
-        /// Minimum pause.
+        /// Minimum pause that the encoder requires.
         least: Duration,
     },
     /// The pause is longer than the encoder allows.
     PauseLong {
-        /// Maximum pause.
+        /// Maximum pause that the encoder allows.
         most: Duration,
     },
     /// Frames are read faster than the encoder samples positions, so some positions are read several times.
     Repeats {
-        /// Interval between two positions.
+        /// Interval at which the encoder samples positions.
         update: Duration,
     },
-    /// The family has no synchronous mode.
+    /// The encoder family has no synchronous mode.
     NoSynchronous,
     /// It is unknown whether the encoder has a synchronous mode, because its family is unknown.
     SynchronousUnknown,

@@ -37,7 +37,7 @@ pub enum Edit {
     Family(String),
     /// Detaches the frame from its family, so that every part of it can be edited.
     Free,
-    /// Changes the family settings.
+    /// Changes the settings of the family.
     Settings(Box<Settings>),
     Frame(Box<FrameDescriptor>),
     /// Changes the range of positions or the code. The frame becomes longer or shorter as required.

@@ -1,4 +1,4 @@
-//! Export of a layout for other programs.
+//! Export of a layout in the formats of other programs.
 
 use super::design::LayoutDesigner;
 use crate::app::{Language, Text};

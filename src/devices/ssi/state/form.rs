@@ -59,7 +59,7 @@ pub enum Field {
     RevolutionsBelow,
     /// Number of bits of a linear position.
     Bits,
-    /// Length of a step in nanometres.
+    /// Step length of a linear encoder in nanometres.
     StepLength,
     Code,
     /// Bits that a Gray code covers.
@@ -75,7 +75,7 @@ pub enum Field {
     Parity,
     ParityClock,
     Repeat,
-    /// Zeros between the two words.
+    /// Number of zeros between the two words of a repeated frame.
     Gap,
     Direction,
     Preset,
@@ -86,7 +86,7 @@ pub enum Field {
     ErrorLow(usize),
     ErrorCleared(usize),
     ClockRate,
-    /// Microseconds between two bursts.
+    /// Pause between two bursts in microseconds.
     Pause,
     /// Cable length in metres, or 0 if the cable is not checked.
     Cable,

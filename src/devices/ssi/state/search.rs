@@ -22,7 +22,7 @@ pub enum Origin {
     File(String),
 }
 
-/// Consecutive frames with their origin.
+/// A series of consecutive frames with its origin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames {
     pub origin: Origin,

@@ -22,20 +22,20 @@ pub struct BurstDiagram {
 /// A section of the time axis that is drawn. The axis is broken between two sections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisSection {
-    /// Start in seconds.
+    /// Start of the section in seconds.
     pub from: f64,
-    /// End in seconds.
+    /// End of the section in seconds.
     pub to: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimingSpan {
     pub activity: TimingSpanKind,
-    /// Start in seconds.
+    /// Start of the span in seconds.
     pub from: f64,
-    /// Maximum end in seconds.
+    /// Latest end of the span in seconds.
     pub to: f64,
-    /// Minimum end in seconds.
+    /// Earliest end of the span in seconds.
     pub least: f64,
 }
 
@@ -53,7 +53,7 @@ pub enum TimingSpanKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimingMark {
     pub event: TimingEvent,
-    /// Time in seconds.
+    /// Time of the event in seconds.
     pub at: f64,
 }
 
@@ -71,9 +71,9 @@ pub enum TimingEvent {
 pub struct Bit {
     /// Number of the clock that transmits the bit, starting at 1.
     pub clock: u8,
-    /// Start in seconds.
+    /// Start of the bit in seconds.
     pub from: f64,
-    /// End in seconds.
+    /// End of the bit in seconds.
     pub to: f64,
 }
 

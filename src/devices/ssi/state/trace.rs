@@ -1,4 +1,4 @@
-//! Explanation of frames in the trace.
+//! Explains SSI frames in the trace.
 
 use crate::app::{FrameExplanation, Text};
 use crate::buses::bridge::protocol::Request;

@@ -19,7 +19,7 @@ pub struct Decoded {
     /// Position and its location on the shaft or scale, or `None` if the bits do not represent a position.
     pub place: Option<(u64, Location)>,
     pub findings: Vec<FrameFinding>,
-    /// Whether the position may be used.
+    /// Whether the position is valid.
     pub is_valid: bool,
 }
 

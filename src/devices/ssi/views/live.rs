@@ -1,4 +1,4 @@
-//! Large display of an SSI position.
+//! Shows the position of an SSI encoder in large digits.
 
 use egui::{RichText, Ui};
 

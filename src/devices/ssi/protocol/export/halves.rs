@@ -14,7 +14,7 @@ use crate::devices::ssi::protocol::range::Range;
 /// The reason why a layout has no 32-bit decoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TooWideError {
-    /// The position exceeds 32 bits.
+    /// The code word of a position exceeds 32 bits.
     #[error("the position has {bits} bits, and a number of the controller 32")]
     Position {
         /// Width of the code word in bits.
@@ -27,9 +27,9 @@ pub enum TooWideError {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Language {
-    /// IEC 61131-3 structured text.
+    /// The language is IEC 61131-3 structured text.
     StructuredText,
-    /// SCL for TIA Portal.
+    /// The language is SCL for TIA Portal.
     Scl,
 }
 
@@ -37,7 +37,7 @@ const HALF_BITS: u8 = 32;
 
 struct SplitWordDialect {
     language: Language,
-    /// Whether a frame needs both halves.
+    /// Whether a frame needs two 32-bit words.
     is_wide: bool,
 }
 

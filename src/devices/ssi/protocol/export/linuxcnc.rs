@@ -25,7 +25,7 @@ pub enum UnsupportedProperty {
     /// Zeros between multiturn and singleturn.
     #[error("zeros between turns and steps")]
     Between,
-    /// Swapped data wires.
+    /// Swapped data wires, which invert all bits.
     #[error("swapped data wires")]
     Inverted,
 }

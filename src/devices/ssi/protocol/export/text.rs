@@ -10,7 +10,7 @@ use crate::devices::ssi::protocol::code::Code;
 pub enum ExportText {
     /// Heading of the settings sheet.
     SheetTitle(String),
-    /// Purpose of the settings sheet.
+    /// Sentence on the purpose of the settings sheet.
     SheetPurpose,
     FrameLength,
     Bits(u8),
@@ -95,7 +95,7 @@ pub enum ModuleObstacle {
     Bcd,
     /// Gray code that covers more than the position.
     GrayOver,
-    /// Swapped data wires.
+    /// Swapped data wires, which invert all bits.
     Inverted,
     /// Zeros between multiturn and singleturn.
     Between,

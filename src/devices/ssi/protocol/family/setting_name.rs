@@ -6,7 +6,7 @@ pub enum SettingName {
     /// Frame that has exactly the width of the position.
     #[error("frame")]
     Frame,
-    /// Shift of the position by one clock.
+    /// Delay of the position by one clock.
     #[error("right shift")]
     ShiftRight,
     /// Number of steps that is not a power of two.
@@ -66,7 +66,7 @@ pub enum SettingName {
     /// Step length.
     #[error("step length")]
     StepLength,
-    /// The preset.
+    /// Position at the zero point of the shaft.
     #[error("preset")]
     Preset,
 }

@@ -16,11 +16,11 @@ pub struct Settings {
     pub singleturn: Option<u8>,
     /// Number of steps per turn, or in total on a round axis, if it is not a power of two.
     pub steps: Option<u32>,
-    /// Number of turns of `steps` steps each.
+    /// Number of turns, each with `steps` steps.
     pub turns: Option<u32>,
     /// Number of turns over which `steps` are distributed on a round axis.
     pub revolutions: Option<Fraction>,
-    /// Position code.
+    /// Code of the position.
     pub code: Option<Code>,
     /// Bits that a Gray code covers.
     pub coded: Option<GrayCoverage>,
@@ -43,7 +43,7 @@ pub struct Settings {
 /// The frame that a family sends with certain settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResolvedFrame {
-    /// The frame.
+    /// Layout of the frame.
     pub layout: Layout,
     /// Alignment of the position.
     pub align: Alignment,
@@ -77,9 +77,9 @@ pub enum SettingsError {
     /// The family does not have this setting.
     #[error("{family} has no {field}")]
     None {
-        /// Name of the family.
+        /// Name of the encoder family.
         family: String,
-        /// The unavailable setting.
+        /// Setting that the family does not have.
         field: SettingName,
     },
     /// The two settings cannot be combined.
@@ -88,13 +88,13 @@ pub enum SettingsError {
     /// A value is outside its limits.
     #[error("{family}: {field} must be from {least} to {most}, not {value}")]
     Limit {
-        /// Name of the family.
+        /// Name of the encoder family.
         family: String,
-        /// The limited setting.
+        /// Setting whose value is outside its limits.
         field: SettingName,
-        /// Minimum value.
+        /// Minimum value that the family allows.
         least: u64,
-        /// Maximum value.
+        /// Maximum value that the family allows.
         most: u64,
         /// Requested value.
         value: u64,
@@ -102,42 +102,42 @@ pub enum SettingsError {
     /// The family does not support the alignment, or a position with this alignment does not fit into the frame.
     #[error("{family} does not support the alignment {align} for {bits} position bits; supported: {possible}")]
     Align {
-        /// Name of the family.
+        /// Name of the encoder family.
         family: String,
         /// Width of the position in bits.
         bits: u8,
         /// Requested alignment.
         align: Alignment,
-        /// Supported alignments.
+        /// List of the alignments that the family supports.
         possible: String,
     },
     /// The family does not support this location of the error bits.
     #[error("{family} does not support the setting {place} for error bits; supported: {possible}")]
     Errors {
-        /// Name of the family.
+        /// Name of the encoder family.
         family: String,
-        /// Requested location.
+        /// Requested location of the error bits.
         place: ErrorPlace,
-        /// Supported locations.
+        /// List of the locations that the family supports.
         possible: String,
     },
     /// The burst has more clocks than the encoder allows.
     #[error("{family} supports at most {most} clocks, not {clocks}")]
     Clocks {
-        /// Name of the family.
+        /// Name of the encoder family.
         family: String,
-        /// Maximum number of clocks.
+        /// Maximum number of clocks that the family allows.
         most: u8,
         /// Requested number of clocks.
         clocks: u8,
     },
-    /// The range is invalid.
+    /// The range of positions is invalid.
     #[error(transparent)]
     Range(#[from] RangeError),
     /// The code cannot represent the positions.
     #[error(transparent)]
     Code(#[from] CodeError),
-    /// The frame is invalid.
+    /// The resulting frame is invalid.
     #[error(transparent)]
     Layout(#[from] LayoutError),
 }

@@ -13,7 +13,7 @@ use crate::devices::ssi::protocol::descriptor::{BitMeaning, ErrorBit, FrameDescr
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
-/// Number of position widths to propose.
+/// Number of different position widths to propose.
 const WIDTHS: usize = 4;
 const MIN_SHARES: usize = 3;
 /// Minimum number of frames per thousand in which a bit must deviate to be considered an error bit.

@@ -27,7 +27,7 @@ pub(super) struct Bit {
     pub(super) usual: bool,
     /// Number of frames in which the bit does not have its usual value.
     pub(super) unusual: usize,
-    /// Number of changes between consecutive frames.
+    /// Number of times the bit changed between consecutive frames.
     pub(super) changes: usize,
     /// Whether the bit deviated from its usual value for longer than a disturbance lasts.
     pub(super) moves: bool,

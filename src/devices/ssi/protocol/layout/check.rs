@@ -34,7 +34,7 @@ pub enum LayoutError {
         lead: u8,
         /// Required number of clocks.
         needed: u16,
-        /// Available number of clocks.
+        /// Number of clocks in the position area.
         area: u8,
     },
     /// Zeros are specified between multiturn and singleturn, although these have no separate bits.
@@ -43,17 +43,17 @@ pub enum LayoutError {
     /// The same clock is used twice.
     #[error("clock {clock} is used by both {first} and {second}")]
     Overlap {
-        /// Clock number.
+        /// Number of the clock, starting at 1.
         clock: u8,
-        /// First use of the clock.
+        /// First use of this clock.
         first: ClockUse,
-        /// Second use.
+        /// Second use of the same clock.
         second: ClockUse,
     },
     /// The bit lies beyond the last clock.
     #[error("{name} is on clock {clock}, but the frame has only {clocks} clocks")]
     Behind {
-        /// Use of the bit.
+        /// Use of the bit beyond the last clock.
         name: ClockUse,
         /// Clock number of the bit.
         clock: u8,
@@ -65,9 +65,9 @@ pub enum LayoutError {
     Many {
         /// Part that occurs too often.
         what: RepeatedPart,
-        /// Maximum number.
+        /// Maximum number in a frame.
         limit: usize,
-        /// Given number.
+        /// Number in the description.
         count: usize,
     },
     /// A code other than Gray covers more than the position.
@@ -99,23 +99,23 @@ pub enum LayoutError {
     /// The pattern has more bits than the frame.
     #[error("the pattern {word:X} has more than {clocks} bits")]
     Pattern {
-        /// The pattern.
+        /// Bits of the pattern.
         word: u64,
         /// Number of clocks in the frame.
         clocks: u8,
     },
 }
 
-/// Use of a clock.
+/// What a clock is used for.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ClockUse {
-    /// The position.
+    /// The clock transmits the position.
     #[error("the position")]
     Position,
-    /// The parity bit.
+    /// The clock transmits the parity bit.
     #[error("the parity bit")]
     Parity,
-    /// Error bit with the given name.
+    /// The clock transmits the error bit with this name.
     #[error("{0}")]
     Error(String),
 }
@@ -131,7 +131,7 @@ pub enum RepeatedPart {
     Patterns,
 }
 
-/// An operation on several clocks together.
+/// An operation that treats several clocks as one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WordOperation {
     /// The clocks form one code word.

@@ -1,4 +1,4 @@
-//! Painting a bit strip.
+//! Paints a bit strip.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Stroke, StrokeKind, Vec2, pos2};
 

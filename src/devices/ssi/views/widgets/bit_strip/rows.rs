@@ -6,7 +6,7 @@ use egui::{Pos2, Rect, Vec2, pos2};
 /// Minimum width of a cell, below which the strip wraps.
 const MIN_CELL_WIDTH: f32 = 17.0;
 const MAX_CELL_WIDTH: f32 = 28.0;
-/// Height of the clock numbers.
+/// Height of the row of clock numbers.
 const NUMBER_HEIGHT: f32 = 15.0;
 const CELL_HEIGHT: f32 = 26.0;
 const LANE_HEIGHT: f32 = 16.0;
@@ -15,7 +15,7 @@ pub(super) const NAME_HEIGHT: f32 = 15.0;
 const SIDE_MARGIN: f32 = 10.0;
 const LINE_GAP: f32 = 10.0;
 
-/// Cells on one or more lines.
+/// The cells of a bit strip, arranged on one or more lines.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     origin: Pos2,
