@@ -1,5 +1,5 @@
-//! Handling the user's actions on a device and its drives. Edits and motion take effect immediately. Everything else is
-//! a job of the session or a task.
+//! Executes the user's actions on a device and its drives. Edits and motion take effect immediately. All other actions
+//! are jobs of the session or tasks.
 
 use std::time::Duration;
 
@@ -72,7 +72,7 @@ impl HiperdriveDevice {
         device.into_iter().chain(self.watches_drive.then_some(Temperature::Drive(self.drive()))).collect()
     }
 
-    /// Passes the list of watched temperatures to the recording and to the session.
+    /// Starts recording and polling the watched temperatures.
     pub(super) fn request_temperatures(&mut self) {
         let wished = self.watched_temperatures();
         self.record.watch_temperatures(&wished);
@@ -81,7 +81,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Moves a drive, or returns a reason if the drive may not move.
+    /// Executes a motion command, or notifies the user of the reason why the drive may not be moved.
     fn apply_motor_action(&mut self, motor: MotorCommand, services: &mut Services) {
         let drive = self.drive();
         let request = match motor {
@@ -133,7 +133,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Opens the cyclic connection. From then on, the selected drive is read continuously.
+    /// Opens the cyclic connection, over which the selected drive is then read continuously.
     fn take_control(&mut self, services: &mut Services) {
         if let Err(why) = self.check_can_take_control() {
             services.notify(Severity::Warning, vec![why], Some(&self.session.name()));
@@ -149,12 +149,12 @@ impl HiperdriveDevice {
         };
     }
 
-    /// Starts a job. Reports the reason and returns `false` if the job cannot be started.
+    /// Starts a job. Returns `false` if it cannot be started; the user is then told why.
     pub(super) fn submit(&mut self, job: HiperdriveJob, services: &mut Services) -> bool {
         self.session.submit(job, services)
     }
 
-    /// Handles a profile that was read in order to be saved to a file.
+    /// Saves a profile that was read for this purpose.
     pub(super) fn save_profile(&mut self, profile: HiperdriveProfile, services: &mut Services) {
         self.handle_scale_change(&profile.image);
         self.staged.refresh_partially(&profile.image);

@@ -1,4 +1,4 @@
-//! Actions on the selected adapter or hub, and on its drives.
+//! Actions of the user on the selected adapter or hub and on its drives.
 
 use std::path::PathBuf;
 
@@ -24,35 +24,35 @@ pub enum HiperdriveAction {
     /// Opens the cyclic connection without moving a drive.
     Take,
     Give,
-    /// Moves the selected drive, or changes its state.
+    /// Moves the selected drive or changes its state.
     Drive(MotorCommand),
-    /// Sets up the axis of the selected drive.
+    /// Executes an action in the axis set-up of the selected drive.
     Axis(axis::AxisAction),
     Save(PathBuf),
 }
 
-/// A motion request of the user for the selected drive.
+/// A command from the user that moves the selected drive or changes its state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotorCommand {
     Lead(TargetState),
     Acknowledge,
     JogPress {
         direction: Direction,
-        /// Whether the press is an automatic key repetition, which starts nothing.
+        /// Whether the press comes from automatic key repetition, which must not start a motion.
         repeated: bool,
     },
-    /// Presses a jog button in the axis set-up. The jog is slow and weak, independent of the jog settings elsewhere.
+    /// Presses a jog button in the axis set-up. Speed and torque of the jog are low, whatever is set for other jogs.
     SlowJogPress {
         direction: Direction,
-        /// Whether the press is an automatic key repetition, which starts nothing.
+        /// Whether the press comes from automatic key repetition, which must not start a motion.
         repeated: bool,
     },
-    /// Allows the next jog in this direction, although it moves the drive further outside its limits.
+    /// Allows the next jog in this direction to move the drive further outside its limits.
     AllowOutward(Direction),
-    /// Confirms that the jog is still held. It is sent in every frame.
+    /// Sent in every frame while a jog button is still held.
     JogHold,
     JogRelease,
-    /// Moves by the given number of steps from the current position and stops there.
+    /// Moves by a number of steps from the current position.
     Step {
         /// Signed distance in scaled steps.
         by: i32,
@@ -69,12 +69,12 @@ pub enum MotorCommand {
     Resume,
     Stop,
     JogEffort(SpeedTorque),
-    /// Sets the speed and torque of moves and steps.
+    /// Sets the speed and torque for moves and steps.
     MoveEffort(SpeedTorque),
     RunEffort(SpeedTorque),
-    /// Confirms or revokes the warning about endless runs.
+    /// Accepts or revokes the warning about endless runs.
     Expert(bool),
-    /// Records that the user has checked the limits in the displayed unit and confirmed them.
+    /// Confirms the limits, which the user has checked in the displayed unit.
     ConfirmLimits(DriveNumber),
 }
 

@@ -1,12 +1,12 @@
-//! Axis set-up. This procedure starts with an unknown drive and ends with limits in millimetres that have survived a
-//! power cycle. It is a state machine that receives the drive data ([`DriveFacts`]) and issues requests to the drive
-//! ([`DriveRequest`]). It performs no I/O, and every step waits until the drive has confirmed it.
+//! Axis set-up: a procedure that begins with an unknown drive and ends with limits in millimetres that have survived a
+//! power cycle. This module is a state machine that receives data about the drive ([`DriveFacts`]) and issues requests
+//! to it ([`DriveRequest`]). It performs no I/O, and every step waits for confirmation from the drive.
 //!
-//! The results of the steps form a chain. Each result depends on data of the drive: scale, pitch, reference and limits.
-//! When this data changes, the result becomes void together with all later results, even if another program made the
-//! change. The displayed step changes only when the user presses a button.
+//! Each result of a step depends on data of the drive: scale, pitch, reference and limits. If this data changes, even
+//! by another program, the result and all later results become void. The displayed step changes only when the user
+//! presses a button.
 //!
-//! Parameters are first written without saving and read back. Saving is a separate step, the last but one. If the
+//! Parameters are first written without saving them, and read back. Saving is a separate step, the last but one. If the
 //! set-up is aborted before that, the previous values are written back, because the manual does not guarantee that
 //! unsaved values are lost at power-off.
 
@@ -41,20 +41,20 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, PositionScale};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum AxisStep {
-    /// The drive is requested with parameter 152.
+    /// Parameter 152 (Requested) of the drive is set.
     Request,
     /// Pitch and resolution are written as parameters 154 and 156.
     Scale,
-    /// The user checks the limits for the set-up in millimetres.
+    /// The user checks the limits that apply during the set-up, in millimetres.
     Confirm,
-    /// The axis is moved slowly to find out which direction is positive.
+    /// The axis is moved slowly to find out which way its position increases.
     Jog,
-    /// The current position is assigned a number (parameter 198).
+    /// A number is assigned to the current position (parameter 198).
     Reference,
     Lower,
-    /// The upper limit is taught, and both limits are written (parameters 158 and 160).
+    /// The upper limit is set by teach-in, and both limits are written (parameters 158 and 160).
     Upper,
-    /// The axis is moved to the middle of the range and to both limits.
+    /// The axis is moved to the middle of its range and to both limits.
     Test,
     /// All parameters are saved (47 = 1).
     Save,
@@ -80,7 +80,7 @@ pub enum SetupEnd {
 /// A change made by the set-up.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AxisChange {
-    /// Change of a parameter, identified by its number for drive 1.
+    /// A new value of a parameter, given by its number for drive 1.
     Parameter(u16, i64),
     Position(i32),
 }
@@ -88,7 +88,7 @@ pub enum AxisChange {
 #[derive(Clone, Debug)]
 pub struct RunSummary {
     pub end: SetupEnd,
-    /// Date and time as written in the report.
+    /// Date and time as shown in the report.
     pub when: String,
     seen: Box<DriveFacts>,
 }
@@ -97,9 +97,9 @@ pub struct RunSummary {
 struct ConfirmedLimits {
     scale: Option<PositionScale>,
     seen: (i32, i32),
-    /// Limits that the user has seen, or the taught limits that a reviewed plan has written since then.
+    /// Limits that the user has confirmed: those seen, or the taught limits written since then by an approved plan.
     agreed: (i32, i32),
-    /// Taught limits of an interrupted plan. Each limit may have been written.
+    /// Taught limits in an interrupted plan. Each of them may or may not have been written.
     begun: Option<(i32, i32)>,
 }
 
@@ -111,23 +111,21 @@ pub struct Axis {
     chain: StepOutcomes,
     confirmed: Option<ConfirmedLimits>,
     travel: JogTravel,
-    /// Position that was last set, and the origin from which positions have been counted since.
+    /// Last position that was set, and the zero point to which positions have referred since then.
     reference: Option<(i32, PositionOrigin)>,
     sets: Option<i32>,
     standstill: StandstillMonitor,
-    /// Number of position jumps that were detected at standstill.
+    /// Number of position jumps detected at standstill.
     jumps: u32,
-    /// Number of steps by which the position has changed since the reference was set, while the position was not being
-    /// read.
+    /// Steps by which the position has changed unobserved since the reference was set.
     unexplained: Option<i64>,
     outcomes: [Option<Outcome>; 3],
-    /// Test move in progress: the target, the position of the target, and the number of the action that started the
-    /// move.
+    /// Test move in progress: the target, its position, and the number of the action that moves the drive.
     going: Option<(TestTarget, i32, u64)>,
     saved: bool,
     power: Option<Power>,
     changes: Vec<AxisChange>,
-    /// Whether a write ended early, so that some of the changes may not have been made.
+    /// Whether a write was interrupted, so that some of the changes may be missing.
     partly: bool,
     returned: Vec<(u16, i64)>,
     asked: Option<DriveRequest>,
@@ -152,7 +150,7 @@ impl AxisStep {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Test)
     }
 
-    /// Returns whether the user jogs the drive in this step.
+    /// Returns whether the user jogs the axis in this step.
     pub const fn is_jogging(self) -> bool {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper)
     }
@@ -172,7 +170,7 @@ impl AxisStep {
 }
 
 impl Axis {
-    /// Creates a set-up that starts at the first step. `ruler` contains the spindle data if it is already known.
+    /// Creates a set-up at its first step. `ruler` contains the spindle data, if already known.
     pub fn new(drive: DriveNumber, ruler: Option<Ruler>) -> Self {
         Axis {
             drive,
@@ -210,7 +208,7 @@ impl Axis {
         &self.entries
     }
 
-    /// Returns the result of the set-up, or `None` while the set-up is running.
+    /// Returns how the set-up ended, or `None` while it is running.
     pub fn setup_end(&self) -> Option<SetupEnd> {
         self.over.as_ref().map(|over| over.end)
     }
@@ -219,7 +217,7 @@ impl Axis {
         self.over.as_ref()
     }
 
-    /// Returns the drive data at the end of the set-up, or the current drive data while the set-up is running.
+    /// Returns the drive data from the end of the set-up, or the current data while it is running.
     pub fn displayed_facts<'a>(&'a self, now: &'a DriveFacts) -> &'a DriveFacts {
         self.over.as_ref().map_or(now, |over| &over.seen)
     }
@@ -228,7 +226,7 @@ impl Axis {
         &self.changes
     }
 
-    /// Returns whether a write ended early, so that some of the changes may not have been made.
+    /// Returns whether a write was interrupted, so that some of the changes may be missing.
     pub const fn is_partly_written(&self) -> bool {
         self.partly
     }
@@ -241,7 +239,7 @@ impl Axis {
         self.asked.is_some()
     }
 
-    /// Returns how far the user has jogged the axis.
+    /// Returns how far the user has jogged the axis in each direction.
     pub const fn travel(&self) -> JogTravel {
         self.travel
     }
@@ -262,8 +260,8 @@ impl Axis {
         self.power
     }
 
-    /// Returns the earliest step before the current one whose result is no longer valid, if any. This step and all
-    /// later steps must be repeated.
+    /// Returns the first step before the current one that has lost its result. This step and all later ones must be
+    /// repeated. Returns `None` if all results are valid.
     pub fn invalidated_step(&self) -> Option<AxisStep> {
         self.chain.first_open_step().filter(|step| *step < self.step)
     }
@@ -282,7 +280,8 @@ impl Axis {
         }
     }
 
-    /// Returns whether the supply was switched off, the saved values are still present, and the axis has not moved.
+    /// Returns whether the axis has survived a power cycle: the supply was off, the saved values are still present, and
+    /// the axis has not moved.
     pub fn has_survived(&self) -> bool {
         self.power.is_some_and(Power::has_survived_power_cycle)
     }
@@ -291,7 +290,7 @@ impl Axis {
         PositionOrigin::from_facts(seen, self.jumps)
     }
 
-    /// Returns the current drive data on which the results of the steps depend.
+    /// Returns the current drive data that the results of the steps depend on.
     fn preconditions(&self, seen: &DriveFacts) -> Preconditions {
         Preconditions {
             requested: seen.requested,

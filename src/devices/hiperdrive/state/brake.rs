@@ -1,4 +1,4 @@
-//! Stops the drives of a session when the program ends.
+//! Stops the drives of a session when the program exits.
 
 use crate::app::DriveStopHandle;
 use crate::devices::hiperdrive::jobs::Motion;

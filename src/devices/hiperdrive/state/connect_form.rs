@@ -1,4 +1,4 @@
-//! Connection form for HIPERDRIVE devices, and the link that it produces. This module opens no connection.
+//! The connection form for HIPERDRIVE devices and the link that results from it. This module opens no connection.
 
 use super::discovery::DiscoveryFinder;
 use crate::app::Text;
@@ -29,8 +29,8 @@ pub enum VirtualHub {
     Eight,
 }
 
-/// Entries of the connection form. An empty entry selects the default. Entries of other connection types are kept, but
-/// are not included in the link.
+/// Entries in the connection form. An empty entry stands for the default. Entries for other types of connection are
+/// kept but not included in the link.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HiperdriveForm {
     pub kind: HiperdriveLinkKind,
@@ -39,14 +39,14 @@ pub struct HiperdriveForm {
     /// TCP port, or empty for 44818.
     pub tcp_port: String,
     pub file: String,
-    /// Whether process data have the high byte first.
+    /// Whether the high byte of process data comes first.
     pub big_endian: bool,
     pub typed: EnteredValues,
-    /// Link parameters for which the form has no input field.
+    /// Link parameters that have no input field in the form.
     pub rest: Vec<(String, String)>,
 }
 
-/// Name of the byte order parameter and its non-default value.
+/// Name of the byte order parameter, and the value that is not the default.
 const BIG_ENDIAN: (&str, &str) = ("order", "big");
 const PORT: &str = "44818";
 
@@ -104,25 +104,26 @@ impl FormModel for HiperdriveForm {
 }
 
 impl HiperdriveForm {
-    /// Returns the parameters that can be entered: those of the link and, if applicable, those of the virtual device.
+    /// Returns the parameters that can be entered: those of the link, and those of the virtual device if one is
+    /// selected.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == HiperdriveLinkKind::Virtual { Config::entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
     }
 
-    /// Returns the input field for the setpoint interval, and the rarely used input fields.
+    /// Returns the input field for the setpoint interval, followed by the input fields that are rarely used.
     pub fn link_entries() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| own.key == "rpi")
     }
 
-    /// Returns the input fields for the virtual device. An adapter has a single drive, so there is no input field for
-    /// the plugged ports.
+    /// Returns the input fields for the virtual device. An adapter has only one drive, so it has no field for occupied
+    /// ports.
     pub fn virtual_device_entries(&self) -> Vec<Entry> {
         let has = |own: &Entry| own.key != "drives" || self.hub != VirtualHub::Adapter;
         Config::entries().into_iter().filter(has).collect()
     }
 
-    /// Fills in the input field for a parameter. Returns `false` if no input field can show the value.
+    /// Fills in the input field for a parameter. Returns `false` if there is no field that can show the value.
     fn fill_entry(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("hub", HiperdriveLinkKind::Virtual) {
             let hub = VirtualHub::from_word(value);

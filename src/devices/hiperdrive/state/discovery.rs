@@ -1,4 +1,4 @@
-//! Discovery in the network: a broadcast request whose replies are collected for a second, without blocking the window.
+//! Device discovery: broadcasts a request and collects replies for a second without blocking the window.
 
 use std::fmt;
 use std::net::Ipv4Addr;
@@ -20,7 +20,7 @@ use crate::link::{CancelToken, Clock, RealClock, UdpBroadcast};
 pub struct Discovery {
     /// Number of the current discovery. Replies to earlier discoveries are dropped.
     number: u32,
-    /// Devices found, or the reason why the request failed. `None` while replies are being collected.
+    /// Devices found, or the reason why the request failed. `None` while replies are still being collected.
     pub found: Option<Result<Vec<FoundDevice>, Text>>,
 }
 
@@ -60,7 +60,7 @@ impl Discovery {
     }
 }
 
-/// A stand-in for the discovery broadcast in tests.
+/// A replacement for the discovery broadcast in tests.
 #[derive(Clone)]
 pub struct DiscoveryStub(Arc<dyn Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync>);
 
@@ -93,7 +93,7 @@ pub struct DiscoveryFinder {
 
 pub enum DiscoveryAction {
     Discover,
-    /// Fills in the address of a device that replied. Afterwards, the Connect button connects to this device.
+    /// Fills in the address of a device that replied, so that the Connect button connects to it.
     Choose(usize),
 }
 

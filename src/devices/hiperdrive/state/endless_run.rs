@@ -1,4 +1,4 @@
-//! The condition for an endless run: the limits and the scaling of the drive must have their factory values.
+//! The condition for an endless run: the limits and the scaling of the drive must be at their factory values.
 
 use super::unit::HiperdriveDevice;
 use crate::app::Text;
@@ -7,8 +7,8 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 
 impl HiperdriveDevice {
-    /// Returns one text for each parameter that prevents an endless run of a drive. The list is empty if the condition
-    /// is met, or if limits and scaling are not known.
+    /// Returns a message for each parameter that prevents an endless run of a drive. The list is empty if none does, or
+    /// if limits and scaling are unknown.
     pub fn endless_run_obstacles(&self, drive: DriveNumber) -> Vec<Text> {
         let Some(rules) = self.drive_limits(drive).map(|own| own.rules()) else { return Vec::new() };
         let Some(((numerator, denominator), (lower, upper))) = rules.scale.zip(rules.limits) else {

@@ -1,4 +1,4 @@
-//! Events from the line: results of jobs, positions of drives, and loss of the connection.
+//! Events from a session: job results, drive positions, and loss of the connection.
 
 use std::time::Duration;
 
@@ -26,11 +26,11 @@ use crate::worker::{OpenError, Session};
 
 /// Default interval for reading the position of a drive.
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(200);
-/// Text ID of the notice that the limits of a drive under control cannot be read. The notice is removed as soon as they
-/// are read or no longer required.
+/// Message ID of the notice that the limits of a drive under control cannot be read. The notice is removed once they
+/// are read or no longer needed.
 const LIMITS_UNREADABLE_ID: &str = "hd_end.rules";
 
-/// Returns whether a drive in this state requires an acknowledgement before it moves.
+/// Returns whether a drive in this state must be acknowledged before it can move.
 const fn has_failed(state: State) -> bool {
     matches!(state, State::Fault | State::Locked)
 }
@@ -85,7 +85,7 @@ impl Kind for Hiperdrive {
 }
 
 impl HiperdriveDevice {
-    /// Requests missing data as soon as the line is free: the cause of a fault and the position of the selected drive.
+    /// Requests missing data as soon as the line is free: the cause of a fault, and the position of the selected drive.
     fn request_missing_data(&mut self, services: &mut Services) {
         if self.survey.is_none() || !self.session.is_ready() {
             return;
@@ -120,7 +120,7 @@ impl HiperdriveDevice {
         services.notify(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
-    /// Removes the fault notice when no drive has a fault. All drives share one notice.
+    /// Removes the fault notice, which all drives share, once no drive has a fault.
     fn update_fault_notice(&self, failed: bool, services: &mut Services) {
         let fails =
             |drive: &DriveNumber| self.moves.actual_values(*drive).is_some_and(|own| has_failed(own.status.state()));
@@ -138,7 +138,7 @@ impl HiperdriveDevice {
         self.report_drive_message(drive, weight, vec![words], services);
     }
 
-    /// Processes the position of a drive and, if the drive is selected, records it.
+    /// Processes a drive position, and records it if the drive is selected.
     fn handle_reading(&mut self, reading: DriveReading) {
         self.take_reading(reading);
         let drive = reading.drive;
@@ -173,7 +173,7 @@ impl SessionEvents for HiperdriveDevice {
         self.decoder.explain(frame)
     }
 
-    /// Processes the session events since the last call, and refreshes the actions that depend on the window.
+    /// Processes new session events, and refreshes the actions that require an operating window.
     fn process_events(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.set_remote(services.is_remote());
@@ -296,7 +296,7 @@ impl SessionEvents for HiperdriveDevice {
         self.moves.stop();
     }
 
-    /// Ends every motion before the release.
+    /// Ends all motion before control of the drives is released.
     fn prepare_release(&mut self) {
         self.moves.end_session();
     }

@@ -1,4 +1,4 @@
-//! Texts for HIPERDRIVE: job errors, names of states, bits, errors and parameters, and outcomes of motion.
+//! Messages and names for HIPERDRIVE: job errors, states, bits, errors and parameters, and the outcomes of motion.
 
 mod check;
 mod entry;
@@ -31,8 +31,7 @@ use crate::app::explain::{link_error_text, literal_text};
 use crate::devices::hiperdrive::jobs::{JobError, JobStep};
 use crate::devices::hiperdrive::procedures::Error;
 
-/// Returns the messages for a job that ended early. Each consists of at least one sentence and can be shown on a
-/// separate line.
+/// Returns the messages for a job that failed or was interrupted. Each can be shown on its own line.
 pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![device_error_text(error)],
@@ -44,7 +43,7 @@ pub fn job_error_texts(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns the reason why the connection failed, or `None` if further requests are possible.
+/// Returns a message if the connection has failed, or `None` if further requests are possible.
 pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     match error.device()? {
         Error::Link(error) => Some(link_error_text(error)),
@@ -52,7 +51,7 @@ pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     }
 }
 
-/// Returns whether the error means that the link is open but no device replies.
+/// Returns whether the error means that the link is open but the device does not reply.
 pub fn is_no_response(error: &JobError) -> bool {
     matches!(error.device(), Some(Error::NoReply { .. }))
 }

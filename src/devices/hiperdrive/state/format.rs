@@ -1,4 +1,4 @@
-//! Parameter texts for the table: values, units, the meaning of a number, and why an edit was rejected.
+//! Formats parameters for the table: values, units, the meanings of numbers, and why an edit was rejected.
 
 use super::staged::{EditError, EditFinding};
 use crate::app::Text;
@@ -13,7 +13,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as hiperdrive;
 use crate::devices::hiperdrive::state::explain as words;
 
-/// Formats a value, using hexadecimal for bit words and codes.
+/// Formats a value. Words consisting of bits, and error codes, are hexadecimal.
 pub fn value_text(number: ParameterNumber, value: &Value) -> String {
     match value {
         Value::Text(text) => text.clone(),
@@ -24,7 +24,7 @@ pub fn value_text(number: ParameterNumber, value: &Value) -> String {
     }
 }
 
-/// Returns the unit of a numeric parameter, if any. A string has no unit, even if it contains a number.
+/// Returns the unit of a numeric parameter, if it has one. A string has no unit, even if it contains a number.
 pub fn unit(row: &ParameterRow) -> Option<Text> {
     match row.unit {
         _ if row.kind == Kind::Text => None,
@@ -37,14 +37,14 @@ pub fn unit(row: &ParameterRow) -> Option<Text> {
     }
 }
 
-/// Formats a string as a number with its unit, or returns `None` if the string is not a number.
+/// Formats the number in a string with its unit. Returns `None` if the string does not contain a number.
 pub fn nominal_value(number: ParameterNumber, text: &str) -> Option<Text> {
     let unit = number.row().map(|row| row.unit).filter(|unit| !unit.is_empty())?;
     let (value, decimals) = protocol::nominal_value(text)?;
     Some(TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", literal_text(unit)))
 }
 
-/// Describes the meaning of a number, or returns `None` if the number is self-explanatory.
+/// Describes what a number means. Returns `None` if the number is self-explanatory.
 pub fn value_meaning(number: ParameterNumber, value: i64) -> Option<Text> {
     let tenths = |id: &'static str, name: &'static str| TEXTS.text(id).with_number(name, value as f64 / 10.0, 1);
     let word = || u16::try_from(value).ok();

@@ -1,4 +1,4 @@
-//! Parsing numbers entered for a drive into values or edits.
+//! Parses numbers entered for a drive into values and edits.
 
 use super::rows::Row;
 use super::ruler::{PositionRangeError, PositionUnit};
@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::{Length, Percent, PositionScale, Scale
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain;
 
-/// Parses the distance of a step. `sign` is −1 for backward.
+/// Parses the length of a step. `sign` is −1 for a backward step.
 ///
 /// # Errors
 /// Returns an error with the reason if the entry is invalid.
@@ -21,7 +21,7 @@ pub fn parse_distance(unit: &HiperdriveDevice, text: &str, measure: PositionUnit
     Ok(steps.saturating_mul(sign))
 }
 
-/// Parses a position within the limits of the selected drive.
+/// Parses a position, which must be within the limits of the selected drive.
 ///
 /// # Errors
 /// Returns an error with the reason if the entry is invalid.
@@ -38,7 +38,7 @@ pub fn target(unit: &HiperdriveDevice, text: &str, measure: PositionUnit) -> Res
     }
 }
 
-/// Parses a position without checking the limits, as needed for entering limits and for setting the position.
+/// Parses a position without checking it against the limits, for example to enter a limit or set the position.
 ///
 /// # Errors
 /// Returns an error with the reason if the entry is invalid.
@@ -70,7 +70,7 @@ pub fn percent(text: &str) -> Result<Percent, Text> {
     percent.ok_or_else(|| TEXTS.text("hd_entry.percent").with("entry", text.trim()))
 }
 
-/// Parses a parameter value, either decimal or hexadecimal with the prefix `0x`. An empty entry removes the value from
+/// Parses a parameter value in decimal or, with the prefix `0x`, in hexadecimal. An empty entry removes the value from
 /// a profile.
 ///
 /// # Errors
@@ -90,7 +90,7 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     checked.map(|value| Edit::Set(row.number, value)).map_err(|error| explain::out_of_range(&error))
 }
 
-/// Parses a length in millimetres, exact to the nanometre. The length must be above 0.
+/// Parses a length in millimetres, which must be above 0. The result is exact to the nanometre.
 ///
 /// # Errors
 /// Returns an error with the reason if the entry is invalid.
@@ -102,7 +102,7 @@ pub fn parse_length(text: &str) -> Result<Length, Text> {
         .ok_or_else(|| TEXTS.text("hd_entry.length").with("entry", text.trim()))
 }
 
-/// Returns the scale that gives a step the required length for a spindle pitch.
+/// Returns the scale that gives a step the required length on a spindle with this pitch.
 ///
 /// # Errors
 /// Returns an error with the reason if there is no such scale.

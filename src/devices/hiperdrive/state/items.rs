@@ -1,4 +1,4 @@
-//! Names and values of the parameters of a device and its drives for lists: comparisons, the logbook and reports.
+//! Names and values of parameters as shown in comparisons, the logbook and reports.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::app::{ItemValue, ItemValues, Text};
 use crate::devices::hiperdrive::profile::{HiperdriveProfile, Item};
 use crate::profile::ProfileDocument;
 
-/// Returns the name of an item, or `None` if the manual has no such parameter.
+/// Returns the name of an item, or `None` if the manual does not list the parameter.
 pub(super) fn item_name(item: &str) -> Option<Text> {
     match item {
         "network" => Some(TEXTS.text("hd_op.network")),
@@ -18,7 +18,7 @@ pub(super) fn item_name(item: &str) -> Option<Text> {
     }
 }
 
-/// Returns the drive to which a parameter belongs, or the device, as the heading of a group.
+/// Returns the heading of the group that a parameter belongs to: its drive, or the device.
 pub(super) fn item_group(item: &str) -> Option<Text> {
     Some(match item.parse::<Item>().ok()?.0.drive() {
         Some(drive) => TEXTS.text("report.hd_drive").with("drive", drive.get()),
@@ -26,7 +26,7 @@ pub(super) fn item_group(item: &str) -> Option<Text> {
     })
 }
 
-/// Returns a function that describes the values of a profile with their unit and meaning.
+/// Returns a function that gives the values of a profile with unit and meaning.
 pub(super) fn item_values(profile: &HiperdriveProfile, document: &ProfileDocument) -> ItemValues {
     let mut unit = HiperdriveDevice::from_session(Session::without_tab(document));
     unit.adopt_profile(profile);

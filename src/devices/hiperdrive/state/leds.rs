@@ -1,4 +1,5 @@
-//! Meaning of the LEDs: the user selects the visible states and sees their meaning and remedy. Requires no device.
+//! LED explanation: the user selects the LED states seen on the device, and gets their meanings and remedies. No
+//! connection is needed.
 
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::protocol::{
@@ -8,9 +9,9 @@ use crate::devices::hiperdrive::state::TEXTS;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Leds {
-    /// Whether the device is a hub rather than a bus adapter.
+    /// Whether the device is a hub, and not a bus adapter.
     pub hub: bool,
-    /// Position of switch S3 of a hub: 0 for all drives, otherwise the number of the drive shown by the RS485 LED.
+    /// Position of switch S3 of a hub: 0 for all drives, or the number of the drive that the RS485 LED stands for.
     pub s3: u8,
     /// State of the RS485 LED.
     pub drives: DriveLedState,
@@ -39,7 +40,7 @@ pub struct LedMeaning {
 }
 
 impl Default for Leds {
-    /// Creates LED states of a device without errors.
+    /// Creates the LED states of a device without errors.
     fn default() -> Self {
         Leds {
             hub: true,
@@ -77,7 +78,7 @@ impl Leds {
         }
     }
 
-    /// Sets the device and the position of S3. An LED whose state becomes impossible is switched off.
+    /// Sets the type of device and the position of S3. An LED whose state is then impossible is switched off.
     pub fn set_device(&mut self, hub: bool, s3: u8) {
         (self.hub, self.s3) = (hub, s3.min(8));
         if self.led_subject().row(self.drives).is_none() {
@@ -145,14 +146,14 @@ const BUS: [NetworkLedState; 6] = [
     NetworkLedState::Alternating,
 ];
 
-/// Returns the element after `now`, or the first element after the last.
+/// Returns the element after `now`, or the first one if `now` is the last.
 fn next<T: Copy + PartialEq>(all: &[T], now: T) -> T {
     let at = all.iter().position(|own| *own == now).map_or(0, |at| at + 1);
     all.get(at).or(all.first()).copied().unwrap_or(now)
 }
 
-/// Severity, and the text IDs of the meaning and the remedy. The English texts equal the phrases in the protocol
-/// tables.
+/// Severity, and the message IDs of meaning and remedy. The English messages equal the phrases in the tables of
+/// `protocol`.
 type Row = (Severity, &'static str, &'static str);
 
 fn drives(subject: LedSubject, light: DriveLedState) -> Row {
@@ -210,7 +211,7 @@ mod tests {
     use crate::app::Language;
     use crate::devices::hiperdrive::protocol::{BUS_LEDS, PORT_LEDS};
 
-    /// Checks that a sentence in the window equals the phrase in the table, apart from the capital letter and the full
+    /// Checks that a sentence in the window equals the phrase in the table, except for the capital letter and the full
     /// stop.
     #[track_caller]
     fn same(said: &Text, phrase: &str) {

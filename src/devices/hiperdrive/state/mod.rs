@@ -1,5 +1,5 @@
-//! State of the HIPERDRIVE tab: data known about an adapter or a hub and its drives, edits, and motion of the drives.
-//! It works without a window.
+//! State of the HIPERDRIVE tab: data about an adapter or a hub and its drives, edited values, and motion of the drives.
+//! It does not depend on a window.
 
 mod act;
 mod action;

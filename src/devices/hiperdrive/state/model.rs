@@ -1,4 +1,4 @@
-//! Implementation of the studio's device traits for HIPERDRIVE drives behind an adapter or a hub.
+//! Implements the device traits of the user interface for HIPERDRIVE drives behind an adapter or a hub.
 
 use std::convert::Infallible;
 

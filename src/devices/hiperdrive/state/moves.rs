@@ -1,9 +1,9 @@
 //! Motion of the drives as requested in the window: the held button, the running action, and the outcome of the
-//! previous one. Only the dead-man control behind [`Motion`] decides what is sent to a drive. This module refreshes its
-//! requests and ends them immediately when required.
+//! previous action. What is sent to a drive is decided only by the dead-man control behind [`Motion`]. This module
+//! refreshes its requests, and ends them immediately when required.
 //!
-//! A held button refreshes its jog in every frame. A move, a step and a run are refreshed by the frames themselves. If
-//! the window hangs, nothing is refreshed, and the drives stop 250 ms later.
+//! A jog is refreshed in every frame in which its button is held. A move, a step or a run is refreshed in every frame.
+//! If the window hangs, nothing is refreshed, and the drives stop 250 ms later.
 
 mod effort;
 
@@ -17,30 +17,31 @@ use crate::devices::hiperdrive::procedures::{DisplayedLimits, DriveLimits};
 use crate::devices::hiperdrive::protocol::{ActualValues, Direction, DriveNumber, RunEnd, Setpoint, State};
 use crate::units::Moment;
 
-/// Motion of the drives of a session, as requested by the user.
+/// Motion of the drives in a session, as requested by the user.
 pub struct DriveMotion {
     /// Motion handle, present while the session is open.
     motion: Option<Motion>,
     view: MotionSnapshot,
     act: Option<ActiveAction>,
-    /// Speed and torque of jogs, for drives on which they differ from the default.
+    /// Speed and torque of jogs, for each drive where they differ from the default.
     jogs: BTreeMap<DriveNumber, SpeedTorque>,
     jobs: BTreeMap<DriveNumber, SpeedTorque>,
-    /// Speed and torque of runs, for drives on which they differ from the default.
+    /// Speed and torque of runs, for each drive where they differ from the default.
     runs: BTreeMap<DriveNumber, SpeedTorque>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
-    /// Latest endless run, with its number. When it ends or is replaced, the next one must be allowed again.
+    /// Drive and number of the latest endless run. When it ends or is replaced, the next one must be allowed again.
     endless_run: Option<(DriveNumber, u64)>,
-    /// Direction enabled to move the drive further outside the limits, for the next press and the press in progress.
+    /// Direction in which the user has allowed the next jog to move the drive further outside its limits.
     freed: Option<(DriveNumber, Direction)>,
     used: Option<(DriveNumber, Direction)>,
-    /// Limits of the drives at the last update. Unconfirmed limits outlive a session.
+    /// Limits of the drives at the last update. The need to confirm them outlasts a session.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     looked: Moment,
-    /// Drives whose limits have changed since they were last queried.
+    /// Drives whose limits have changed since the last call of [`take_changed_limits`](Self::take_changed_limits).
     limits_changed: BTreeSet<DriveNumber>,
-    /// Whether the cyclic connection has been opened since this was last queried.
+    /// Whether the cyclic connection has been opened since the last call of
+    /// [`take_control_opened`](Self::take_control_opened).
     taken: bool,
 }
 
@@ -54,11 +55,11 @@ struct ActiveAction {
     is_reported: bool,
 }
 
-/// Kind of an action, which determines how the action is refreshed.
+/// Kind of action, which determines how it is refreshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Held,
-    /// An action that is refreshed in every frame and does not end without a stop.
+    /// A run, which is refreshed in every frame and lasts until it is stopped.
     Run,
     Other,
 }
@@ -85,8 +86,8 @@ impl Default for DriveMotion {
 }
 
 impl DriveMotion {
-    /// Begins a session. Unconfirmed limits remain unconfirmed, and endless runs are not allowed yet. Jogs and runs
-    /// last until they are stopped, so they begin slowly ([`SpeedTorque::DEFAULT_JOG`]).
+    /// Begins a session. Limits still to be confirmed remain so, and endless runs must be allowed again. Jogs and runs
+    /// last until they are stopped, so they start at the low speed of [`SpeedTorque::DEFAULT_JOG`].
     pub(super) fn begin_session(&mut self, motion: Motion) {
         for drive in self.unconfirmed_drives() {
             motion.revoke_limits_confirmation(drive);
@@ -119,8 +120,7 @@ impl DriveMotion {
         }
     }
 
-    /// Fetches the state of the drives and refreshes the actions that need a refresh with every frame. This function
-    /// must be called in every frame.
+    /// Fetches the state of the drives, and refreshes moves, steps and runs. It must be called in every frame.
     pub(super) fn send_heartbeat(&mut self) {
         if let (Some(motion), Some(act)) = (&self.motion, &self.act)
             && act.kind != Kind::Held
@@ -152,12 +152,13 @@ impl DriveMotion {
         }
     }
 
-    /// Returns the drives whose limits this program or another master has changed since the last query.
+    /// Returns the drives whose limits have changed since the last call, whether through this program or another
+    /// master.
     pub(super) fn take_changed_limits(&mut self) -> BTreeSet<DriveNumber> {
         std::mem::take(&mut self.limits_changed)
     }
 
-    /// Returns whether the cyclic connection has been opened since the last query.
+    /// Returns whether the cyclic connection has been opened since the last call.
     pub(super) fn take_control_opened(&mut self) -> bool {
         std::mem::take(&mut self.taken)
     }
@@ -185,7 +186,7 @@ impl DriveMotion {
         Some(number)
     }
 
-    /// Starts a jog, unless another one is held.
+    /// Starts a jog, unless the button of another jog is held.
     pub(super) fn press_jog(&mut self, drive: DriveNumber, jog: MotionRequest) {
         if !self.is_held() {
             self.submit_request(drive, jog, Kind::Held);
@@ -196,8 +197,8 @@ impl DriveMotion {
         }
     }
 
-    /// Returns whether the jog has ended although its button is still pressed. In this case, the button has no effect
-    /// until it is released.
+    /// Returns whether the jog has ended although its button is still held. The button has no effect until it has been
+    /// released.
     pub fn has_held_jog_ended(&self) -> bool {
         self.act.is_some_and(|act| act.kind == Kind::Held && self.has_ended(act.number, act.drive))
     }
@@ -211,13 +212,13 @@ impl DriveMotion {
         }
     }
 
-    /// Ends the jog when its button is released or no longer visible. The drive stops immediately, not at the next
+    /// Ends the jog when its button is released or disappears. The drive stops immediately, not only at the next
     /// update.
     pub(crate) fn release(&mut self) {
         self.stop_motion_of_kind(|kind| kind == Kind::Held);
     }
 
-    /// Ends an action that lasts until it is stopped: a jog or a run.
+    /// Ends an action that would last until stopped, that is, a jog or a run.
     pub(crate) fn release_held(&mut self) {
         self.freed = None;
         self.stop_motion_of_kind(|kind| matches!(kind, Kind::Held | Kind::Run));
@@ -236,14 +237,14 @@ impl DriveMotion {
         self.freed = Some((drive, direction));
     }
 
-    /// Returns whether the next or current jog in this direction may move the drive further outside the limits.
+    /// Returns whether the current or next jog in this direction may move the drive further outside its limits.
     pub fn is_outward_jog_enabled(&self, drive: DriveNumber, direction: Direction) -> bool {
         let way = Some((drive, direction));
         self.freed == way || self.used == way && self.is_held()
     }
 
-    /// Starts a move, a step or a change of state, which every frame refreshes. Returns the number of the action, or
-    /// `None` while the session is not open.
+    /// Starts a move, a step, a run or a change of state. Returns the number of the action, or `None` if no session is
+    /// open.
     pub(super) fn request_motion(&mut self, drive: DriveNumber, request: MotionRequest) -> Option<u64> {
         let kind = if matches!(request, MotionRequest::Run { .. }) { Kind::Run } else { Kind::Other };
         let number = self.submit_request(drive, request, kind)?;
@@ -270,7 +271,7 @@ impl DriveMotion {
         }
     }
 
-    /// Confirms the limits as shown to the user. Returns whether the confirmation took effect.
+    /// Confirms the limits as shown to the user. Returns whether the confirmation is valid.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, seen: DisplayedLimits) -> bool {
         let counts = self.motion.as_ref().is_some_and(|motion| motion.confirm_limits(drive, seen));
         self.update();
@@ -304,7 +305,7 @@ impl DriveMotion {
         &self.view
     }
 
-    /// Returns the state of a drive at the last update, or `None` without a cyclic connection.
+    /// Returns a drive as of the last update, or `None` without a cyclic connection.
     pub fn drive(&self, drive: DriveNumber) -> Option<&DriveSnapshot> {
         self.view.drives.iter().find(|own| own.number == drive).filter(|_| self.view.open)
     }
@@ -317,7 +318,7 @@ impl DriveMotion {
         self.drive(drive).map(|own| own.sent)
     }
 
-    /// Returns the target of the job of a drive, if any.
+    /// Returns the target of the drive's current job, if any.
     pub fn target(&self, drive: DriveNumber) -> Option<i32> {
         match self.phase(drive)? {
             Phase::Starting(MotionKind::Job { target }) | Phase::Moving(MotionKind::Job { target }) => Some(target),
@@ -330,7 +331,7 @@ impl DriveMotion {
         self.drive(drive).map(|own| own.phase)
     }
 
-    /// Returns the motion permit of a drive, or `None` while the session is not open.
+    /// Returns the motion permit of a drive, or `None` if no session is open.
     pub fn motion_permit(&self, drive: DriveNumber) -> Option<Permit> {
         self.motion.as_ref().map(|motion| motion.motion_permit(drive))
     }
@@ -340,12 +341,12 @@ impl DriveMotion {
         self.limits.get(&drive)
     }
 
-    /// Returns whether a motion of a drive may start, given the limits at the last update.
+    /// Returns whether a drive may start moving with its limits as of the last update.
     pub(super) fn are_limits_valid(&self, drive: DriveNumber) -> bool {
         self.limits(drive).is_some_and(|limits| limits.is_valid(self.looked))
     }
 
-    /// Requires the limits of a drive to be read before it moves.
+    /// Requires that the limits of a drive are read before it moves.
     pub(super) fn invalidate_limits(&mut self, drive: DriveNumber) {
         self.limits.entry(drive).or_default().invalidate(self.looked);
         if let Some(motion) = &self.motion {
@@ -365,7 +366,7 @@ impl DriveMotion {
         held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest_action(act.number)))
     }
 
-    /// Returns the action number and direction of a held jog button of a drive.
+    /// Returns the action number and direction of a jog, if its button is held and the drive is moving.
     pub fn held_jog(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
         let act = self.act.filter(|act| act.drive == drive && self.is_held())?;
         match self.phase(drive)? {
@@ -374,7 +375,7 @@ impl DriveMotion {
         }
     }
 
-    /// Returns whether data have been received for long enough to be valid. The first packets of a connection contain
+    /// Returns whether data have been arriving for long enough to be valid. The first packets of a connection contain
     /// no valid positions.
     pub fn is_data_valid(&self) -> bool {
         let link = &self.view.link;
@@ -386,7 +387,7 @@ impl DriveMotion {
         self.view.open && self.view.drives.iter().any(is_moving) || self.is_held() || self.is_motion_active()
     }
 
-    /// Returns whether an action that must be refreshed is running.
+    /// Returns whether an action is running that must be refreshed.
     pub fn is_motion_active(&self) -> bool {
         let own = |act: &ActiveAction| {
             let is_latest = self.motion.as_ref().is_some_and(|motion| motion.is_latest_action(act.number));
@@ -400,8 +401,7 @@ impl DriveMotion {
         self.drive(drive).is_some_and(is_moving) || self.moving_drive() == Some(drive)
     }
 
-    /// Returns the drive that this window is moving or whose job is paused. Any other request ends the motion or the
-    /// job.
+    /// Returns the drive that is moving or whose job is paused. A new request ends this motion or job.
     pub fn moving_drive(&self) -> Option<DriveNumber> {
         let asked = self.act.filter(|act| act.moves && self.is_motion_active()).map(|act| act.drive);
         let has_job =

@@ -1,5 +1,5 @@
-//! Network settings of a device: its TCP/IP object, the edited values, the effect of switches S1 and S2, and the result
-//! at the next power-up (reference, section 1). This module sends nothing to the device.
+//! Network settings of a device: its TCP/IP object, the edited values, the effect of switches S1 and S2, and the
+//! outcome at the next power-up (reference, section 1). This module sends nothing to the device.
 
 use core::net::Ipv4Addr;
 
@@ -17,17 +17,17 @@ pub struct Form {
     pub mask: String,
     /// Default gateway, or empty if there is none.
     pub gateway: String,
-    /// Name servers. An empty string means that there is none.
+    /// Name servers. An empty string stands for none.
     pub name_servers: [String; 2],
     pub domain: String,
 }
 
-/// Source of the address after the next power-up.
+/// Source of the IP address after the next power-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PowerUpAddress {
     Fixed(Ipv4Addr),
     Stored(Ipv4Addr),
-    /// The stored address is selected, but none is stored.
+    /// The stored address is selected, but there is none.
     NothingStored,
     Bootp,
     Dhcp,
@@ -36,7 +36,7 @@ pub enum PowerUpAddress {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Position {
-    /// Numbers of the switch position, such as `0` or `1…96`.
+    /// Switch positions as displayed, such as `0` or `1…96`.
     pub digits: &'static str,
     pub meaning: Text,
     pub is_now: bool,
@@ -56,13 +56,13 @@ impl Form {
         }
     }
 
-    /// Returns whether addresses can be entered, which requires the stored source. With any other source a server
-    /// assigns the addresses.
+    /// Returns whether addresses can be entered, which is the case only for the *stored* source. With other sources, a
+    /// server assigns the addresses.
     pub fn are_addresses_editable(&self) -> bool {
         self.source == AddressSource::Stored
     }
 
-    /// Returns the edited settings. If a server assigns the addresses, the current addresses are kept.
+    /// Returns the edited settings. The current addresses are kept if a server assigns the addresses.
     ///
     /// # Errors
     /// Returns an error with the reason if an entry is invalid.
@@ -83,7 +83,7 @@ impl Form {
     }
 }
 
-/// Parses an address of four numbers separated by dots. An empty string means no address.
+/// Parses an address of four numbers separated by dots. An empty string stands for no address.
 fn address(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
     match text.trim() {
         "" => Ok(Ipv4Addr::UNSPECIFIED),
@@ -100,7 +100,7 @@ fn required_address(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
     }
 }
 
-/// Explains why a device would be unreachable with these settings.
+/// Explains why the device would be unreachable with these settings.
 pub fn address_error_text(error: &AddressError) -> Text {
     match error {
         AddressError::None => TEXTS.text("hd_net.none"),
@@ -117,8 +117,8 @@ pub fn address_error_text(error: &AddressError) -> Text {
 }
 
 impl PowerUpAddress {
-    /// Returns the address source for the given switches and settings. Unreadable switches are taken as 0, because some
-    /// devices have no switches.
+    /// Returns the address source that results from the switches and the settings. If the switches are unreadable, they
+    /// are taken to be at 0, since some devices have none.
     pub fn from_settings(switch: Option<AddressSwitch>, settings: &NetworkSettings) -> Self {
         let stored = match settings.interface.address {
             address if address.is_unspecified() => PowerUpAddress::NothingStored,
@@ -138,7 +138,7 @@ impl PowerUpAddress {
         }
     }
 
-    /// Returns the address after the next power-up, if already known.
+    /// Returns the address after the next power-up, if it is already known.
     pub const fn address(self) -> Option<Ipv4Addr> {
         match self {
             PowerUpAddress::Fixed(address) | PowerUpAddress::Stored(address) => Some(address),
@@ -161,8 +161,8 @@ impl PowerUpAddress {
     }
 }
 
-/// Describes the effect of the settings after the next power-up and the consequences for the link. `host` is the
-/// current address of the device, if it is numeric.
+/// Describes the effect of the settings at the next power-up, and what this means for the link. `host` is the current
+/// address of the device, if it is numeric.
 pub fn consequence_texts(
     switch: Option<AddressSwitch>,
     now: &NetworkSettings,
@@ -233,7 +233,7 @@ mod tests {
         NetworkSettings { source, interface }
     }
 
-    /// The switches select one of five ways to obtain an address (manual, section 5).
+    /// The switches select one of five address sources (manual, section 5).
     #[test]
     fn the_switches_select_the_address_source() {
         let stored = Ipv4Addr::new(10, 0, 0, 7);

@@ -1,5 +1,5 @@
-//! Position of a drive outside its limits: the distance to the limit, and the directions that lead back in and further
-//! out. The user can enable the outward direction for one press, because a wrong reference may leave no other way back.
+//! Drives outside their limits: how far they are outside, and which directions lead back in and further out. The user
+//! can allow the outward direction for one press, because with a wrong reference it may be the only way back.
 
 use super::unit::HiperdriveDevice;
 use crate::app::services::Services;
@@ -16,14 +16,14 @@ pub struct OutOfRangePosition {
     pub position: i32,
     /// Lower and upper limit in scaled steps, parameters 158 and 160.
     pub limits: (i32, i32),
-    /// Whether the drive is outside its limits by more than its repeatability. Otherwise, the drive is merely at the
-    /// end of its range.
+    /// Whether the drive is outside its limits by more than its repeatability. If not, it is merely at the end of its
+    /// range.
     pub is_far: bool,
 }
 
 impl HiperdriveDevice {
-    /// Returns how a drive is outside its limits according to its position or status bit 15. Returns `None` if the
-    /// drive is inside, or if position or limits are unknown.
+    /// Returns how the drive is outside its limits, according to its position or status bit 15. Returns `None` if it is
+    /// inside, or if position or limits are unknown.
     pub fn out_of_range_position(&self, drive: DriveNumber) -> Option<OutOfRangePosition> {
         let (actual, limits) = (self.actual_values(drive)?, self.limits(drive)?);
         let degree = self.drive_limits(drive).map_or(1, |own| own.steps_per_degree());
@@ -36,7 +36,7 @@ impl HiperdriveDevice {
         Some(OutOfRangePosition { outside, position: actual.position, limits, is_far })
     }
 
-    /// Returns the message for a drive outside its limits, or `None` if it is inside or at the end of its range.
+    /// Returns a message if the drive is outside its limits, and not merely at the end of its range.
     pub fn outside_limits_text(&self, drive: DriveNumber) -> Option<Text> {
         let own = self.out_of_range_position(drive).filter(|own| own.is_far)?;
         let id = if own.outside == OutsideLimits::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
@@ -44,7 +44,7 @@ impl HiperdriveDevice {
         Some(text.with_text("range", self.range_text(drive, own.limits)))
     }
 
-    /// Checks whether a drive may be jogged in this direction now.
+    /// Checks whether the drive may be jogged in this direction now.
     ///
     /// # Errors
     /// Returns an error with the reason if the drive may not be jogged.
@@ -53,14 +53,14 @@ impl HiperdriveDevice {
         self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: SpeedTorque::DEFAULT_JOG, outward })
     }
 
-    /// Returns whether jogging in this direction is blocked, because it may move the drive further outside the limits
-    /// and has not been enabled.
+    /// Returns whether jogging in this direction is blocked. It is if it may move the drive further outside and the
+    /// user has not allowed this.
     pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
         let is_outward = self.out_of_range_position(drive).is_some_and(|own| own.outside.is_outward(direction));
         is_outward && !self.moves.is_outward_jog_enabled(drive, direction)
     }
 
-    /// Returns whether jogging in this direction is blocked but can be enabled for a single press of the button.
+    /// Returns whether jogging in this direction is blocked, but the user can allow it for a single press.
     pub fn can_enable_outward_jog(&self, drive: DriveNumber, direction: Direction) -> bool {
         self.may_move_until_stopped(drive).is_ok() && self.is_blocked(drive, direction)
     }
@@ -73,11 +73,10 @@ impl HiperdriveDevice {
         self.report_drive_message(drive, Severity::Warning, vec![why], services);
     }
 
-    /// Returns the change that assigns a position in scaled steps to the current location of a drive, including the
-    /// save.
+    /// Returns the change that assigns a position in scaled steps to the current location of the drive, and saves it.
     ///
     /// # Errors
-    /// Returns an error with the reason if the drive would not accept a position outside the limits.
+    /// Returns an error with the reason if the position is outside the limits, so that the drive would reject it.
     pub fn reference_change(&self, drive: DriveNumber, position: i32) -> Result<Change, Text> {
         let (low, high) = self.limits(drive).ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(position).filter(|own| (low..=high).contains(own));

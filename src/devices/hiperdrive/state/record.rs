@@ -1,4 +1,4 @@
-//! Recording the selected drive: position, measured speed and target.
+//! Records the selected drive: position, measured speed and target.
 
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::protocol::SpeedScale;
 pub(super) enum RecordedValue {
     /// Actual speed of the drive, in rpm.
     Speed,
-    /// Target in the steps of a ruler.
+    /// Target, in steps of this ruler.
     Target(Ruler),
     Temperature(Temperature),
 }
@@ -37,7 +37,7 @@ impl Record {
         self.track.record_dropped(dropped);
     }
 
-    /// Records a reading together with the target of the drive at that time.
+    /// Records a reading, together with the target at that time.
     pub(super) fn add_reading(&mut self, reading: DriveReading, ruler: Ruler, speed: SpeedScale, target: Option<i32>) {
         let (at, actual) = (reading.at, reading.actual);
         let status = actual.status;
@@ -63,7 +63,7 @@ impl Record {
         self.last = Some(reading);
     }
 
-    /// Starts recording the given temperatures. Existing recordings of other temperatures are kept.
+    /// Starts recording these temperatures. What has already been recorded of others is kept.
     pub(super) fn watch_temperatures(&mut self, wished: &[Temperature]) {
         self.temperatures = wished.to_vec();
         let others =
@@ -72,7 +72,8 @@ impl Record {
         self.track.set_watched(&others.chain(wished).collect::<Vec<_>>());
     }
 
-    /// Records a temperature. A temperature that is not being recorded is ignored, since it belongs to another drive.
+    /// Records a temperature. Any other temperature than the watched ones is ignored, since it belongs to another
+    /// drive.
     pub(super) fn add_temperature(&mut self, reading: TemperatureReading) {
         let never = reading.celsius.is_none().then(|| TEXTS.text("hd_watch.never"));
         let value = reading.celsius.map(Value::Whole);
@@ -84,7 +85,7 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Marks a gap before the next samples because another drive was selected.
+    /// Marks a gap before the next sample, because another drive was selected.
     pub(super) fn mark_gap(&mut self) {
         self.last = None;
         self.track.mark_gap();
@@ -96,7 +97,7 @@ impl Record {
     }
 }
 
-/// Returns the units of recorded positions, with millimetres first if the drive turns a spindle.
+/// Returns the units for recorded positions. Millimetres come first if the drive turns a spindle.
 fn position_scales(ruler: Ruler) -> PositionScales {
     let mut meaning = PositionScales::for_steps_per_turn(None, ruler.scale.steps_per_turn());
     if let Some(millimetres) = ruler.from_steps(1, PositionUnit::Millimetres) {
@@ -114,8 +115,8 @@ impl Watchable for RecordedValue {
         matches!(self, RecordedValue::Target(_) | RecordedValue::Temperature(_))
     }
 
-    /// Returns whether the recording can continue if positions are converted differently. A change of the pitch only
-    /// affects how steps are displayed. With another scale, a step is a different distance.
+    /// Returns whether the recording can continue after positions are converted in another way. A new pitch changes
+    /// only the display of steps. A new scale changes the length of a step.
     fn can_continue_as(&self, other: &Self) -> bool {
         match (self, other) {
             (RecordedValue::Target(own), RecordedValue::Target(other)) => own.scale == other.scale,

@@ -1,4 +1,4 @@
-//! Tests of the draft format in users' files.
+//! Tests of the format in which drafts are stored in users' files.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::hiperdrive::jobs::Hiperdrive;

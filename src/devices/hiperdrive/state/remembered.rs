@@ -1,4 +1,4 @@
-//! Exchange of stored data about drives between a session and the settings.
+//! Exchanges stored data about drives between a session and the settings.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +7,7 @@ use super::unit::HiperdriveDevice;
 use crate::app::{RememberedDrives, SettingsReadState, StoredDriveData};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
 
-/// Values last exchanged between the session of a device and the settings.
+/// Values as of the last exchange between a session and the settings.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ExchangedValues {
     kept: RememberedDrives,
@@ -15,7 +15,7 @@ pub(super) struct ExchangedValues {
     measure: PositionUnit,
     unsaved: BTreeMap<u16, i64>,
     unconfirmed: BTreeSet<DriveNumber>,
-    /// Latest scales of the drives whose limits are unconfirmed.
+    /// Last known scales of the drives whose limits must be confirmed.
     scales: BTreeMap<DriveNumber, (i64, i64)>,
 }
 

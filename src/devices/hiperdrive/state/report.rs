@@ -1,4 +1,4 @@
-//! Values of an adapter or a hub in a report: identities, the travel of each drive, and all parameters.
+//! Sections on an adapter or a hub in a report: identities, the travel of each drive, and all parameters.
 
 use super::rows::Row;
 use super::ruler::PositionUnit;
@@ -46,8 +46,8 @@ pub(super) fn content(
     Ok(ReportContent { title, key, sections })
 }
 
-/// Returns the errors of a drive, newest first, and whether it is outside its limits. Acknowledged errors are listed as
-/// earlier errors.
+/// Returns the errors of a drive, newest first, and whether it is outside its limits. Acknowledged errors are marked as
+/// earlier ones.
 pub fn status_lines(drive: &DriveStatus) -> Vec<StatusLine> {
     let place = TEXTS.text("report.hd_drive").with("drive", drive.number.get());
     let present = drive.present_error_count();
@@ -88,7 +88,7 @@ fn drive_section(
     section.with(Block::Table(parameter_table(context, profile, unit.rows(Some(drive)))))
 }
 
-/// Returns the travel limits of a drive in turns of its shaft, and the distance between them.
+/// Returns the limits of a drive in turns of its shaft, and the distance between them.
 fn travel_fact(
     context: &ReportContext<'_>,
     profile: &HiperdriveProfile,

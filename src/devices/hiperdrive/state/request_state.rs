@@ -1,4 +1,4 @@
-//! Requests that a drive currently accepts, the reasons why it rejects others, and the state of the last request.
+//! What a drive can be requested to do now, why other requests are rejected, and the state of the last request.
 
 use super::action::MotorCommand;
 use super::ruler::PositionUnit;
@@ -17,7 +17,7 @@ use crate::devices::hiperdrive::state::explain;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequestState {
     pub words: Text,
-    /// Whether no action is needed.
+    /// Whether nothing needs to be done.
     pub is_well: bool,
 }
 
@@ -72,7 +72,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Sets whether the window is operated over a remote desktop. If it is, jogs and runs end.
+    /// Sets whether the window is operated over a remote desktop. If so, ends a jog or a run.
     pub(super) fn set_remote(&mut self, is_remote: bool) {
         self.is_remote = is_remote;
         if is_remote {
@@ -80,7 +80,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Checks whether a drive may start a motion that lasts until the user stops it, that is, a jog or a run.
+    /// Checks whether a drive may start a jog or a run, which lasts until the user stops it.
     ///
     /// # Errors
     /// Returns an error with the reason if the drive may not be moved in this way.
@@ -89,7 +89,7 @@ impl HiperdriveDevice {
         if self.is_remote { Err(TEXTS.text("hd_refused.remote")) } else { Ok(()) }
     }
 
-    /// Checks whether a drive may run past its limits.
+    /// Checks whether a drive may run past its limits now.
     ///
     /// # Errors
     /// Returns an error with the reason if the drive may not do so.
@@ -99,10 +99,10 @@ impl HiperdriveDevice {
         if permitted { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
     }
 
-    /// Checks whether an endless run can be enabled, which requires factory limits and scaling.
+    /// Checks whether an endless run can be allowed, which requires factory limits and scaling.
     ///
     /// # Errors
-    /// Returns an error with the reason if an endless run cannot be enabled.
+    /// Returns an error with the reason if an endless run cannot be allowed.
     pub fn check_can_allow_endless_run(&self, drive: DriveNumber) -> Result<(), Text> {
         let could = self.moves.limits(drive).is_some_and(DriveLimits::is_endless_run_allowed);
         if could { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
@@ -141,8 +141,8 @@ impl HiperdriveDevice {
         permit.check_request(request, asks_target).and(here).map_err(|refusal| explain::refusal_text(refusal, place))
     }
 
-    /// Checks whether a request may end the current motion. A stop and a jog of the same drive may. Other requests may
-    /// neither end the motion of another drive nor replace a step or a move before its end.
+    /// Checks whether a request may end the current motion. A stop or a jog of the same drive may. Any other request
+    /// must not end the motion of another drive, nor a step or a move that is still in progress.
     fn check_may_end_motion(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
         match self.moves.moving_drive() {
             Some(mover) if mover != drive && request != MotionRequest::Stop => {
@@ -160,7 +160,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Reports a message about a drive. The drive is named if there are several.
+    /// Notifies the user about a drive. The message includes the name of the drive if there are several.
     pub(super) fn report_drive_message(
         &self,
         drive: DriveNumber,
@@ -171,7 +171,7 @@ impl HiperdriveDevice {
         services.notify_part(severity, texts, (Some(&self.session.name()), self.drive_name(drive)));
     }
 
-    /// Returns the name of a drive, or `None` if there is only one.
+    /// Returns the name of a drive, or `None` if there is only one drive.
     pub fn drive_name(&self, drive: DriveNumber) -> Option<Text> {
         (self.drives().len() > 1).then(|| TEXTS.text("hd_bar.named").with("drive", drive.get()))
     }
@@ -188,8 +188,8 @@ impl HiperdriveDevice {
         TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
     }
 
-    /// Formats a position in all units. The same number of steps may denote another position under another scale.
-    /// Degrees are included only if selected.
+    /// Formats a position in all units, since the number of steps alone depends on the scale. Degrees are included only
+    /// if selected.
     pub fn position_texts(&self, drive: DriveNumber, steps: i32) -> Vec<Text> {
         let ruler = self.ruler(drive);
         let wanted = |own: &PositionUnit| *own != PositionUnit::Degrees || *own == self.measure;
@@ -202,14 +202,14 @@ impl HiperdriveDevice {
         ruler.available_units().filter(wanted).filter_map(place).collect()
     }
 
-    /// Formats a range between two positions with the unit.
+    /// Formats a range of positions, with the unit.
     pub fn range_text(&self, drive: DriveNumber, (low, high): (i32, i32)) -> Text {
         let ((low, ..), (high, decimals, unit)) = (self.in_user_unit(drive, low), self.in_user_unit(drive, high));
         let text = TEXTS.text("hd_entry.range").with_number("low", low, decimals);
         text.with_number("high", high, decimals).with_text("unit", unit)
     }
 
-    /// Returns a position as value, number of decimals and unit, in the user's unit.
+    /// Converts a position to the user's unit. Returns the value, its number of decimals, and the unit.
     fn in_user_unit(&self, drive: DriveNumber, steps: i32) -> (f64, usize, Text) {
         let ruler = self.ruler(drive);
         let value = ruler.from_steps(i64::from(steps), self.measure);
@@ -217,8 +217,8 @@ impl HiperdriveDevice {
         (value, ruler.decimal_places(measure), TEXTS.text(measure.unit()))
     }
 
-    /// Returns the states that a drive can reach from its current state with a single control word. The list is empty
-    /// if this program does not control the drive.
+    /// Returns the states that the drive can reach from its current state with one control word. The list is empty if
+    /// this program does not control the drive.
     pub fn reachable_states(&self, drive: DriveNumber) -> Vec<State> {
         let Some(state) = self.state(drive).filter(|_| self.check_controllable().is_ok()) else { return Vec::new() };
         let mut reachable = Vec::new();
@@ -230,15 +230,15 @@ impl HiperdriveDevice {
         reachable
     }
 
-    /// Describes the control word that brings a drive to a state, and whether the manual documents it.
+    /// Describes the control word that leads to a state, and whether the manual documents it.
     pub fn transition_hint(&self, drive: DriveNumber, to: State) -> Option<Text> {
         let row = self.state(drive)?.transitions().find(|row| row.to == to && row.word.is_some())?;
         let id = if row.assumed { "hd_hint.assumed" } else { "hd_hint.word" };
         Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.to_u16())))
     }
 
-    /// Returns the request that brings a drive to one of the [`reachable_states`](Self::reachable_states), or `None` if
-    /// no request does. A fault is left through an acknowledgement, after which the drive is in the switch-on lock.
+    /// Returns the command that leads to one of the [`reachable_states`](Self::reachable_states), or `None` if no
+    /// command does. An acknowledgement leads from a fault to the switch-on lock.
     pub const fn leads_to(to: State) -> Option<MotorCommand> {
         match to {
             State::NotReady => Some(MotorCommand::Lead(TargetState::Off)),
@@ -250,8 +250,8 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Describes the running action of a drive, or how the last one ended. Returns `None` without a cyclic connection
-    /// and before the first action.
+    /// Describes the running action of the drive, or how its last action ended. Returns `None` without a cyclic
+    /// connection, and before the first action.
     pub fn current_or_last_request(&self, drive: DriveNumber) -> Option<RequestState> {
         let view = self.moves.drive(drive)?;
         if view.phase != Doing::Idle {
@@ -262,26 +262,26 @@ impl HiperdriveDevice {
         Some(RequestState { words, is_well: explain::end_severity(ended) == Severity::Note })
     }
 
-    /// Explains why control was lost, or returns `None` if control is present, was released or was never taken.
+    /// Explains why control was lost. Returns `None` if this program has control, has released it or never had it.
     pub fn loss_reason(&self) -> Option<Text> {
         let view = self.moves.snapshot();
         view.lost.as_ref().filter(|_| !view.open).map(|lost| explain::cyclic_loss_text(Some(lost)))
     }
 
-    /// Formats the speed for a percentage, based on parameter 166.
+    /// Formats the speed that corresponds to a percentage, based on parameter 166.
     pub fn speed_text(&self, percent: Percent) -> Option<Text> {
         Some(TEXTS.text("hd_entry.rpm").with_number("rpm", self.speed_rpm(percent)?, 1))
     }
 
-    /// Returns the speed for a percentage in rpm, based on parameter 166.
+    /// Returns the speed in rpm that corresponds to a percentage, based on parameter 166.
     fn speed_rpm(&self, percent: Percent) -> Option<f64> {
         let most = self.parameter_value(self.drive(), MAXIMUM_SPEED)?;
         // The maximum speed is in tenths of rpm, and the setting is in percent.
         Some(most as f64 * f64::from(percent.get()) / 1000.0)
     }
 
-    /// Returns the distance from the actual position to `target`, and how long a move takes at the set speed. The time
-    /// does not include acceleration. Returns `None` while the position or the speed is unknown, and during a motion.
+    /// Describes the distance to `target`, and the time that a move takes at the set speed, not counting acceleration.
+    /// Returns `None` during a motion, or if the position or the speed is unknown.
     pub fn move_estimate(&self, target: i32) -> Option<Text> {
         let drive = self.drive();
         let distance = target.saturating_sub(self.actual_values(drive)?.position);
@@ -302,7 +302,8 @@ impl HiperdriveDevice {
         })
     }
 
-    /// Formats the torque that the drive applies for a percentage, rounded up to the next 25 %.
+    /// Formats the torque that the drive actually applies: the percentage rounded up to a multiple of 25 %. Returns
+    /// `None` if it equals the percentage.
     pub fn torque_text(&self, percent: Percent) -> Option<Text> {
         let effective = effective_torque(percent.get());
         (effective != percent.get()).then(|| TEXTS.text("hd_entry.torque").with("percent", effective))

@@ -1,4 +1,4 @@
-//! Review of a write to a HIPERDRIVE: permits, warnings and cost of its plan.
+//! Review of a write before the user approves it: required permits, warnings, and the number of saves.
 
 use super::axis::labels::millimetres_text;
 use super::format;
@@ -95,7 +95,7 @@ impl Reviewable for Hiperdrive {
     }
 }
 
-/// Describes an operation. Positions are in millimetres if the spindle pitch of the drive is known.
+/// Describes an operation. Positions are given in millimetres if the spindle pitch of the drive is known.
 pub(super) fn operation_texts(
     prepared: &Prepared,
     op: &Op,
@@ -118,8 +118,8 @@ pub(super) fn operation_texts(
     words
 }
 
-/// Describes a value. Positions are given in millimetres if the pitch is known, and otherwise in turns, under the scale
-/// of the image.
+/// Describes a value. Positions are given in millimetres if the pitch is known, and otherwise in turns. `image`
+/// contains the scale.
 fn value_meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Length>) -> Option<Text> {
     match (number.drive1_number(), number.drive()) {
         (LOWER_LIMIT | UPPER_LIMIT | 170 | 176 | REFERENCE, Some(drive)) => {

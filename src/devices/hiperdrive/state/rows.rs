@@ -1,4 +1,4 @@
-//! Parameters as table rows, each with its value, allowed range, factory setting and edit.
+//! Rows of the parameter table: value, allowed range, factory setting and edit of each parameter.
 
 use super::format;
 use super::ruler::PositionUnit;
@@ -21,33 +21,33 @@ use crate::devices::hiperdrive::state::explain as explained;
 pub struct Row {
     pub number: ParameterNumber,
     pub name: Text,
-    /// Row of the manual's parameter table.
+    /// Row in the parameter table of the manual.
     pub kind: &'static ParameterRow,
     /// Value of the parameter, or `None` if it has not been read or is not in the profile.
     pub value: Option<Value>,
-    /// Text that the table shows as the value. It is empty if there is no value.
+    /// Value as shown in the table, or an empty string if there is none.
     pub shown: String,
-    /// Meaning of the value, if the number is not self-explanatory.
+    /// Meaning of the value, unless the number is self-explanatory.
     pub meaning: Option<Text>,
     /// Unit, if any.
     pub unit: Option<Text>,
     /// Allowed range, or `None` for strings.
     pub range: Option<Text>,
-    /// Travel of the drive in steps of the edited scale.
+    /// Travel of the drive, in steps of the edited scale.
     pub travel: Travel,
-    /// Factory setting, or empty if unknown.
+    /// Factory setting, or an empty string if unknown.
     pub factory: String,
-    /// Edited value, or `None` if the parameter has not been or cannot be edited.
+    /// Edited value, or `None` if the parameter has not been edited or cannot be edited.
     pub staged: Option<i64>,
     pub is_edited: bool,
-    /// Value from the previous reading, or `None` if it has not changed since.
+    /// Value from the previous reading, or `None` if it is still the same.
     pub changed_from: Option<i64>,
-    /// Whether the parameter can be edited as a value.
+    /// Whether the parameter has a value that can be edited.
     pub is_editable: bool,
 }
 
 impl Row {
-    /// Returns the reason why the parameter cannot be edited as a value, or `None` if it can be edited.
+    /// Returns the reason why the parameter has no value that can be edited, or `None` if it has one.
     pub fn not_editable_reason(&self) -> Option<Text> {
         let id = match self.kind.access {
             _ if self.is_editable => return None,
@@ -59,8 +59,7 @@ impl Row {
 }
 
 impl HiperdriveDevice {
-    /// Returns the parameters of a drive or of the device, either those that were read or those that a profile can
-    /// contain.
+    /// Returns the parameters of a drive, or of the device: all that were read, or all that a profile can contain.
     pub fn rows(&self, of: Option<DriveNumber>) -> Vec<Row> {
         let number = |row: &ParameterRow| match of {
             Some(drive) => ParameterNumber::for_drive(row.number, drive),
@@ -107,7 +106,8 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Returns a value from the cyclic data of a drive if it is newer than the reading: words, measurements and errors.
+    /// Returns a value from the cyclic data of a drive, which are newer than the reading. They include control and
+    /// status words, measurements and errors.
     fn cyclic_value(&self, number: ParameterNumber) -> Option<Value> {
         let drive = number.drive()?;
         let value = match number.drive1_number() {
@@ -139,7 +139,7 @@ impl HiperdriveDevice {
         variant.row().map(|row| row.family)
     }
 
-    /// Returns the travel of the drive of a parameter, in steps of the edited scale.
+    /// Returns the travel of the drive to which a parameter belongs, in steps of the edited scale.
     fn travel(&self, number: ParameterNumber) -> Travel {
         number.drive().map_or(Travel::UNKNOWN, |drive| Travel {
             family: self.family(drive),
@@ -147,7 +147,7 @@ impl HiperdriveDevice {
         })
     }
 
-    /// Describes a value if the number is not self-explanatory.
+    /// Describes what a value means. Returns `None` if the number is self-explanatory.
     fn value_meaning(&self, number: ParameterNumber, value: &Value) -> Option<Text> {
         let value = match value {
             Value::Number(value) => value,

@@ -1,4 +1,4 @@
-//! Conversion between the steps of a drive and the user's units: turns, degrees, millimetres of a spindle.
+//! Converts between the steps of a drive and the user's units: turns, degrees, and millimetres on a spindle.
 
 pub use crate::app::PositionUnit;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
@@ -11,13 +11,13 @@ pub struct Ruler {
     pub pitch: Option<Length>,
 }
 
-/// The reason why a number is not a valid position.
+/// Reason why a number is not a valid position.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PositionRangeError {
-    /// The position exceeds 32 bits. Contains the minimum and the maximum.
+    /// The position exceeds 32 bits. The fields are the minimum and the maximum.
     #[error("the position must be between {least} and {most}")]
     Bits { least: f64, most: f64 },
-    /// A position in millimetres requires a pitch.
+    /// A position in millimetres needs a pitch.
     #[error("the spindle pitch is not known")]
     NoPitch,
 }
@@ -26,7 +26,7 @@ impl Ruler {
     /// Ruler with the factory scale and no spindle.
     pub const FACTORY: Ruler = Ruler { scale: PositionScale::FACTORY, pitch: None };
 
-    /// Returns the number of steps per unit, or `None` for millimetres without a pitch.
+    /// Returns the number of steps per unit, or `None` for millimetres if there is no pitch.
     fn steps_per_unit(self, measure: PositionUnit) -> Option<f64> {
         let turn = self.scale.steps_per_turn();
         match measure {
@@ -43,7 +43,7 @@ impl Ruler {
         PositionUnit::ALL.into_iter().filter(move |measure| self.steps_per_unit(*measure).is_some())
     }
 
-    /// Converts steps to a unit. Returns `None` for millimetres without a pitch.
+    /// Converts steps to a unit. Returns `None` for millimetres if there is no pitch.
     pub fn from_steps(self, steps: i64, measure: PositionUnit) -> Option<f64> {
         Some(steps as f64 / self.steps_per_unit(measure)?)
     }
@@ -64,14 +64,14 @@ impl Ruler {
         }
     }
 
-    /// Returns the number of decimals that distinguishes all steps.
+    /// Returns the number of decimals needed to distinguish adjacent steps.
     pub fn decimal_places(self, measure: PositionUnit) -> usize {
         let unit = self.steps_per_unit(measure).unwrap_or(1.0);
         // At most 9, because the steps per turn are at most 256 times a five-digit number.
         (0..9).find(|decimals| 10f64.powi(*decimals) >= unit * 0.999_999).map_or(9, |decimals| decimals as usize)
     }
 
-    /// Converts the steps of a position to another scale. The result may not fit in 32 bits.
+    /// Converts a position in steps to another scale. The result may not fit in 32 bits.
     pub fn rescale_position(self, steps: i64, to: PositionScale) -> i64 {
         // The product of a position and two 16-bit numbers fits into 128 bits.
         let above = i128::from(steps) * i128::from(to.numerator()) * i128::from(self.scale.denominator());

@@ -1,4 +1,4 @@
-//! Drive data and requests of the axis set-up, and the network settings of a device.
+//! Data and requests that connect the axis set-up and the network settings with a device.
 
 use core::net::Ipv4Addr;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain;
 use crate::store::write_atomically;
 
-/// Parameters of a drive that the set-up uses, by their numbers for drive 1.
+/// Parameters used by the set-up, by their numbers for drive 1.
 const AXIS: std::ops::RangeInclusive<u16> = 152..=REFERENCE;
 
 impl HiperdriveDevice {
@@ -84,13 +84,13 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Returns the settings in the TCP/IP object, or `None` if they have not been read or are not provided.
+    /// Returns the network settings, or `None` if they have not been read or the device does not provide them.
     pub fn network_settings(&self) -> Option<NetworkSettings> {
         let own = self.network()?;
         Some(NetworkSettings { source: own.control?.source(), interface: own.interface.clone()? })
     }
 
-    /// Returns the setting of the address switches at power-up.
+    /// Returns the setting of the address switches as read at power-up.
     pub fn address_switch(&self) -> Option<AddressSwitch> {
         self.network()?.address_switch()
     }
@@ -166,7 +166,7 @@ impl HiperdriveDevice {
         self.report_of(self.axis()?).map(|report| report.page(language))
     }
 
-    /// Returns the result of a completed axis set-up for a report of the device.
+    /// Returns the result of a completed axis set-up for a device report.
     pub(super) fn axis_result(&self, axis: &Axis) -> Option<SessionResult> {
         self.report_of(axis).map(AxisReport::into_session_result)
     }
@@ -181,7 +181,7 @@ impl HiperdriveDevice {
         AxisReport::new(axis, &self.drive_facts(axis.drive()), &device)
     }
 
-    /// Executes the request of a button. Every persistent change is planned and then reviewed by the user.
+    /// Executes the request that a button triggers. A change that is saved is planned first, and reviewed by the user.
     fn execute_request(
         &mut self,
         drive: DriveNumber,
@@ -247,7 +247,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Updates all set-ups. Called after each update of the drives.
+    /// Updates all axis set-ups. Must be called after each update of the drives.
     pub(super) fn update_axes(&mut self) {
         if self.axes.is_empty() {
             return;
@@ -278,7 +278,8 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Records that all parameters were read. This shows whether the saved values have survived a power cycle.
+    /// Informs all axis set-ups that the parameters were read. This may show that the saved values have survived a
+    /// power cycle.
     pub(super) fn handle_axes_survey(&mut self) {
         let switched = std::mem::take(&mut self.switched);
         let seen: Vec<(DriveNumber, DriveFacts)> =

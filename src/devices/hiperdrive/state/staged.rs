@@ -1,9 +1,9 @@
-//! Values of an adapter or a hub (or a profile of one), and the edited values. The difference between them is the basis
-//! of a plan. This module does not write anything to a device.
+//! The values of an adapter, a hub or a profile, and the user's edits of them. The differences are the basis of a plan.
+//! This module writes nothing to a device.
 //!
-//! Every edit creates a complete new state, to which undo can return. Edits survive a new reading. In all states of the
-//! history, edited values are kept, and all other values are updated from the device. Values that were not read cannot
-//! be edited, and earlier edits of them wait until they are read. A profile can gain values that it did not have.
+//! Every edit creates a complete new state that undo and redo can return to. A new reading updates all these states,
+//! but keeps their edited values. Values that were not read cannot be edited, and earlier edits of them wait until they
+//! are read. A profile can gain values that it did not have.
 
 mod edit;
 mod mark;
@@ -24,48 +24,48 @@ use crate::devices::hiperdrive::protocol::{
     DriveNumber, Family, ParameterAccess, ParameterNumber, ParameterRow, Travel,
 };
 
-/// Source of the values with which the edited values are compared.
+/// Source of the values that edits are compared with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum BaseSource {
-    /// The device. A value that was not read is unknown.
+    /// The device. A missing value has not been read.
     #[default]
     Device,
-    /// A profile. A missing value is not in the profile.
+    /// A profile. A missing value is not part of it.
     Profile,
 }
 
-/// The base values, the edited values, and the undo and redo history.
+/// The original values, the edited values, and the undo history.
 #[derive(Clone, Debug, Default)]
 pub struct StagedEdits {
     base_source: BaseSource,
-    /// Values of the device or the profile. They are present if and only if the edited values are.
+    /// Original values from the device or the profile. They are present whenever the edited values are.
     base: Option<Image>,
     wanted: Option<Image>,
     earlier: Option<Image>,
     history: History<Image>,
-    /// Earlier edits of parameters that have not been read yet.
+    /// Stored edits of parameters that have not been read yet.
     waiting: Vec<SavedEdit>,
-    /// Families of the drives, if their variants are known.
+    /// Families of those drives whose variants are known.
     families: Families,
 }
 
 pub(super) type Families = BTreeMap<DriveNumber, Family>;
 
-/// A stored edit, with the parameter's own number and the edited value.
+/// An edit as stored: the parameter number and the edited value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SavedEdit(pub u16, pub Option<i64>);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ValueDifference {
     pub number: ParameterNumber,
-    /// Current value, or `None` if it is not in the profile.
+    /// Original value, or `None` if it is not in the profile.
     pub from: Option<i64>,
-    /// Edited value, or `None` if the parameter is to be removed from the profile.
+    /// Edited value, or `None` if the parameter is removed from the profile.
     pub to: Option<i64>,
 }
 
-/// Returns whether a parameter can be edited as a value. This applies to the stored parameters and to the steps of the
-/// keys on the drive, which are not stored. Setting the position (198) is a separate change.
+/// Returns whether a parameter can be edited as a value. This is the case for stored parameters, and for those of the
+/// keys on the drive, which are not stored. The position (198) is set separately.
 pub fn is_editable(row: &ParameterRow) -> bool {
     let is_of_keys = matches!(row.number, 170..=182);
     row.access == ParameterAccess::ReadWrite && row.number != 198 && (Image::contains_row(row) || is_of_keys)
@@ -82,13 +82,13 @@ impl StagedEdits {
         }
     }
 
-    /// Sets the families of the drives. Their travel limits later entries of positions.
+    /// Sets the drive families, whose travel limits the positions entered later.
     pub(super) fn set_families(&mut self, families: Families) {
         self.families = families;
     }
 
-    /// Adopts the new content of the profile. If it equals the edited values, the profile was saved, and the undo
-    /// history is kept. Otherwise, another program has written it, and only values that were edited here remain edited.
+    /// Adopts the new content of the profile file. If it equals the edited values, it was saved here, and the undo
+    /// history is kept. Otherwise, another program has written it, and only values edited here stay edited.
     pub fn adopt_saved(&mut self, image: Image) {
         if self.wanted.as_ref() == Some(&image) {
             self.base = Some(image);
@@ -101,7 +101,7 @@ impl StagedEdits {
         self.take_draft(edits);
     }
 
-    /// Adopts a full reading of the device. Edits and their undo history are kept.
+    /// Adopts a complete reading of the device. Edits and the undo history are kept.
     pub fn refresh(&mut self, now: Image) {
         match (&self.base, &mut self.wanted) {
             (Some(before), Some(wanted)) => {
@@ -114,7 +114,7 @@ impl StagedEdits {
         self.take_draft(waiting);
     }
 
-    /// Adopts a reading of some parameters and keeps the others. Has no effect before a full reading.
+    /// Adopts a reading of some parameters. Has no effect before the first complete reading.
     pub fn refresh_partially(&mut self, read: &Image) {
         if let Some(base) = &self.base {
             self.refresh(base.overlaid_with(read));
@@ -130,12 +130,12 @@ impl StagedEdits {
         *self = StagedEdits { base_source: self.base_source, ..StagedEdits::default() };
     }
 
-    /// Returns the values of the device or the profile, or `None` if no data was read.
+    /// Returns the original values from the device or the profile, or `None` if nothing was read.
     pub fn base(&self) -> Option<&Image> {
         self.base.as_ref()
     }
 
-    /// Returns the edited values, or `None` if no data was read.
+    /// Returns the edited values, or `None` if nothing was read.
     pub fn edited_values(&self) -> Option<&Image> {
         self.wanted.as_ref()
     }
@@ -145,13 +145,13 @@ impl StagedEdits {
         self.wanted.as_ref()?.get(number)
     }
 
-    /// Returns the previous value of a parameter, or `None` if the last reading did not change it.
+    /// Returns the value before the last reading, or `None` if that reading did not change it.
     pub fn changed_from(&self, number: ParameterNumber) -> Option<i64> {
         let was = self.earlier.as_ref()?.get(number)?;
         (self.base.as_ref()?.get(number)? != was).then_some(was)
     }
 
-    /// Returns how the edited value of a parameter differs, or `None` if it does not.
+    /// Returns the original and the edited value of a parameter, or `None` if they are equal.
     pub fn difference_of(&self, number: ParameterNumber) -> Option<ValueDifference> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.get(number), wanted.get(number));
@@ -164,13 +164,13 @@ impl StagedEdits {
         numbers.into_iter().filter_map(|number| self.difference_of(number)).collect()
     }
 
-    /// Returns the edited values that differ from the device, as the basis of a plan.
+    /// Returns the edited values that differ from the original ones, as the basis of a plan.
     pub fn changed_values(&self) -> Image {
         let wanted = |differs: ValueDifference| Some((differs.number, differs.to?));
         Image { values: self.differences().into_iter().filter_map(wanted).collect() }
     }
 
-    /// Makes an edit as a single undo step. Returns whether anything changed.
+    /// Applies an edit as a single undo step. Returns whether anything changed.
     ///
     /// # Errors
     /// Returns an error with the reason if the edit is not possible. In this case, nothing has changed.
@@ -179,7 +179,7 @@ impl StagedEdits {
         Ok(self.apply_step(after))
     }
 
-    /// Returns the values that an edit would produce, for a preview. The edit is not made.
+    /// Returns the values that an edit would lead to, as a preview.
     ///
     /// # Errors
     /// Returns an error with the reason if the edit is not possible.
@@ -192,14 +192,14 @@ impl StagedEdits {
         self.wanted.as_mut().is_some_and(|wanted| self.history.apply_step(wanted, after))
     }
 
-    /// Returns the edits to save as a draft, including the edits of parameters that have not been read yet.
+    /// Returns the edits to save as a draft, including those of parameters that have not been read yet.
     pub fn saved_edits(&self) -> Vec<SavedEdit> {
         let edited = self.differences().into_iter().map(|own| SavedEdit(own.number.get(), own.to));
         edited.chain(self.waiting.iter().copied()).collect()
     }
 
-    /// Adopts the edits of a draft as a single undo step. Edits of parameters that were not read are deferred. Invalid
-    /// edits are dropped.
+    /// Adopts the edits in a draft as a single undo step. Edits of parameters that have not been read wait until then.
+    /// Invalid edits are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
             self.waiting.extend(draft);
@@ -252,7 +252,7 @@ fn travel(number: ParameterNumber, image: &Image, families: &Families) -> Travel
     Travel { family: families.get(&drive).copied(), scale: image.scale(drive) }
 }
 
-/// Moves edits from the base `before` to the base `now`.
+/// Transfers edits from the original values `before` to the new original values `now`.
 fn rebase_edits(own: &mut Image, before: &Image, now: &Image) {
     let mut rebased = now.clone();
     for (number, value) in &own.values {

@@ -1,4 +1,5 @@
-//! Readings of a device, which are updated with data from the drives and used to detect changes by other masters.
+//! Readings of all parameters of a device. They are updated with data from the drives, and show when another master has
+//! changed something.
 
 use super::staged::is_editable;
 use super::unit::HiperdriveDevice;
@@ -14,7 +15,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain;
 
 impl HiperdriveDevice {
-    /// Adopts a reading of the device. Edits are kept unless they belong to another device.
+    /// Adopts a reading of all parameters. Edits are kept, unless they belong to another device.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         self.session.values_read_at = Some(services.current_time().timestamp());
         if self.is_different_device(&survey.identity) {
@@ -51,7 +52,7 @@ impl HiperdriveDevice {
         self.handle_axes_survey();
     }
 
-    /// Marks limits as unconfirmed after a change of scale.
+    /// Requires that the limits are confirmed after a change of scale.
     pub(super) fn handle_scale_change(&mut self, now: &Image) {
         let Some(before) = self.staged.base() else { return };
         let is_other = |drive: &DriveNumber| {
@@ -63,8 +64,8 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Reads all parameters again when control is taken, or if the limits that the worker reads under control differ
-    /// from the parameter table.
+    /// Reads all parameters again when control is taken. The same happens if the limits read under control differ from
+    /// those in the parameter table.
     pub(super) fn handle_limit_change(&mut self) {
         if self.moves.take_control_opened() {
             (self.is_stale, self.marks) = (true, SettingsReadState::Unread);
@@ -76,7 +77,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Returns whether limits, scale or reference of the drive differ from the displayed parameters.
+    /// Returns whether the limits, the scale or the reference of the drive differ from the displayed parameters.
     fn has_different_limits(&self, drive: DriveNumber) -> bool {
         let held = self.drive_limits(drive).filter(|_| self.moves.is_open());
         held.and_then(DriveLimits::displayed_limits).is_some_and(|own| {
@@ -90,8 +91,7 @@ impl HiperdriveDevice {
             .is_some_and(|(own, shown)| own != shown)
     }
 
-    /// Returns the reason why the known parameters of a drive are insufficient to move it, or `None` if they are
-    /// sufficient.
+    /// Returns the reason if the parameters read so far are not sufficient to move the drive.
     pub(super) fn unread_reason(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
             Some(explain::lock_text(MotionLock::Unread))
@@ -104,8 +104,8 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Checks whether the displayed limits of a drive can be confirmed. They must equal the limits of the drive, as far
-    /// as these are known.
+    /// Checks whether the displayed limits of a drive can be confirmed. They must equal the limits of the drive, if
+    /// these are known.
     ///
     /// # Errors
     /// Returns an error with the reason if the limits cannot be confirmed.
@@ -113,14 +113,14 @@ impl HiperdriveDevice {
         self.displayed_limits_to_confirm(drive).map(|_| ())
     }
 
-    /// Returns the displayed limits of a drive, as they would be confirmed.
+    /// Returns the displayed limits of a drive that would be confirmed.
     fn displayed_limits_to_confirm(&self, drive: DriveNumber) -> Result<DisplayedLimits, Text> {
         self.unread_reason(drive).map_or(Ok(()), Err)?;
         let seen = self.drive_limits(drive).and_then(DriveLimits::displayed_limits);
         seen.ok_or_else(|| explain::lock_text(MotionLock::Unread))
     }
 
-    /// Confirms the displayed limits and returns whether they were confirmed. Otherwise, a message is reported.
+    /// Confirms the displayed limits. Returns `false` if this failed; the user is then told why.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
         // The limits are taken as shown, before another update, because the user has not seen later changes.
         let shown = self.displayed_limits_to_confirm(drive);
@@ -142,7 +142,7 @@ impl HiperdriveDevice {
         self.request_fault_cause(reading.drive, before);
     }
 
-    /// Requests the cause of a fault if the drive has failed since the state `before`.
+    /// Requests the cause of a fault if the drive, whose previous state is `before`, has failed since then.
     pub(super) fn request_fault_cause(&mut self, drive: DriveNumber, before: Option<State>) {
         if self.state(drive) == Some(State::Fault) && before.is_some_and(|before| before != State::Fault) {
             self.looks_at_errors = true;
@@ -180,7 +180,7 @@ fn image(survey: &Survey) -> Image {
     Image { values: survey.values.iter().filter_map(editable).collect() }
 }
 
-/// Returns the name of a device in the log and in jobs.
+/// Returns the name of a device as used in the log and in jobs.
 fn title(identity: &Identity) -> String {
     format!("{} · {}", identity.category, identity.serial_number)
 }

@@ -1,6 +1,6 @@
-//! The texts of HIPERDRIVE.
+//! The messages of HIPERDRIVE.
 
 use crate::app::Catalogue;
 
-/// Text catalogue of HIPERDRIVE. IDs not found here are looked up in the common texts.
+/// Message catalogue of HIPERDRIVE. IDs that are not in it are looked up in the common catalogue.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/hiperdrive.ron"));

@@ -1,5 +1,4 @@
-//! Meaning of frames in the trace: which parameter is read or written with which value, and why a device rejects the
-//! request.
+//! Explains frames in the trace: which parameter is read or written, its value, and why the device rejected a request.
 
 use std::collections::VecDeque;
 
@@ -14,15 +13,15 @@ use crate::devices::hiperdrive::state::explain as explained;
 use crate::devices::hiperdrive::state::{TEXTS, format};
 use crate::link::{Direction, TraceEntry};
 
-/// Decoder that explains frames. It stores the requests without a reply, because a reply does not name the parameter.
+/// Decoder that explains frames. It remembers unanswered requests, because a reply does not contain the parameter.
 #[derive(Default)]
 pub(super) struct FrameDecoder {
-    /// Headers and messages of the latest requests, newest first.
+    /// Latest requests, newest first.
     requests: VecDeque<(Frame, Request)>,
 }
 
 impl FrameDecoder {
-    /// Maximum number of stored requests. The host sends the next request after the reply or its time-out.
+    /// Maximum number of remembered requests. The host sends its next request after a reply or a time-out.
     const MAX_REQUESTS: usize = 8;
 
     pub(super) fn explain(&mut self, entry: &TraceEntry) -> FrameExplanation {
@@ -74,7 +73,7 @@ impl FrameDecoder {
         self.requests.push_front((frame, request));
     }
 
-    /// Removes and returns the latest request that the frame answers.
+    /// Removes and returns the request that a frame answers.
     fn take_request(&mut self, reply: &Frame) -> Option<Request> {
         let index = self.requests.iter().position(|(request, _)| reply.is_reply_to(request))?;
         self.requests.remove(index).map(|(_, request)| request)
@@ -112,7 +111,7 @@ fn request_texts(request: &Request) -> Vec<Text> {
     [vec![heading], value.unwrap_or_default()].concat()
 }
 
-/// Describes a transmitted value of a parameter. The result is `None` if the manual does not list the parameter.
+/// Describes the transmitted value of a parameter. Returns `None` if the manual does not list the parameter.
 fn value_texts(number: ParameterNumber, data: &[u8]) -> Option<Result<Vec<Text>, ValueError>> {
     let row = number.row()?;
     let value = match row.kind.parse(data) {
@@ -148,8 +147,7 @@ mod tests {
     const HEAD: &str = "6F 00 14 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 \
                         00 00 00 00 00 00 02 00 00 00 00 00 B2 00 04 00";
 
-    /// Rejections and deliberately damaged explicit messages (reference, section 7) are explained and marked (issue
-    /// 22.11).
+    /// Rejections and damaged explicit messages are explained and marked (reference, section 7; issue 22.11).
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let cases = [
@@ -181,7 +179,7 @@ mod tests {
         explained.meaning.iter().map(|text| text.to_string_in(Language::English)).collect()
     }
 
-    /// Returns a frame with the given context around a message (reference, sections 7 and 9).
+    /// Wraps a message in a frame with the given context (reference, sections 7 and 9).
     fn around(context: u8, message: &str) -> String {
         let length = parse_hex(message).unwrap().len();
         format!(
@@ -191,7 +189,8 @@ mod tests {
         )
     }
 
-    /// Messages of the reference, section 9: a read of 107, a write of 158, and a reply to the last request but one.
+    /// The messages are from section 9 of the reference: a read of parameter 107, a write of 158, and a reply to the
+    /// last request but one.
     #[test]
     fn a_reply_shows_the_value_of_its_own_request() {
         let mut decoder = FrameDecoder::default();

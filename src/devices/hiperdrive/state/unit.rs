@@ -1,5 +1,4 @@
-//! An open adapter or hub with its drives, or a profile of one: known data, edits, running jobs, and motion of the
-//! drives.
+//! An open adapter or hub with its drives, or a profile of one: data, edits, running jobs, and motion of the drives.
 
 use std::collections::BTreeMap;
 
@@ -39,38 +38,38 @@ pub struct HiperdriveDevice {
     pub staged: StagedEdits,
     pub record: Record,
     pub(super) records: BTreeMap<DriveNumber, Record>,
-    /// Start of the session, to which the times of recordings refer.
+    /// Start of the session, from which recording times are counted.
     pub(super) began: Option<Zoned>,
     pub moves: DriveMotion,
     pub measure: PositionUnit,
     pub refusal: Option<Text>,
     pub target: Option<Target>,
-    /// Whether the temperature of the device is recorded with the position.
+    /// Whether the temperature of the device is recorded together with the position.
     pub(super) watches_device: bool,
     pub(super) watches_drive: bool,
     pub(super) drive: DriveNumber,
     pub(super) pitches: BTreeMap<DriveNumber, Length>,
     pub(super) axes: BTreeMap<DriveNumber, Axis>,
-    /// Whether the supply of the virtual device has been switched since the device was read.
+    /// Whether the supply of the virtual device has been switched since the parameters were read.
     pub(super) switched: bool,
     pub(super) unsaved: UnsavedChanges,
-    /// Values exchanged with the settings, or `None` before the first exchange.
+    /// Values last exchanged with the settings, or `None` before the first exchange.
     pub(super) exchanged: Option<ExchangedValues>,
-    /// Marks of unconfirmed limits set by another window since control was taken.
+    /// Whether another window's marks of unconfirmed limits have been read since control was taken.
     pub(super) marks: SettingsReadState,
-    /// Last reading of each drive while it was not under control.
+    /// Last reading of each drive that was taken without control.
     pub(super) readings: BTreeMap<DriveNumber, DriveReading>,
-    /// Whether limits and scaling may have changed since they were read. This is the case after control is taken.
+    /// Whether limits and scaling may have changed since they were read, for example after control is taken.
     pub(super) is_stale: bool,
     pub(super) watched: DriveNumber,
-    /// Whether polling has been started automatically since the link was opened.
+    /// Whether polling has already been started automatically since the link was opened.
     pub(super) has_polled: bool,
     /// Whether errors must be read again as soon as the line is free.
     pub(super) looks_at_errors: bool,
     /// Whether everything must be read again, because another master has changed the limits of a drive.
     pub(super) looks_at_all: bool,
     pub(super) decoder: FrameDecoder,
-    /// Whether the window is operated over a remote desktop, where the release of a button may arrive late.
+    /// Whether the window is operated over a remote desktop, where a button release may arrive late.
     pub(super) is_remote: bool,
 }
 
@@ -109,7 +108,7 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Adopts the values of the profile that is the source of the session.
+    /// Adopts the values of the profile from which this session was opened.
     pub(super) fn adopt_profile(&mut self, profile: &HiperdriveProfile) {
         self.staged = StagedEdits::for_profile(profile.image.clone());
         let drives = profile.identity.drives.iter();
@@ -122,7 +121,7 @@ impl HiperdriveDevice {
         document.body.get::<HiperdriveProfile>()
     }
 
-    /// Returns the edited profile, or `None` if the session does not belong to a profile.
+    /// Returns the profile with the edited values, or `None` if this is not a profile.
     pub(crate) fn edited_profile(&self) -> Option<HiperdriveProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.edited_values()?);
         Some(HiperdriveProfile { image: wanted.clone(), ..profile.clone() })
@@ -185,7 +184,7 @@ impl HiperdriveDevice {
         self.survey.as_ref()?.values.get(&number)
     }
 
-    /// Returns the value of a numeric parameter of a drive as last read, given the parameter number for drive 1.
+    /// Returns the last read value of a numeric drive parameter, given its number for drive 1.
     pub fn parameter_value(&self, drive: DriveNumber, number: u16) -> Option<i64> {
         match self.value(ParameterNumber::for_drive(number, drive)?)? {
             Value::Number(value) => Some(*value),
@@ -197,7 +196,7 @@ impl HiperdriveDevice {
         self.status.as_ref()?.drives.iter().find(|own| own.number == drive)
     }
 
-    /// Returns the last data received from a drive over the cyclic connection or by polling.
+    /// Returns the latest data from a drive, received over the cyclic connection or by polling.
     pub fn actual_values(&self, drive: DriveNumber) -> Option<ActualValues> {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
         // Values read at the start are no longer valid if the connection is lost.
@@ -206,8 +205,8 @@ impl HiperdriveDevice {
         self.moves.actual_values(drive).or_else(read).or_else(surveyed)
     }
 
-    /// Returns the time of the last report of a drive on the session's clock, or `None` if the report was only part of
-    /// a complete reading.
+    /// Returns when the drive last reported, on the session's clock. Returns `None` if it has done so only in a reading
+    /// of all parameters.
     pub(super) fn last_report_time(&self, drive: DriveNumber) -> Option<Moment> {
         match self.moves.drive(drive) {
             Some(own) => own.received_at,
@@ -227,12 +226,12 @@ impl HiperdriveDevice {
         self.actual_values(drive).map(|own| own.status.state())
     }
 
-    /// Returns whether a drive is known to be moving or about to move.
+    /// Returns whether any drive is moving or about to move, as far as known.
     pub fn is_moving(&self) -> bool {
         self.moves.is_moving() || self.drives().into_iter().any(|drive| self.polled_state(drive) == Some(State::Moving))
     }
 
-    /// Returns the polled state of a drive, or `None` if the drive is not being polled.
+    /// Returns the state of a drive that is being polled, or `None` for any other drive.
     pub fn polled_state(&self, drive: DriveNumber) -> Option<State> {
         let is_polled = self.session.is_polling() && !self.moves.is_open() && drive == self.watched;
         // Data from before the end of polling are outdated.
@@ -249,7 +248,7 @@ impl HiperdriveDevice {
         Ruler { scale, pitch: self.spindle_pitch(drive) }
     }
 
-    /// Returns the pitch of the spindle that a drive turns, if entered by the user.
+    /// Returns the pitch of the drive's spindle, if entered by the user.
     pub fn spindle_pitch(&self, drive: DriveNumber) -> Option<Length> {
         self.pitches.get(&drive).copied()
     }
@@ -262,7 +261,7 @@ impl HiperdriveDevice {
         scale.unwrap_or(SpeedScale::FACTORY)
     }
 
-    /// Returns the limits of a drive as last read by the worker, or `None` for a profile or before anything was read.
+    /// Returns the limits of a drive as last read for motion. Returns `None` for a profile, or if nothing was read.
     pub fn drive_limits(&self, drive: DriveNumber) -> Option<&DriveLimits> {
         self.moves.limits(drive)
     }
@@ -282,7 +281,7 @@ impl HiperdriveDevice {
         self.drive_limits(drive).and_then(DriveLimits::limits).or_else(as_read)
     }
 
-    /// Returns the limits that the user must check before the drive moves, if any.
+    /// Returns the limits that the user must confirm before the drive moves, if any.
     pub fn limits_to_confirm(&self, drive: DriveNumber) -> Option<(i32, i32)> {
         self.limits(drive).filter(|_| self.moves.unconfirmed_drives().contains(&drive))
     }

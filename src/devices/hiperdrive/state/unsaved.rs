@@ -1,5 +1,5 @@
-//! Values that have been written to a device but not saved, each with the saved value of its parameter. They are stored
-//! here because a device does not reveal its saved values, and an interrupted set-up may date from the previous day.
+//! Values that were written but not saved, with the saved values of their parameters. They are stored because a device
+//! does not give access to its saved values, and an interrupted set-up may be from the day before.
 
 use std::collections::BTreeMap;
 
@@ -10,15 +10,15 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct UnsavedChanges {
-    /// Saved values, by number, of the parameters written since the last save.
+    /// Saved values of the parameters written since the last save, by number.
     before: BTreeMap<u16, i64>,
-    /// Number of times that this program has set the position, for each drive.
+    /// How often this program has set the position of each drive.
     set: BTreeMap<DriveNumber, u32>,
     sets: Vec<DriveNumber>,
 }
 
 impl UnsavedChanges {
-    /// Records that the execution of a plan is starting. From then on, its parameters may differ from the saved values.
+    /// Records that a plan is about to be executed. From then on, its parameters may differ from the saved values.
     pub(super) fn begin_plan(&mut self, plan: &HiperdrivePlan) {
         let changes_all = |op: &Op| matches!(op, Op::Service(Service::Factory | Service::Recall));
         let base = plan.base.image();
@@ -44,15 +44,15 @@ impl UnsavedChanges {
         }
     }
 
-    /// Records that a plan ended early. `begun` specifies whether part of it was or may have been written.
+    /// Records that a plan was interrupted. `begun` is set if part of it was or may have been written.
     pub(super) fn interrupt_plan(&mut self, begun: bool) {
         for drive in std::mem::take(&mut self.sets) {
             *self.set.entry(drive).or_default() += u32::from(begun);
         }
     }
 
-    /// Compares a complete reading with the saved values. Values that equal the saved values are no longer listed as
-    /// differences.
+    /// Compares a reading of all parameters with the saved values. Parameters that are equal again are no longer
+    /// listed.
     pub(super) fn read(&mut self, now: &BTreeMap<ParameterNumber, Value>) {
         let is_as_saved = |number: u16, before: i64| {
             ParameterNumber::new(number).is_some_and(|number| now.get(&number) == Some(&Value::Number(before)))
@@ -60,7 +60,7 @@ impl UnsavedChanges {
         self.before.retain(|number, before| !is_as_saved(*number, *before));
     }
 
-    /// Returns the saved values by number, for storage.
+    /// Returns the saved values of overwritten parameters by number, for storage.
     pub(super) const fn saved_values(&self) -> &BTreeMap<u16, i64> {
         &self.before
     }
@@ -71,7 +71,7 @@ impl UnsavedChanges {
         }
     }
 
-    /// Returns the saved values of a drive, by their numbers for drive 1.
+    /// Returns the saved values of a drive's overwritten parameters, by number for drive 1.
     fn for_drive(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
         let own = |(number, before): (&u16, &i64)| {
             let number = ParameterNumber::new(*number).filter(|number| number.drive() == Some(drive))?;
@@ -82,7 +82,7 @@ impl UnsavedChanges {
 }
 
 impl HiperdriveDevice {
-    /// Returns the saved values of a drive that have been overwritten since, by their numbers for drive 1.
+    /// Returns the saved values of a drive's overwritten parameters, by number for drive 1.
     pub(super) fn unsaved_values(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
         self.unsaved.for_drive(drive)
     }
@@ -108,8 +108,7 @@ mod tests {
         image.values.iter().map(|(number, value)| (*number, Value::Number(*value))).collect()
     }
 
-    /// Until the next save, the saved values are remembered when other values are written over them, even by an earlier
-    /// run of the program (issue 21.6 h).
+    /// Overwritten saved values are remembered until the next save, even after a restart of the program (issue 21.6 h).
     #[test]
     fn saved_values_are_remembered_until_the_next_save() {
         let three = DriveNumber::new(3).unwrap();

@@ -1,4 +1,4 @@
-//! Writing to a device: edits or a profile as a request, and its jobs.
+//! Writing to a device: requests to write edits or a profile, and the jobs that result from them.
 
 use super::format;
 use super::record::Record;
@@ -43,7 +43,7 @@ impl HasMemory for HiperdriveDevice {
         HiperdriveJob::Prepare(change)
     }
 
-    /// Stops all motion and returns the job that writes the plan. No limit of write cycles is known for these devices.
+    /// Stops all motion and returns the job that executes the approved plan.
     fn commit_job(&mut self, agreed: ApprovedPlanOf<Hiperdrive>) -> HiperdriveJob {
         self.moves.stop();
         self.unsaved.begin_plan(&agreed.prepared.plan);

@@ -1,8 +1,8 @@
-//! Axis set-up as a single procedure. The steps are on the left. The selected step is on the right, with its task, the
-//! axis position and the findings.
+//! The page for the axis set-up. The steps are listed on the left. The displayed step is on the right, with its task,
+//! the axis position and the findings.
 //!
-//! No clickable widget moves while a step is shown, regardless of the data from the drive. Messages that change are
-//! therefore below all widgets. Only the user changes the step.
+//! While a step is shown, no clickable widget moves, whatever data arrives from the drive. Messages that can change are
+//! therefore below all widgets. Only the user can change the step.
 
 mod content;
 
@@ -27,12 +27,12 @@ use crate::ui::{Theme, icons};
 
 #[derive(Default)]
 pub(super) struct AxisUiState {
-    /// The displayed step, and the time at which it was first displayed, on the window's clock.
+    /// The displayed step and the time since when it has been displayed, on the window's clock.
     since: Option<(AxisStep, f64)>,
 }
 
 impl AxisUiState {
-    /// Returns how long a step has been displayed, or zero for a new step.
+    /// Returns how long the step has been displayed, or zero if it is new.
     fn time_displayed(&mut self, step: AxisStep, now: f64) -> Duration {
         let since = self.since.filter(|(own, _)| *own == step).map_or(now, |(_, since)| since);
         self.since = Some((step, since));
@@ -70,7 +70,7 @@ impl AxisPanel<'_> {
 
 const NUMBER_WIDTH: f32 = 15.0;
 const PRIMARY_BUTTON_WIDTH: f32 = 112.0;
-/// Width below which the list of steps is placed above the step rather than beside it.
+/// Window width below which the list of steps is placed above the step instead of beside it.
 const MIN_TWO_COLUMN_WIDTH: f32 = 640.0;
 
 pub(super) fn page_ui(
@@ -210,7 +210,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
     });
 }
 
-/// Draws the messages that change: a fault, invalidated results, missing conditions, and findings.
+/// Draws the messages that can change: a fault, void results, missing conditions, and findings.
 fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &LengthEntries) {
     let (axis, seen) = (shown.axis, shown.seen);
     let fallen = axis.invalidated_step().map(labels::invalidated_step);
@@ -259,7 +259,7 @@ fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     });
 }
 
-/// Draws the buttons Back, Cancel and Next. Next is disabled until the step is complete. Cancel stops the motion.
+/// Draws the buttons Back, Cancel and Next. Cancel also stops the motion. Next is enabled when the step is complete.
 fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let settled = Axis::check_step_settled(shown.looked_at).is_ok();
@@ -304,8 +304,8 @@ fn with_nonbreaking_spaces(words: String) -> String {
     words.replace(" mm", "\u{a0}mm").replace(" %", "\u{a0}%")
 }
 
-/// Draws content of the height of a button at the right end of a line. If there is no space beside other buttons, the
-/// content is placed below them.
+/// Draws content with the height of a button at the right end of a line. If there is not enough space beside other
+/// buttons, it is placed below them.
 fn right_aligned_ui(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let rest = ui.available_size_before_wrap().x;
     let width = if rest >= PRIMARY_BUTTON_WIDTH { rest } else { ui.available_width() };

@@ -1,4 +1,4 @@
-//! The bar above every page: the drive selection of a hub, control, the STOP button, and the note that STOP is not an
+//! The bar above every page: drive selection for a hub, control, the STOP button, and the note that it is not an
 //! emergency stop.
 
 use egui::{RichText, Stroke, Ui, vec2};
@@ -12,7 +12,7 @@ use crate::ui::controls::{button_with_reason, message_label, name, paragraph, st
 use crate::ui::stop_debounce::{press_began, press_time, register_stop_press};
 use crate::ui::{Theme, icons};
 
-/// Size of the STOP button, which can be hit with a flat hand.
+/// Size of the STOP button. It is large enough to be hit quickly.
 const STOP_BUTTON_SIZE: egui::Vec2 = vec2(112.0, 44.0);
 
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
@@ -46,8 +46,8 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Hiperdr
     });
 }
 
-/// Draws whether this window has control of the drives, or why it has lost control. Alarms have priority. The height is
-/// constant, so that no button moves when control is lost.
+/// Draws whether this window has control of the drives, or why it has lost control. Alarms take precedence. The height
+/// is constant, so that losing control does not move any button.
 fn control_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     let palette = theme.palette;
     let (words, ink) = match (unit.loss_reason(), outside::warning_badge(theme, unit)) {

@@ -1,4 +1,4 @@
-//! Connection form for HIPERDRIVE drives: virtual, or over the network with discovery.
+//! The connection form for HIPERDRIVE drives, either virtual or in the network, with device discovery.
 
 use egui::Ui;
 

@@ -146,7 +146,7 @@ fn wiring_ui(ui: &mut Ui, theme: &Theme) {
     });
 }
 
-/// Returns the text with each pin and its signal, such as `2 RS-485 − green`, kept on one line.
+/// Returns the text with each pin and its signal kept on the same line, such as `2 RS-485 − green`.
 fn with_pins_unbroken(text: &str) -> String {
     let is_pin = |part: &str| part.starts_with(|first: char| first.is_ascii_digit()) && !part.contains(". ");
     let parts = text.split_inclusive(": ").flat_map(|part| part.split_inclusive(", "));
@@ -169,7 +169,7 @@ mod tests {
         assert_eq!(kept.replace('\u{a0}', "_"), "Each drive: 1_RS-485_+_white, 2_RS-485_−_green, 6_GND_blue.");
     }
 
-    /// The wiring card follows sections 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and 4.2 (bus adapter) of the
+    /// The wiring card matches sections 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and 4.2 (bus adapter) of the
     /// HIPERDRIVE manual (issue 22.23).
     #[test]
     fn the_wiring_card_matches_the_manual() {

@@ -68,7 +68,7 @@ fn buffer_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut 
     });
 }
 
-/// Draws parameters 116 to 118, the temperatures and the supply.
+/// Draws the words in parameters 116 to 118, the temperatures, and the supply voltage.
 fn values_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     card(ui, theme, TEXTS.text("hd_health.title"), |ui| {
         let Some(status) = unit.drive_status(unit.drive()) else {
@@ -100,7 +100,7 @@ fn values_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     });
 }
 
-/// Returns the meaning of a value of parameters 116 to 118 (reference, section 4).
+/// Returns the message ID for a value of parameters 116 to 118 (reference, section 4).
 const fn drive_word_text_id(word: u16) -> &'static str {
     match word {
         0 => "hd_health.well",

@@ -1,4 +1,4 @@
-//! The control and status words bit by bit, and the timing of the cyclic connection.
+//! Draws the bits of the control and status words, and the timing of the cyclic connection.
 
 use egui::accesskit::Role;
 use egui::{Align2, FontId, Rect, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
@@ -32,7 +32,7 @@ pub(super) fn control_status_words_ui(ui: &mut Ui, theme: &Theme, unit: &Hiperdr
 const BARS_HEIGHT: f32 = 96.0;
 const LABEL_HEIGHT: f32 = 16.0;
 
-/// Draws the statistics of the cyclic connection: number of packets, errors, and deviation of the intervals.
+/// Draws the statistics of the cyclic connection: number of packets, errors, and deviations from the interval.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     card(ui, theme, TEXTS.text("hd_link.title"), |ui| {
         let view = unit.moves.snapshot();
@@ -73,7 +73,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     });
 }
 
-/// Draws a histogram with a logarithmic scale, on which one late packet in a million is visible.
+/// Draws a histogram with a logarithmic scale, so that even one late packet in a million is visible.
 fn histogram(ui: &mut Ui, theme: &Theme, histogram: &Histogram) {
     let buckets: Vec<Bucket> = histogram.buckets().collect();
     let size = vec2(ui.available_width().max(0.0), BARS_HEIGHT + LABEL_HEIGHT);
@@ -118,7 +118,7 @@ fn histogram(ui: &mut Ui, theme: &Theme, histogram: &Histogram) {
     painter.text(pos2(rect.right(), rect.bottom()), Align2::RIGHT_BOTTOM, last, font, ink);
 }
 
-/// Formats a bucket as a deviation in microseconds.
+/// Formats the range of a bucket, in microseconds.
 fn format_bucket(bucket: &Bucket) -> String {
     match (bucket.from_us, bucket.below_us) {
         (None, Some(below)) => format!("< {below} µs"),

@@ -1,4 +1,4 @@
-//! Jogging: buttons that move a drive while they are held, and steps that run to their end.
+//! Jogging: buttons that move a drive while held, and steps that run to completion.
 
 use egui::{FontId, RichText, Ui, Vec2, vec2};
 
@@ -15,7 +15,7 @@ use crate::ui::widgets::{HoldButton, hold_button};
 
 const JOG_BUTTON_HEIGHT: f32 = 56.0;
 
-/// Speeds of the preset buttons, in percent.
+/// Speeds offered by the preset buttons, in percent.
 const PRESETS: [u8; 4] = [1, 10, 50, 100];
 
 pub(super) fn card_ui(
@@ -66,8 +66,8 @@ pub(super) fn step_card_ui(
     });
 }
 
-/// Draws a note with the effect of the buttons, or the reason why they are disabled. The height is constant, so that
-/// nothing below moves.
+/// Draws a note that explains what the buttons do or why they are disabled. Its height is constant, so that nothing
+/// below it moves.
 fn jog_buttons_note_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, why_not: Option<&Text>) {
     let drive = unit.drive();
     let outside = unit.out_of_range_position(drive).filter(|own| {
@@ -131,7 +131,7 @@ pub(super) fn jog_buttons_ui(
     });
 }
 
-/// Draws a button that moves a drive while it is held. `press` starts the motion.
+/// Draws a button that moves a drive while held. `press` is the command that starts the motion.
 pub(super) fn jog_button_ui(
     ui: &mut Ui,
     theme: &Theme,

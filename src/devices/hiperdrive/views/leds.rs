@@ -1,5 +1,5 @@
-//! LED states, drawn as they appear on the device. Each click on an LED selects its next state, until the LED matches
-//! the real one.
+//! LED page: draws the LEDs as they appear on the device. Clicking an LED selects its next state, until it matches the
+//! real one.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, RichText, Shape, Stroke, Ui, pos2, vec2};
 
@@ -100,7 +100,7 @@ fn led_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     }
 }
 
-/// Appearance of an LED: left half, right half, and whether it blinks.
+/// Appearance of an LED: colours of the left and right halves, and whether it blinks.
 struct LedStyle {
     left: Option<Color32>,
     right: Option<Color32>,
@@ -136,7 +136,7 @@ fn led_style(theme: &Theme, leds: &Leds, lamp: Led) -> LedStyle {
     }
 }
 
-/// Draws a disc in two halves. Rays denote blinking.
+/// Draws an LED as a disc with two halves. Rays stand for blinking.
 fn paint_led(painter: &Painter, theme: &Theme, middle: Pos2, look: LedStyle) {
     let half = |from: f32, colour: Color32| {
         let points = (0..=16_u8).map(|step| {

@@ -74,7 +74,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, ink:
     raw_row(ui, theme, actual.position.to_string());
 }
 
-/// Draws the menu that selects the temperatures to record with the position.
+/// Draws the menu for selecting temperatures to record with the position.
 pub(super) fn watch_menu(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let word = theme.translate("live.watch");
     let watched = unit.watched_temperatures();

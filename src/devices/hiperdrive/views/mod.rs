@@ -1,4 +1,4 @@
-//! The HIPERDRIVE tab: one page per task, and above them the bar that is always visible.
+//! The HIPERDRIVE tab: one page per task, with a bar above them that is always visible.
 
 mod axis;
 mod bar;
@@ -180,7 +180,7 @@ impl TypedDeviceView for HiperdriveView {
     }
 }
 
-/// Returns a string from this catalogue or the common one, in the window language.
+/// Returns a message from this catalogue or the common one, in the window language.
 pub(crate) fn translate(theme: &Theme, id: &'static str) -> String {
     theme.format_text(&TEXTS.text(id))
 }

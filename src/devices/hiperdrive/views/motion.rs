@@ -1,4 +1,4 @@
-//! The motion page: the states of the drive, jogging, moves to a position, and runs at a speed.
+//! The motion page: states of the drive, jogging, moves to a position, and runs at a constant speed.
 
 use egui::{Id, RichText, Ui, UiBuilder, vec2};
 
@@ -19,7 +19,7 @@ use crate::ui::stop_debounce::{press_began, press_time, register_stop_press};
 
 use crate::ui::{Theme, icons};
 
-/// A percentage as entered, together with the value that was in effect when it was last drawn.
+/// A percentage as typed, with the value that was set when it was last drawn.
 pub(super) type Draft = Option<(String, Percent)>;
 
 #[derive(Default)]
@@ -35,7 +35,7 @@ pub(super) struct MotionUiState {
 const ENTRY_WIDTH: f32 = 88.0;
 const PERCENT_WIDTH: f32 = 56.0;
 const UNIT_SELECTOR_WIDTH: f32 = 64.0;
-/// Minimum width at which speed and torque share one row, and width of the note between them.
+/// Minimum width for speed and torque to share a row. The next constant is the width of the note between them.
 const ONE_ROW: f32 = 660.0;
 const NOTE_WIDTH: f32 = 112.0;
 const MESSAGE_HEIGHT: f32 = 32.0;
@@ -132,8 +132,8 @@ fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut V
     }
 }
 
-/// Draws the state diagram and the current activity of the drive. The activity is beside the heading or, in a narrow
-/// window, below it. The height is constant, so that a jog button never moves away from a pointer that holds it.
+/// Draws the state diagram, and what the drive is doing beside its heading or, in a narrow window, below it. The height
+/// is constant, so that a jog button never moves away from the pointer that holds it.
 fn states_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let beside = ui.available_width() >= MIN_TWO_COLUMN_WIDTH;
     let mut acts = Vec::new();
@@ -164,7 +164,7 @@ fn states_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut 
     actions.append(&mut acts);
 }
 
-/// Draws a fault together with the way to clear it, or the outcome of the last action.
+/// Draws a fault with the button that acknowledges it, or else the outcome of the last action.
 fn status_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     if matches!(unit.state(drive), Some(State::Fault | State::Locked)) {
@@ -249,12 +249,12 @@ fn move_to_position_ui(
     allowed
 }
 
-/// Draws speed and torque in percent, in one row if there is enough space. Buttons offer the speeds in `presets` and do
-/// not start a motion. An entry takes effect immediately for the next motion. A running motion keeps its own values,
-/// which are shown.
+/// Draws speed and torque in percent, in one row if there is enough space. The buttons for the speeds in `presets` do
+/// not start a motion. An entry applies to the next motion immediately. The values of a running motion stay as they are
+/// and are shown separately.
 ///
 /// # Errors
-/// Returns an error with the reason if an entry is not a percentage. No motion may be started with such an entry.
+/// Returns an error with the reason if an entry is not a percentage. No motion can be started with such an entry.
 pub(super) fn speed_torque_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -317,7 +317,7 @@ pub(super) fn speed_torque_ui(
     taken
 }
 
-/// Draws the entry field of a percentage and its presets, and sets `to` to the value entered or chosen.
+/// Draws the input field and the presets for a percentage, and sets `to` to the typed or chosen value.
 ///
 /// # Errors
 /// Returns an error with the reason if the entry is not a percentage.
@@ -352,8 +352,8 @@ fn percent_ui(
     typed.map(|_| ())
 }
 
-/// Draws the note next to a percentage: the reason why it cannot be used, the value with which a running motion
-/// started, or otherwise `beside`.
+/// Draws the note next to a percentage: why it cannot be used, else the value with which a running motion started, else
+/// `beside`.
 fn percent_note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Percent>, beside: Option<Text>) {
     match (typed, sent, beside) {
         (Err(why), ..) => {
@@ -377,8 +377,7 @@ pub(super) fn move_speed_torque_text(theme: &Theme, unit: &HiperdriveDevice, id:
     theme.format_text(&TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get()))
 }
 
-/// Draws an input field for a position or distance, along with its unit. The field is marked if `problem` finds an
-/// error in it.
+/// Draws an input field for a position or distance, with its unit. The field is marked if `problem` returns a message.
 pub(super) fn position_entry_ui(
     ui: &mut Ui,
     theme: &Theme,

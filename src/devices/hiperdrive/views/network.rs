@@ -1,4 +1,4 @@
-//! Network settings: the TCP/IP object and its edited values, the result at the next power-up, and the meaning of the
+//! Network settings: the TCP/IP object with its edited values, the outcome at the next power-up, and the meaning of the
 //! address switches.
 
 use egui::{RichText, Ui};
@@ -16,10 +16,10 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Typed values that have not been written yet.
+/// Values that have been typed but not written yet.
 #[derive(Default)]
 pub(super) struct NetworkUiState {
-    /// Settings of the device when typing began.
+    /// Settings of the device at the time when typing began.
     of: Option<NetworkSettings>,
     form: Option<Form>,
 }

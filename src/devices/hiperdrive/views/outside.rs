@@ -1,4 +1,4 @@
-//! Warnings about a drive outside its limits. It shows the blocked directions, the way back in, and what to do if the
+//! Warnings about a drive outside its limits: which directions are blocked, how to get back in, and what to do if the
 //! reference is wrong.
 
 use egui::{RichText, Ui};
@@ -14,20 +14,20 @@ use crate::ui::{Theme, icons};
 
 #[derive(Default)]
 pub(super) struct Draft {
-    /// Position value to assign to the current location of the drive.
+    /// Position to assign to the current location of the drive, as typed.
     place: String,
     problem: Option<Text>,
 }
 
-/// Returns a one-line warning if a drive is outside its limits.
+/// Returns a one-line warning if the drive is outside its limits.
 pub(crate) fn warning_badge(theme: &Theme, unit: &HiperdriveDevice) -> Option<RichText> {
     unit.outside_limits_text(unit.drive())?;
     let words = format!("{}  {}", icons::WARNING, translate(theme, "hd_outside.short"));
     Some(RichText::new(words).font(theme.bold_font(theme.sizes.body)).color(theme.palette.bad))
 }
 
-/// Draws a card that shows on which side the drive is outside its limits, which motion is blocked, and what to do.
-/// Draws nothing if the drive is inside its limits or at the end of its range.
+/// Draws a card that shows which limit the drive has passed, which motion is blocked, and what to do. Draws nothing if
+/// the drive is inside its limits or at the end of its range.
 pub(super) fn card_ui(
     ui: &mut Ui,
     theme: &Theme,

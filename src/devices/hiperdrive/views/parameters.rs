@@ -1,4 +1,4 @@
-//! The parameter table: value, edit, range, factory setting, and whether each parameter is saved.
+//! The parameter table, with value, edit, range and factory setting of each parameter, and whether it is saved.
 
 use std::collections::BTreeMap;
 use std::iter::once;
@@ -23,22 +23,22 @@ pub(super) struct DriveParametersUiState {
     sought: String,
     shown: ParameterFilter,
     table: RegisterView,
-    /// Rows of the table when it was last drawn.
+    /// Parameters in the rows of the table when it was last drawn.
     lines: Vec<Vec<ParameterNumber>>,
-    /// Whether the table hid or cut columns when it was last drawn. In this case, the details of the selected row are
-    /// displayed below the table.
+    /// Whether the table was too narrow for all its columns when it was last drawn. The details of the selected row are
+    /// then shown below the table.
     is_narrow: bool,
     scales: BTreeMap<DriveNumber, scale::ScaleUiState>,
 }
 
-/// Filter of the parameter list, or the scaling page.
+/// Selection of the parameters shown, or of the scaling page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum ParameterFilter {
     All,
-    /// Shows writable parameters. A search by name or number covers all parameters.
+    /// Shows the writable parameters. A search by name or number includes all parameters.
     #[default]
     Written,
-    /// Shows parameters that are edited or whose value has changed since the previous reading.
+    /// Shows parameters that are edited or have changed since the previous reading.
     Changed,
     Scale,
 }
@@ -94,7 +94,7 @@ pub(super) fn page_ui(
     }
 }
 
-/// Draws the search and the filter.
+/// Draws the search field and the filter.
 fn header_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
     ui.horizontal_wrapped(|ui| {
         let sought = translate(theme, "hd_params.seek");
@@ -122,7 +122,7 @@ fn header_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
 }
 
 impl DriveParametersUiState {
-    /// Returns whether the scaling page is shown. The table must have closed its editor before this is the case.
+    /// Returns whether to show the scaling page. The editor in the table must be closed first.
     fn is_scale_shown(&self) -> bool {
         self.shown == ParameterFilter::Scale && (self.table.edited_location().is_none() || self.table.is_refused())
     }
@@ -147,7 +147,7 @@ impl DriveParametersUiState {
         }
     }
 
-    /// Adapts the view to changed rows. The selection and the typed value stay with their parameter.
+    /// Updates the view after rows have changed. The selection and the typed value stay with their parameters.
     fn follow_rows(&mut self, rows: &[Vec<Row>]) {
         let lines: Vec<Vec<_>> = rows.iter().map(|rows| rows.iter().map(|row| row.number).collect()).collect();
         if lines == self.lines {
@@ -196,7 +196,7 @@ fn table_ui(
     actions.extend(edits.into_iter().map(act));
 }
 
-/// Returns the contents of a row's columns that are hidden or cut in a narrow window.
+/// Returns the contents of those columns in a row that are hidden or truncated in a narrow window.
 fn row_details(theme: &Theme, row: &Row) -> String {
     let named =
         |id: &'static str, words: String| (!words.is_empty()).then(|| format!("{} {words}", theme.translate(id)));
@@ -212,7 +212,7 @@ fn parameter_text(row: &Row) -> String {
     row.staged.map_or_else(|| row.shown.clone(), |staged| staged.to_string())
 }
 
-/// Returns the unit and the meaning of the value, or an empty string if there is no value.
+/// Returns the unit and the meaning of a value, or an empty string if there is no value.
 fn row_meaning(theme: &Theme, row: &Row) -> String {
     let words = |text: Option<&Text>| text.map(|text| theme.format_text(text)).unwrap_or_default();
     if parameter_text(row).is_empty() {

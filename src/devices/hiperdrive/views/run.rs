@@ -1,4 +1,4 @@
-//! Runs at a constant speed, to the end of the range or, for experts, without an end.
+//! Runs at a constant speed, either to the end of the range or, for experts, endless.
 
 use egui::{RichText, Ui};
 
@@ -44,7 +44,7 @@ pub(super) fn run_ui(
     paragraph(ui, theme.caption(translate(theme, "hd_run.expert_words")));
 }
 
-/// Draws the condition for an endless run, with its state and the parameters that do not meet the condition.
+/// Draws the condition for an endless run, whether it is met, and which parameters prevent it.
 fn condition_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, is_met: bool) {
     let (icon, ink) =
         if is_met { (icons::CHECK_CIRCLE, theme.palette.good) } else { (icons::X_CIRCLE, theme.palette.warn) };

@@ -1,4 +1,4 @@
-//! The scaling page, which derives parameters 154 and 156 from the spindle pitch and the desired resolution.
+//! The scaling page, which calculates parameters 154 and 156 from the spindle pitch and the desired resolution.
 
 use egui::Ui;
 
@@ -74,7 +74,7 @@ pub(super) fn card_ui(
     });
 }
 
-/// Draws the effect of the edited scale on one turn and on the limits.
+/// Draws what the edited scale means for one turn and for the limits.
 fn scale_effect_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     let drive = unit.drive();
     let ruler = unit.edited_ruler(drive);

@@ -1,4 +1,4 @@
-//! The seven states of a drive and their transitions (HIPERDRIVE reference, section 3).
+//! State diagram: the seven states of a drive and the transitions between them (HIPERDRIVE reference, section 3).
 //!
 //! * **Size**: the available width, with five states in a row, and fault and lock below them.
 //! * **Keyboard**: Tab moves through the reachable states. Space or Enter requests one.
@@ -19,10 +19,10 @@ use crate::ui::widgets::focus_ring;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StateMachine<'a> {
     pub(crate) present: Option<State>,
-    /// States that can be reached from the current state.
+    /// States that are reachable from the current state.
     pub(crate) reachable: &'a [State],
     pub(crate) names: &'a [String; 7],
-    /// Effect of a change to each state, if any.
+    /// What a change to each state does, if possible.
     pub(crate) hints: &'a [Option<String>; 7],
 }
 
@@ -30,7 +30,7 @@ const BOX_HEIGHT: f32 = 28.0;
 const MAX_GAP: f32 = 28.0;
 const BOX_SPACING: f32 = 16.0;
 const MAX_BOX_WIDTH: f32 = 128.0;
-/// Length and half the width of an arrowhead.
+/// Length of an arrowhead, and half its width.
 const ARROWHEAD: f32 = 6.0;
 
 const fn grid_position(state: State) -> (f32, f32) {
@@ -144,7 +144,7 @@ fn state_box_ui(painter: &Painter, theme: &Theme, rect: Rect, name: &str, look: 
     painter.galley(Align2::CENTER_CENTER.align_size_within_rect(words.size(), rect).min, words, look.ink);
 }
 
-/// Draws the arrows between the boxes: both directions within the row, three arrows into the fault, and two out of the
+/// Draws the arrows between the boxes: in both directions within the row, three into the fault, and two out of the
 /// lock.
 fn paint_arrows(painter: &Painter, theme: &Theme, plan: &DiagramLayout, present: Option<State>) {
     let faint = Color32::from(theme.palette.muted).gamma_multiply(0.7);

@@ -1,4 +1,4 @@
-//! The travel of a drive as a bar: limits, position and target.
+//! Bar that shows the travel of a drive: limits, position and target.
 //!
 //! * **Size**: the available width and a constant height, so that nothing below moves when the drive leaves its limits.
 //! * **Keyboard, pointer**: none. The bar cannot be used to move the drive.
@@ -25,14 +25,14 @@ const LINE_HEIGHT: f32 = 20.0;
 const BAR_HEIGHT: f32 = 14.0;
 const LIMITS_HEIGHT: f32 = 16.0;
 const GAP_HEIGHT: f32 = 6.0;
-/// Margin at both ends of the bar for a marker.
+/// Margin at each end of the bar, so that a marker fits.
 const END_MARGIN: f32 = 8.0;
-/// Half the size of the target's diamond.
+/// Half the width of the diamond that marks the target.
 const DIAMOND_RADIUS: f32 = 6.0;
-/// Fraction of the bar reserved for a position outside the limits.
+/// Fraction of the bar that is added beyond a limit if the position is outside it.
 const OUTSIDE_FRACTION: f64 = 0.04;
 
-/// Mapping of steps to the pixels of the bar.
+/// Mapping from steps to pixels of the bar.
 struct Scale {
     from: f64,
     to: f64,
@@ -41,7 +41,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// Creates a scale that shows both limits. A position outside them is shown with some margin.
+    /// Creates a scale that shows both limits and the position. A position outside the limits gets some margin.
     fn new((low, high): (i32, i32), position: Option<i32>, bar: Rect) -> Self {
         let (low, high) = (f64::from(low), f64::from(high));
         let position = position.map_or(low, f64::from);
@@ -66,7 +66,7 @@ struct BarValues {
     limits: Option<(i32, i32)>,
     position: Option<i32>,
     target: Option<i32>,
-    /// Position of the drive relative to its limits, or `None` if the drive is inside or at the end of its range.
+    /// Limit that the drive has passed, or `None` if it is inside or at the end of its range.
     outside: Option<OutsideLimits>,
     is_moving: bool,
 }
@@ -120,7 +120,7 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, typ
     }
 }
 
-/// Returns instructions for returning a drive inside its limits.
+/// Explains how to return a drive inside its limits.
 fn return_instructions(outside: OutsideLimits) -> Text {
     TEXTS.text(match outside {
         OutsideLimits::At(LimitSide::Above) => "hd_travel.back_down",
@@ -129,7 +129,7 @@ fn return_instructions(outside: OutsideLimits) -> Text {
     })
 }
 
-/// Draws position and target above the bar, or the way back inside the limits.
+/// Draws position and target above the bar, or else how to get back inside the limits.
 fn line_ui(
     painter: &Painter,
     theme: &Theme,
@@ -214,7 +214,7 @@ fn target_colour(theme: &Theme) -> Color32 {
     series_colour(theme, 0)
 }
 
-/// Draws the position marker of the legend and returns the position of its label.
+/// Draws the position marker in the legend, and returns where its label begins.
 fn paint_marker(painter: &Painter, at: Pos2, ink: Color32) -> Pos2 {
     painter.rect_filled(Rect::from_center_size(at, vec2(4.0, BAR_HEIGHT)), 2.0, ink);
     at + vec2(9.0, 0.0)
@@ -226,7 +226,7 @@ fn paint_diamond(painter: &Painter, at: Pos2, ink: Color32) {
     painter.add(Shape::closed_line(corners.map(|corner| at + corner).to_vec(), Stroke::new(2.0, ink)));
 }
 
-/// Draws an arrow from a position back to a limit if there is room.
+/// Draws an arrow from the position back to the limit, if there is room.
 fn paint_arrow(painter: &Painter, from: Pos2, limit: f32, ink: Color32) {
     const ARROWHEAD: f32 = 6.0;
     let way = limit - from.x;

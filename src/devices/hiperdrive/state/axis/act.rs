@@ -1,4 +1,4 @@
-//! The user's actions during axis set-up, and the resulting requests to the device.
+//! The user's actions in the axis set-up, and the requests to the device that result from them.
 
 use std::path::PathBuf;
 
@@ -7,9 +7,9 @@ use crate::app::Language;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DriveRequest {
-    /// Writes parameters without saving them. Their numbers are those of drive 1.
+    /// Writes parameters, given by their numbers for drive 1, without saving them.
     Try(Vec<(u16, i64)>),
-    /// Assigns a position to the current location of the drive without saving it.
+    /// Assigns a position to the current location of the axis without saving it.
     SetPosition(i32),
     ConfirmLimits,
     Move(i32),
@@ -19,17 +19,17 @@ pub enum DriveRequest {
     /// Writes the previous values back without saving them.
     Restore(Vec<(u16, i64)>),
     Acknowledge,
-    /// Accepts the statement of the user that the supply was switched off.
+    /// Accepts the user's claim that the supply was switched off.
     BelieveRestart,
     PowerCycle,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisButton {
-    /// Executes the task of the current step: a request, a write or a save.
+    /// Executes the current step: sends its request, writes or saves.
     Do,
     Confirm,
-    /// Widens the limits to the full travel of the drive.
+    /// Extends the limits to the full travel of the drive.
     Widen,
     Go(TestTarget),
     Take,
@@ -45,7 +45,7 @@ pub enum AxisAction {
     Begin,
     Edit(Box<LengthEntries>),
     Press(AxisButton),
-    /// Adopts the current position as the limit that the current step sets.
+    /// Takes the current position as the limit that this step sets.
     TakePlace,
     Next,
     Skip,

@@ -1,4 +1,4 @@
-//! Known data about a drive, on which the axis set-up is based.
+//! Data about a drive on which the axis set-up is based.
 
 use std::collections::BTreeMap;
 
@@ -10,26 +10,26 @@ use crate::units::Moment;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DriveFacts {
     pub connected: bool,
-    /// Whether a job is running or a review is open.
+    /// Whether a job is running or a plan is open for the user's approval.
     pub busy: bool,
-    /// Whether the parameters may differ from the values read.
+    /// Whether the parameters may have changed since they were read.
     pub stale: bool,
     pub is_virtual: bool,
     pub controlled: bool,
     pub moves: bool,
-    /// Action number and direction of a held jog button.
+    /// Action number and direction of the jog whose button is held.
     pub held: Option<(u64, Direction)>,
     pub actual: Option<ActualValues>,
-    /// Time of the last report from the drive on the session's clock, if known.
+    /// Time of the drive's last report on the session's clock, if known.
     pub actual_at: Option<Moment>,
     pub position: Option<i32>,
-    /// Parameters of the drive as last read, by their numbers for drive 1.
+    /// Parameter values of the drive as last read, by number for drive 1.
     pub values: BTreeMap<u16, i64>,
-    /// Saved values known to differ from those written since, by their numbers for drive 1.
+    /// Saved values that are known to have been overwritten since, by number for drive 1.
     pub unsaved: BTreeMap<u16, i64>,
-    /// Number of times that this program has set the position.
+    /// How often this program has set the position.
     pub times_set: u32,
-    /// Whether the drive is requested, parameter 152.
+    /// Whether parameter 152 (Requested) is 1, if known.
     pub requested: Option<bool>,
     /// Position scale, parameters 154 and 156.
     pub scale: Option<PositionScale>,
@@ -40,7 +40,7 @@ pub struct DriveFacts {
     pub family: Option<Family>,
     pub locks: Vec<MotionLock>,
     pub ended: Option<(u64, ActionEnd)>,
-    /// Latest error since the last acknowledgement, if it was read.
+    /// Latest error since the last acknowledgement, if read.
     pub error: Option<ErrorCode>,
 }
 
@@ -49,12 +49,12 @@ impl DriveFacts {
         self.connected && !self.busy && !self.stale
     }
 
-    /// Returns whether the drive has failed and cannot move until the fault is acknowledged.
+    /// Returns whether the drive has a fault, which must be acknowledged before it can move.
     pub fn has_failed(&self) -> bool {
         self.actual.is_some_and(|actual| matches!(actual.status.state(), State::Fault | State::Locked))
     }
 
-    /// Returns the ruler of the drive, in millimetres if the user has confirmed a pitch.
+    /// Returns the ruler for positions of the drive. It has millimetres if the user has confirmed a pitch.
     pub fn ruler(&self) -> Option<Ruler> {
         Some(Ruler { scale: self.scale?, pitch: self.pitch })
     }

@@ -1,4 +1,4 @@
-//! Entries of the axis set-up: pitch and resolution, the reference position and both limits, with their results.
+//! Entries in the axis set-up: pitch, resolution, reference position and limits, with the values that result from them.
 
 use super::{DriveFacts, labels};
 use crate::app::number::parse_in_range;
@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::{Family, Length, PositionScale, neares
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::ruler::{PositionRangeError, PositionUnit, Ruler};
 
-/// Typed values in millimetres.
+/// Values in millimetres as typed by the user.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LengthEntries {
     /// Pitch of the spindle in millimetres per turn.
@@ -22,14 +22,14 @@ pub struct LengthEntries {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitsPreview {
-    /// Position scale for parameters 154 and 156.
+    /// Position scale to write to parameters 154 and 156.
     pub scale: PositionScale,
     pub ruler: Ruler,
-    /// Lower limit for the set-up, given by the travel of the drive.
+    /// Lower limit during the set-up, given by the travel of the drive.
     pub lower: i32,
-    /// Upper limit for the set-up, given by the travel of the drive.
+    /// Upper limit during the set-up, given by the travel of the drive.
     pub upper: i32,
-    /// Current limits in millimetres under the new scale, if their step numbers do not change.
+    /// What the current limits would be in millimetres under the new scale, if their numbers of steps stayed the same.
     pub unchanged: Option<(f64, f64)>,
 }
 
@@ -37,13 +37,13 @@ pub struct LimitsPreview {
 pub struct ReferencePosition {
     /// Position that the user entered.
     pub asked: i32,
-    /// Position as accepted by the drive, a multiple of 64 steps.
+    /// Position as the drive accepts it, a multiple of 64 steps.
     pub becomes: i32,
 }
 
 impl LengthEntries {
-    /// Creates the initial entries from the known data of the spindle. An unconfirmed pitch is not proposed, since it
-    /// would yield wrong measurements.
+    /// Creates the initial entries from the known spindle data. An unconfirmed pitch is not proposed, since it could
+    /// give wrong lengths.
     pub(super) fn new(ruler: Option<Ruler>) -> Self {
         let known = ruler.and_then(|own| Some((own.pitch?, own)));
         let pitch = known.map(|(pitch, _)| trimmed_number(pitch.nanometres as f64 / 1e6)).unwrap_or_default();
@@ -53,7 +53,7 @@ impl LengthEntries {
         LengthEntries { pitch, resolution, reference: "0".to_owned(), ..LengthEntries::default() }
     }
 
-    /// Returns the entries with the decimal separator of a language.
+    /// Returns the entries with the decimal separator of this language.
     pub fn localized(&self, language: Language) -> Self {
         let shown = |text: &String| localize_number(text, language);
         LengthEntries {
@@ -73,7 +73,7 @@ impl LengthEntries {
         parse_length("hd_axis.pitch", &self.pitch, 1000.0)
     }
 
-    /// Returns the values that result from the entered pitch and resolution.
+    /// Calculates the values that result from the entered pitch and resolution.
     ///
     /// # Errors
     /// Returns an error with the reason if an entry is invalid.
@@ -92,7 +92,7 @@ impl LengthEntries {
         Ok(LimitsPreview { scale, ruler, lower, upper, unchanged })
     }
 
-    /// Returns the number to assign to the current location of the axis.
+    /// Returns the position number to assign to the current location of the axis.
     ///
     /// # Errors
     /// Returns an error with the reason if the number is invalid or outside the limits.
@@ -129,7 +129,7 @@ fn trimmed_number(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Formats a number of steps for an input field, with enough decimals to distinguish adjacent steps.
+/// Formats a position for an input field, in millimetres with enough decimals to distinguish adjacent steps.
 pub(super) fn format_steps(ruler: Ruler, steps: i32) -> Option<String> {
     let decimals = ruler.decimal_places(PositionUnit::Millimetres);
     Some(format!("{:.decimals$}", ruler.from_steps(steps.into(), PositionUnit::Millimetres)?))

@@ -1,4 +1,4 @@
-//! Progress of the set-up through buttons, completed writes and data from the drive.
+//! Progress of the set-up: how it responds to buttons, completed writes and data from the drive.
 
 use super::entries::{LengthEntries, format_steps};
 use super::standstill::PositionChange;
@@ -16,7 +16,7 @@ impl Axis {
         }
     }
 
-    /// Adopts the current position of the axis as the limit that the current step sets.
+    /// Takes the current position as the limit that this step sets.
     pub(crate) fn adopt_limit(&mut self, seen: &DriveFacts) {
         if self.check_can_adopt_position(seen).is_err() {
             return;
@@ -30,7 +30,7 @@ impl Axis {
         }
     }
 
-    /// Goes to the next step if the current step is complete. `when` is the time as written in the report.
+    /// Goes to the next step if the current step is complete. `when` is the date and time for the report.
     pub(crate) fn next_step(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() && self.check_can_continue(seen).is_ok() {
             self.leave_step(seen, false, when);
@@ -65,7 +65,7 @@ impl Axis {
         }
     }
 
-    /// Goes to the previous step or to a step that must be repeated. Written values are kept.
+    /// Goes to the previous step or, if a step must be repeated, to that step. Written values are kept.
     pub(crate) fn go_back(&mut self, seen: &DriveFacts) {
         if self.over.is_some() || !self.can_go_back(seen) {
             return;
@@ -141,7 +141,7 @@ impl Axis {
         }
     }
 
-    /// Records that the user confirmed the limits by approving their plan.
+    /// Records that the user has confirmed the limits by approving a plan that writes them.
     fn record_confirmed_limits(&mut self, values: &[(u16, i64)], whole: bool) {
         let value = |own: u16| {
             let (_, value) = values.iter().find(|(number, _)| *number == own)?;
@@ -157,7 +157,7 @@ impl Axis {
         }
     }
 
-    /// Records that a request was not executed completely. `begun` specifies whether part of it may have been written.
+    /// Records that a request was not completed. If `begun` is set, part of it may have been written.
     pub(crate) fn handle_write_failure(&mut self, begun: bool) {
         match self.asked.take() {
             Some(DriveRequest::Try(values)) if begun => {
@@ -187,13 +187,14 @@ impl Axis {
         self.power = self.power.map(Power::after_power_off);
     }
 
-    /// Records that all parameters were read. `switched` specifies whether the virtual supply has been switched since.
+    /// Records that all parameters were read. `switched` is set if the virtual supply has been switched since the last
+    /// reading.
     pub(crate) fn on_survey(&mut self, seen: &DriveFacts, switched: bool) {
         self.power = self.power.map(|power| power.after_survey(seen, switched));
     }
 
-    /// Processes the current data of the drive. Updates the travel, the end of a test move, and the validity of all
-    /// results.
+    /// Processes current data from the drive: updates the jogged distance, ends a test move, and checks the validity of
+    /// all results.
     pub(crate) fn update(&mut self, seen: &DriveFacts) {
         if self.over.is_some() {
             return;
@@ -216,7 +217,7 @@ impl Axis {
         self.reconcile_results(seen);
     }
 
-    /// Discards results that no longer match the drive and adopts those that do.
+    /// Discards results that no longer match the drive, and records a new reference once the drive reports it.
     fn reconcile_results(&mut self, seen: &DriveFacts) {
         if !seen.is_settled() || self.asked.is_some() {
             return;
@@ -237,8 +238,7 @@ impl Axis {
         }
     }
 
-    /// Discards the results of the given step and all later steps. `taught` specifies whether taught entries are
-    /// discarded as well.
+    /// Discards the results of this step and all later ones. Taught limits are kept if `taught` is set.
     fn undo_results_from(&mut self, step: AxisStep, taught: bool) {
         if step <= AxisStep::Confirm {
             self.confirmed = None;

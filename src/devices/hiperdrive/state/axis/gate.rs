@@ -1,4 +1,4 @@
-//! Buttons of the axis set-up: the request of each, and the conditions for the next step.
+//! Conditions in the axis set-up: what each button requests and when it is enabled, and when the next step may follow.
 
 use std::time::Duration;
 
@@ -124,7 +124,7 @@ impl Axis {
         }
     }
 
-    /// Returns both limits set by teach-in, after checking that the axis is between them.
+    /// Returns the limits set by teach-in, if the axis is between them.
     fn teach_in_limits(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
         let (low, high) = (self.entries.lower_limit(ruler)?, self.entries.upper_limit(ruler)?);
@@ -168,10 +168,10 @@ impl Axis {
         }
     }
 
-    /// Checks whether the current location of the axis can become a limit.
+    /// Checks whether the current position of the axis can become a limit.
     ///
     /// # Errors
-    /// Returns an error with the reason if the location cannot become a limit.
+    /// Returns an error with the reason if the position cannot become a limit.
     pub fn check_can_adopt_position(&self, seen: &DriveFacts) -> Result<(), Text> {
         if let Some(step) = self.invalidated_step() {
             return Err(labels::invalidated_step(step));
@@ -185,11 +185,11 @@ impl Axis {
         seen.position.map(|_| ()).ok_or_else(|| TEXTS.text("hd_axis.no_position"))
     }
 
-    /// Checks whether a step has been shown for long enough to be left. A second click within that time was meant for
+    /// Checks whether a step has been shown long enough to be left. A click before that may be a double click meant for
     /// the previous step.
     ///
     /// # Errors
-    /// Returns the remaining time as an error if the step has not been shown for long enough.
+    /// Returns the remaining time as an error if the step has not been shown long enough.
     pub fn check_step_settled(looked_at: Duration) -> Result<(), Duration> {
         match MIN_STEP_TIME.saturating_sub(looked_at) {
             Duration::ZERO => Ok(()),
@@ -205,7 +205,7 @@ impl Axis {
         self.step.is_optional() && self.asked.is_none() && !seen.moves && self.invalidated_step().is_none()
     }
 
-    /// Checks whether the current step is complete, so that the next step may follow.
+    /// Checks whether the current step is complete.
     ///
     /// # Errors
     /// Returns an error with the missing condition if the step is not complete.
@@ -258,7 +258,7 @@ impl Axis {
         }
     }
 
-    /// Returns whether the user has confirmed the current limits of the drive under the current scale.
+    /// Returns whether the user has confirmed the current limits of the drive in the current scale.
     pub(super) fn is_confirmed(&self, seen: &DriveFacts) -> bool {
         let (Some(own), Some((low, high))) = (&self.confirmed, seen.limits) else { return false };
         let (agreed, begun) = (own.agreed, own.begun.unwrap_or(own.agreed));
@@ -266,7 +266,7 @@ impl Axis {
         own.scale == seen.scale && are_agreed && !seen.locks.contains(&MotionLock::LimitsUnconfirmed)
     }
 
-    /// Returns the target of a test move.
+    /// Returns the position that a test move goes to.
     ///
     /// # Errors
     /// Returns an error if the limits are not known.

@@ -1,4 +1,4 @@
-//! Texts for the steps of the axis set-up: names, tasks and findings.
+//! Labels and messages for the steps of the axis set-up: names, tasks and findings.
 
 use super::{Axis, AxisChange, AxisStep, DriveFacts, Outcome, Power, RestartEvidence, StepStatus, TestTarget};
 use crate::app::Text;
@@ -155,7 +155,7 @@ pub fn invalidated_step(step: AxisStep) -> Text {
     text.with_text("step", title(step)).with_text("why", why)
 }
 
-/// Describes the fault of the drive, with its code if known, or returns `None` without a fault.
+/// Describes the fault of the drive, with its code if known. Returns `None` if there is no fault.
 pub fn fault_text(seen: &DriveFacts) -> Option<Text> {
     if !seen.has_failed() {
         return None;
@@ -168,7 +168,7 @@ pub fn fault_text(seen: &DriveFacts) -> Option<Text> {
     Some(text.with_text("name", words.name).with_text("remedy", words.remedy))
 }
 
-/// Describes the speed and torque sent for the jog buttons and the test.
+/// Describes the speed and torque of the jog buttons and the test moves.
 pub fn speed_torque_text(id: &'static str) -> Text {
     let SpeedTorque { speed, torque } = SpeedTorque::DEFAULT_JOG;
     TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get())
@@ -184,7 +184,7 @@ pub fn outcome_text(outcome: &Outcome, seen: &DriveFacts) -> Text {
     TEXTS.text("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
 }
 
-/// Lists the values known to differ from the saved values, or returns `None` if there are none.
+/// Lists the values that are known to differ from the saved values. Returns `None` if there are none.
 pub fn differences(seen: &DriveFacts) -> Option<Text> {
     let difference = |own: super::differences::Difference| {
         let id = if own.number == REFERENCE { "hd_axis.differs_place" } else { "hd_axis.differs" };
@@ -194,7 +194,7 @@ pub fn differences(seen: &DriveFacts) -> Option<Text> {
     (!all.is_empty()).then(|| TEXTS.text("hd_axis.unsaved").with_list("differences", all))
 }
 
-/// Describes the outcome of restoring values, or returns `None` if none were restored.
+/// Describes how many values were written back. Returns `None` if there were none.
 pub fn write_back_text(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     if axis.returned.is_empty() {
         return None;
@@ -205,14 +205,14 @@ pub fn write_back_text(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     Some(text.with("all", axis.returned.len()))
 }
 
-/// Returns a message if parameters were restored but the position was not.
+/// Returns a message if parameters were written back but the position must still be set.
 pub fn unrestored_position_text(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let is_set = axis.changes().iter().any(|own| matches!(own, AxisChange::Position(_)));
     let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_position_different(seen));
     is_left.then(|| TEXTS.text("hd_axis.place_left"))
 }
 
-/// Returns a message if the position has changed since the reference while it was not read.
+/// Returns a message if the position has changed unobserved since the reference was set.
 pub fn unexplained_change_text(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let way = axis.unexplained?;
     Some(TEXTS.text("hd_axis.unexplained").with_text("way", millimetres_text(seen.ruler(), way)))
@@ -226,7 +226,7 @@ pub fn target_text(place: TestTarget) -> Text {
     })
 }
 
-/// Lists all changes, if any. A parameter that was written more than once is listed with its current value.
+/// Lists the changes made. A parameter that was written more than once is listed with its last value.
 pub fn changes_text(axis: &Axis) -> Text {
     let number = |own: &AxisChange| match own {
         AxisChange::Parameter(number, _) => *number,
@@ -246,7 +246,8 @@ fn change_text(own: &AxisChange) -> Text {
     }
 }
 
-/// Formats steps in millimetres, with enough decimals to distinguish steps, or as steps if the spindle is unknown.
+/// Formats steps in millimetres, with enough decimals to distinguish adjacent steps. If the spindle is unknown, the
+/// result is in steps.
 pub fn millimetres_text(ruler: Option<Ruler>, steps: i64) -> Text {
     match ruler.and_then(|ruler| Some((ruler.from_steps(steps, PositionUnit::Millimetres)?, ruler))) {
         Some((value, ruler)) => {

@@ -1,5 +1,5 @@
-//! Report of a completed axis set-up for saving and printing. It is plain text that fits a page, with lengths in
-//! millimetres.
+//! Report of a completed axis set-up, as plain text that can be saved and printed. Its lines fit a page, and its
+//! lengths are in millimetres.
 
 use super::{Axis, AxisStep, DriveFacts, SetupEnd, StepStatus, TestTarget, labels};
 use crate::app::report::SessionResult;
@@ -17,20 +17,20 @@ pub struct Device {
 const COLUMNS: usize = 78;
 const INDENT: &str = "   ";
 
-/// A report of a completed set-up.
+/// Report of a completed axis set-up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisReport {
     pub title: Text,
-    /// The drive, the end of the set-up, and the pitch of the spindle.
+    /// The drive, how the set-up ended, and the pitch of the spindle.
     pub summary: Vec<Text>,
-    /// Steps, each with its findings.
+    /// Each step with its findings.
     pub steps: Vec<(Text, Vec<Text>)>,
-    /// Description of the written values.
+    /// What was written, and whether it is saved.
     pub outcome: Vec<Text>,
 }
 
 impl AxisReport {
-    /// Returns the report of a completed set-up, or `None` while it is running. `now` provides the values that were
+    /// Returns the report of a completed set-up, or `None` while it is running. `now` is needed to report values
     /// written back after the set-up.
     pub fn new(axis: &Axis, now: &DriveFacts, device: &Device) -> Option<Self> {
         let over = axis.run_summary()?;
@@ -65,7 +65,7 @@ impl AxisReport {
         page.text
     }
 
-    /// Converts this report to a section of a device report.
+    /// Converts this report into a section of the device report.
     pub fn into_session_result(self) -> SessionResult {
         let AxisReport { title, summary, steps, outcome } = self;
         let steps = steps.into_iter().flat_map(|(step, findings)| std::iter::once(step).chain(findings));
@@ -73,7 +73,7 @@ impl AxisReport {
     }
 }
 
-/// Returns the result of a step and the findings for it.
+/// Returns the result of a step, and what was found.
 fn step_texts(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> (Text, Vec<Text>) {
     let reached = axis.step_status(step);
     let line = TEXTS.text("hd_axis.report_step").with("number", step.index() + 1);
@@ -97,8 +97,7 @@ fn step_texts(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> (Text, Vec<Text
     (line, findings)
 }
 
-/// Returns lines that list the written values, whether they are saved, and which current values differ from the saved
-/// ones.
+/// Returns lines that list what was written, whether it is saved, and which current values differ from the saved ones.
 pub fn write_outcome_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     let mut lines = Vec::new();
     match (axis.changes().is_empty(), labels::write_back_text(axis, now)) {
@@ -129,7 +128,7 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// Writes a text, wrapped to as many lines as required.
+    /// Appends a text, wrapped to the width of the page.
     fn write_text(&mut self, indent: &str, text: &Text) {
         let mut line = String::new();
         for word in text.to_string_in(self.language).split_whitespace() {

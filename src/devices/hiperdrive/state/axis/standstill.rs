@@ -1,6 +1,6 @@
-//! Comparison of two positions of an axis at standstill. Parameter 198 is the number that was written last, and no
-//! parameter reveals where it was written (manual, 198 and 107). If the reference is set to the same number at another
-//! location, the only sign is a position that jumps without motion.
+//! Compares the positions of an axis at standstill, to detect that its reference was set again. Parameter 198 is only
+//! the number that was written last, and no parameter tells where it was written (manual, 198 and 107). If the same
+//! number is set at another location, the only sign is a position that jumps without motion.
 
 use std::time::Duration;
 
@@ -11,36 +11,37 @@ use crate::devices::hiperdrive::procedures::dead_man::MAX_REPORT_DELAY;
 use crate::devices::hiperdrive::protocol::{PositionScale, StatusBit};
 use crate::units::Moment;
 
-/// Maximum speed of a shaft in rpm, the largest value of parameter 166.
+/// Maximum speed of a shaft in rpm, which is the maximum of parameter 166.
 const FASTEST_RPM: f64 = 35.0;
-/// Maximum interval between two readings. During a longer interval, an axis may have moved and stopped unnoticed.
+/// Maximum interval between two readings. In a longer interval, an axis could move and stop unnoticed.
 const MAX_READING_GAP: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct StandstillMonitor {
     last: Option<StandstillReading>,
-    /// Whether the connection has been lost since the reading. The clock of a session is valid only for that session.
+    /// Whether the connection has been lost since the reading. Each session has its own clock, so times before and
+    /// after the loss cannot be compared.
     interrupted: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct StandstillReading {
-    /// Time of the reading, or `None` if the reading was part of a complete reading after a loss of the connection.
+    /// Time of the reading, or `None` if all parameters were read after a loss of the connection.
     at: Option<Moment>,
     position: i32,
     scale: PositionScale,
     origin: PositionOrigin,
-    /// Last action of the user that had ended at the time of the reading.
+    /// Last action of the user that had ended when the reading was taken.
     act: Option<u64>,
 }
 
-/// A change of position that cannot be explained by motion.
+/// A change of position that motion cannot explain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PositionChange {
-    /// A change that exceeds the possible motion of the shaft in the elapsed time. The reference was set again.
+    /// The position changed by more than the shaft could turn in the elapsed time, so the reference was set again.
     Jump,
-    /// Number of steps by which the position changed while it was not read. The axis was moved, or its reference was
-    /// set again.
+    /// The position changed by this number of steps while it was not read. Either the axis was moved or its reference
+    /// was set again.
     Unexplained(i64),
 }
 
@@ -49,13 +50,13 @@ impl StandstillMonitor {
         self.interrupted = true;
     }
 
-    /// Discards the last standstill, because the drive was off and may have been turned by hand. The power-cycle check
+    /// Discards the previous reading. The drive was off and may have been turned by hand, and the power-cycle check
     /// compares the positions itself.
     pub(super) fn discard(&mut self) {
         *self = StandstillMonitor::default();
     }
 
-    /// Processes a reading. Returns the change since the previous reading if it cannot be explained by motion.
+    /// Processes a reading. Returns the change since the previous reading if motion cannot explain it.
     pub(super) fn check_reading(&mut self, seen: &DriveFacts, origin: PositionOrigin) -> Option<PositionChange> {
         let (actual, position, scale, at) = (seen.actual?, seen.position?, seen.scale?, seen.actual_at);
         if at.is_none() && !self.interrupted {

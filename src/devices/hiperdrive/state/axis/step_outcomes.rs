@@ -1,13 +1,13 @@
-//! Results of the axis set-up, step by step. Each result contains the drive data on which it depends. If this data
-//! changes for any reason, the result becomes void together with all later results.
+//! Results of the steps in the axis set-up. Each result includes the drive data that it depends on. If this data
+//! changes for any reason, the result and all later results become void.
 
 use super::{AxisStep, DriveFacts};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
-/// Identifies the zero point to which positions refer. A change in any field means that the zero point may have moved:
-/// the reference (parameter 198), the number of times this program has set the position, or the number of jumps at
-/// standstill. Only a jump reveals that the same reference was set again at another location.
+/// Identifies the zero point that positions refer to. It may have moved if any field changes: the reference (parameter
+/// 198), the number of times this program has set the position, or the number of jumps at standstill. A jump is the
+/// only sign of the same reference being set again at another location.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct PositionOrigin {
     set: Option<i64>,
@@ -20,7 +20,7 @@ pub(super) struct Preconditions {
     pub(super) requested: Option<bool>,
     pub(super) scale: Option<PositionScale>,
     pub(super) pitch: Option<Length>,
-    /// Whether the limits of the drive are confirmed under the current scale.
+    /// Whether the limits of the drive are confirmed in the current scale.
     pub(super) confirmed: bool,
     pub(super) origin: PositionOrigin,
     pub(super) limits: Option<(i32, i32)>,
@@ -33,7 +33,7 @@ struct StepOutcome {
     skipped: bool,
 }
 
-/// Results of consecutive steps, starting with the first step.
+/// Results of the first steps, without a gap.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepOutcomes(Vec<StepOutcome>);
 
@@ -57,8 +57,8 @@ impl StepOutcomes {
         self.0.get(step.index()).is_some_and(|made| made.skipped)
     }
 
-    /// Records the result of a step. Returns `true` if the result differs from the previous one, which makes the
-    /// results of all later steps void.
+    /// Records the result of a step. If it differs from the previous result, all later results become void and `true`
+    /// is returned.
     pub(super) fn record(&mut self, step: AxisStep, on: Preconditions, skipped: bool) -> bool {
         let made = StepOutcome { on, skipped };
         let before = self.0.get(step.index()).copied();
@@ -72,7 +72,7 @@ impl StepOutcomes {
         before.is_some()
     }
 
-    /// Discards results that no longer match the current drive data. Returns the first affected step.
+    /// Discards results that no longer match the current drive data. Returns the first step that has lost its result.
     pub(super) fn discard_outdated(&mut self, now: &Preconditions) -> Option<AxisStep> {
         let holds = |(step, made): (&AxisStep, &StepOutcome)| is_unchanged(*step, &made.on, now);
         let left = AxisStep::ALL.iter().zip(&self.0).take_while(|own| holds(*own)).count();
@@ -82,8 +82,8 @@ impl StepOutcomes {
     }
 }
 
-/// Returns whether the drive data on which a step depends are unchanged. Data on which earlier steps depend are checked
-/// along with those steps.
+/// Returns whether the drive data that this step depends on are unchanged. Data of earlier steps are checked with those
+/// steps.
 fn is_unchanged(step: AxisStep, on: &Preconditions, now: &Preconditions) -> bool {
     match step {
         AxisStep::Request => now.requested == Some(true),

@@ -1,38 +1,38 @@
-//! Power-cycle check: the state before and after the power cycle, and the evidence that the supply was off. A
-//! connection that was lost and restored does not prove anything.
+//! Power-cycle check: the state before and after, and the evidence that the supply was off. Losing and regaining the
+//! connection is no proof.
 
 use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;
 use crate::devices::hiperdrive::protocol::{FactoryValue, PARAMETERS, PositionScale};
 
-/// Parameter by which a restart of the drive is detected. It is never saved, so only a restart restores its factory
-/// setting (manual, 182), and it has no effect on motion.
+/// Parameter that shows whether a drive has restarted. It is never saved, so only a restart restores its factory
+/// setting (manual, 182). It has no effect on motion.
 pub(super) const RESTART_MARKER: u16 = HAND_DRIVE_WAIT;
 
-/// Angle in degrees by which a drive may readjust its position at power-up and after a stop (manual, 8.3).
+/// Angle in degrees by which a drive may readjust its position at power-up or after a stop (manual, 8.3).
 pub(super) const READJUSTMENT_DEG: f64 = 5.0;
 
-/// State of the drive before the supply is switched off.
+/// State of the drive before the power cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StateBeforePowerOff {
     scale: Option<PositionScale>,
     limits: Option<(i32, i32)>,
     position: Option<i32>,
-    /// Whether [`RESTART_MARKER`] differed from its factory setting.
+    /// Whether [`RESTART_MARKER`] had a value other than its factory setting.
     marked: bool,
 }
 
 /// Evidence that the supply was off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RestartEvidence {
-    /// The restart is proven by a reading in which parameter 182 has its factory setting again.
+    /// Proven: when read, parameter 182 had its factory setting again.
     Read,
     Switched,
-    /// The restart is claimed by the user and not proven by a reading.
+    /// Claimed by the user, and not proven by a reading.
     ClaimedByUser,
-    /// The restart is not proven. The connection was lost, but this can have other causes.
+    /// Not proven. The connection was lost, but that can have other causes.
     Unproven,
-    /// The restart is disproved, because parameter 182 still has a value that any restart would remove.
+    /// Disproved: parameter 182 still has a value that a restart would have reset.
     Disproved,
 }
 
@@ -40,12 +40,12 @@ pub enum RestartEvidence {
 pub enum Power {
     /// The device still replies.
     On(StateBeforePowerOff),
-    /// The drive has stopped replying, or its parameters have not been read since.
+    /// The drive has stopped replying, and its parameters have not been read since.
     Gone(StateBeforePowerOff),
     Back {
         before: StateBeforePowerOff,
         kept: bool,
-        /// Number of steps between the positions before and after the restart, or `None` if one of them is unknown.
+        /// Number of steps between the positions before and after the restart, or `None` if either position is unknown.
         moved: Option<i64>,
         /// Allowed deviation in steps.
         allowed: i64,
@@ -58,7 +58,7 @@ impl Power {
         Power::On(StateBeforePowerOff::default()).with_latest_values(seen)
     }
 
-    /// Adopts the latest values while the supply is on. If the marker is still set, the supply has not been off since
+    /// Stores the latest values while the supply is on. If the marker is still set, the drive has not restarted since
     /// it was set.
     pub(super) fn with_latest_values(self, seen: &DriveFacts) -> Self {
         match self {
@@ -84,8 +84,8 @@ impl Power {
         }
     }
 
-    /// Records that the parameters were read again. This reading may be the first one after the power cycle, unless an
-    /// earlier one has already shown that the supply was off.
+    /// Records that the parameters were read again, possibly for the first time after the power cycle. Once the restart
+    /// is proven, later readings have no effect.
     pub(super) fn after_survey(self, seen: &DriveFacts, switched: bool) -> Self {
         let mut before = match self {
             Power::Gone(before)
@@ -111,7 +111,7 @@ impl Power {
         }
     }
 
-    /// Adopts the user's statement that the supply was off, unless a reading has proven or disproved this.
+    /// Records the user's claim that the supply was off, unless a reading has already proven or disproved it.
     pub(super) const fn confirmed_by_user(self) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: RestartEvidence::Unproven } => {
@@ -121,19 +121,19 @@ impl Power {
         }
     }
 
-    /// Returns whether the saved values are present, the axis has not moved, and the supply was off.
+    /// Returns whether the supply was off, the saved values are still present, and the axis has not moved.
     pub(super) fn has_survived_power_cycle(self) -> bool {
         matches!(self, Power::Back { kept: true, moved: Some(moved), allowed, restart, .. }
             if moved.abs() <= allowed && matches!(restart, RestartEvidence::Read | RestartEvidence::Switched | RestartEvidence::ClaimedByUser))
     }
 }
 
-/// Returns whether [`RESTART_MARKER`] differs from its factory setting, or `None` if it has not been read.
+/// Returns whether [`RESTART_MARKER`] has a value other than its factory setting. Returns `None` if it was not read.
 pub(super) fn is_marked(seen: &DriveFacts) -> Option<bool> {
     Some(*seen.values.get(&RESTART_MARKER)? != factory_mark()?)
 }
 
-/// Returns a value that marks a drive: the factory setting plus 1.
+/// Returns the value that marks a drive: the factory setting plus 1.
 pub(super) fn mark_value() -> Option<i64> {
     factory_mark().map(|value| value + 1)
 }

@@ -1,4 +1,4 @@
-//! Distance by which the axis was jogged, and the three targets of the test.
+//! The three targets of the test moves, and the distance by which the axis was jogged.
 
 use super::DriveFacts;
 use crate::devices::hiperdrive::procedures::dead_man::ActionEnd;
@@ -17,27 +17,27 @@ pub struct Outcome {
     pub target: i32,
     pub position: i32,
     pub ended: ActionEnd,
-    /// Allowed deviation from the target in steps, corresponding to 1° (reference, section 5, repeatability).
+    /// Allowed deviation from the target in steps. It corresponds to the repeatability of 1° (reference, section 5).
     pub allowed: i64,
 }
 
-/// Distance in steps by which an axis was jogged. Only motion during which a button is held is included.
+/// Distance in steps by which the user jogged an axis. Only motion while a button is held counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct JogTravel {
-    /// Farthest upward distance of a single jog, or 0 until the distance is significant.
+    /// Longest upward distance of a single jog. Distances too small to be significant count as 0.
     pub up: i64,
     pub down: i64,
-    /// Whether clockwise rotation counts up, or `None` if not observed yet.
+    /// Whether the position increases clockwise, or `None` if not observed yet.
     pub clockwise_is_up: Option<bool>,
-    /// The action that moves the axis, and the position at its start.
+    /// The current jog action and the position at which it started.
     from: Option<(u64, i32)>,
 }
 
 impl TestTarget {
-    /// All test targets, in the order of the test.
+    /// All targets, in the order of the test moves.
     pub const ALL: [TestTarget; 3] = [TestTarget::Middle, TestTarget::Lower, TestTarget::Upper];
 
-    /// Returns the target as a step position between two limits.
+    /// Returns the position of the target between two limits, in steps.
     pub const fn position_between(self, low: i32, high: i32) -> i32 {
         match self {
             TestTarget::Middle => low.midpoint(high),
@@ -48,7 +48,7 @@ impl TestTarget {
 }
 
 impl Outcome {
-    /// Returns the deviation of the position from the target in steps.
+    /// Returns the deviation from the target in steps.
     pub fn position_deviation(&self) -> i64 {
         i64::from(self.position) - i64::from(self.target)
     }
@@ -59,7 +59,7 @@ impl Outcome {
 }
 
 impl JogTravel {
-    /// Processes the position of the drive. Travel of less than a 64th of a turn is not significant.
+    /// Processes a position of the drive. A distance of less than a 64th of a turn is not significant.
     pub(super) fn add_position(&mut self, seen: &DriveFacts) {
         let (Some((act, direction)), Some(position), Some(scale)) = (seen.held, seen.position, seen.scale) else {
             self.from = None;

@@ -1,4 +1,4 @@
-//! Tests of the set-up, step by step, with reports of a simulated drive.
+//! Tests of the set-up, step by step, with data from a simulated drive.
 
 mod facts;
 mod standstill;
@@ -12,7 +12,7 @@ use crate::app::{Language, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock};
 use crate::devices::hiperdrive::protocol::{ActualValues, Direction, Family, StatusWord};
 
-/// Returns the data of a drive that is not requested and has factory settings.
+/// Returns the data of a drive with factory settings that is not requested.
 fn fresh() -> DriveFacts {
     DriveFacts {
         connected: true,
@@ -40,7 +40,7 @@ fn at(seen: &mut DriveFacts, position: i32) {
     seen.position = Some(position);
 }
 
-/// Applies a request to the simulated drive.
+/// Lets the simulated drive execute a request.
 #[track_caller]
 fn apply_command(axis: &mut Axis, seen: &mut DriveFacts, ask: DriveRequest) {
     axis.begin_request(ask.clone(), seen);
@@ -102,7 +102,7 @@ fn enter_spindle(axis: &mut Axis) {
     axis.set_entries(LengthEntries { pitch: "4".to_owned(), ..axis.entries().clone() });
 }
 
-/// Completes the step with the spindle, after which the confirmed pitch applies.
+/// Completes the spindle step. The confirmed pitch applies from then on.
 #[track_caller]
 fn confirm_spindle(axis: &mut Axis, seen: &mut DriveFacts) {
     next(axis, seen, AxisStep::Confirm);
@@ -123,7 +123,7 @@ fn a_step_is_shown_for_a_minimum_time() {
     assert!(!axis.can_go_back(&seen), "nothing is before the first step");
 }
 
-/// A proposed value has the decimal separator of the language, and is accepted in either language.
+/// A proposed value has the decimal separator of the language, but both separators are accepted.
 #[test]
 fn proposed_values_use_the_decimal_sign_of_the_language() {
     for (language, step) in [(Language::English, "0.01"), (Language::German, "0,01")] {
@@ -134,7 +134,7 @@ fn proposed_values_use_the_decimal_sign_of_the_language() {
     }
 }
 
-/// A limit that was written twice is reported once, with its current value.
+/// A parameter that was written twice is reported once, with its last value.
 #[test]
 fn rewritten_parameters_are_reported_once() {
     let mut axis = run();
@@ -144,7 +144,7 @@ fn rewritten_parameters_are_reported_once() {
     assert_eq!(said, "Written: 158 = 9, 160 = 250.");
 }
 
-/// Runs the set-up up to the slow jog, with a pitch of 4 mm and a step of 0.01 mm.
+/// Runs the set-up until the slow jog, with a pitch of 4 mm and a step of 0.01 mm.
 fn at_jog_step() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = (run(), fresh());
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(152, 1)]));

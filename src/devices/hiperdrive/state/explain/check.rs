@@ -1,4 +1,4 @@
-//! Texts for the device check.
+//! Messages of the device check.
 
 use super::names::{error_code_explanation, state_text, variant_text};
 use crate::app::Text;

@@ -1,4 +1,4 @@
-//! Messages for errors of an adapter, a hub or a drive, which state what happened and what to do.
+//! Messages for errors of an adapter, a hub or a drive: what happened and what to do.
 
 use super::names::parameter_name_text;
 use super::status;
@@ -108,7 +108,7 @@ fn out_of_range_text(id: &'static str, error: &OutOfRange) -> Text {
     parameter_text(id, error.number).with("value", error.value).with_text("range", range_text(error.range))
 }
 
-/// Returns a message about a parameter, with its number and name.
+/// Returns a message that includes the number and the name of a parameter.
 pub(super) fn parameter_text(id: &'static str, number: ParameterNumber) -> Text {
     TEXTS.text(id).with("number", number).with_text("name", parameter_name_text(number))
 }

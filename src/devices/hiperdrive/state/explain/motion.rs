@@ -1,4 +1,4 @@
-//! Messages about motion: why a drive may not move, why a request was rejected, how a motion ended.
+//! Messages about motion: why a drive may not move, why a request was rejected, and how a motion ended.
 
 use super::names::{parameter_name_text, state_text};
 use crate::app::explain::link_error_text;
@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock, Mo
 use crate::devices::hiperdrive::protocol::{ParameterNumber, State};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// Explains why motion is locked, and what to do.
+/// Explains why motion is locked and what to do.
 pub fn lock_text(lock: MotionLock) -> Text {
     TEXTS.text(match lock {
         MotionLock::Unread => "hd_lock.unread",
@@ -21,7 +21,7 @@ pub fn lock_text(lock: MotionLock) -> Text {
     })
 }
 
-/// Explains why a request was rejected, and what to do. `place` formats steps in the user's unit.
+/// Explains why a request was rejected and what to do. `place` formats a position in the user's unit.
 pub fn refusal_text(refusal: MotionRefusal, place: impl Fn(i32) -> Text) -> Text {
     match refusal {
         MotionRefusal::Locked(own) => lock_text(own),
@@ -50,7 +50,7 @@ pub fn refusal_text(refusal: MotionRefusal, place: impl Fn(i32) -> Text) -> Text
     }
 }
 
-/// Describes the end of an action, along with a remedy if the action failed.
+/// Describes how an action ended and, if it failed, what to do.
 pub fn end_text(ended: ActionEnd, place: impl Fn(i32) -> Text) -> Text {
     match ended {
         ActionEnd::Done => TEXTS.text("hd_end.done"),
@@ -73,8 +73,8 @@ pub fn end_text(ended: ActionEnd, place: impl Fn(i32) -> Text) -> Text {
     }
 }
 
-/// Text IDs of motions that ended badly although the drive can be moved again. The notices are removed when the next
-/// motion starts.
+/// Message IDs for motions that failed without preventing the next one. The notices are removed when the next motion
+/// starts.
 pub const MOTION_ENDS: [&str; 9] = [
     "hd_end.range_end",
     "hd_end.stale",
@@ -123,7 +123,7 @@ pub fn phase_text(phase: Phase) -> Text {
     }
 }
 
-/// Text IDs used by [`cyclic_loss_text`]. The notices are removed when control is taken again.
+/// Message IDs used by [`cyclic_loss_text`]. The notices are removed when control is taken again.
 pub const CONNECTION_LOSS_IDS: [&str; 6] =
     ["hd_lost.silent", "hd_lost.port", "hd_lost.does_not_stand", "hd_lost.session", "hd_lost.failed", "hd_end.lost"];
 

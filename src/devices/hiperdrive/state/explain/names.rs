@@ -1,4 +1,4 @@
-//! Names of a HIPERDRIVE: states, bits of its words, errors with cause and remedy, parameters.
+//! Names for HIPERDRIVE: states, bits of the control and status words, errors with cause and remedy, and parameters.
 
 use crate::app::Text;
 use crate::app::explain::literal_text;
@@ -39,7 +39,7 @@ pub fn status_bit(bit: StatusBit) -> Text {
     })
 }
 
-/// Returns the meaning of a control word bit when set. Bits 4 to 6 have a different meaning in speed mode.
+/// Returns the meaning of a control word bit when set. Bits 4 to 6 have another meaning in speed mode.
 pub fn control_bit(bit: ControlBit, speed_mode: bool) -> Text {
     TEXTS.text(match (bit, speed_mode) {
         (ControlBit::On, _) => "hd_bit.control_on",
@@ -62,7 +62,7 @@ pub fn control_bit(bit: ControlBit, speed_mode: bool) -> Text {
 pub struct ErrorExplanation {
     pub name: Text,
     pub cause: Text,
-    /// Remedy to apply before acknowledging the error.
+    /// What to do before acknowledging the error.
     pub remedy: Text,
 }
 

@@ -1,4 +1,4 @@
-//! Tests of the messages for errors of the lower layers in both languages.
+//! Tests of the messages for errors from lower layers, in both languages.
 
 use std::time::Duration;
 

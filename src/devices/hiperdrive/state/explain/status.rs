@@ -1,4 +1,4 @@
-//! Names of EtherNet/IP status codes, and messages about invalid packets or values.
+//! Names of EtherNet/IP status codes, and messages about invalid packets and values.
 
 use crate::app::Text;
 use crate::app::explain::literal_text;
@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 
 const UNKNOWN: &str = "hd_status_name.unknown";
 
-/// Returns code and name of an encapsulation status.
+/// Returns the code and the name of an encapsulation status.
 pub(super) fn encapsulation_status_text(status: EncapsulationStatus) -> Text {
     let name = match status.code() {
         0x00 => "hd_status_name.frame_00",
@@ -24,7 +24,7 @@ pub(super) fn encapsulation_status_text(status: EncapsulationStatus) -> Text {
     code_and_name_text(format!("0x{:08X}", status.code()), name)
 }
 
-/// Returns code and name of a CIP status and of its extended status.
+/// Returns the codes and names of a CIP status and its extended status.
 pub(super) fn refusal_text(refusal: &ErrorReply) -> Text {
     let status = general_status_text(refusal.status);
     let words: Vec<Text> = match (refusal.extended.as_slice(), refusal.row()) {
@@ -74,7 +74,7 @@ fn general_status_text(status: GeneralStatus) -> Text {
     code_and_name_text(format!("0x{:02X}", status.code()), name)
 }
 
-/// Describes the extended status of a connection failure.
+/// Returns the message ID for the extended status of a connection failure.
 fn connection_failure_id(code: u16) -> &'static str {
     match code {
         0x0100 => "hd_status_name.connection_0100",

@@ -1,4 +1,4 @@
-//! Tests of the messages about HIPERDRIVE drives in both languages, which state what happened and what to do.
+//! Tests of the messages about HIPERDRIVE drives, in both languages.
 
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ fn number(number: u16) -> ParameterNumber {
     ParameterNumber::new(number).unwrap()
 }
 
-/// Checks that texts are complete sentences without unfilled arguments.
+/// Checks that messages are complete sentences, with all arguments filled in.
 #[track_caller]
 fn assert_complete(text: &Text, sentences: usize) {
     for words in [text.to_string_in(Language::English), text.to_string_in(Language::German), text.terminal_text()] {

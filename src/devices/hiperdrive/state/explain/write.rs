@@ -1,4 +1,4 @@
-//! Messages about writes: changes, operations of a plan, planning errors, warnings, results, and interruptions.
+//! Messages about writes: changes, operations of a plan, planning errors, warnings, results and interruptions.
 
 use std::path::Path;
 
@@ -74,7 +74,7 @@ fn network_text(settings: &NetworkSettings) -> Text {
         .with("gateway", interface.gateway)
 }
 
-/// Returns the name of a parameter with its number, and with its drive unless that is the first one.
+/// Returns the name of a parameter with its number, including the drive number if it is not drive 1.
 pub fn item_text(item: Item) -> Text {
     let text = match item.0.drive() {
         None | Some(DriveNumber::FIRST) => TEXTS.text("hd_op.parameter").with("number", item),
@@ -102,7 +102,7 @@ fn type_mismatch_text(types: &TypeMismatch, whole: &'static str, of_drive: &'sta
     }
 }
 
-/// Explains why a plan cannot be made. Nothing was written.
+/// Explains why a plan cannot be made. In this case, nothing has been written.
 pub fn plan_error_text(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {

@@ -1,4 +1,4 @@
-//! Speed and torque of jogs, moves and runs: the values set for each drive, and those of a running motion.
+//! Speed and torque of jogs, moves and runs: those set for each drive, and those of the running motion.
 
 use super::{DriveMotion, Kind};
 use crate::devices::hiperdrive::procedures::dead_man::{MotionKind, Phase, SpeedTorque};
@@ -29,19 +29,19 @@ impl DriveMotion {
         self.runs.get(&drive).copied().unwrap_or(SpeedTorque::DEFAULT_JOG)
     }
 
-    /// Returns the speed and torque of a running jog, if any.
+    /// Returns the speed and torque of the running jog, if any.
     pub fn running_jog_speed_torque(&self, drive: DriveNumber) -> Option<SpeedTorque> {
         self.active_speed_torque(drive).filter(|_| self.is_running_as(drive, Kind::Held))
     }
 
-    /// Returns the speed and torque of a running move or step, if any.
+    /// Returns the speed and torque of the running move or step, if any.
     pub fn running_move_speed_torque(&self, drive: DriveNumber) -> Option<SpeedTorque> {
         let is_job =
             |phase| matches!(phase, Phase::Starting(MotionKind::Job { .. }) | Phase::Moving(MotionKind::Job { .. }));
         self.active_speed_torque(drive).filter(|_| self.phase(drive).is_some_and(is_job))
     }
 
-    /// Returns the speed and torque of a run, if any.
+    /// Returns the speed and torque of the current run, if any.
     pub fn running_run_speed_torque(&self, drive: DriveNumber) -> Option<SpeedTorque> {
         self.active_speed_torque(drive).filter(|_| self.is_running_as(drive, Kind::Run))
     }

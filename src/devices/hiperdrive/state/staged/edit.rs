@@ -1,4 +1,4 @@
-//! Edits, their effects on the edited values, and the reasons why they are rejected.
+//! Edits of parameter values, and the reasons for rejecting them.
 
 use super::{BaseSource, Families, is_editable, travel};
 use crate::devices::hiperdrive::profile::Image;
@@ -6,36 +6,36 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER_L
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
-/// An edit. Each edit is a single undo step, however much it changes.
+/// An edit. However much it changes, it is a single undo step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edit {
     Set(ParameterNumber, i64),
-    /// Reverts a parameter to the value of the device or the profile.
+    /// Reverts a parameter to its original value from the device or the profile.
     Revert(ParameterNumber),
     Leave(ParameterNumber),
-    /// Sets both limits of a drive at once, for limits that cannot be set one after the other.
+    /// Sets both limits of a drive at once, where setting one after the other would be rejected.
     Limits {
         drive: DriveNumber,
-        /// Lower limit, in steps of the edited scale.
+        /// Lower limit in steps of the edited scale.
         lower: i64,
         upper: i64,
     },
     Scale {
         drive: DriveNumber,
-        /// New position scale, which gives the steps per turn.
+        /// New position scale.
         scale: PositionScale,
         limits: LimitsPolicy,
     },
 }
 
-/// Effect of a changed step size on the limits.
+/// What happens to the limits when the size of a step changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitsPolicy {
     InPlace,
     AsNumbers,
 }
 
-/// Reason why an edit is rejected. In this case, nothing has changed.
+/// Reason for rejecting an edit. Nothing has changed in this case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
     /// No values of the device have been read.
@@ -47,7 +47,7 @@ pub enum EditError {
     /// The value of this parameter has not been read.
     #[error("parameter {0} has not been read")]
     NotRead(ParameterNumber),
-    /// The parameter is read-only, or is an action without a stored value.
+    /// The parameter is read-only, or it triggers an action and has no stored value.
     #[error("parameter {0} is an action and cannot be set as a value")]
     NotAValue(ParameterNumber),
     #[error(transparent)]

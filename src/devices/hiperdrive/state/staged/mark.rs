@@ -1,4 +1,4 @@
-//! Problems of the edited values with their locations.
+//! Findings about the edited values, with the parameters they concern.
 
 use super::{StagedEdits, travel};
 use crate::devices::hiperdrive::profile::Image;
@@ -8,19 +8,19 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale, Travel};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
-/// A finding that the user should check. It may be the result of an edit, for example if a new scale moves the limits.
+/// A finding about edited values that the user should check, for example that a new scale moves the limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EditFinding {
-    /// A value from a profile or an earlier edit is not allowed.
+    /// A value from a profile or a stored edit is not allowed.
     OutOfRange(OutOfRange),
     /// The upper limit is not greater than the lower limit.
     Crossed { drive: DriveNumber, lower: i64, upper: i64 },
-    /// The drive is outside its edited limits and would reject them.
+    /// The drive is outside its edited limits and would therefore reject them.
     Outside { drive: DriveNumber, position: i64, lower: i64, upper: i64 },
-    /// The scale has changed, but not the limits in scaled steps, which now denote other positions.
+    /// The scale was changed without the numeric limits, so that these now stand for other positions.
     LimitsMove { drive: DriveNumber, lower: (f64, f64), upper: (f64, f64) },
-    /// Parameter 186 (time-out) is 255, which means that the drive does not stop if the connection is lost. Therefore,
-    /// this program does not move the drive.
+    /// Parameter 186 (time-out) is 255, so the drive does not stop when the connection is lost. This program will
+    /// refuse to move it.
     NoTimeout { drive: DriveNumber },
 }
 
@@ -41,7 +41,7 @@ impl EditFinding {
 }
 
 impl StagedEdits {
-    /// Returns all findings about the edited values. `position` gives the position of a drive in steps of its current
+    /// Returns all findings about the edited values. `position` returns the position of a drive in steps of its current
     /// scale.
     pub fn findings(&self, position: impl Fn(DriveNumber) -> Option<i64>) -> Vec<EditFinding> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! Tests of edits, undo steps and drafts of a HIPERDRIVE.
+//! Tests of edits, undo steps and drafts.
 
 use super::{Edit, EditError, EditFinding, LimitsPolicy, SavedEdit, StagedEdits, ValueDifference};
 use crate::app::PendingEdits;
@@ -15,7 +15,7 @@ fn image(values: &[(u16, i64)]) -> Image {
     Image { values: values.iter().map(|(own, value)| (number(*own), *value)).collect() }
 }
 
-/// Returns the image of a drive with factory scaling, limits of 511 turns, a speed and a jog step.
+/// Returns the values of a drive with factory scaling, limits of ±511 turns, a speed and a jog step.
 fn read() -> Image {
     image(&[(24, 0), (154, 256), (156, 1), (158, -33_488_896), (160, 33_488_896), (166, 350), (170, 4096), (186, 20)])
 }
@@ -72,7 +72,7 @@ fn invalid_edits_are_refused_with_a_reason() {
     assert!(!staged.is_dirty());
 }
 
-/// A value beyond a drive's travel is rejected when entered, and marked if it results from a scale or a profile. ±512
+/// A value beyond the travel is rejected when entered. If it results from a scale or a profile, it is marked. The ±512
 /// turns of an HDA30 are 33554432 steps at 65536 steps per turn, and 204800 at 400 (issue 21.10).
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_refused() {

@@ -1,4 +1,4 @@
-//! Contents of the axis set-up steps: entries, results and jog buttons.
+//! Contents of the steps in the axis set-up: entries, results and jog buttons.
 
 use egui::{RichText, Ui, vec2};
 
@@ -73,7 +73,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
     super::skip_ui(ui, theme, shown, actions);
 }
 
-/// Draws the messages about the entries and the results of the step so far, without clickable widgets.
+/// Draws messages about the entries and results of the step, but no clickable widgets.
 pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &LengthEntries) {
     let step = shown.axis.step();
     if step.is_jogging() {
@@ -95,7 +95,7 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, ent
     }
 }
 
-/// Draws the button that takes control. The drive cannot be moved without the cyclic connection or during a fault.
+/// Draws the buttons that take control and acknowledge a fault. Before that, the drive cannot be moved.
 fn control_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = translate(theme, "hd_axis.take");
@@ -110,7 +110,7 @@ fn check_can_jog(shown: &AxisPanel<'_>, direction: Direction) -> Result<(), Text
     shown.axis.may_move(shown.seen).and_then(|()| shown.unit.check_can_jog(shown.axis.drive(), direction))
 }
 
-/// Draws the effect of the jog buttons, or the reason why they are blocked.
+/// Draws what the jog buttons do, or why they are blocked.
 fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| check_can_jog(shown, own).err());
     if let Some(outside) = shown.unit.outside_limits_text(shown.axis.drive()) {
@@ -153,7 +153,7 @@ fn number_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String) {
     entry(ui, theme, &word, |ui| text_entry(ui, text, ENTRY_WIDTH, &word, ""));
 }
 
-/// Draws pitch and resolution, and the values that result from them before they are written.
+/// Draws the values that would result from the entered pitch and resolution, before they are written.
 fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &LengthEntries) {
     if entries.pitch.trim().is_empty() {
         return;
@@ -244,7 +244,8 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
     }
 }
 
-/// Draws the control of the supply. A virtual device is switched here, and a real one by hand.
+/// Draws the controls for the power cycle. The supply of a virtual device is switched here, but that of a real device
+/// by hand.
 fn supply_switch_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = theme.format_text(&labels::button_label(AxisStep::PowerCycle));

@@ -1,10 +1,10 @@
-//! Tests of the drive data on which the results of the steps depend: changed data makes results void, and is detected
-//! and reported.
+//! Tests with changed drive data: the change is detected and reported, and the results that depend on this data become
+//! void.
 
 use super::*;
 use crate::devices::hiperdrive::protocol::{ErrorCode, Length};
 
-/// Goes back to the step whose result is void. The page changes only when the button is pressed.
+/// Goes back to the step that has lost its result. Only the button changes the page.
 #[track_caller]
 fn go_back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
     let shown = axis.step();
@@ -36,7 +36,7 @@ fn limits_are_confirmed_with_the_scale_of_the_drive() {
     go_back_to(&mut axis, &seen, AxisStep::Confirm);
 }
 
-/// When an earlier result becomes void, the displayed page does not change until the user goes back (issue 21.6 i).
+/// If an earlier result becomes void, the page stays the same until the user goes back (issue 21.6 i).
 #[test]
 fn setup_returns_to_the_first_step_with_lost_values() {
     let (mut axis, mut seen) = at_test_step();
@@ -52,7 +52,7 @@ fn setup_returns_to_the_first_step_with_lost_values() {
     assert_eq!((axis.step(), axis.invalidated_step()), (AxisStep::Test, None));
 }
 
-/// Any change of the pitch, the reference or a limit makes all later results void, including taught limits (issue 21.6
+/// If the pitch, the reference or a limit changes, all later results become void, including taught limits (issue 21.6
 /// c).
 #[test]
 fn steps_after_a_changed_value_are_undone() {
@@ -112,7 +112,7 @@ fn steps_after_a_changed_value_are_undone() {
     assert!(axis.outcome_of(TestTarget::Middle).is_some());
 }
 
-/// A jump of the position, or motion while no button is held, does not count as a jog (issue 21.6 b).
+/// Motion counts as a jog only while a button is held, and a jump of the position never does (issue 21.6 b).
 #[test]
 fn only_motion_while_the_pad_is_held_is_a_jog() {
     let (mut axis, mut seen) = at_jog_step();
@@ -144,7 +144,7 @@ fn only_motion_while_the_pad_is_held_is_a_jog() {
     assert_eq!((axis.travel().up, axis.travel().down), (100, 0));
 }
 
-/// A connection that was lost and restored does not prove that the supply was off (issue 21.6 e).
+/// Losing and regaining the connection does not prove that the supply was off (issue 21.6 e).
 #[test]
 fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     let found = |axis: &Axis, seen: &DriveFacts| {
@@ -190,7 +190,7 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     assert!(axis.has_survived());
 }
 
-/// A fault is displayed with its code, blocks all motion, and can be acknowledged in the set-up (issue 21.6 g).
+/// A fault is shown with its code and blocks all motion. It can be acknowledged within the set-up (issue 21.6 g).
 #[test]
 fn a_fault_is_shown_and_can_be_acknowledged() {
     let (axis, mut seen) = at_test_step();
@@ -208,8 +208,8 @@ fn a_fault_is_shown_and_can_be_acknowledged() {
     }
 }
 
-/// Differences from the saved values are reported, written back and compared. A position is set only where it was set
-/// before (issue 21.6 d and h).
+/// Differences from the saved values are reported and written back. The position is not written back, but left to the
+/// user (issue 21.6 d and h).
 #[test]
 fn differences_from_saved_values_are_shown_and_restored() {
     let (mut axis, mut seen) = (run(), fresh());
@@ -256,7 +256,7 @@ fn differences_from_saved_values_are_shown_and_restored() {
     assert_eq!(axis.request(AxisButton::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
 }
 
-/// Without a confirmed pitch, positions are displayed in steps, 65536 per turn (issue 21.6 f).
+/// Without a confirmed pitch, positions are shown in steps, with 65536 per turn (issue 21.6 f).
 #[test]
 fn millimetres_need_a_confirmed_pitch() {
     let (mut axis, mut seen) = (run(), fresh());
@@ -276,7 +276,7 @@ fn millimetres_need_a_confirmed_pitch() {
     assert_eq!((known.entries().pitch.as_str(), known.entries().resolution.as_str()), ("8", "0.02"));
 }
 
-/// A completed set-up has a report in millimetres, with lines that fit a page (issue 21.6 j).
+/// A completed set-up has a report in millimetres, whose lines fit a page (issue 21.6 j).
 #[test]
 fn a_run_ends_with_a_report() {
     let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };

@@ -1,24 +1,24 @@
-//! Tests of position changes at standstill, which may reveal that another master has set the reference to the same
-//! number elsewhere.
+//! Tests of position changes at standstill. They may show that another master has set the reference again at another
+//! location.
 
 use std::time::Duration;
 
 use super::*;
 use crate::units::Moment;
 
-/// Status word of a drive at standstill, with bit 13 set. `MOVES` is the same word without bit 13 (reference 3).
+/// Status word of a drive at standstill, with bit 13 set. `MOVES` is the same word with bit 13 clear (reference,
+/// section 3).
 const STANDS: u16 = 0x2A37;
 const MOVES: u16 = 0x0A37;
 
-/// Sets the drive data to a reading taken `ms` milliseconds after the start of the session.
+/// Sets the drive data to a reading taken `ms` milliseconds after the session began.
 fn read(seen: &mut DriveFacts, ms: u64, position: i32, word: u16) {
     at(seen, position);
     seen.actual = seen.actual.map(|own| ActualValues { status: StatusWord::new(word), ..own });
     seen.actual_at = Some(Moment::START + Duration::from_millis(ms));
 }
 
-/// Returns a set-up in the test step. The reading at 10 s shows the axis at standstill at position 2000, with 400 steps
-/// per turn.
+/// Returns a set-up in the test step. At 10 s, the axis is at standstill at position 2000, with 400 steps per turn.
 fn at_standstill() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = at_test_step();
     read(&mut seen, 10_000, 2000, STANDS);
@@ -26,9 +26,9 @@ fn at_standstill() -> (Axis, DriveFacts) {
     (axis, seen)
 }
 
-/// Parameter 198 keeps its number if the reference is set to the same number elsewhere. A shaft turns at up to 35 rpm
-/// (parameter 166), which is 210° per second. It readjusts by up to 5°, and its reports are up to 0.1 s late (issue
-/// 21.6 c).
+/// If the reference is set to the same number at another location, parameter 198 does not change, but the position
+/// jumps. At up to 35 rpm (parameter 166), a shaft turns 210° per second. It readjusts by up to 5°, and its reports are
+/// up to 0.1 s late (issue 21.6 c).
 #[test]
 fn a_position_jump_at_standstill_means_a_changed_reference() {
     let case = |ms: u64, position: i32, word: u16| {
@@ -62,7 +62,7 @@ fn a_position_jump_at_standstill_means_a_changed_reference() {
     assert_eq!(axis.may_move(&seen).unwrap_err().id(), "hd_axis.fallen");
 }
 
-/// A known change of the position is not treated as a jump (issue 21.6 c).
+/// A position change that has a known cause is not a jump (issue 21.6 c).
 #[test]
 fn a_known_position_change_is_not_a_jump() {
     type Case<'c> = (&'c str, fn(&mut DriveFacts));
@@ -91,8 +91,8 @@ fn a_known_position_change_is_not_a_jump() {
     assert_eq!((axis.invalidated_step(), axis.reference_position()), (None, Some(128)));
 }
 
-/// After a lost connection, a motion cannot be distinguished from a new reference. The set-up and its report state this
-/// until the user has set the reference again (issue 21.6 c).
+/// After the connection was lost, a motion and a new reference look the same. The set-up and its report mention this
+/// until the user sets the reference again (issue 21.6 c).
 #[test]
 fn an_unobserved_position_change_is_reported_as_unexplained() {
     let again = |position: i32| {

@@ -1,8 +1,8 @@
-//! Tests of the last step with a rejected or interrupted write.
+//! Tests of the last step in which a write is rejected or interrupted.
 
 use super::*;
 
-/// The restart marker is never saved, so a failed write of it leaves all other values as saved (issue 21.6 e).
+/// The restart marker is never saved, so a failed write of it does not change what is saved (issue 21.6 e).
 #[test]
 fn a_failed_mark_keeps_saved_values() {
     for begun in [false, true] {
@@ -15,8 +15,8 @@ fn a_failed_mark_keeps_saved_values() {
     }
 }
 
-/// If the connection is lost during the write of the restart marker, a reading determines whether the marker has
-/// arrived (issue 21.6 e).
+/// If the connection is lost during the write of the restart marker, a reading shows whether the marker was written
+/// (issue 21.6 e).
 #[test]
 fn an_interrupted_write_of_the_mark_is_read_back() {
     let cut_off = |value: i64| {
