@@ -92,7 +92,7 @@ impl Store {
         Drafts::in_folder(self.data.join("drafts"))
     }
 
-    /// Returns the drafts of the device modes to restore after a job, one per device.
+    /// Returns the stored device modes that must be restored after a job, one per device.
     pub fn pending_mode_restores(&self) -> Drafts {
         Drafts::in_folder(self.data.join("excursions"))
     }

@@ -13,7 +13,7 @@ pub use super::label_column::{entry, row};
 use super::{Theme, icons};
 use crate::analysis::quality::Verdict;
 
-/// Minimum width in points at which an entry has a text label. Below it, an icon replaces the label.
+/// Minimum width in points for text next to an entry. In a narrower space, an icon replaces the text.
 const MIN_LABEL_WIDTH: f32 = 64.0;
 /// Minimum width of a dialog in points.
 const MIN_MODAL_WIDTH: f32 = 240.0;

@@ -1,4 +1,4 @@
-//! Drawing of a device. Each device module implements a typed trait, which an adapter turns into the object-safe trait
+//! Views of devices. Each device module implements a typed trait, which an adapter turns into the object-safe trait
 //! used by the window.
 
 #![warn(missing_docs)]
@@ -29,7 +29,7 @@ impl PageInfo {
     }
 }
 
-/// The pages of a tab as an enumeration.
+/// An enumeration of the pages of a tab.
 pub trait TabPage: Copy + PartialEq + Default + 'static {
     /// All pages, in navigation order.
     const PAGES: &'static [(Self, PageInfo)];
@@ -49,7 +49,7 @@ pub(crate) fn page_at<P: TabPage>(place: usize) -> Option<P> {
     P::PAGES.get(place).map(|(page, _)| *page)
 }
 
-/// Draws one kind of device, using the types of that kind.
+/// A view of one kind of device that uses the types of that kind.
 pub trait TypedDeviceView: Sync + 'static {
     /// Application state of the device, independent of drawing.
     type Device: DeviceType;
@@ -296,7 +296,7 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
     }
 }
 
-/// A tab that requires no device, before a window is open.
+/// A tab that requires no device. It creates a view for each window.
 pub trait ToolView: Sync {
     /// Returns the tool shown on the tab.
     fn kind(&self) -> &'static dyn ToolKind;

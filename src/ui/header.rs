@@ -21,7 +21,7 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
             let motion = views.tabs.device(device.tab()).and_then(|view| view.motion(device));
             status_ui(ui, theme, device, motion);
         }
-        // The tools are drawn from left to right, in the order of the keyboard. Their width is known from the previous
+        // The tools are drawn from left to right, which is also their Tab order. Their width is known from the previous
         // frame.
         let width_id = ui.scope_id().with("tools");
         let width = ui.data(|data| data.get_temp::<f32>(width_id)).unwrap_or(0.0);

@@ -57,7 +57,7 @@ impl Theme {
         crate::app::format_decimal(value, decimals, self.language)
     }
 
-    /// Formats a number string that has a decimal point with the decimal separator of the current language.
+    /// Replaces the decimal point in a number with the decimal separator of the current language.
     pub fn digits(&self, number: &str) -> String {
         crate::app::texts::localize_number(number, self.language)
     }

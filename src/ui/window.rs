@@ -199,7 +199,7 @@ impl Window {
         }
         if !self.studio.is_closing() && !self.studio.drive_stop_handles().has_begun() {
             if ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
-                // Take samples and frames in before they are too many.
+                // Process samples and frames before too many accumulate.
                 self.studio.poll();
             }
             return;

@@ -195,7 +195,7 @@ fn this_bench() -> &'static str {
     NAME.get_or_init(|| whoami::hostname().unwrap_or_default())
 }
 
-/// A write to a device that is about to begin.
+/// An upcoming write to a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Intent {
     pub kind: EntryKind,
@@ -224,7 +224,7 @@ impl Event {
         Event { kind, description: description.into(), items: Vec::new(), backup: None }
     }
 
-    /// Creates the event that a profile of the device was saved to a file.
+    /// Creates the event for a profile saved to a file.
     pub fn saved_profile(path: &Path) -> Self {
         let full = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let saved = Event::new(EntryKind::Backup, format!("saved to {}", full.display()));

@@ -30,9 +30,8 @@ const ASSET: &str = "(SELECT assigned.asset FROM event AS assigned
 
 /// Returns the last `limit` entries that match the filter, newest first.
 pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -> rusqlite::Result<Vec<Entry>> {
-    // The rows are chosen by the index `event_search` alone, whose expressions are repeated here. `instr` takes any
-    // character as it is, unlike LIKE. The lists of devices that ever had the asset spare the search for the asset of each
-    // entry.
+    // The index `event_search` alone selects the rows, so its expressions are repeated here. Unlike LIKE, `instr` takes
+    // any character literally. Searching only devices that ever had the asset avoids a lookup for every entry.
     let condition = format!(
         "(:kind IS NULL OR kind = :kind)
         AND (:serial_number IS NULL OR serial_number = :serial_number)

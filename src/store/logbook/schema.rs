@@ -94,7 +94,7 @@ pub(super) const STEPS: [&str; 7] = [
     DROP TABLE entry;
     DROP TABLE status;
 ",
-    // New words in `what`: connected, assigned, backup, check. A program that knows only schema 3 would take them for
+    // New words in `what`: connected, assigned, backup, check. A program that knows only schema 3 would treat them as
     // damage.
     "
     ALTER TABLE event ADD COLUMN asset TEXT; -- the asset to which the device is assigned from now on, of 'assigned' only

@@ -19,7 +19,7 @@ pub(super) enum Drag {
         from: Pos2,
         to: Pos2,
     },
-    /// The picture is being dragged. Contains the time under the pointer at the start of the drag.
+    /// The chart is being dragged. Contains the time under the pointer at the start of the drag.
     Picture {
         under: SampleTime,
         window: (SampleTime, SampleTime),

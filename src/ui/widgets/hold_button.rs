@@ -46,7 +46,7 @@ struct HoldButtonState {
     modifiers: Modifiers,
 }
 
-/// The hold buttons that had the keyboard focus or the pointer in the previous frame.
+/// The hold buttons that had the keyboard focus or were held by the pointer in the previous frame.
 #[derive(Clone, Copy, Default)]
 struct HoldButtonFrame {
     /// Button with the keyboard focus, and the last pass in which it had the focus.

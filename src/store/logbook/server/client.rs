@@ -45,7 +45,7 @@ impl Client {
     ) -> Result<Self, ServerErrorKind> {
         let runtime = OwnRuntime::new()?;
         let mut config = address.config.clone();
-        // Without a password, the server rejects an empty one, which needs no other treatment.
+        // A missing password needs no special case, because the server rejects an empty one.
         config
             .password(password.map_or("", Password::reveal))
             .application_name("encoder-studio")

@@ -153,7 +153,7 @@ impl From<tokio_postgres::Error> for ServerErrorKind {
     }
 }
 
-/// Codes of a server that is starting, shutting down, has crashed or has no free connection.
+/// Codes of a server that is starting up, is shutting down, has crashed or has no free connection.
 const NOT_RUNNING: [&str; 5] = ["57P01", "57P02", "57P03", "53300", "08006"];
 
 fn from_io(error: &io::Error) -> ServerErrorKind {

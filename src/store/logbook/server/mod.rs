@@ -179,7 +179,7 @@ impl LogbookServer {
         others: Vec<OtherHolder>,
     ) {
         let mut state = self.state();
-        // The server may have been exchanged meanwhile.
+        // The server setting may have changed meanwhile.
         if state.address.as_ref().and_then(|address| address.as_ref().ok()) != address {
             return;
         }

@@ -133,7 +133,7 @@ async fn send(
     let (rows, mut marks) = rows_after(&transaction, after, size).await?;
     add_events(&transaction, &own.events).await?;
     add_results(&transaction, &own.results).await?;
-    // All rows up to the own ones are known now, unless there are more than one request returns.
+    // All rows up to those just sent are known now, unless one request could not return them all.
     if rows.largest_count() < size {
         marks = last_rows(&transaction).await?;
     }

@@ -10,7 +10,7 @@ use crate::app::Text;
 use crate::ui::{Theme, icons};
 
 pub(super) const HEADER_HEIGHT: f32 = 20.0;
-/// Right edge of the caret, which is drawn for registers with bit fields.
+/// Position of the right edge of the caret, which is drawn for registers with bit fields.
 pub(super) const CARET_OFFSET: f32 = 16.0;
 /// Spacing between marks.
 const MARK_SPACING: f32 = 13.0;
