@@ -108,7 +108,7 @@ fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
 #[test]
 fn layouts_of_recorded_frames_are_found() {
     let bench = Bench::new();
-    // Each recording is listed with whether its frames leave the layout ambiguous.
+    // Each recording, and whether its frames leave the layout ambiguous.
     for (name, ambiguous) in
         [("excess_360_fast", false), ("start_bit", true), ("twice_with_gap", true), ("gray_even_parity", true)]
     {

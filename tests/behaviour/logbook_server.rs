@@ -95,7 +95,7 @@ fn entries_wait_while_the_server_is_away() {
     }
     assert_eq!(ran.err.matches(&name).count(), 1, "said once: {ran:?}");
     assert!(ran.err.contains("(connection refused)") && !ran.err.contains("os error"), "{ran:?}");
-    // What is not connected to the server does not mention it.
+    // A command that does not use the server does not mention it.
     let offline = bench.run_with_server(&server.url(), &["decode", "hiperface", "40 42 02"]);
     assert!(!offline.err.contains(&name), "{offline:?}");
     server.run(&[]);

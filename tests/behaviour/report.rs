@@ -145,7 +145,7 @@ fn everything_but_the_time_of_printing_depends_on_the_content() {
     assert_eq!(without_time(&one), without_time(&two));
     assert_eq!(first["sha256"], second["sha256"]);
     assert!(one.contains(FIELD));
-    // Another content has another number.
+    // A report with different content has a different checksum.
     let changed = bench.read("a.ron").replacen("45 4D 44", "58 4D 44", 1);
     let other = bench.write("b.ron", changed);
     let compared =
@@ -155,7 +155,7 @@ fn everything_but_the_time_of_printing_depends_on_the_content() {
     let at = page.iter().position(|text| text == "Data field 0, byte 0x00").unwrap();
     assert_eq!(&page[at + 1..at + 3], ["58", "45"]);
     assert!(page.iter().any(|text| text == "Differences to a.ron"), "{page:?}");
-    // The asset is content.
+    // The asset is part of the content.
     assert_ne!(report("4.html", &["--asset", "Axis 1"]).json()["sha256"], first["sha256"]);
 }
 
@@ -214,11 +214,11 @@ fn the_pdf_document_has_the_texts_of_the_page() {
                 let ran = bench.run(&["report", path.to_str().unwrap(), "-o", &out, "--language", language, "--force"]);
                 assert_eq!(ran.status, Some(0), "{path:?}: {ran:?}");
             }
-            // In the order of the content, so that the lines of a cell are together.
+            // Text is extracted in content order, so the lines of a cell stay together.
             let read = Command::new("pdftotext").args(["-raw", &bench.file("r.pdf"), "-"]).output().unwrap();
             let document = squeezed(&String::from_utf8(read.stdout).unwrap());
             for text in texts(&bench.read("r.html")) {
-                // The time of printing may be a second later.
+                // The creation time may be a second later.
                 if !text.contains(" UTC") {
                     assert!(document.contains(&squeezed(&text)), "{path:?} {language}: {text:?}");
                 }

@@ -310,7 +310,7 @@ fn edits_survive_a_pulled_cable_and_are_not_written_to_another_encoder() {
         wire.plug();
         case.reconnect(&mut desk);
         assert_eq!(shown(&desk.studio).unwrap().edit_count(), 2);
-        // Another device is now on the same adapter, and the program has not been told.
+        // Another device is now on the same adapter, without any notice to the program.
         wire.exchange(case.other);
         command(&mut desk, DeviceCommand::Review);
         desk.until("it is noticed", |studio| !shown(studio).unwrap().is_dirty());

@@ -46,7 +46,7 @@ fn the_server_is_entered_tested_and_saved() {
     screen.act(Action::Server(ServerAction::Save { address: ambiguous, password: None }));
     assert!(matches!(outcome(screen.studio()), Some(Err(why)) if why.id() == "server.ambiguous_address"));
     assert_eq!(screen.studio().settings.logbook, "", "nothing is saved yet");
-    // The window goes on without the server, and says so.
+    // The window continues without the server and shows a message.
     screen.act(Action::Server(ServerAction::Save { address: CLOSED.to_owned(), password: None }));
     assert!(screen.studio().server_form().is_none());
     screen.until("the server is away", is_away);
