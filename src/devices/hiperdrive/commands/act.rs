@@ -82,7 +82,7 @@ pub(super) fn run_action(common: &CommonArgs, output: &Output, act: &ActionArgs)
     Ok(done)
 }
 
-/// Checks that a drive has no fault left after its fault was acknowledged.
+/// Checks that acknowledging the fault of a drive has cleared it.
 pub(super) fn check_acknowledged(runner: &mut Runner, output: &Output, drive: DriveNumber) -> Result<()> {
     let again = prepare_plan(runner, output, Change::Do(Service::Acknowledge(drive)))?;
     if again.plan.is_empty() {
@@ -96,7 +96,7 @@ fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
     Ok(result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity.drives))
 }
 
-/// Checks that the presence test found at least one drive and did not lose any drive known before.
+/// Checks that the presence test has found at least one drive, including every drive known before.
 fn check_present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
     if found.is_empty() {
         return Err(to_failure(&TEXTS.text("hd_cli.no_drives")));

@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::{
     ParameterRow, Pkw, Task, Value, to_turns_and_steps,
 };
 
-/// Decodes process data, with one result for each layout of the same length. If the direction is known, only layouts of
+/// Decodes process data, with one result for each layout of matching length. If the direction is known, only layouts of
 /// that direction are used. The result is empty if no layout matches.
 ///
 /// # Errors
@@ -39,8 +39,7 @@ fn possible_layouts(length: usize, known: &DecodeContext) -> impl Iterator<Item 
     Layout::all_with_length(length).map(|layout| Layout { order: known.order, ..layout })
 }
 
-/// Returns whether any control word is nonzero. All zeros can only be control words, since no drive sends 0 as a status
-/// word.
+/// Returns whether any control word is nonzero. If all are 0, the data may also come from ports without drives.
 fn has_nonzero_control(bytes: &[u8], layout: Layout) -> bool {
     OutputImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().any(|drive| drive.control != 0))
 }
@@ -50,7 +49,7 @@ fn is_input_image(bytes: &[u8], layout: Layout) -> bool {
     InputImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().all(|drive| drive.status.is_plausible()))
 }
 
-/// Decodes the process data in a cyclic packet, once for each layout of the same length. An explicitly known direction
+/// Decodes the process data in a cyclic packet, once for each layout of matching length. An explicitly known direction
 /// takes precedence over the direction of the packet.
 pub(super) fn explain_cyclic(data: &[u8], to_target: bool, known: &DecodeContext) -> Vec<WordMeaning> {
     let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);

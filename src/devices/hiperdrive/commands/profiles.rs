@@ -1,5 +1,5 @@
-//! The `save` and `restore` commands for an adapter or a hub, and the reading of a device for other commands that
-//! compare it.
+//! The `save` and `restore` commands for an adapter or a hub. Also reads the device for other commands, which compare
+//! it.
 
 use serde_json::json;
 

@@ -100,7 +100,7 @@ pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: HiperdrivePlan,
     pub identity: Identity,
-    /// Values that the device stored when the plan was made.
+    /// Values stored in the device at the time the plan was made.
     pub image: Image,
     /// Number of saves recorded for the device on this computer, or `None` if the logbook has no record.
     pub cycles_seen: Option<CycleCount>,

@@ -24,7 +24,7 @@ pub struct DriveLimits {
     /// Time at which each group of parameters was read, or `None` if the parameters must be read again because they may
     /// have changed.
     read: Option<[Moment; GROUPS]>,
-    /// Time since which the readings are in doubt. Before the next motion starts, all groups must be read again after
+    /// Time from which the readings are in doubt. Before the next motion starts, all groups must be read again after
     /// this time.
     doubted: Option<Moment>,
 }

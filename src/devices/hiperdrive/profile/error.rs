@@ -17,7 +17,7 @@ pub enum TypeMismatch {
         /// Topology of the device.
         device: Topology,
     },
-    /// The drive in this port is not of the variant in the profile.
+    /// The drive in this port is of a different variant from the one in the profile.
     #[error(
         "drive {}: the profile is for variant {} ({}), but the drive has variant {} ({})",
         drive.get(),

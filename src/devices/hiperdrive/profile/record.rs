@@ -87,7 +87,8 @@ impl HiperdriveProfile {
         }
     }
 
-    /// Returns whether an item depends on how the drive is mounted, as marked items and the reference of each drive do.
+    /// Returns whether an item depends on how the drive is mounted, which is true of marked items and the reference of
+    /// each drive.
     pub fn depends_on_mounting(&self, item: Item) -> bool {
         item.0.drive1_number() == REFERENCE || self.is_marked(item)
     }

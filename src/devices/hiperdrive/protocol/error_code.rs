@@ -24,8 +24,8 @@ const fn row(code: ErrorCode, name: &'static str, cause: &'static str, remedy: &
     ErrorCodeRow { code, name, cause, remedy }
 }
 
-/// All known errors, with the numbers given in the manual. The manual does not say that 8200 to 8603 are hexadecimal
-/// (`U`).
+/// All known errors, with the numbers given in the manual. The manual does not say whether 8200 to 8603 are
+/// hexadecimal, as assumed here (`U`).
 pub const ERROR_CODES: [ErrorCodeRow; 16] = [
     row(
         ErrorCode::OVER_CURRENT,

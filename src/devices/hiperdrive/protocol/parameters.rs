@@ -60,7 +60,7 @@ impl ParameterRow {
 /// Maximum time for a write to the EEPROM (manual 6.2, parameter 47). Every change to the TCP/IP object also takes this
 /// time (manual 5).
 pub const STORE_TIME: Duration = Duration::from_millis(200);
-/// Maximum time for resetting a single drive, also with −4 in parameter 47 of an adapter.
+/// Maximum time for resetting a single drive. On an adapter, the value −4 of parameter 47 also takes this time.
 const DRIVE_RESETS: Duration = Duration::from_secs(2);
 /// Maximum time for resetting all drives of a hub.
 const HUB_RESETS: Duration = Duration::from_secs(8);

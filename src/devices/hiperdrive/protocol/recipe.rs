@@ -1,4 +1,4 @@
-//! Sequences of control words that bring a drive into a state (reference, section 3, `D`).
+//! Sequences of control words that bring a drive to a state (reference, section 3). They are derived (`D`).
 
 use super::control_word::ControlWord;
 use super::status_word::{StatusBit, StatusWord};

@@ -29,7 +29,7 @@ pub struct Drive {
     pub(super) variant: Variant,
     pub(super) memory: Memory,
     pub(super) axis: Axis,
-    /// Offset that is added to the axis to give the position, in steps of the axis.
+    /// Offset of the drive's position from that of the axis, in steps of the axis.
     pub(super) offset: f64,
     pub(super) out: OutputData,
     pub(super) errors: VecDeque<ErrorCode>,
@@ -86,7 +86,7 @@ const HEATING_K: f64 = 40.0;
 const WARM_UP_S: f64 = 60.0;
 
 impl Drive {
-    /// Creates a drive in its factory state, switched on at the start of the clock.
+    /// Creates a drive with factory settings, switched on at time zero.
     pub fn new(variant: Variant, topology: Topology, load: SpindleLoad) -> Self {
         let family = variant.row().map_or(Family::Short, |row| row.family);
         Drive {
@@ -192,7 +192,7 @@ impl Drive {
         .fold(StatusWord::FOUND, |status, (bit, set)| status.with_bit(bit, set))
     }
 
-    /// Returns whether the drive is at rest and has no motion to start.
+    /// Returns whether the drive is at rest, with no motion in progress.
     pub(super) fn is_at_rest(&self) -> bool {
         self.axis.is_at_rest() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
     }
@@ -267,7 +267,7 @@ impl Drive {
         self.motion == Motion::Rest && self.axis.is_at_rest() && !begins && self.next(self.control) == self.state
     }
 
-    /// Returns the next state, given the previous control word. The current one is that of the drive.
+    /// Returns the state after the control word has changed from `before` to the current one.
     fn next(&self, before: ControlWord) -> State {
         match self.state {
             State::NotReady if !self.may_move() => State::NotReady,

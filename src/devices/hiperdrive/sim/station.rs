@@ -43,7 +43,7 @@ pub struct Station {
     answers_at: Option<Moment>,
     /// Last received parameter words, and the current answer to them.
     words: (Pkw, Pkw),
-    /// Answer to come, and the time at which it appears in the process data.
+    /// Next answer, and the time at which it appears in the process data.
     answers: Option<(Moment, Pkw)>,
     resets: Duration,
     plate: StationIdentity,
@@ -63,7 +63,7 @@ struct StationIdentity {
 #[derive(Clone, Copy, Debug, Default)]
 struct Store {
     count: u32,
-    /// Which save, counted from 1, the supply fails in.
+    /// Number of the save during which the supply fails, counted from 1.
     failing_save: Option<u32>,
     dies_at: Option<Moment>,
     /// Whether the supply was lost.
@@ -91,7 +91,7 @@ impl Default for StationConfig {
 }
 
 impl Station {
-    /// Creates a station in its factory state, switched on at the start of the clock.
+    /// Creates a station with factory settings, switched on at time zero.
     pub fn new(setup: StationConfig) -> Self {
         let places = setup.drives.iter().copied().chain(std::iter::repeat(None));
         let drives = places
@@ -152,7 +152,7 @@ impl Station {
         self.store.dead
     }
 
-    /// Sets in which save, counted from 1, the supply fails. `None` stands for no failure.
+    /// Makes the supply fail during the save with this number, counted from 1. `None` removes the failure.
     pub const fn set_failing_save(&mut self, number: Option<u32>) {
         self.store.failing_save = number;
     }

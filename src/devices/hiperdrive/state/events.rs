@@ -173,7 +173,7 @@ impl SessionEvents for HiperdriveDevice {
         self.decoder.explain(frame)
     }
 
-    /// Processes new session events, and refreshes the actions that require an operating window.
+    /// Processes new session events, and refreshes the actions that need a refresh in every frame.
     fn process_events(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.set_remote(services.is_remote());

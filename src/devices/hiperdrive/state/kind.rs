@@ -1,4 +1,4 @@
-//! HIPERDRIVE as a device type, as the user interface needs it before a device is open.
+//! HIPERDRIVE as a device type: what the user interface needs before a device is open.
 
 use super::{HiperdriveDevice, HiperdriveForm, items, report};
 use crate::app::report::{ReportContent, ReportContext};

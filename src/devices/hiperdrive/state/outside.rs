@@ -53,8 +53,8 @@ impl HiperdriveDevice {
         self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: SpeedTorque::DEFAULT_JOG, outward })
     }
 
-    /// Returns whether jogging in this direction is blocked. It is if it may move the drive further outside and the
-    /// user has not allowed this.
+    /// Returns whether jogging in this direction is blocked, because it may move the drive further outside its limits
+    /// and the user has not allowed this.
     pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
         let is_outward = self.out_of_range_position(drive).is_some_and(|own| own.outside.is_outward(direction));
         is_outward && !self.moves.is_outward_jog_enabled(drive, direction)

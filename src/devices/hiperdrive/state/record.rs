@@ -63,7 +63,7 @@ impl Record {
         self.last = Some(reading);
     }
 
-    /// Starts recording these temperatures. What has already been recorded of others is kept.
+    /// Starts recording these temperatures. Existing recordings of other temperatures are kept.
     pub(super) fn watch_temperatures(&mut self, wished: &[Temperature]) {
         self.temperatures = wished.to_vec();
         let others =
@@ -72,8 +72,7 @@ impl Record {
         self.track.set_watched(&others.chain(wished).collect::<Vec<_>>());
     }
 
-    /// Records a temperature. Any other temperature than the watched ones is ignored, since it belongs to another
-    /// drive.
+    /// Records a temperature if it is being watched. Any other temperature belongs to another drive and is ignored.
     pub(super) fn add_temperature(&mut self, reading: TemperatureReading) {
         let never = reading.celsius.is_none().then(|| TEXTS.text("hd_watch.never"));
         let value = reading.celsius.map(Value::Whole);

@@ -106,8 +106,8 @@ impl HiperdriveDevice {
         }
     }
 
-    /// Returns a value from the cyclic data of a drive, which are newer than the reading. They include control and
-    /// status words, measurements and errors.
+    /// Returns a control or status word, a measurement or an error from the cyclic data of a drive, if available.
+    /// Cyclic data are newer than the last reading.
     fn cyclic_value(&self, number: ParameterNumber) -> Option<Value> {
         let drive = number.drive()?;
         let value = match number.drive1_number() {

@@ -27,7 +27,7 @@ use crate::ui::{Theme, icons};
 
 #[derive(Default)]
 pub(super) struct AxisUiState {
-    /// The displayed step and the time since when it has been displayed, on the window's clock.
+    /// The displayed step, and the time at which it was first displayed, on the window's clock.
     since: Option<(AxisStep, f64)>,
 }
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::devices::hiperdrive::protocol::{Answer, ParameterNumber, Pkw, PkwError, Task, Value};
 use crate::units::Moment;
 
-/// Reads the watched parameters in turn through the parameter words.
+/// Reader that polls the watched parameters in turn through the parameter words.
 ///
 /// A request is repeated in every packet until its reply has arrived. Before the next request, the words are cleared in
 /// both directions. A late reply is therefore never mistaken for the reply to a later request for the same parameter.

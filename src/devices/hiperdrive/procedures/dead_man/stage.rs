@@ -31,7 +31,7 @@ pub(super) enum Stage {
     Go {
         since: ReportMark,
         acknowledged: bool,
-        /// Time since when the drive has been at rest.
+        /// Time at which the drive was first seen at rest, if it is at rest.
         standing_since: Option<ReportMark>,
     },
     Paused {

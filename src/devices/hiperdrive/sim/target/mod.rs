@@ -94,7 +94,7 @@ impl Target {
         (plant.listens, plant.udp) = (at, at.port());
     }
 
-    /// Replaces the injected faults. Frames and saves counted so far stay counted.
+    /// Replaces the injected faults, without resetting the counts of frames and saves.
     pub fn set_faults(&self, faults: &SimulatedFaults) {
         self.lock().set_faults(faults);
     }

@@ -33,7 +33,7 @@ struct StepOutcome {
     skipped: bool,
 }
 
-/// Results of the first steps, without a gap.
+/// Results of the completed steps, in order from the first step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepOutcomes(Vec<StepOutcome>);
 
