@@ -33,7 +33,7 @@ fn golden_bytes_are_explained() {
     }
 }
 
-/// Every frame of the table in BiSS reference 2 is decoded, and a frame with an inverted data bit is rejected.
+/// Every frame of the table in BiSS reference 2 is decoded.
 #[test]
 fn position_frames_are_checked() {
     let bench = Bench::new();

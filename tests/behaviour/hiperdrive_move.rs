@@ -13,7 +13,7 @@ fn a_drive_moves_to_a_position() {
     let simulated = Simulated::start(&bench, &["hiperdrive", "--listen", "127.0.0.1:0", "--hub", "4"]);
     let link = format!("enip:{}", simulated.place);
     let run = |arguments: &[&str]| bench.run(&[arguments, &["--link", &link]].concat());
-    // With factory settings, no drive of a hub is requested.
+    // With factory settings, parameter 152 (Requested) is 0 for every drive of a hub.
     assert_eq!(run(&["write", "hiperdrive", "152", "1", "--drive", "2", "--yes"]).status, Some(0));
     let ran = run(&["move", "hiperdrive", "65536", "--drive", "2", "--yes", "--json"]);
     assert_eq!(ran.json(), json!({"drive": 2, "target": 65_536, "position": 65_536, "reached": true}));

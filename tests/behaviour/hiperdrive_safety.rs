@@ -284,8 +284,8 @@ fn an_interrupt_stops_the_drive() {
     assert_eq!(drive.actual().status.to_u16() & 0x000F, 0, "off, and no fault");
 }
 
-/// Whichever signal ends a command, even twice, the drive is stopped and off, and its watchdog reports no fault (issue
-/// 21.1).
+/// After any signal that ends a command, even if sent twice, the drive is stopped and off, and its watchdog reports no
+/// fault (issue 21.1).
 #[test]
 fn terminating_signals_stop_the_drive() {
     for (name, times) in [("TERM", 1), ("HUP", 1), ("TERM", 2), ("INT", 2)] {

@@ -83,7 +83,7 @@ fn a_drive_is_enabled_moved_and_jogged() {
     port.end("TERM");
 }
 
-/// Parameter 852 selects the eighth drive of a hub. The process data contain no parameter words.
+/// Parameter 852 (Requested) enables the eighth drive of a hub. The process data contain no parameter words.
 #[test]
 fn a_drive_of_a_hub_moves_alone() {
     let bench = Bench::new();

@@ -110,8 +110,8 @@ fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
     assert_eq!(written(&encoder).len(), 8);
 }
 
-/// All parameters are set in a single visit to the parameter mode, in an order that keeps each intermediate value
-/// valid. The preset is stored but not triggered (reference 3).
+/// All parameters are written with a single store, in an order that keeps each intermediate value valid. The preset is
+/// stored but not triggered (reference 3).
 #[test]
 fn parameters_need_one_store_and_a_restore_triggers_no_preset() {
     let bench = Bench::new();

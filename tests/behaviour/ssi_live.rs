@@ -105,7 +105,7 @@ fn a_stuck_line_is_reported() {
     assert!(said.contains("line stuck low: 1 time"), "{said}");
 }
 
-/// Clock and pause are those of the link, then those of the profile, then slow defaults. They are checked against the
+/// Clock and pause come from the link, else from the profile, else from slow defaults. They are checked against the
 /// limits of the encoder.
 #[test]
 fn clock_and_pause_are_those_of_the_link_or_the_profile() {

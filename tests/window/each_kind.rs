@@ -32,7 +32,7 @@ pub(crate) struct Case {
     writes: u8,
     /// A command byte with which reading everything begins.
     reads: u8,
-    /// Settings of another encoder on the cable, which differs in its serial number.
+    /// Settings of another encoder, which has a different serial number.
     other: &'static str,
 }
 
@@ -181,7 +181,7 @@ impl Case {
         desk.act(Action::Chosen(question, path.to_path_buf()));
     }
 
-    /// Returns a profile entry that makes the device another type, or `None` if there is only one type.
+    /// Returns a profile entry that specifies another type of device, or `None` if there is only one type.
     fn other_type(&self) -> Option<(&'static str, &'static str)> {
         Some(match self.tab {
             // There is one type of it.

@@ -43,8 +43,8 @@ pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
     }
 }
 
-/// Repeats a motor request until a condition holds. It is repeated only if a busy computer has delayed the refresh for
-/// 250 ms, which ends the motion.
+/// Makes a motor request and waits for a condition. If a busy computer delays the refresh for 250 ms, which ends the
+/// motion, the request is repeated.
 #[track_caller]
 pub(crate) fn drive_until(
     desk: &mut Desk,
@@ -55,7 +55,7 @@ pub(crate) fn drive_until(
     act_until(desk, |own| Hiperdrive::Drive(motor(own)), what, condition);
 }
 
-/// Repeats an action of the selected drive under the same conditions as [`drive_until`].
+/// Performs an action of the selected drive and waits for a condition, like [`drive_until`].
 #[track_caller]
 pub(crate) fn act_until(
     desk: &mut Desk,
@@ -91,8 +91,8 @@ pub(crate) fn set_off(desk: &mut Desk) {
     );
 }
 
-/// Returns the value of `look` while the selected drive moves. Both are repeated if the motion meanwhile ends because
-/// it was not refreshed.
+/// Returns the value of `look` while the selected drive moves. The motion and the observation are repeated if the
+/// motion ends because it was not refreshed.
 #[track_caller]
 pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk) -> T) -> T {
     let shown = unit(desk).drive();

@@ -1,5 +1,6 @@
-//! Tests of the set-up of an axis in one run, from a drive without a reference to limits in millimetres that have
-//! survived a power cycle. The tests also cover the motion locks and the state after a cancellation.
+//! Tests of the set-up of an axis in one run, from a drive whose parameter 152 (Requested) is 0 to limits in
+//! millimetres that have survived a power cycle. The tests also cover the motion locks and the state after a
+//! cancellation.
 
 mod bench;
 mod foreign;
@@ -109,7 +110,7 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     until_stopped(&mut desk);
     let own = axis(&desk);
     assert_eq!((own.setup_end(), own.is_saved(), own.changes().len()), (Some(SetupEnd::Cancelled), false, 5));
-    // All values are written back and read. The drive is then no longer requested.
+    // All values are written back and read. The drive's parameter 152 (Requested) is then 0 again.
     run(&mut desk, Run::Press(AxisButton::Recall));
     write(&mut desk);
     assert!(axis(&desk).changes().is_empty());

@@ -78,8 +78,8 @@ fn on_pad() -> Screen {
     screen
 }
 
-/// The key is held in another window until this window gets the keyboard focus. Before the fix, the drive ran in 8 of 8
-/// attempts (issue 21.2).
+/// The key is pressed in another window and still held when this window gets the keyboard focus. Before the fix, the
+/// drive ran in 8 of 8 attempts (issue 21.2).
 #[test]
 fn a_key_held_in_another_window_moves_nothing_when_focus_returns() {
     for key in [Key::Space, Key::Enter] {

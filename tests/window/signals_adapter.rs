@@ -135,7 +135,7 @@ fn a_valid_adapter_link_is_remembered_and_an_invalid_one_is_not() {
 }
 
 /// The encoder supply is switched only as the user chooses. With `supply=switched`, the virtual adapter switches it on
-/// only by command. 0.3 W at 8 V are 37 mA.
+/// only on command. 0.3 W at 8 V are 37 mA.
 #[test]
 fn the_encoder_is_supplied_only_as_chosen() {
     let mut desk = Desk::fresh("");

@@ -105,8 +105,9 @@ fn changes_of_each_window_survive_the_others_write() {
     assert_eq!((first.studio.settings.language, second.studio.settings.theme), (Language::English, ColorScheme::Dark));
 }
 
-/// Limits marked by one window are locked in another one that controls the drives, even if that one neither reads nor
-/// writes anything. They are also locked in a window opened later, whatever the others write (issue 21.11).
+/// Limits that one window marks as unconfirmed are locked in another one that controls the drives, even if that one
+/// neither reads nor writes anything. They are also locked in a window opened later, whatever the others write (issue
+/// 21.11).
 #[test]
 fn limits_marked_by_another_window_are_locked() {
     let (mut first, mut second) = two();

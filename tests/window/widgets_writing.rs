@@ -80,7 +80,7 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
     assert!(!screen.encoder().staged.is_dirty());
 }
 
-/// Previously, a key right before Enter made Enter doubtful, even if it was Ctrl. Ctrl+Enter therefore did nothing in
+/// Previously, Enter was ignored right after another key, even if that was Ctrl. Ctrl+Enter therefore did nothing in
 /// the hex editor, which is not a text entry (issue 26).
 #[test]
 fn ctrl_and_enter_pressed_together_open_the_review() {

@@ -135,7 +135,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
     assert_eq!(bench.prepare(restore(true)).unwrap().plan.write_cycles(), 2);
 }
 
-/// The values read for the plan change before the plan is executed. Nothing is written.
+/// The values on which the plan is based change before it is executed. Nothing is written.
 #[test]
 fn a_plan_with_a_changed_base_is_not_executed() {
     type Case = (fn() -> Change, fn(&mut Bench), &'static str);

@@ -25,9 +25,9 @@ pub(super) struct Bench {
     pub(super) permit: Permit,
     /// Whether the user's request is no longer refreshed.
     pub(super) absent: bool,
-    /// Whether control words do not reach the drive.
+    /// Whether control words are lost on their way to the drive.
     pub(super) cut_out: bool,
-    /// Whether the drive's reports do not arrive.
+    /// Whether the drive's reports are lost.
     pub(super) cut_back: bool,
     /// Delay of reports in cycles.
     pub(super) late: usize,

@@ -14,7 +14,7 @@ use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive,
 use crate::hiperdrive_acts::{ATTEMPTS, has_lapsed, hold_pad_until, last_end, until_free};
 use crate::support::Desk;
 
-/// A link to an adapter whose drive has no reference yet.
+/// A link to an adapter with parameter 152 (Requested) at 0, so its drive cannot be moved yet.
 pub(super) const FRESH: &str = "sim:?requested=0";
 
 pub(super) fn unit(desk: &Desk) -> &HiperdriveDevice {
