@@ -6,7 +6,7 @@ use std::process::Command;
 
 use super::support::{Bench, skip};
 
-/// Values written to the virtual encoder. Its first field begins with the text EMD71K.
+/// Start of the virtual encoder's first field: the text EMD71K.
 const FIELD: &str = "45 4D 44 37 31 4B";
 
 fn profiles() -> Vec<PathBuf> {
