@@ -254,7 +254,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn hex_is_parsed_in_every_usual_form() {
+    fn parses_common_hex_notations() {
         for text in ["40 4E 0E", "404e0e", "0x40,0x4E,0x0E", "40h 4Eh 0Eh", "40:4E:0E", " 40-4E-E "] {
             assert_eq!(parse_hex(text).unwrap(), [0x40, 0x4E, 0x0E], "{text}");
         }
@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_hex_is_refused() {
+    fn rejects_invalid_hex() {
         assert_eq!(parse_hex("4G"), Err(HexError::Digit('G')));
         assert_eq!(parse_hex("404"), Err(HexError::Odd("404".into())));
         assert_eq!(parse_hex("0x"), Err(HexError::Odd("0x".into())));
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_decode_as_in_python() {
+    fn decoded_values_match_python() {
         type Rows = [(&'static str, &'static str); 9];
         // The expected values come from struct.unpack in Python with "<" and ">" and b, B, h, H, i, I, f.
         let table: [(&[u8], Rows); 4] = [
@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn special_floats_are_named() {
+    fn names_special_floats() {
         let big = |bytes: [u8; 4]| interpret(&bytes)[6].big.clone().unwrap();
         assert_eq!(big([0x7F, 0x80, 0, 0]), "inf");
         assert_eq!(big([0x7F, 0xC0, 0, 0]), "NaN");
@@ -354,7 +354,7 @@ mod tests {
         }
 
         #[test]
-        fn no_text_panics(text in ".*") {
+        fn arbitrary_text_never_panics(text in ".*") {
             let _ = parse_hex(&text);
         }
     }

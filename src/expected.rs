@@ -255,7 +255,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_and_limits_are_printed() {
+    fn formats_words_and_limits() {
         let cases = [
             (AllowedValues::words(&["on"]), "on"),
             (AllowedValues::words(&["auto", "on", "off"]), "auto, on or off"),

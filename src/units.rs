@@ -152,14 +152,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bit_durations_are_computed() {
+    fn computes_bit_durations() {
         assert_eq!(Baud::B9600.duration_of_bits(44), Duration::from_nanos(4_583_333));
         assert_eq!(Baud::new(600).unwrap().duration_of_bits(11), Duration::from_nanos(18_333_333));
         assert_eq!(Baud::new(0), None);
     }
 
     #[test]
-    fn moments_saturate_instead_of_wrapping() {
+    fn moments_saturate() {
         let start = Moment::START;
         assert_eq!(start - Duration::from_secs(1), start);
         assert_eq!(start.duration_since(start + Duration::from_secs(1)), Duration::ZERO);

@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_is_as_accurate_as_section_3_states() {
+    fn table_accuracy_matches_section_3() {
         for (intervals, error, fraction) in [(16, 3.17e-4, 19_830.0), (32, 7.93e-5, 79_255.0), (64, 1.98e-5, 317_064.0)]
         {
             let table = OctantTable::new(intervals);
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_signal_there_is_no_angle() {
+    fn zero_signal_has_no_angle() {
         let table = OctantTable::default();
         for (sine, cosine) in [(0.0, 0.0), (-0.0, 0.0), (f64::NAN, 0.5), (0.5, f64::NAN)] {
             assert_eq!((from_voltages(sine, cosine), table.phase(sine, cosine)), (None, None), "{sine} {cosine}");
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_phase_is_always_below_one() {
+    fn phase_stays_below_one() {
         assert_eq!(Phase::from_periods(-1e-20), Phase::from_periods(0.0));
         assert_eq!(Phase::from_periods(3.25).unwrap().to_periods(), 0.25);
         assert_eq!(Phase::from_periods(-0.25).unwrap().to_degrees(), 270.0);

@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_vector_yields_pole_pairs_and_phase_order() {
+    fn second_vector_yields_pole_pairs() {
         // With four pole pairs, a quarter of an electrical turn is 1/16 revolution: 64 of 1024 periods.
         let motor = Motor::new(1024, 4).unwrap();
         assert_eq!(motor.second_vector(64.0, 0.25), Some(SecondVectorResult { pole_pairs: 4, ratio: 1.0 }));

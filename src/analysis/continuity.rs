@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_rows_are_a_gap() {
+    fn missing_rows_leave_gap() {
         // 2.5 µs per row, with 799 rows missing after row 1000: one step of 800 intervals.
         let mut capture = times(4000, |at| at * 2.5e-6);
         capture.drain(1000..1799);
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_backward_time_step_is_reported_with_its_sample() {
+    fn locates_backward_time_step() {
         // Two recordings in one file.
         let capture = times(2000, |at| (at % 1000.0) * 1e-5);
         let told = Continuity::from_times(&capture);
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn without_times_nothing_is_reported() {
+    fn reports_nothing_without_times() {
         for nothing in [&[][..], &[1.0], &[1.0, 1.0, 1.0], &[f64::NAN, f64::NAN, f64::NAN]] {
             assert_eq!(Continuity::from_times(nothing), Continuity::default(), "{nothing:?}");
         }

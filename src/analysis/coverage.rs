@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn periods_are_counted_with_their_fraction_in_both_directions() {
+    fn counts_fractional_periods_both_ways() {
         let cases = [
             (0.0, 1.0, 361, 8),
             (0.1, 3.6, 36, 8),
@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn travel_forth_and_back_is_covered_once() {
+    fn return_travel_counts_once() {
         let told = coverage((0..1000).map(|at| 0.2 + 1.5 * (TAU * f64::from(at) / 1000.0).sin()));
         assert!((told.periods - 3.0).abs() < 1e-4 && told.travel_periods.abs() < 0.02, "{told:?}");
         // Up by 1.5, down by 3, up by 1.5 except for the last step.
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn motion_within_a_gap_is_not_counted() {
+    fn ignores_motion_within_gap() {
         // 2.7 periods, a jump of 40.4 periods, then 1.1 periods back. The first sample after the jump is left out.
         let angles =
             (0..100).map(|at| 0.1 + 0.027 * f64::from(at)).chain((0..100).map(|at| 43.2 - 0.011 * f64::from(at)));
@@ -308,7 +308,7 @@ mod tests {
 
     /// The amplitude vector r runs from 0.44595 to 0.53764 V (section 7).
     #[test]
-    fn the_amplitude_vector_matches_section_7() {
+    fn amplitude_vector_matches_section_7() {
         let reference = Ellipse { phase_error_rad: 3.0_f64.to_radians(), ..ELLIPSE };
         let (sine, cosine): (Vec<f64>, Vec<f64>) =
             (0..360).map(|degree| reference.point_at(f64::to_radians(f64::from(degree)))).unzip();

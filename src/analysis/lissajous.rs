@@ -191,7 +191,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_sample_is_counted_in_the_cell_of_its_voltages() {
+    fn counts_sample_in_its_cell() {
         // Cells of 0.25 V from −0.5 to 0.5 V.
         let mut density = SampleDensity::new(PlotSquare::centred_on_zero(0.5), 4).unwrap();
         let samples = [
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_are_those_of_the_samples_in_each_direction() {
+    fn measures_vector_length_by_direction() {
         let mut density = SampleDensity::new(PlotSquare::centred_on_zero(0.7), 256).unwrap();
         for degree in 0..3_600 {
             let (y, x) = (f64::from(degree) / 10.0).to_radians().sin_cos();
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_square_is_fitted_around_the_samples() {
+    fn fits_square_around_samples() {
         let square = PlotSquare::enclosing(&[2.0, 3.0, f64::NAN], &[-0.1, 0.1, 0.0]).unwrap();
         assert!((square.sine_v - 2.5).abs() < 1e-12 && square.cosine_v.abs() < 1e-12);
         assert!((square.half_v - 0.525).abs() < 1e-12);
@@ -257,7 +257,7 @@ mod tests {
     proptest! {
         /// All samples are counted however they are split into calls, and none is outside a square around them.
         #[test]
-        fn every_sample_is_counted(samples in proptest::collection::vec((any::<f32>(), any::<f32>()), 1..300), cut in 0_usize..300) {
+        fn counts_every_sample(samples in proptest::collection::vec((any::<f32>(), any::<f32>()), 1..300), cut in 0_usize..300) {
             let (sine, cosine): (Vec<f64>, Vec<f64>) =
                 samples.iter().map(|(sine, cosine)| (f64::from(*sine), f64::from(*cosine))).unzip();
             let cut = cut.min(sine.len());

@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_steady_speed_is_exact_at_any_rate() {
+    fn steady_speed_is_exact() {
         for (label, period) in [("slow", 250), ("as the window", 100), ("fast", 1)] {
             let mut motion = Motion::with_window(100 * MILLISECOND);
             let days = 10 * 86_400_000;
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parabola_has_its_acceleration() {
+    fn parabola_has_constant_acceleration() {
         let mut motion = Motion::with_window(50 * MILLISECOND);
         let mut last = MotionRates::default();
         // Uneven periods: 7 and 13 ms.
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_no_speed_in_the_first_window_or_across_a_break() {
+    fn first_window_and_breaks_have_no_speed() {
         let mut motion = Motion::with_window(10 * MILLISECOND);
         assert_eq!(motion.next(at(0), 0).speed, None);
         assert_eq!(motion.next(at(9), 9).speed, None);
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn memory_is_bounded_at_any_rate() {
+    fn bounds_memory_at_any_rate() {
         let mut motion = Motion::with_window(1_000 * MILLISECOND);
         let capacity = motion.recent.capacity();
         let mut last = MotionRates::default();

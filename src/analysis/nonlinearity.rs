@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn integral_and_differential_parts_are_separated_in_both_directions() {
+    fn separates_integral_and_differential_parts() {
         let (values, reference) = measured(40_000, 1.1, 128.0);
         let back = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<_>>();
         for (values, reference) in [(values.clone(), reference.clone()), (back(&values), back(&reference))] {
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_period_need_not_be_a_whole_number_of_samples() {
+    fn accepts_fractional_samples_per_period() {
         let (values, reference) = measured(1111, 1.0, 16.0);
         let told = compute_nonlinearity(&values, &reference, 16).unwrap();
         // The mean over 1/16 revolution removes (π/16)²/6 of a sine of one revolution, which is added to the
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn insufficient_data_is_refused() {
+    fn rejects_insufficient_data() {
         let (values, mut reference) = measured(1000, 1.0, 16.0);
         assert_eq!(compute_nonlinearity(&values[..100], &reference[..100], 16), Err(NonlinearityError::TooLittle));
         assert_eq!(compute_nonlinearity(&values, &reference, 512), Err(NonlinearityError::TooLittle));

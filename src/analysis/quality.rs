@@ -182,14 +182,14 @@ mod tests {
 
     /// The levels match section 1 of the project's sine/cosine reference.
     #[test]
-    fn each_family_has_its_mean_level() {
+    fn families_have_mean_levels() {
         let levels = Family::ALL.map(|family| (family.name(), family.limits().level_v));
         let expected = [("HIPERFACE", (2.0, 3.0)), ("AFS/AFM60", (2.25, 2.75)), ("TTK70", (2.375, 2.625))];
         assert_eq!(levels, expected);
     }
 
     #[test]
-    fn ellipse_parameters_are_compared_with_their_limits() {
+    fn checks_ellipse_parameters_against_limits() {
         let good = Ellipse {
             amplitude_v: 0.5,
             offset_cosine_v: 0.025,

@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn both_parts_are_found_in_either_direction() {
+    fn finds_both_parts_in_either_direction() {
         let spike = std::iter::once(7_777..7_778).collect::<Vec<_>>();
         for sign in [1.0, -1.0] {
             let (mut sine, cosine, reference) = made(sign);
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_number_of_periods_is_reported() {
+    fn reports_wrong_period_count() {
         let (sine, cosine, reference) = made(1.0);
         let told = Revolution::from_samples(&sine, &cosine, &reference, &[], &ELLIPSE, 100);
         let Err(RevolutionError::Periods { found, given: 100 }) = told else { panic!("{told:?}") };
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_coarse_reference_works_and_a_constant_one_fails() {
+    fn accepts_coarse_reference_not_constant() {
         let (sine, cosine, mut reference) = made(1.0);
         let standing = vec![12.0; reference.len()];
         let told = Revolution::from_samples(&sine, &cosine, &standing, &[], &ELLIPSE, 128);

@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sines_are_found_with_their_amplitude_on_and_between_lines() {
+    fn finds_sines_on_and_between_lines() {
         for (frequency, offset) in [(100.0, 2.5), (100.5, 0.0), (103.27, -1.0)] {
             let samples: Vec<f64> = (0..4000)
                 .map(|at| {
@@ -155,14 +155,14 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_has_no_peak() {
+    fn constant_has_no_peak() {
         let spectrum = Spectrum::from_samples(&[1.5; 64], 100.0).unwrap();
         assert_eq!((spectrum.highest_peaks(3), spectrum.amplitudes_v().len()), (Vec::new(), 33));
         assert_eq!(spectrum.spacing_hz(), 100.0 / 64.0);
     }
 
     #[test]
-    fn data_without_a_spectrum_is_refused() {
+    fn rejects_data_without_spectrum() {
         assert_eq!(Spectrum::from_samples(&[0.0; 7], 1.0), Err(SpectrumError::TooFew { samples: 7 }));
         assert_eq!(Spectrum::from_samples(&[f64::NAN; 8], 1.0), Err(SpectrumError::NotFinite));
         assert_eq!(Spectrum::from_samples(&[0.0; 8], 0.0), Err(SpectrumError::NotFinite));

@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn positions_interpolate_to_sixteen_bits() {
+    fn interpolates_to_sixteen_bits() {
         let told = Synchroniser::new(1024).combine(0x2A5F, phase(0.02)).unwrap();
         assert_eq!(told.steps_per_period(16), 0x0153_051E);
         let degrees = told.steps_per_period(16) as f64 * 360.0 / (1024.0 * 65_536.0);
@@ -169,7 +169,7 @@ mod tests {
 
     /// The true position is reconstructed throughout the range if every delay is below half a period.
     #[test]
-    fn drift_below_half_a_period_is_corrected() {
+    fn corrects_drift_below_half_period() {
         let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(64) };
         for step in 0..64 * 100 {
             let fine = f64::from(step) / 100.0;
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fixed_offset_is_measured_and_corrected() {
+    fn corrects_fixed_offset() {
         let pairs: Vec<(u64, Phase)> = (0..5000)
             .map(|step| {
                 let fine = f64::from(step) * 0.0127;

@@ -53,14 +53,14 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_moment_keeps_its_nanoseconds() {
+    fn keeps_nanoseconds() {
         let ten_days = Duration::new(864_000, 1);
         assert_eq!(SampleTime::from(Moment::from_elapsed(ten_days)).as_nanoseconds(), 864_000_000_000_001);
         assert_eq!(SampleTime::from(Moment::from_elapsed(Duration::MAX)).as_nanoseconds(), i64::MAX);
     }
 
     #[test]
-    fn differences_are_exact_after_days() {
+    fn differences_stay_exact_after_days() {
         let late = SampleTime::from_nanoseconds(864_000_000_000_000);
         assert_eq!(late.saturating_add_ns(1).nanoseconds_since(late), 1);
         assert_eq!(late.saturating_add_ns(1).seconds_since(late), 1e-9);

@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrap_is_followed_like_any_step() {
+    fn follows_wrap_like_any_step() {
         let multiturn = 4096 * 4096;
         let ring = PositionUnwrapper::rotary(multiturn).unwrap();
         let forward = follow(ring, &[multiturn - 2, multiturn - 1, 0, 1, multiturn - 1]);
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_of_half_the_range_is_ambiguous() {
+    fn half_range_step_is_ambiguous() {
         let ring = PositionUnwrapper::rotary(100).unwrap();
         assert_eq!(follow(ring, &[10, 59, 10]), [(10, false), (59, false), (10, false)]);
         assert_eq!(follow(ring, &[10, 60]), [(10, false), (60, true)]);
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn after_a_gap_the_distance_is_unknown() {
+    fn gap_makes_distance_unknown() {
         let mut ring = PositionUnwrapper::rotary(100).unwrap();
         ring.mark_gap();
         assert_eq!(ring.next(98), Some(UnwrappedPosition { steps: 98, broken: false }));
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_linear_encoder_has_no_wrap() {
+    fn linear_encoder_never_wraps() {
         let mut linear = PositionUnwrapper::without_wrap();
         assert_eq!(follow(linear, &[-5, 1 << 40, 0]), [(-5, false), (1 << 40, false), (0, false)]);
         linear.next(1);
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_has_at_least_two_positions() {
+    fn range_needs_two_positions() {
         assert!(PositionUnwrapper::rotary(1).is_none());
         assert!(PositionUnwrapper::rotary(i64::MIN).is_none());
     }
@@ -119,7 +119,7 @@ mod tests {
     proptest! {
         /// A random walk whose steps are all below half the range is reproduced.
         #[test]
-        fn a_random_walk_is_followed(range in 3_i64..1 << 40, start in 0_i64..1 << 40, walk in proptest::collection::vec(-1.0..1.0, 1..200)) {
+        fn follows_random_walk(range in 3_i64..1 << 40, start in 0_i64..1 << 40, walk in proptest::collection::vec(-1.0..1.0, 1..200)) {
             let mut truth = start % range;
             let mut unwrap = PositionUnwrapper::rotary(range).unwrap();
             prop_assert_eq!(unwrap.next(truth).unwrap().steps, truth);

@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_new_step_ends_redo() {
+    fn new_step_ends_redo() {
         let (mut history, mut now) = (History::default(), 1);
         assert!(history.apply_step(&mut now, 2) && history.apply_step(&mut now, 3) && !history.apply_step(&mut now, 3));
         assert!(history.undo(&mut now) && now == 2 && history.can_redo());
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_two_hundred_steps_can_be_undone() {
+    fn undoes_last_two_hundred_steps() {
         let (mut history, mut now) = (History::default(), 0);
         (1..=250).for_each(|after| assert!(history.apply_step(&mut now, after)));
         while history.undo(&mut now) {}
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_removed_by_a_rebase_cannot_be_undone() {
+    fn rebase_drops_undo_steps() {
         let (mut history, mut now) = (History::default(), 1);
         for after in [2, 3, 14] {
             history.apply_step(&mut now, after);

@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn success_notices_do_not_replace_warnings() {
+    fn success_does_not_replace_warning() {
         let notice = |severity| Notice {
             at: Zoned::now(),
             severity,
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn success_notices_expire_and_errors_never_do() {
+    fn success_expires_errors_stay() {
         let left = |severity: Severity| severity.display_time(Duration::from_millis(5_500));
         assert_eq!(left(Severity::Note), Some(Duration::from_millis(500)));
         assert_eq!(left(Severity::Good), left(Severity::Note));
@@ -170,7 +170,7 @@ mod tests {
 
     /// Saving a file removes only the errors about that file.
     #[test]
-    fn saving_a_file_dismisses_its_errors() {
+    fn saving_dismisses_file_errors() {
         let mut log = NoticeLog::default();
         let full = Text::new("file.disk_full").with("path", "/a/b.csv");
         let texts = vec![full, Text::new("session.not_saved")];
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_warning_makes_room_for_the_loss_of_its_connection() {
+    fn connection_loss_replaces_warning() {
         let cases = [
             (Severity::Warning, Some("one"), false),
             (Severity::Good, Some("one"), false),
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_settled_notice_is_removed() {
+    fn removes_settled_notice() {
         let mut log = NoticeLog::default();
         let texts = vec![Text::new("session.not_connected")];
         log.add(Notice {

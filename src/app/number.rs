@@ -149,7 +149,7 @@ mod tests {
     use crate::app::Language;
 
     #[test]
-    fn numbers_accept_a_point_or_a_comma_and_no_words() {
+    fn numbers_accept_point_or_comma() {
         for (text, value) in [
             ("1.5", 1.5),
             (" 1,5 ", 1.5),
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn quantities_are_parsed_in_component_notation() {
+    fn parses_component_notation() {
         for (text, value) in [
             ("10k", 1e4),
             ("10 kΩ", 1e4),
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_names_the_entry_and_the_range() {
+    fn rejection_names_entry_and_range() {
         let refusal = parse_in_range("connect.tcp_port", "91", 0.1, 90.0).unwrap_err();
         assert_eq!(refusal.to_string_in(Language::English), "TCP port: \"91\" is not a number from 0.1 to 90.");
         assert!(refusal.to_string_in(Language::German).ends_with("keine Zahl von 0,1 bis 90."));

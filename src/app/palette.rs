@@ -23,7 +23,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_typed_word_has_to_occur() {
+    fn requires_every_typed_word() {
         let cases = [
             ("", "Save", Some(0)),
             ("sa", "Save", Some(0)),

@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_picture_has_as_many_pixels_as_its_size() {
+    fn image_size_matches_pixel_count() {
         assert!(Picture::new(2, 1, vec![0; 5]).is_none());
         assert!(Picture::new(0, 7, Vec::new()).is_none());
         let pixels = vec![255, 0, 0, 0, 0, 255];
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_encoding_leaves_no_file() {
+    fn failed_encoding_leaves_no_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("picture.png");
         let short = Picture { width: 2, height: 2, bytes: vec![0; 5].into() };

@@ -139,7 +139,7 @@ mod tests {
 
     /// A press that the toolkit reports as new is not fresh unless the key is known to be up.
     #[test]
-    fn a_press_is_fresh_only_after_a_release() {
+    fn press_is_fresh_only_after_release() {
         let mut keys = KeyStates::default();
         assert!(!keys.is_armed(Space) && !keys.is_down(Space));
         for at in 0..40 {
@@ -162,7 +162,7 @@ mod tests {
 
     /// A release followed immediately by a press is a repeat, whether both arrive in one frame or in two.
     #[test]
-    fn a_release_and_an_immediate_press_are_a_repeat() {
+    fn immediate_press_after_release_is_repeat() {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
             let mut keys = KeyStates::ALL_UP;
             assert!(keys.is_fresh_press(Enter));
@@ -182,7 +182,7 @@ mod tests {
 
     /// The release of a key requests a frame, so the next press is fresh even if nothing else happens in between.
     #[test]
-    fn a_press_by_the_user_is_fresh_after_the_requested_frame() {
+    fn press_after_requested_frame_is_fresh() {
         for apart in [0.001, 0.016, 0.05, 1.0] {
             let mut keys = KeyStates::ALL_UP;
             assert!(keys.is_fresh_press(Enter));
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn another_key_ends_the_repeats_of_an_unknown_key() {
+    fn other_key_ends_unknown_repeats() {
         let mut keys = KeyStates::default();
         keys.record_other_key_press(1.0);
         assert!(!keys.is_fresh_press(Enter), "at once");
@@ -216,7 +216,7 @@ mod tests {
 
     /// Enter typed by a barcode scanner immediately after another key is not fresh.
     #[test]
-    fn a_press_right_after_another_key_is_not_fresh() {
+    fn press_after_other_key_is_not_fresh() {
         let mut keys = KeyStates::ALL_UP;
         keys.mark_suspect(1.0);
         assert!(!keys.is_fresh_press(Enter), "in the same picture");

@@ -10,7 +10,7 @@ use super::{Settings, Tab};
 pub(crate) const SETTINGS: &str = include_str!("../../tests/fixtures/settings/settings.ron");
 
 #[test]
-fn settings_match_the_recorded_file() {
+fn settings_match_recorded_file() {
     let settings = Settings::parse(SETTINGS).unwrap();
     assert_eq!(settings.emit(), SETTINGS.trim_end());
     let tabs = [
@@ -36,7 +36,7 @@ where
 }
 
 #[test]
-fn a_change_is_read_and_written_as_recorded() {
+fn settings_changes_match_recorded_file() {
     let change = "(path:[Entry(\"ranges\"),Named(\"name\",\"error\"),At(2)],from:Some(\"24\"),to:None,\
                   behind:[Entry(\"clocks\")],comments:(Some(\"was\"),None),heading:[\"above\"])";
     let read: crate::profile::Change = ron::from_str(change).unwrap();

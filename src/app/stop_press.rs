@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_second_press_within_half_a_second_counts_for_the_same_motion() {
+    fn quick_second_press_stops_same_motion() {
         let mut presses = StopPressTracker::default();
         assert!(!presses.register_stop_press(false, 9.0, 9.0), "nothing moves, and nothing has");
         assert!(presses.register_stop_press(true, 10.0, 10.0));
@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn a_click_counts_from_the_button_press() {
+    fn click_counts_from_button_press() {
         let mut presses = StopPressTracker::default();
         presses.register_stop_press(true, 10.0, 10.0);
         presses.press_began(10.25);

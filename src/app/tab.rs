@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tab_is_serialized_as_its_name() {
+    fn serializes_tab_as_name() {
         let tab: Tab = ron::from_str("Canopen").unwrap();
         assert_eq!(tab, Tab::named("Canopen"), "also one that no kind has");
         assert_eq!(ron::to_string(&tab).unwrap(), "Canopen");

@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn both_languages_have_the_same_texts_and_arguments() {
+    fn languages_share_texts_and_arguments() {
         for (file, source) in catalogues() {
             let table = rows(&source);
             assert!(!table.is_empty(), "{file}");
@@ -292,14 +292,14 @@ mod tests {
     }
 
     #[test]
-    fn arguments_are_filled_in_once() {
+    fn substitutes_arguments_once() {
         let text = Text::new("link.busy").with("target", "{target}");
         assert!(text.to_string_in(Language::English).starts_with("{target} is in use"));
         assert!(text.to_string_in(Language::German).starts_with("{target} wird von"));
     }
 
     #[test]
-    fn numbers_and_lists_follow_the_language() {
+    fn localizes_numbers_and_lists() {
         let text = Text::new("link.busy").with_number("target", 1.25, 1);
         assert!(text.to_string_in(Language::English).starts_with("1.2 is"));
         assert!(text.to_string_in(Language::German).starts_with("1,2 wird"));
@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn the_command_line_has_separate_hints() {
+    fn command_line_has_separate_hints() {
         let cause = Text::new("link.not_found").with("target", "COM3");
         let text = Text::new("link.other").with("target", "COM3").with_text("why", cause);
         assert!(text.terminal_text().contains("\"encoder-studio ports\" lists"), "{}", text.terminal_text());
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn window_texts_do_not_mention_the_command_line() {
+    fn window_texts_omit_command_line() {
         for source in catalogues().values() {
             for (id, row) in &rows(source) {
                 for hint in ["--", "encoder-studio ", "=HEX", "echo=", "do hiperface"] {

@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn contrast_is_computed_as_in_wcag() {
+    fn contrast_matches_wcag() {
         let rgb = |text: &str| Rgb::try_from(text.to_owned()).unwrap();
         assert!((rgb("#000000").contrast_ratio(rgb("#FFFFFF")) - 21.0).abs() < 1e-9);
         // A known pair: #767676 is the lightest grey that is legible on white.
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn every_text_is_legible_on_every_surface() {
+    fn text_is_legible_on_every_surface() {
         let look = ThemeData::built_in().unwrap();
         for theme in [ColorScheme::Dark, ColorScheme::Light] {
             let palette = look.palette(theme);
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_are_on_the_grid() {
+    fn distances_fit_grid() {
         let SpacingSizes { inside, between, groups, around } = ThemeData::built_in().unwrap().space;
         assert!([inside, between, groups, around].iter().all(|space| space % 4.0 == 0.0));
     }

@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_found_by_bytes_meaning_and_fault() {
+    fn finds_frames_by_bytes_meaning_and_fault() {
         let log = three_frame_log();
         assert_eq!(matching(&log, "", false, 3), [0, 1, 2]);
         assert_eq!(matching(&log, " 42 00 0E ", false, 3), [1], "upper and lower case are equal");
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn a_changed_filter_compares_all_frames_again() {
+    fn changed_filter_rechecks_all_frames() {
         let log = three_frame_log();
         let mut matches = TraceMatches::default();
         let mut update = |search: &str, end| {
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn removed_frames_are_counted_and_no_longer_match() {
+    fn removed_frames_no_longer_match() {
         let frame = |at| (at, Direction::Sent, "40 42 02", Text::new("trace.position"), None);
         let one = log(&[frame(0)]).size;
         let mut log = log(&[frame(0), frame(1), frame(2)]);
@@ -298,7 +298,7 @@ mod tests {
 
     /// A trace saved in the window equals one written on the command line, and can be opened with `replay:`.
     #[test]
-    fn a_saved_log_is_a_trace_file() {
+    fn saved_log_reads_as_trace() {
         let text = three_frame_log().file_content();
         let expected = "# encoder-studio trace 1\n0.031000 > 40 42 02\n0.047000 < 40 42 00 0E\n0.090000 < FF **\n";
         assert_eq!(text, expected);

@@ -67,7 +67,7 @@ mod tests {
     struct Secret(u8);
 
     #[test]
-    fn one_value_per_type_is_kept_and_none_is_printed() {
+    fn keeps_one_value_per_type() {
         let given = TypeMap::default()
             .with_value(Secret(0x9D))
             .with_value(String::from("first"))

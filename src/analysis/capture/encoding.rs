@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn utf_16_is_converted_in_chunks_of_any_size() {
+    fn decodes_utf_16_in_any_chunks() {
         let text = "Zeit (µs);sin;cos 𝛼\n0;1;2\n";
         let le: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
         let be: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();

@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_recognized_by_name() {
+    fn recognizes_columns_by_name() {
         let plain = Some(Columns::TIME_SINE_COSINE);
         for names in ["time|sin|cos", "Time [ms]|Sine (V)|Cosine (V)", "t/s|SIN_mV|COS_mV", "Zeit|Sinus|Kosinus"] {
             assert_eq!(named(names), plain, "{names}");
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn units_are_parsed_from_column_names() {
+    fn parses_units_in_column_names() {
         let rows = [
             ("time [ms]", Some("ms")),
             ("t/\u{b5}s", Some("\u{b5}s")),

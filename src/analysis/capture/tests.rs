@@ -60,7 +60,7 @@ fn equivalent_tables_parse_the_same() {
 }
 
 #[test]
-fn the_detected_layout_is_returned_and_can_be_overridden() {
+fn overrides_detected_layout() {
     let text = b"Time (ms);A (mV);B (mV)\n0;1,5;2\n1;3;4\n";
     let (layout, _) = read(text).unwrap();
     let expected = Layout {
@@ -118,7 +118,7 @@ fn errors_name_row_and_column() {
 }
 
 #[test]
-fn row_numbers_are_right_beyond_the_sniffed_head() {
+fn counts_rows_beyond_sniffed_head() {
     let mut text: String = (0..20_000).map(|at| format!("{at}e-6,0.{at},-0.{at}\n")).collect();
     let (_, capture) = read_in_pieces(4096, text.as_bytes(), &TableHints::default()).unwrap();
     assert_eq!(capture.sine_v.len(), 20_000);
@@ -129,7 +129,7 @@ fn row_numbers_are_right_beyond_the_sniffed_head() {
 }
 
 #[test]
-fn reference_and_absolute_position_columns_are_recognized() {
+fn recognizes_reference_and_position_columns() {
     let both = (Some(vec![359.5, 0.25]), Some(vec![7_i64, -8]));
     let cases: [(&str, _); 7] = [
         ("t,sin,cos,reference,absolute\n0,.1,.2,359.5,7\n1,.1,.2,0.25,-8\n", both.clone()),
@@ -159,7 +159,7 @@ fn reference_and_absolute_position_columns_are_recognized() {
 
 /// If an oscilloscope writes Start and Increment, the first column contains sample numbers (issue 22.13).
 #[test]
-fn start_and_increment_define_the_times() {
+fn start_and_increment_define_times() {
     let text =
         "X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,-6.000e-03,2.000e-06,\n0,0.1,0.2,,\n1,0.3,0.4,,\n2,0.5,0.6,,\n";
     let (layout, capture) = read(text).unwrap();
@@ -184,7 +184,7 @@ fn start_and_increment_define_the_times() {
 /// Rows without a value and a truncated last line are skipped and counted. Six rows are enough for a measurement (issue
 /// 22.13).
 #[test]
-fn rows_without_a_value_are_skipped() {
+fn skips_rows_without_value() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
     for gap in ["6,,3", "6,NaN,3", "6,2,-inf", "6,OVERLOAD,3", "6,2,---", "6,2,\u{221e}", "6, ,3"] {
         let (_, capture) =
@@ -218,7 +218,7 @@ fn rows_without_a_value_are_skipped() {
 
 /// A table in UTF-16 and a second header row with units are accepted (issue 22.13).
 #[test]
-fn encodings_and_rows_of_units_do_not_reject_a_table() {
+fn accepts_encodings_and_unit_rows() {
     let text = "Zeit (\u{b5}s)\tSinus\tKosinus\r\n0\t0,25\t0,5\r\n1000\t-0,3\t0,4\r\n";
     let units: Vec<u16> = text.encode_utf16().collect();
     let le: Vec<u8> = units.iter().flat_map(|unit| unit.to_le_bytes()).collect();
@@ -244,7 +244,7 @@ fn encodings_and_rows_of_units_do_not_reject_a_table() {
 
 /// Rows with missing values before the first complete row do not hide the names and units of the columns (issue 22.13).
 #[test]
-fn leading_rows_without_a_value_do_not_hide_the_header() {
+fn finds_header_before_incomplete_rows() {
     let rows = "2,3,4\n3,4,5\n4,5,6\n5,6,7\n6,7,8\n7,8,9\n";
     for gap in ["1,,", "1,OVERLOAD,OVERLOAD", "1,---,---", "1, , "] {
         let (layout, capture) = read(format!("t [ms],cos,sin [mV]\n0,,\n{gap}\n{rows}")).unwrap();
@@ -258,7 +258,7 @@ fn leading_rows_without_a_value_do_not_hide_the_header() {
 /// A truncated last line is skipped. After an open quotation mark, however, several lines would be lost, which is an
 /// error (issue 22.13).
 #[test]
-fn an_unclosed_quotation_mark_swallows_no_rows() {
+fn rejects_unclosed_quote() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
     for (open, column) in [("6,\"3,4", "in a value"), ("6,3,4,\"24 V", "in a note")] {
         let text = format!("t,sin,cos,note\n{six}{open}\n7,8,9\n8,9,1\n");
@@ -277,7 +277,7 @@ fn an_unclosed_quotation_mark_swallows_no_rows() {
 /// An oscilloscope's sample numbers are converted to times regardless of the channel names, and must be whole numbers
 /// (issue 22.13).
 #[test]
-fn sample_numbers_are_integers_in_the_first_column() {
+fn sample_numbers_are_leading_integers() {
     let (layout, capture) = read("X,sin,cos,Start,Increment\nSequence,V,V,1,0.5\n0,1,2,,\n1,3,4,,\n").unwrap();
     assert_eq!((layout.columns.time, capture.time_s), (Some(1), vec![1.0, 1.5]));
     let times = "X,CH1,CH2,Start,Increment\nSequence,V,V,1,0.5\n0,1,2,,\n0.5,3,4,,\n";

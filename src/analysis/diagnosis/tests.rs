@@ -78,7 +78,7 @@ fn near(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn a_good_signal_has_no_findings() {
+fn good_signal_has_no_findings() {
     let uneven = |time: f64| steady(time) + 0.3 * (TAU * 20.5 * time).sin() + 0.02 * (TAU * 300.0 * time).sin();
     let plain = |_, _, signal| signal;
     let slow = |time: f64| 3.0 * time;
@@ -100,7 +100,7 @@ fn a_good_signal_has_no_findings() {
 }
 
 #[test]
-fn amplitude_variation_over_a_revolution_is_not_interference() {
+fn amplitude_modulation_is_not_interference() {
     // 16 periods per revolution: lines 77 Hz above and below the signal.
     let wobbling = |_, angle: f64, (sine, cosine)| {
         let amplitude = 1.0 + 0.04 * (angle / 16.0).cos();
@@ -121,7 +121,7 @@ fn amplitude_variation_over_a_revolution_is_not_interference() {
 }
 
 #[test]
-fn interference_is_reported_with_frequency_and_amplitude() {
+fn reports_interference_frequency_and_amplitude() {
     for (volts, severity) in [(0.02, Severity::Warning), (0.002, Severity::Notice)] {
         for hertz in [8_000.0, 8_003.7, 1_300.0, 21_234.5] {
             let finding = made(steady, with_interference(volts, -0.5 * volts, hertz)).finding_text();
@@ -138,7 +138,7 @@ fn interference_is_reported_with_frequency_and_amplitude() {
 }
 
 #[test]
-fn interference_is_found_while_the_speed_changes() {
+fn finds_interference_at_changing_speed() {
     let finding =
         made(|time| 500.0 * time + 100.0 * time * time, with_interference(0.02, 0.015, 8_000.0)).finding_text();
     let FindingKind::Interference { frequency_hz, volts, common, .. } = finding.kind else { panic!("{finding:?}") };
@@ -148,7 +148,7 @@ fn interference_is_found_while_the_speed_changes() {
 }
 
 #[test]
-fn mains_hum_is_reported_with_its_harmonics() {
+fn reports_mains_hum_with_harmonics() {
     for mains in [50.0, 60.0] {
         let hum = |time: f64, _, (sine, cosine)| {
             let wave = 0.008 * (TAU * mains * time).sin() + 0.006 * (TAU * 3.0 * mains * time + 1.0).sin();
@@ -169,7 +169,7 @@ fn mains_hum_is_reported_with_its_harmonics() {
 }
 
 #[test]
-fn noise_is_reported_separately_from_spectral_lines() {
+fn separates_noise_from_spectral_lines() {
     let mut random = fastrand::Rng::with_seed(9);
     let mut capture = made(steady, with_interference(0.02, 0.0, 8_000.0));
     for value in capture.sine.iter_mut().chain(&mut capture.cosine) {
@@ -188,7 +188,7 @@ fn noise_is_reported_separately_from_spectral_lines() {
 }
 
 #[test]
-fn a_third_harmonic_is_found_at_any_motion() {
+fn finds_third_harmonic_at_any_motion() {
     let third =
         |_, angle: f64, (sine, cosine)| (sine + 0.01 * (3.0 * angle).sin(), cosine - 0.01 * (3.0 * angle).cos());
     for made in [made(steady, third), made(|time| 30.0 * time * time, third)] {
@@ -201,7 +201,7 @@ fn a_third_harmonic_is_found_at_any_motion() {
 }
 
 #[test]
-fn a_clipped_channel_is_reported_with_its_voltage() {
+fn reports_clipping_voltage() {
     let cut = |_, _, (sine, cosine): (f64, f64)| (sine, cosine.min(0.45));
     let mut capture = made(steady, cut);
     // A converter at its limit outputs no noise.
@@ -219,7 +219,7 @@ fn a_clipped_channel_is_reported_with_its_voltage() {
 }
 
 #[test]
-fn broken_wires_are_diagnosed() {
+fn diagnoses_broken_wires() {
     let dead = |level: f64| move |_, _, (sine, _): (f64, f64)| (sine, level);
     let with = |level: f64, refcos: f64| Made {
         references: Some((vec![2.5; COUNT], vec![refcos; COUNT])),
@@ -254,7 +254,7 @@ fn broken_wires_are_diagnosed() {
 }
 
 #[test]
-fn levels_of_the_references_are_judged_by_the_family() {
+fn family_limits_reference_levels() {
     let mut capture = made(steady, |_, _, signal| signal);
     capture.references = Some((vec![2.3; COUNT], vec![3.2; COUNT]));
     let finding = capture.finding_text();
@@ -268,7 +268,7 @@ fn levels_of_the_references_are_judged_by_the_family() {
 }
 
 #[test]
-fn spikes_are_reported_and_are_not_interference() {
+fn spikes_are_not_interference() {
     let mut capture = made(steady, |_, _, signal| signal);
     (0..20).for_each(|at| capture.sine[2_000 * at + 77] = 2.0);
     let finding = capture.finding_text();
@@ -286,7 +286,7 @@ fn spikes_are_reported_and_are_not_interference() {
 }
 
 #[test]
-fn the_worst_finding_comes_first_and_limits_are_the_familys() {
+fn sorts_findings_by_severity() {
     let mut capture = made(steady, |_, _, (sine, cosine)| (0.84 * sine + 0.06, 0.84 * cosine));
     capture.sine[9] = 3.0;
     let severities: Vec<Severity> = capture.diagnosed().findings.iter().map(|finding| finding.severity).collect();
@@ -297,7 +297,7 @@ fn the_worst_finding_comes_first_and_limits_are_the_familys() {
 }
 
 #[test]
-fn comparing_captures_reports_worse_findings() {
+fn comparison_reports_worse_findings() {
     let off = made(steady, |_, _, signal| signal).diagnosed();
     let hum = |hum: f64, drive: f64, amplitude: f64| {
         made(steady, move |time, _, (sine, cosine)| {
@@ -340,7 +340,7 @@ fn ellipse(amplitude: f64, offset: f64, phase: f64) -> Made {
 }
 
 #[test]
-fn an_amplitude_change_is_worse_only_outside_the_limits() {
+fn amplitude_within_limits_is_not_worse() {
     let at = |amplitude| ellipse(amplitude, 0.0, 0.0).diagnosed();
     for (from, to, worse) in [(1.0, 0.95, 0), (0.8, 1.0, 0), (1.0, 0.8, 1), (0.8, 0.7, 1), (0.7, 0.8, 0)] {
         let changes = compare(&at(from), &at(to));
@@ -394,7 +394,7 @@ fn any_new_finding_counts_as_worse() {
 }
 
 #[test]
-fn missing_comparisons_are_reported() {
+fn reports_missing_comparisons() {
     let good = made(steady, |_, _, signal| signal).diagnosed();
     let mut timeless = ellipse(1.0, 0.0, 0.0);
     timeless.time.clear();
@@ -417,7 +417,7 @@ fn missing_comparisons_are_reported() {
 }
 
 #[test]
-fn other_limits_apply_without_the_samples() {
+fn applies_new_limits_without_samples() {
     let mut capture = ellipse(0.84, 0.03, 0.0);
     capture.references = Some((vec![2.25; COUNT], vec![2.5; COUNT]));
     let record = capture.record();
@@ -430,7 +430,7 @@ fn other_limits_apply_without_the_samples() {
 }
 
 #[test]
-fn empty_captures_are_diagnosed_without_a_panic() {
+fn diagnoses_empty_captures() {
     for (time, values) in [(vec![], vec![]), (vec![0.0], vec![0.1]), (vec![0.0; 9], vec![f64::NAN; 9])] {
         let record = Record {
             samples: Samples { time_s: &time, sine_v: &values, cosine_v: &values },

@@ -27,14 +27,14 @@ fn assert_close(found: &Ellipse, expected: &Ellipse, tolerance: f64) {
 
 /// The coefficients of `Test` in section 7 were computed with Python.
 #[test]
-fn the_reference_coefficients_yield_the_reference_ellipse() {
+fn reference_coefficients_yield_ellipse() {
     let conic =
         ConicCoefficients { a: 4.032_438_057, b: 4.445_762_958, c: 0.443_187_154, d: -0.148_001_908, e: 0.257_882_034 };
     assert_close(&conic.to_ellipse().unwrap(), &REFERENCE, 1e-9);
 }
 
 #[test]
-fn the_model_yields_the_voltages_of_section_7() {
+fn model_voltages_match_section_7() {
     let rows = [
         (0.0, 0.52, -0.054_922),
         (40.0, 0.403_022_2, 0.256_578_6),
@@ -49,7 +49,7 @@ fn the_model_yields_the_voltages_of_section_7() {
 }
 
 #[test]
-fn fits_of_360_and_6_points_recover_the_parameters() {
+fn fit_recovers_parameters() {
     for count in [360, 6] {
         let (sine, cosine) = signals(&REFERENCE, count, 0.0, 1.0);
         let found = Ellipse::fit(&sine, &cosine).unwrap();
@@ -68,7 +68,7 @@ fn fits_of_360_and_6_points_recover_the_parameters() {
 /// parameter fitted to n points scatters by about σ·√(2/n) = 7.5e-5 V. The limits are five times this value, and twice
 /// as much for α and r.
 #[test]
-fn noise_moves_the_parameters_within_its_statistics() {
+fn noise_shifts_parameters_as_predicted() {
     let mut random = fastrand::Rng::with_seed(7);
     for _ in 0..50 {
         let (mut sine, mut cosine) = signals(&REFERENCE, 360, random.f64(), 1.0);
@@ -87,7 +87,7 @@ fn noise_moves_the_parameters_within_its_statistics() {
 }
 
 #[test]
-fn the_fit_is_independent_of_unit_level_and_rest() {
+fn fit_ignores_unit_level_and_rest() {
     // Converter counts, a signal of millivolts on 2.5 V, and ten thousand samples of a shaft at rest.
     let wide = Ellipse { amplitude_v: 31_000.0, offset_cosine_v: 32_768.0, offset_sine_v: 32_700.0, ..REFERENCE };
     let (sine, cosine) = signals(&wide, 1000, 0.0, 1.0);
@@ -102,7 +102,7 @@ fn the_fit_is_independent_of_unit_level_and_rest() {
 }
 
 #[test]
-fn a_fit_in_chunks_equals_a_fit_in_one() {
+fn chunked_fit_equals_single_fit() {
     let (sine, cosine) = signals(&REFERENCE, 20_000, 0.1, 12.3);
     let mut moments = Moments::new(super::super::moments::Scale::new(0.0, 0.0, 0.5));
     for (sine, cosine) in sine.chunks(333).zip(cosine.chunks(333)) {
@@ -113,7 +113,7 @@ fn a_fit_in_chunks_equals_a_fit_in_one() {
 }
 
 #[test]
-fn data_without_an_ellipse_is_refused_with_a_reason() {
+fn rejects_data_without_ellipse() {
     let (sine, cosine) = signals(&REFERENCE, 360, 0.0, 1.0);
     let zeros = vec![0.0; 360];
     let noisy: Vec<f64> = (0..360).map(|i| 1.25 + 0.001 * f64::from(i % 7)).collect();
@@ -147,7 +147,7 @@ fn data_without_an_ellipse_is_refused_with_a_reason() {
 }
 
 #[test]
-fn an_outline_goes_once_around_the_center() {
+fn outline_circles_center_once() {
     let ellipse = Ellipse {
         amplitude_v: 0.5,
         offset_cosine_v: 0.25,

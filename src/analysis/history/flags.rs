@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_bad_sample_breaks_the_line() {
+    fn bad_sample_breaks_line() {
         let mut block = FlagBlock::default();
         assert_eq!(block.memory(), 0);
         block.add_flags(5, Flags::NONE);
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_has_exactly_the_flags_of_its_samples() {
+    fn range_has_its_samples_flags() {
         let mut block = FlagBlock::default();
         block.add_flags(63, Flags::WARNING);
         block.add_flags(64, Flags::BREAK);
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn flags_of_a_range_are_those_of_its_samples() {
+    fn range_flags_match_full_scan() {
         let mut random = fastrand::Rng::with_seed(4);
         for flagged in [1, 3, 40, 2_000] {
             let mut block = FlagBlock::default();

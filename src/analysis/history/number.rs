@@ -238,7 +238,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn counts_are_rounded_outward(value in any::<i64>(), base in any::<i64>(), shift in 0..63) {
+        fn rounds_counts_outward(value in any::<i64>(), base in any::<i64>(), shift in 0..63) {
             let value = base.saturating_add(value >> shift);
             let distance = (i128::from(value) - i128::from(base)).unsigned_abs() as f64;
             let loss = distance / f64::from(1 << 23) + (value as f64).abs() * f64::EPSILON * 2.0;
@@ -248,7 +248,7 @@ mod tests {
         }
 
         #[test]
-        fn reals_are_rounded_outward(value in any::<f64>(), base in any::<f64>(), close in any::<f64>()) {
+        fn rounds_reals_outward(value in any::<f64>(), base in any::<f64>(), close in any::<f64>()) {
             prop_assume!(value.is_finite() && base.is_finite());
             for value in [value, base + base * (close % 1.0), base.next_up(), base.next_down(), 0.0] {
                 let (low, high) = (value.distance_down(base), value.distance_up(base));

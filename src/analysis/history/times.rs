@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_is_found_among_even_and_uneven_times() {
+    fn finds_even_and_uneven_times() {
         let cases = [
             ("even", times((0..100).map(|k| k * 1_000))),
             ("uneven", times((0..100).map(|k| k * k * k))),

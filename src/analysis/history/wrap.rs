@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn single_samples_are_not_joined_across_the_end_of_the_range() {
+    fn does_not_join_samples_across_wrap() {
         let shown = extents(&picture(&[-1, 0, 998, 1001, 1000, 999], 6));
         let expected = [
             (999.0, 999.0, false),
@@ -104,7 +104,7 @@ mod tests {
     /// With one wrap in 2000 samples and 100 samples per column, each column spans 50 counts. No bar may therefore
     /// reach from one end of the range to the other.
     #[test]
-    fn no_column_crosses_the_picture_at_the_end_of_the_range() {
+    fn no_column_spans_wrap() {
         let counts: Vec<i64> = (0..10_000).map(|at| 25 + at / 2).collect();
         let picture = picture(&counts, 100);
         assert!(!picture.raw);
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn a_column_that_passes_the_range_twice_is_full() {
+    fn column_with_two_turns_is_full() {
         let counts: Vec<i64> = (0..10_000).map(|at| at * 3).collect();
         let shown = extents(&picture(&counts, 10));
         assert!(shown.iter().all(|own| *own == (0.0, 1000.0, false)), "{shown:?}");

@@ -48,7 +48,7 @@ impl Made {
 }
 
 #[test]
-fn a_single_spike_is_excluded_and_reported() {
+fn excludes_single_spike() {
     let mut capture = made(360, 1.0, 0.0);
     capture.sine[100] = 5.0;
     let told = capture.assert_ellipse_fits(1e-9);
@@ -63,7 +63,7 @@ fn a_single_spike_is_excluded_and_reported() {
 /// With 1 mV of noise on 100 000 samples, a parameter scatters by 1 mV·√(2/100 000) = 4.5 µV. Relative to 0.5 V, r and
 /// α scatter by twice this value. The limits are six times the scatter.
 #[test]
-fn spikes_in_a_long_capture_do_not_change_the_fit() {
+fn spikes_do_not_change_long_fit() {
     let mut capture = made(100_000, 100.0, 1e-3);
     for at in 0..40 {
         capture.cosine[at * 2_399 + 17] += if at % 2 == 0 { 0.4 } else { -3.0 };
@@ -87,7 +87,7 @@ fn spikes_in_a_long_capture_do_not_change_the_fit() {
 }
 
 #[test]
-fn a_spike_that_ruins_the_plain_fit_is_found() {
+fn finds_spike_despite_ruined_fit() {
     let mut capture = made(400, 3.0, 5e-4);
     for at in [3, 200, 201, 399] {
         (capture.sine[at], capture.cosine[at]) = (-80.0, 120.0);
@@ -97,7 +97,7 @@ fn a_spike_that_ruins_the_plain_fit_is_found() {
 }
 
 #[test]
-fn samples_of_the_signal_are_not_outliers() {
+fn signal_samples_are_not_outliers() {
     let third = |share: f64| {
         let mut capture = made(20_000, 20.0, 5e-4);
         for (at, value) in capture.sine.iter_mut().enumerate() {
@@ -127,7 +127,7 @@ fn samples_of_the_signal_are_not_outliers() {
 }
 
 #[test]
-fn a_spike_does_not_revive_a_dead_channel() {
+fn spike_does_not_revive_dead_channel() {
     let mut capture = made(5_000, 5.0, 5e-4);
     capture.sine.iter_mut().for_each(|value| *value = 2e-4 * value.signum());
     capture.sine[2_345] = 4.0;
@@ -139,7 +139,7 @@ fn a_spike_does_not_revive_a_dead_channel() {
 }
 
 #[test]
-fn kept_ranges_complement_the_excluded_ranges() {
+fn kept_ranges_complement_excluded_ranges() {
     type Ends = [(usize, usize)];
     let cases: [(usize, &Ends, &Ends); 4] = [
         (10, &[], &[(0, 10)]),

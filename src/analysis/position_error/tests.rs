@@ -76,7 +76,7 @@ fn raw_errors_match_section_6() {
 /// The error of the ellipse in section 7 is 353.9708° − 360° at 0°. Its peak-to-peak value of 9.97087° was computed
 /// with Python at 720 angles.
 #[test]
-fn the_reference_error_is_found_and_corrected() {
+fn corrects_reference_error() {
     let told = made(&REFERENCE, 360, |t| t, |_| 0.0).analysed().unwrap();
     let by_points = (0..720).map(|at| {
         let angle = f64::from(at).to_radians() / 2.0;
@@ -102,7 +102,7 @@ fn the_reference_error_is_found_and_corrected() {
 /// An angle error of 0.3° at the fourth harmonic appears in both the raw and the corrected curve. The noise of 1 mV in
 /// 0.5 V is 0.115° per sample, which changes an amplitude determined from n samples by 0.115°·√(2/n).
 #[test]
-fn harmonics_are_not_corrected() {
+fn does_not_correct_harmonics() {
     for (count, periods) in [(2000, 1.0), (5000, 17.3), (200_000, 999.0)] {
         let amplitude = 0.3_f64.to_radians();
         // Over a single period, acceleration cannot be distinguished from an error, so that motion is uniform.
@@ -120,7 +120,7 @@ fn harmonics_are_not_corrected() {
 }
 
 #[test]
-fn uneven_motion_is_not_mistaken_for_an_error() {
+fn uneven_motion_causes_no_error() {
     let there_and_back = made(&REFERENCE, 5000, |t| 3.0 * (TAU * t).sin(), |_| 0.0).add_noise(1e-3, 4);
     let told = there_and_back.analysed().unwrap();
     assert_eq!(told.error.basis, ErrorBasis::Ellipse);
@@ -132,7 +132,7 @@ fn uneven_motion_is_not_mistaken_for_an_error() {
 }
 
 #[test]
-fn without_times_samples_are_evenly_spaced() {
+fn assumes_even_spacing_without_times() {
     let mut capture = made(&REFERENCE, 500, |t| 2.5 * t, |_| 0.0);
     capture.time.fill(0.0);
     let told = capture.analysed().unwrap();
@@ -141,7 +141,7 @@ fn without_times_samples_are_evenly_spaced() {
 }
 
 #[test]
-fn a_fraction_of_a_period_is_refused() {
+fn rejects_partial_period() {
     let quarter = made(&REFERENCE, 500, |t| 0.03 + 0.3 * t, |_| 0.0);
     assert!(matches!(quarter.analysed(), Err(AnalysisError::Coverage { octants: 3 })), "{:?}", quarter.analysed());
     let resting = made(&REFERENCE, 500, |_| 0.2, |_| 0.0);

@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn used_ports_come_first_then_named_adapters() {
+    fn lists_used_ports_first() {
         let port = |path: &str, description: &str| PortInfo {
             path: path.to_owned(),
             description: description.to_owned(),

@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn expected_values_are_explained_in_both_languages() {
+    fn explains_expected_values_in_both_languages() {
         let mut told = BTreeSet::new();
         for own in samples() {
             let text = expected_text(&own);
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn limits_have_the_decimal_sign_of_the_language() {
+    fn formats_limits_for_language() {
         let volts =
             AllowedValues::range(Quantity::Volts, Limit::from_thousandths(4750), Limit::from_thousandths(12_500));
         assert_eq!(expected_text(&volts).to_string_in(English), "a voltage in volts from 4.75 to 12.5");

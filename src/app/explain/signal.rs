@@ -271,7 +271,7 @@ mod tests {
     use crate::sim::sine_cosine::Settings;
 
     #[test]
-    fn findings_name_a_remedy_in_both_languages() {
+    fn findings_name_remedies_in_both_languages() {
         let said = |what| {
             let finding = DiagnosisFinding { severity: Severity::Warning, kind: what };
             [Language::English, Language::German].map(|language| diagnosis_text(&finding).to_string_in(language))
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_out_of_range_is_reported_with_its_range() {
+    fn rejected_setting_names_range() {
         let said = |quantity, value| {
             let error = Settings::default().with_value(quantity, value).validate().unwrap_err();
             [Language::English, Language::German]

@@ -33,7 +33,7 @@ fn key_up(key: usize) -> Option<HoldInput> {
 }
 
 #[test]
-fn only_presses_since_the_last_change_start_a_hold() {
+fn only_new_presses_start_hold() {
     let (mut by_key, mut by_pointer) = (0, 0);
     for seed in 0..SESSIONS {
         let mut dice = fastrand::Rng::with_seed(seed);

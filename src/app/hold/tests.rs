@@ -57,7 +57,7 @@ impl TestButton {
 
 /// X11 reports these events if Space is held while the window loses and regains the keyboard focus (issue 21.2).
 #[test]
-fn a_key_held_while_focus_returns_starts_no_hold() {
+fn key_held_on_focus_starts_no_hold() {
     let mut pad = TestButton::armed();
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
     assert_eq!(pad.picture(&[DOWN]), Some(Hold), "it repeats itself");
@@ -82,7 +82,7 @@ fn a_key_held_while_focus_returns_starts_no_hold() {
 
 /// After any change of the button's state, a key must be released before it can start a hold (issue 21.2).
 #[test]
-fn after_any_change_a_key_counts_only_once_released() {
+fn changes_require_key_release() {
     type Change = fn(&mut TestButton);
     let changes: [(&str, Change); 4] = [
         ("the keyboard was elsewhere in the window", |pad| {
@@ -121,7 +121,7 @@ fn after_any_change_a_key_counts_only_once_released() {
 
 /// A pointer that is already down does not start a hold when the button becomes enabled (issue 21.2).
 #[test]
-fn a_hold_begins_only_with_a_new_pointer_press() {
+fn hold_requires_new_pointer_press() {
     let mut pad = TestButton::armed();
     pad.scene.enabled = false;
     assert_eq!(pad.picture(&[POINTER]), None);
@@ -148,7 +148,7 @@ fn a_hold_begins_only_with_a_new_pointer_press() {
 
 /// Any key ends a hold by the pointer, and any other input ends a hold by a key (issue 21.2).
 #[test]
-fn any_other_input_ends_a_hold() {
+fn other_input_ends_hold() {
     let beside = [
         HoldInput::OtherKey,
         HoldInput::Modifiers,
@@ -186,7 +186,7 @@ fn any_other_input_ends_a_hold() {
 
 /// A key press during a motion stops it, even if the key was never seen released (issue 21.2).
 #[test]
-fn a_key_stops_motion_and_starts_no_hold() {
+fn key_stops_motion_without_hold() {
     for armed in [false, true] {
         let mut pad = if armed { TestButton::armed() } else { TestButton::new() };
         pad.scene.moving = true;
@@ -218,7 +218,7 @@ fn a_key_repeat_split_over_two_frames_starts_no_hold() {
 
 /// A barcode scanner types Enter within milliseconds of the last digit (issue 22.29).
 #[test]
-fn a_press_right_after_another_key_starts_no_hold() {
+fn press_after_other_key_starts_no_hold() {
     let mut pad = TestButton::armed();
     assert_eq!(pad.picture(&[HoldInput::OtherKey, DOWN]), None);
     assert_eq!(pad.release_keys(&[UP]), None);
@@ -248,7 +248,7 @@ fn a_release_requests_the_frame_that_rearms_the_key() {
 }
 
 #[test]
-fn a_press_released_within_a_frame_starts_no_hold() {
+fn single_frame_press_starts_no_hold() {
     let mut pad = TestButton::armed();
     assert_eq!(pad.picture(&[DOWN, UP]), None);
     assert_eq!(pad.picture(&[POINTER, HoldInput::PointerUp]), None);

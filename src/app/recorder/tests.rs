@@ -36,7 +36,7 @@ fn ramp(recorder: &mut Recorder, group: GroupId, from: i64, to: i64) {
 }
 
 #[test]
-fn the_view_follows_the_newest_sample_until_held() {
+fn view_follows_newest_sample_until_held() {
     let (mut recorder, group, _) = recorder(100 * MILLISECOND);
     assert_eq!(recorder.window_bounds(), (at(0), at(100)));
     ramp(&mut recorder, group, 0, 50);
@@ -57,7 +57,7 @@ fn the_view_follows_the_newest_sample_until_held() {
 }
 
 #[test]
-fn zooming_keeps_the_point_under_the_pointer_and_is_limited() {
+fn zoom_keeps_pointer_position() {
     let (mut recorder, group, _) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);
     recorder.handle_action(RecorderAction::Look(at(400), at(200)));
@@ -89,7 +89,7 @@ fn zooming_keeps_the_point_under_the_pointer_and_is_limited() {
 /// Statistics of 100…200 in steps of 1 match those calculated in Python: mean 150, stdev 29.300170647967224, times
 /// 360/4096.
 #[test]
-fn cursors_measure_on_the_raw_samples() {
+fn cursors_read_raw_samples() {
     let (mut recorder, group, [counts, volts]) = recorder(1_000 * MILLISECOND);
     ramp(&mut recorder, group, 0, 150);
     add(&mut recorder, group, 150, 1 << 50, 9.0, Flags::BAD);
@@ -117,7 +117,7 @@ fn cursors_measure_on_the_raw_samples() {
 }
 
 #[test]
-fn a_cursor_outside_the_recording_reads_nothing() {
+fn cursor_outside_recording_reads_nothing() {
     let (mut recorder, group, [counts, _]) = recorder(1_000 * MILLISECOND);
     let slow = recorder.add_group(&[Kind::Whole], 100, None);
     let scales = vec![Scale::new("unit.steps", 1.0, 0)];
@@ -137,7 +137,7 @@ fn a_cursor_outside_the_recording_reads_nothing() {
 }
 
 #[test]
-fn a_held_view_is_not_evicted_by_newer_samples() {
+fn held_view_is_not_evicted() {
     let mut recorder = Recorder::new(100 * MILLISECOND);
     let group = recorder.add_group(&[Kind::Whole], 10_000, None);
     let scales = vec![Scale::new("unit.steps", 1.0, 0)];
@@ -160,7 +160,7 @@ fn a_held_view_is_not_evicted_by_newer_samples() {
 }
 
 #[test]
-fn a_trigger_searches_a_finished_recording_immediately() {
+fn trigger_searches_finished_recording() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);
     recorder.finish();
@@ -179,7 +179,7 @@ fn state(recorder: &Recorder) -> TriggerState {
 }
 
 #[test]
-fn a_trigger_shows_the_samples_before_it_and_holds() {
+fn trigger_shows_preceding_samples() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 500);
     recorder.handle_action(RecorderAction::SetScale(counts, 1));
@@ -199,7 +199,7 @@ fn a_trigger_shows_the_samples_before_it_and_holds() {
 }
 
 #[test]
-fn each_trigger_kind_fires_on_its_condition() {
+fn triggers_fire_on_condition() {
     let values = [5.0, 1.0, 9.0, 3.0];
     for (when, level, fires) in [
         (TriggerCondition::Rising, 4.0, Some(3)),
@@ -222,7 +222,7 @@ fn each_trigger_kind_fires_on_its_condition() {
 }
 
 #[test]
-fn an_edge_across_a_gap_does_not_trigger() {
+fn edge_across_gap_does_not_trigger() {
     let (mut recorder, group, [_, volts]) = recorder(100 * MILLISECOND);
     arm(&mut recorder, volts, TriggerCondition::Rising, 5.0, false);
     add(&mut recorder, group, 0, 0, 1.0, Flags::NONE);
@@ -243,7 +243,7 @@ fn an_edge_across_a_gap_does_not_trigger() {
 }
 
 #[test]
-fn a_repeated_trigger_shows_complete_windows() {
+fn repeated_trigger_shows_complete_windows() {
     let (mut recorder, group, [_, volts]) = recorder(100 * MILLISECOND);
     arm(&mut recorder, volts, TriggerCondition::Rising, 0.0, true);
     let wave = |time: i64| if time % 70 < 35 { -1.0 } else { 1.0 };
@@ -255,7 +255,7 @@ fn a_repeated_trigger_shows_complete_windows() {
 }
 
 #[test]
-fn removing_the_last_line_removes_its_samples() {
+fn removing_last_line_removes_samples() {
     let (mut recorder, group, [counts, volts]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 10);
     arm(&mut recorder, counts, TriggerCondition::Rising, 0.0, false);
@@ -267,7 +267,7 @@ fn removing_the_last_line_removes_its_samples() {
 }
 
 #[test]
-fn clearing_removes_only_the_samples() {
+fn clearing_removes_only_samples() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);
     recorder.handle_action(RecorderAction::SetScale(counts, 1));
@@ -298,7 +298,7 @@ fn exported(recorder: &mut Recorder, visible: bool) -> Option<String> {
 }
 
 #[test]
-fn a_table_has_a_row_per_time_and_blanks_for_bad_samples() {
+fn table_leaves_bad_samples_blank() {
     let (mut recorder, group, [counts, volts]) = recorder(1_000 * MILLISECOND);
     let slow = recorder.add_group(&[Kind::Real], 100, None);
     let celsius = vec![Scale::new("unit.degrees", 1.0, 1)];
@@ -325,7 +325,7 @@ fn a_table_has_a_row_per_time_and_blanks_for_bad_samples() {
 }
 
 #[test]
-fn samples_without_times_are_counted() {
+fn counts_untimed_samples() {
     let mut recorder = Recorder::without_times(100);
     let group = recorder.add_group(&[Kind::Real], 100, None);
     recorder.add_line(Series::new(
@@ -342,7 +342,7 @@ fn samples_without_times_are_counted() {
 }
 
 #[test]
-fn a_long_export_is_complete_and_can_be_cancelled() {
+fn long_export_completes_or_cancels() {
     let (mut recorder, group, _) = recorder(1_000 * MILLISECOND);
     ramp(&mut recorder, group, 0, 70_000);
     let text = exported(&mut recorder, false).unwrap();
@@ -368,7 +368,7 @@ fn a_long_export_is_complete_and_can_be_cancelled() {
 
 /// A cancelled export creates no file and leaves an existing file unchanged.
 #[test]
-fn an_export_is_cancelled_when_its_samples_are_evicted() {
+fn eviction_cancels_export() {
     for clear in [true, false] {
         let (mut recorder, group, _) = recorder(1_000 * MILLISECOND);
         ramp(&mut recorder, group, 0, 70_000);

@@ -24,7 +24,7 @@ fn at(sample: i64) -> SampleTime {
 }
 
 #[test]
-fn readings_wrap_and_differences_follow_the_path() {
+fn readings_wrap_and_differences_unwrap() {
     let (mut recorder, line) = recorder(&[-10, 990, 1010, 2010]);
     recorder.handle_action(RecorderAction::SetCursor(Cursor::A, Some(at(1))));
     recorder.handle_action(RecorderAction::SetCursor(Cursor::B, Some(at(2))));
@@ -43,7 +43,7 @@ fn readings_wrap_and_differences_follow_the_path() {
 }
 
 #[test]
-fn a_trigger_ignores_the_wrap_at_the_end_of_the_range() {
+fn trigger_ignores_wrap() {
     let trigger = |line, when, level| Trigger { line, when, level, before: 0.0, repeat: false };
     // Backwards across 0, there is no rising edge at 5 turns, but a falling one when the position passes 9.5 turns.
     let steps = [20, 10, -10, -40, -60];

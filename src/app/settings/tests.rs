@@ -6,7 +6,7 @@ const HIPERFACE: Tab = Tab::named("Hiperface");
 const BISS: Tab = Tab::named("Biss");
 
 #[test]
-fn settings_round_trip_and_unknown_ones_are_ignored() {
+fn round_trips_settings_ignoring_unknown() {
     let mut settings = Settings { theme: ColorScheme::Light, language: Language::German, ..Settings::default() };
     settings.use_link(HIPERFACE, "serial:/dev/ttyUSB0");
     settings.layout = Some("(tiles: {})".to_owned());
@@ -17,7 +17,7 @@ fn settings_round_trip_and_unknown_ones_are_ignored() {
 }
 
 #[test]
-fn readable_parts_of_broken_settings_are_kept() {
+fn keeps_readable_parts_of_broken_settings() {
     let mut settings = Settings { theme: ColorScheme::Light, size: Some((1500, 900)), ..Settings::default() };
     settings.use_link(HIPERFACE, "serial:/dev/ttyUSB0");
     let broken = settings.emit().replace("tab: First", "tab: 7");
@@ -29,7 +29,7 @@ fn readable_parts_of_broken_settings_are_kept() {
 }
 
 #[test]
-fn an_unknown_name_is_found() {
+fn finds_unknown_name() {
     let all = Settings { lower_open: true, company: Some("x".into()), logbook: "x".into(), ..Settings::default() };
     assert_eq!(Settings::unknown_name(&all.emit()), None);
     assert_eq!(Settings::unknown_name("(theme: Light, logbok: \"\")").as_deref(), Some("logbok"));
@@ -38,7 +38,7 @@ fn an_unknown_name_is_found() {
 
 /// If the setting for the user name cannot be read, no name may get into the logbook.
 #[test]
-fn without_a_readable_rule_the_user_is_not_named() {
+fn unreadable_rule_hides_user_name() {
     for (text, expected) in [
         ("(theme: Mauve)", UserName::Full),
         ("(theme: Mauve, user_name: Initials)", UserName::Initials),
@@ -52,7 +52,7 @@ fn without_a_readable_rule_the_user_is_not_named() {
 
 /// Links are kept even if their tab belongs to another version of the program.
 #[test]
-fn links_of_an_unknown_tab_are_kept() {
+fn keeps_unknown_tab_links() {
     let text = "(tab: Gearbox, links: {Hiperface: [\"sim:\"], Gearbox: [\"tcp:host:1\"]})";
     let mut settings = Settings::parse(text).unwrap();
     settings.replace_unknown_tab(KindRegistry::NONE);
@@ -64,7 +64,7 @@ fn links_of_an_unknown_tab_are_kept() {
 }
 
 #[test]
-fn settings_changed_since_start_are_kept() {
+fn keeps_settings_changed_since_start() {
     let mut found = Settings { theme: ColorScheme::Light, size: Some((1500, 900)), ..Settings::default() };
     found.use_link(HIPERFACE, "tcp:host:1");
     let mut settings = Settings { language: Language::German, ..Settings::default() };
@@ -83,7 +83,7 @@ fn with_drives(drives: &str) -> Settings {
 
 /// Changes made here are merged into the content written by another window.
 #[test]
-fn changes_are_merged_and_marks_only_tighten() {
+fn merges_changes_and_tightens_marks() {
     let cases = [
         ("marked there", "unconfirmed: [1], marks: {1: 1}", "", "", "unconfirmed: [1], marks: {1: 1}"),
         ("marked here", "", "", "unconfirmed: [1], marks: {1: 1}", "unconfirmed: [1], marks: {1: 1}"),
@@ -138,7 +138,7 @@ fn changes_are_merged_and_marks_only_tighten() {
 
 /// Unconfirmed limits stay locked even if the rest of the entry cannot be read.
 #[test]
-fn marks_are_read_from_a_broken_entry() {
+fn reads_marks_from_broken_entry() {
     let broken = "(drives: {\"HUB-4 7\": (measure: Cubits, unconfirmed: [1], marks: {1: 2})})";
     assert!(Settings::parse(broken).is_err());
     assert_eq!(Settings::parse_partial(broken), with_drives("unconfirmed: [1], marks: {1: 2}"));
@@ -146,7 +146,7 @@ fn marks_are_read_from_a_broken_entry() {
 
 /// Links used by other windows in the meantime are kept, after those used here.
 #[test]
-fn links_of_two_windows_are_merged() {
+fn merges_links_between_windows() {
     let of = |links: &[&str]| {
         let mut settings = Settings::default();
         links.iter().rev().for_each(|link| settings.use_link(BISS, link));
@@ -168,14 +168,14 @@ fn links_of_two_windows_are_merged() {
 
 /// A settings file from an older version can be read although it contains no marks.
 #[test]
-fn settings_without_marks_are_read() {
+fn reads_settings_without_marks() {
     let before = "(drives: {\"HUB-4 7\": (pitches: {1: 4000000}, measure: Millimetres, unconfirmed: [1])})";
     let settings = Settings::parse(before).unwrap();
     assert_eq!(settings, with_drives("pitches: {1: 4000000}, measure: Millimetres, unconfirmed: [1], marks: {}"));
 }
 
 #[test]
-fn the_latest_link_comes_first_without_duplicates() {
+fn lists_latest_link_first() {
     let mut settings = Settings::default();
     for at in 0..20 {
         settings.use_link(HIPERFACE, &format!("tcp:host:{at}"));

@@ -37,7 +37,7 @@ fn samples(track: &DeviceRecorder<Nothing>, line: usize) -> Vec<(i64, f64, Flags
 }
 
 #[test]
-fn a_stream_is_recorded_completely() {
+fn records_stream_completely() {
     let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
     let mut track = DeviceRecorder::<Nothing>::default();
     // In batches of odd sizes.
@@ -55,7 +55,7 @@ fn a_stream_is_recorded_completely() {
 }
 
 #[test]
-fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
+fn flagged_samples_break_line() {
     let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
     let mut track = DeviceRecorder::<Nothing>::default();
     let mut own = stream(0, 6);
@@ -88,7 +88,7 @@ fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
 
 /// Damaged frames leave gaps in the speed, but do not change its value of 50 steps in 50 µs (issue 22.21).
 #[test]
-fn damaged_frames_do_not_interrupt_the_speed() {
+fn damaged_frames_do_not_interrupt_speed() {
     let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
     for damaged in [10, 3] {
         let mut track = DeviceRecorder::<Nothing>::default();
@@ -112,7 +112,7 @@ fn damaged_frames_do_not_interrupt_the_speed() {
 /// A shaft with 1000 steps that moves 50 steps per sample completes a turn in 20 samples. A gap of a few damaged
 /// samples is bridged, but a gap this long is not (issue 22.21).
 #[test]
-fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
+fn possible_wrap_in_gap_stops_tracking() {
     let meaning = PositionScales::for_steps_per_turn(Some(1000), 1000.0);
     for (missing, is_broken) in [(1, false), (3, false), (5, true), (30, true)] {
         let mut track = DeviceRecorder::<Nothing>::default();
@@ -149,7 +149,7 @@ fn steps(track: &DeviceRecorder<Nothing>, heading: &str) -> Vec<f64> {
 /// After a change of scale, earlier recordings keep the old scale and the selected unit, and can be exported (issue
 /// 21.12).
 #[test]
-fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
+fn recorded_samples_keep_old_scale() {
     let mut track = DeviceRecorder::<Nothing>::default();
     track.begin_session(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
     track.add_positions(&seconds(0, 3), &PositionScales::for_steps_per_turn(None, 1000.0));
@@ -184,7 +184,7 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
 
 /// Entering a spindle pitch adds another unit for the same steps (issue 21.12).
 #[test]
-fn another_unit_of_the_same_steps_uses_the_same_lines() {
+fn unit_change_keeps_lines() {
     let on_spindle = |millimetres: f64| {
         let mut meaning = PositionScales::for_steps_per_turn(None, 1000.0);
         meaning.scales[0].insert(0, Scale::new("unit.millimetres", millimetres / 1000.0, 3));
@@ -206,7 +206,7 @@ fn another_unit_of_the_same_steps_uses_the_same_lines() {
 
 /// A value that is no longer watched keeps its samples and continues when it is watched again (issue 21.12).
 #[test]
-fn a_value_no_longer_watched_keeps_its_samples() {
+fn unwatched_value_keeps_samples() {
     let mut track = DeviceRecorder::<Nothing>::default();
     let watching = |second| WatchedValue {
         at: Moment::from_elapsed(Duration::from_secs(second)),
@@ -234,7 +234,7 @@ fn a_value_no_longer_watched_keeps_its_samples() {
 
 /// More than two minutes of data are kept when another device is connected (issue 21.12).
 #[test]
-fn minutes_of_another_device_are_kept() {
+fn long_recording_survives_device_change() {
     let meaning = PositionScales::for_steps_per_turn(None, 1000.0);
     for (count, lines) in [(120, 3), (121, 6)] {
         let mut track = DeviceRecorder::<Nothing>::default();
@@ -250,7 +250,7 @@ fn minutes_of_another_device_are_kept() {
 
 /// If only the newest words are stored, only these are decoded again, and older samples are kept (issue 21.12).
 #[test]
-fn samples_that_cannot_be_decoded_again_are_kept() {
+fn keeps_samples_without_raw_data() {
     let (before, after) =
         (PositionScales::for_steps_per_turn(None, 1000.0), PositionScales::for_steps_per_turn(None, 400.0));
     for (kept, ended) in [(5, 0), (4, 3)] {

@@ -15,7 +15,7 @@ fn analysed(made: &Made) -> Analysis {
 }
 
 #[test]
-fn missing_samples_are_reported_and_do_not_change_the_frequency() {
+fn missing_samples_keep_frequency() {
     let mut capture = made(|time| 2_000.0 * time, plain);
     for column in [&mut capture.time, &mut capture.sine, &mut capture.cosine] {
         // 2.12 ms are removed, which is not a whole number of periods.
@@ -29,7 +29,7 @@ fn missing_samples_are_reported_and_do_not_change_the_frequency() {
 }
 
 #[test]
-fn a_backward_time_step_is_reported() {
+fn reports_backward_time_step() {
     let mut capture = made(|time| 2_000.0 * time, plain);
     let shift = capture.time[20_000];
     capture.time.iter_mut().skip(20_000).for_each(|time| *time -= shift);
@@ -38,7 +38,7 @@ fn a_backward_time_step_is_reported() {
 }
 
 #[test]
-fn a_reversing_shaft_has_the_mean_speed_of_both_directions() {
+fn reversing_shaft_has_mean_speed() {
     // The angle swings by 12 periods to both sides, eight times per second: 3.2 swings in 0.4 s.
     let capture = made(|time| 12.0 * (TAU * 8.0 * time).sin(), plain);
     assert_eq!(found(&capture), [FindingKind::Reversed { times: 6 }]);
@@ -48,7 +48,7 @@ fn a_reversing_shaft_has_the_mean_speed_of_both_directions() {
 }
 
 #[test]
-fn too_few_samples_per_period_are_reported() {
+fn reports_too_few_samples_per_period() {
     for (hertz, followed) in [(20_000.0, true), (24_000.0, true), (26_000.0, false), (49_000.0, false)] {
         let capture = made(|time| hertz * time, plain);
         let found = found(&capture);
@@ -62,7 +62,7 @@ fn too_few_samples_per_period_are_reported() {
 }
 
 #[test]
-fn a_disturbance_makes_the_parameters_uncertain() {
+fn disturbance_makes_parameters_uncertain() {
     let uncertain = |what: &FindingKind| match what {
         FindingKind::Uncertain { share } => Some(*share),
         _ => None,
@@ -76,7 +76,7 @@ fn a_disturbance_makes_the_parameters_uncertain() {
 }
 
 #[test]
-fn a_harmful_correction_is_reported() {
+fn reports_harmful_correction() {
     // Harmonics in opposite phase: the deviation from the ellipse repeats twice per period, which looks like a gain
     // ratio of 1.04.
     let third =
@@ -95,7 +95,7 @@ fn a_harmful_correction_is_reported() {
 }
 
 #[test]
-fn single_ended_columns_are_reported_instead_of_an_offset() {
+fn distinguishes_single_ended_columns_from_offset() {
     for amplitude in [0.5, 1.0] {
         let capture = made(steady, |_, _, (sine, cosine)| (2.5 + amplitude * sine, 2.6 + amplitude * cosine));
         let finding = capture.finding_text();
@@ -111,7 +111,7 @@ fn single_ended_columns_are_reported_instead_of_an_offset() {
 }
 
 #[test]
-fn a_shaft_at_rest_is_reported() {
+fn reports_shaft_at_rest() {
     for periods in [0.0, 0.13, 0.5, 0.88] {
         let capture = made(|_| periods, plain);
         assert_eq!(Analysis::from_samples(capture.record().samples).unwrap_err(), AnalysisError::AtRest, "{periods}");

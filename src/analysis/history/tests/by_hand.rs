@@ -26,7 +26,7 @@ fn history(values: &[f64], flags: &[Flags]) -> History {
 }
 
 #[test]
-fn a_pixel_column_has_first_min_max_and_last() {
+fn pixel_column_keeps_extremes_and_ends() {
     let values: Vec<f64> = (0..20).map(|k| if k % 10 == 3 { -7.0 } else { f64::from(k) }).collect();
     let picture = picture(&history(&values, &[]), 0, 200, 2);
     assert!(!picture.raw);
@@ -38,7 +38,7 @@ fn a_pixel_column_has_first_min_max_and_last() {
 }
 
 #[test]
-fn few_samples_are_returned_raw_with_their_neighbours() {
+fn returns_few_samples_raw() {
     let values: Vec<f64> = (0..20).map(f64::from).collect();
     let picture = picture(&history(&values, &[]), 50, 80, 30);
     assert!(picture.raw);
@@ -49,7 +49,7 @@ fn few_samples_are_returned_raw_with_their_neighbours() {
 }
 
 #[test]
-fn one_bad_sample_in_a_hundred_thousand_is_visible() {
+fn single_bad_sample_stays_visible() {
     let mut values = vec![1.0; 100_000];
     values[54_321] = 1e9;
     let mut flags = vec![Flags::NONE; values.len()];
@@ -68,7 +68,7 @@ fn one_bad_sample_in_a_hundred_thousand_is_visible() {
 }
 
 #[test]
-fn not_a_number_is_a_flagged_break() {
+fn nan_is_flagged_break() {
     let picture = picture(&history(&[1.0, 2.0, f64::NAN, f64::INFINITY, 5.0, 6.0], &[]), 0, 60, 6);
     let found: Vec<_> =
         picture.pixels.iter().map(|pixel| (pixel.values.map(|values| values.first), pixel.joined)).collect();
@@ -78,7 +78,7 @@ fn not_a_number_is_a_flagged_break() {
 }
 
 #[test]
-fn a_history_of_only_bad_samples_is_shown() {
+fn shows_history_without_good_samples() {
     let values = vec![f64::NAN; 3 * BLOCK];
     let history = history(&values, &[]);
     let picture = picture(&history, 0, 10 * values.len() as i64, 10);
@@ -88,7 +88,7 @@ fn a_history_of_only_bad_samples_is_shown() {
 }
 
 #[test]
-fn a_pause_and_a_reported_gap_break_every_column() {
+fn pauses_and_gaps_break_columns() {
     let mut history = History::new(&[Kind::Whole, Kind::Real], 100).with_longest_pause(10);
     history
         .append(&times([0, 10, 21]), &[ColumnPart::from_integers(&[1, 2, 3]), ColumnPart::from_reals(&[1.0, 2.0, 3.0])])
@@ -106,7 +106,7 @@ fn a_pause_and_a_reported_gap_break_every_column() {
 }
 
 #[test]
-fn a_mismatched_batch_is_refused_unchanged() {
+fn rejects_mismatched_batch() {
     let mut history = History::new(&[Kind::Real], 100);
     history.append(&times([5, 5]), &[ColumnPart::from_reals(&[1.0, 2.0])]).unwrap();
     let cases: [(&str, &[i64], &[ColumnPart<'_>], BatchError); 6] = [
@@ -129,7 +129,7 @@ fn a_mismatched_batch_is_refused_unchanged() {
 }
 
 #[test]
-fn the_nearest_sample_is_exact() {
+fn nearest_sample_is_exact() {
     let mut history = History::new(&[Kind::Whole], 100);
     assert_eq!(history.nearest_index(time(0)), None);
     let positions = [1 << 60, (1 << 60) + 1, i64::MIN];
@@ -142,7 +142,7 @@ fn the_nearest_sample_is_exact() {
 }
 
 #[test]
-fn samples_of_the_same_time_are_found_together() {
+fn finds_simultaneous_samples_together() {
     let count = 2 * BLOCK + 5;
     let mut history = History::new(&[Kind::Real], count);
     history.append(&times((0..count).map(|_| 7)), &[ColumnPart::from_reals(&vec![1.0; count])]).unwrap();
@@ -152,7 +152,7 @@ fn samples_of_the_same_time_are_found_together() {
 }
 
 #[test]
-fn noise_on_a_large_position_keeps_its_deviation() {
+fn large_position_keeps_noise_deviation() {
     let mut history = History::new(&[Kind::Whole], 10_000);
     let positions: Vec<i64> = (0..10_000).map(|k| (1 << 50) + k % 2).collect();
     history.append(&times(0..10_000), &[ColumnPart::from_integers(&positions)]).unwrap();
@@ -165,7 +165,7 @@ fn noise_on_a_large_position_keeps_its_deviation() {
 }
 
 #[test]
-fn single_steps_are_resolved_at_a_large_position() {
+fn resolves_single_steps_at_large_position() {
     let mut history = History::new(&[Kind::Whole], 10 * BLOCK);
     let positions: Vec<i64> = (0..10 * BLOCK as i64).map(|k| (1 << 50) + k % 3).collect();
     history.append(&times(0..10 * BLOCK as i64), &[ColumnPart::from_integers(&positions)]).unwrap();
@@ -176,7 +176,7 @@ fn single_steps_are_resolved_at_a_large_position() {
 }
 
 #[test]
-fn a_grid_is_anchored_at_multiples_of_its_width() {
+fn grid_starts_at_width_multiples() {
     let grid = Grid::new(time(105), time(205), 10);
     assert_eq!(
         (grid.width(), grid.pixel_count(), grid.pixel_start(0), grid.pixel_start(11)),
@@ -199,7 +199,7 @@ fn a_grid_is_anchored_at_multiples_of_its_width() {
 
 /// Blocks have 4096 samples. For a capacity of 5000, two blocks are kept in addition to the block being filled.
 #[test]
-fn the_next_oldest_sample_is_predicted() {
+fn predicts_oldest_sample() {
     let mut history = History::new(&[Kind::Whole], 5_000);
     assert_eq!(history.oldest_remaining_time(1), None);
     let mut next = 0;

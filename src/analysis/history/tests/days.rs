@@ -7,7 +7,7 @@ use crate::analysis::{Motion, PositionUnwrapper, SampleTime};
 const MILLISECOND: i64 = 1_000_000;
 
 #[test]
-fn memory_is_close_to_the_raw_columns() {
+fn memory_stays_near_raw_size() {
     let cases: [(&str, &[Kind], bool); 4] = [
         ("one column", &[Kind::Real], false),
         ("one column with flags everywhere", &[Kind::Whole], true),
@@ -42,7 +42,7 @@ fn memory_is_close_to_the_raw_columns() {
 }
 
 #[test]
-fn times_are_exact_over_ten_days() {
+fn times_stay_exact_over_ten_days() {
     let mut history = History::new(&[Kind::Whole], 10_000);
     let ten_days = 10 * 86_400_000;
     // Each batch covers an hour, and the history keeps the last seconds. The rate is 1 kHz with a jitter of a few
@@ -66,7 +66,7 @@ fn times_are_exact_over_ten_days() {
 }
 
 #[test]
-fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
+fn long_rotation_keeps_breaks_and_hides_wraps() {
     const BATCH: i64 = 5_000;
     const RANGE: i64 = 4096 * 4096;
     // Speed in steps per millisecond. This is about 6000 rpm, so the position wraps every 41 s.

@@ -166,7 +166,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn a_picture_equals_that_of_a_full_scan(
+    fn rendering_matches_full_scan(
         kind in kinds(),
         runs in runs(),
         capacity in 1_usize..30_000,
@@ -188,7 +188,7 @@ proptest! {
     }
 
     #[test]
-    fn samples_and_statistics_equal_those_of_a_full_scan(
+    fn statistics_match_full_scan(
         kind in kinds(),
         runs in runs(),
         capacity in 1_usize..30_000,
@@ -232,7 +232,7 @@ proptest! {
     }
 
     #[test]
-    fn the_nearest_sample_equals_that_of_a_full_scan(
+    fn nearest_sample_matches_full_scan(
         runs in runs(),
         capacity in 1_usize..30_000,
         probes in proptest::collection::vec(-0.1..1.1, 20),
@@ -250,7 +250,7 @@ proptest! {
 
     /// An unchanged view yields the same columns while samples are appended and the oldest samples are evicted.
     #[test]
-    fn an_unchanged_view_keeps_its_columns(kind in kinds(), runs in runs(), more in runs()) {
+    fn unchanged_view_keeps_columns(kind in kinds(), runs in runs(), more in runs()) {
         let capacity = 60_000;
         let (history, before) = build(kind, &runs, capacity);
         let end = before.times[before.times.len() - 1] + 1;

@@ -18,7 +18,7 @@ pub(crate) fn check(text: &Text, error: &dyn std::fmt::Display) {
 }
 
 #[test]
-fn link_errors_are_explained_in_both_languages() {
+fn explains_link_errors_in_both_languages() {
     for text in ["usb:1", "serial:", "replay:", "tcp:host", "bridge:", "serial:x?baud", "serial:x?baud=1&baud=2"] {
         let error = text.parse::<LinkUrl>().unwrap_err();
         check(&url_error_text(&error), &error);
@@ -32,7 +32,7 @@ fn link_errors_are_explained_in_both_languages() {
 }
 
 #[test]
-fn recording_and_logbook_errors_are_explained_in_both_languages() {
+fn explains_file_errors_in_both_languages() {
     for text in ["", "# encoder-studio trace 1\n0.1 = 40", "# encoder-studio trace 1\n1 > 4G"] {
         let error = read_trace(text).unwrap_err();
         check(&trace_error_text(&error), &error);
