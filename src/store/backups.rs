@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn backups_are_kept_and_listed_newest_first() {
+    fn lists_newest_backup_first() {
         let (root, backups) = backups();
         let first = backups.save("hiperface", "12345678", at("2026-11-21T12:14:47.9Z"), "first").unwrap();
         let folder = root.path().join("data/backups/hiperface/12345678");
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn many_backups_in_one_second_are_all_kept() {
+    fn keeps_backups_within_one_second() {
         let (_root, backups) = backups();
         let taken = at("2026-11-21T12:14:47Z");
         std::thread::scope(|scope| {
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn every_serial_number_has_a_separate_folder() {
+    fn serial_numbers_have_separate_folders() {
         let cases = [
             ("12345678", "12345678"),
             ("AB-1_2.3", "AB-1_2.3"),
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_in_place_of_the_folder_is_an_error() {
+    fn reports_file_instead_of_folder() {
         let (root, backups) = backups();
         fs::write(root.path().join("data"), "x").unwrap();
         let error = backups.save("hiperface", "1", at("2026-11-21T12:14:47Z"), "x").unwrap_err();

@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_file_is_read_with_progress_and_can_be_cancelled() {
+    fn reads_large_file_with_progress() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("c.csv");
         let text: String = (0..100_000).map(|at| format!("{at}e-6,0.{at},-0.{at}\n")).collect();
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn the_head_is_the_start_of_the_file() {
+    fn head_is_file_start() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("c.csv");
         assert_eq!(capture_head(&path).unwrap_err().problem, FileErrorKind::NotFound);
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn unreadable_paths_report_the_system_error() {
+    fn unreadable_path_reports_system_error() {
         let folder = tempfile::tempdir().unwrap();
         let problem = |path: &Path| match read(path, false).0 {
             Err(ReadCaptureError::File(error)) => error.problem,

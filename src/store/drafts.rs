@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_draft_is_kept_replaced_and_removed() {
+    fn saves_replaces_and_removes_draft() {
         let (root, drafts) = drafts();
         assert_eq!(drafts.load("hiperface", "GB0450179"), Ok(None));
         assert_eq!(drafts.remove("hiperface", "GB0450179"), Ok(()));
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn a_draft_is_claimed_once() {
+    fn claims_draft_once() {
         let (_root, drafts) = drafts();
         let claim = drafts.claim_draft("hiperface", "1").unwrap();
         assert!(claim.is_some());
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_has_a_separate_draft_inside_the_folder() {
+    fn keys_have_separate_drafts() {
         let (root, drafts) = drafts();
         let keys = ["", "a", "A", ".", "..", "../x", "a/b", "NUL", "%none", "a.ron"];
         for key in keys {
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn blocked_drafts_are_reported() {
+    fn reports_blocked_drafts() {
         let (root, drafts) = drafts();
         let path = root.path().join("data/drafts/hiperface/1.ron");
         fs::create_dir_all(&path).unwrap();

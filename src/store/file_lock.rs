@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn each_update_sees_the_previous_one() {
+    fn update_sees_previous_update() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("config/a.ron");
         let writers: Vec<_> = (0..4)
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn waiting_for_a_held_lock_times_out() {
+    fn held_lock_times_out() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a.ron");
         fs::write(&path, "old").unwrap();
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_blocked_lock_names_the_file() {
+    fn blocked_lock_names_file() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a.ron");
         fs::create_dir_all(lock_path(&path)).unwrap();
@@ -149,7 +149,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_read_only_lock_file_works_as_a_lock() {
+    fn locks_read_only_file() {
         use std::os::unix::fs::PermissionsExt;
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a.ron.lock");

@@ -90,7 +90,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn different_texts_never_share_a_name(text in "(?s).{0,12}|[a-zA-Z.%]{0,6}|(?i:con|lpt1)[.a]?") {
+        fn different_texts_have_different_names(text in "(?s).{0,12}|[a-zA-Z.%]{0,6}|(?i:con|lpt1)[.a]?") {
             prop_assert_eq!(read_back(&safe_name(&text, LetterCase::Told)), text.as_bytes());
         }
     }

@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_written_and_replaced() {
+    fn writes_and_replaces_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.ron");
         for content in ["first, and longer", "second", ""] {
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn failed_writes_report_the_reason() {
+    fn failed_write_reports_reason() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         fs::write(&file, "x").unwrap();
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_write_leaves_only_the_old_file() {
+    fn failed_write_keeps_old_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.ron");
         write_new(&path, b"old").unwrap();
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn files_that_are_not_text_are_refused() {
+    fn rejects_binary_files() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.ron");
         assert_eq!(problem(read_text(&path)), FileErrorKind::NotFound);
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_is_created_once_and_never_over_a_file() {
+    fn creates_folder_once() {
         let folder = tempfile::tempdir().unwrap();
         let deep = folder.path().join("a/b");
         create_folder(&deep).unwrap();
@@ -348,7 +348,7 @@ mod tests {
         }
 
         #[test]
-        fn permissions_are_default_and_preserved() {
+        fn preserves_permissions() {
             let folder = tempfile::tempdir().unwrap();
             let [ours, usual] = ["ours", "usual"].map(|name| folder.path().join(name));
             fs::write(&usual, "x").unwrap();
@@ -362,7 +362,7 @@ mod tests {
         }
 
         #[test]
-        fn a_symlink_stays_a_symlink() {
+        fn keeps_symlink() {
             let folder = tempfile::tempdir().unwrap();
             let [link, second, target] = ["link", "second", "sub/target"].map(|name| folder.path().join(name));
             fs::create_dir(folder.path().join("sub")).unwrap();
@@ -378,7 +378,7 @@ mod tests {
         }
 
         #[test]
-        fn a_symlink_loop_is_an_error() {
+        fn reports_symlink_loop() {
             let folder = tempfile::tempdir().unwrap();
             let link = folder.path().join("link");
             symlink("link", &link).unwrap();
@@ -388,7 +388,7 @@ mod tests {
 
         #[test]
         #[cfg(target_os = "linux")]
-        fn a_device_is_written_to_and_not_replaced() {
+        fn writes_to_device_directly() {
             use std::os::unix::fs::FileTypeExt;
             write_atomically(Path::new("/dev/null"), b"x").unwrap();
             assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());

@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn paths_resolve_the_same_everywhere() {
+    fn paths_resolve_consistently() {
         let root = std::env::temp_dir();
         let (working, home) = (root.join("work"), root.join("home"));
         let folders = BaseFolders::with_base_folders(&working, &home);

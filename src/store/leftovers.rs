@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn only_old_temporary_files_are_removed() {
+    fn removes_only_old_temporary_files() {
         let folder = tempfile::tempdir().unwrap();
         let data = folder.path().join("data");
         let (old, new) = (2 * STALE_AGE, Duration::from_secs(5));
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn a_write_removes_what_was_left_beside_its_file() {
+    fn write_removes_leftovers() {
         let folder = tempfile::tempdir().unwrap();
         let left = folder.path().join(".encoder-studio-a1.tmp");
         create(&left, 2 * STALE_AGE);

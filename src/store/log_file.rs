@@ -168,7 +168,7 @@ mod tests {
     use std::sync::Mutex;
 
     #[test]
-    fn lines_are_appended_to_the_file_of_earlier_starts() {
+    fn appends_to_existing_log() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("data").join("own.log");
         for line in ["one\n", "two\n"] {
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_file_is_rotated_while_writing() {
+    fn rotates_large_file() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("own.log");
         let own = path.clone();
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hanging_disk_blocks_no_thread_and_lost_lines_are_counted() {
+    fn hung_disk_does_not_block() {
         let (release, lock) = bounded::<()>(0);
         let written = Arc::new(Mutex::new(Vec::new()));
         let log = LogFile::spawn_writer(

@@ -24,7 +24,7 @@ fn read(text: impl AsRef<[u8]>) -> Result<(Layout, Capture), CaptureError> {
 
 /// All of these tables contain the rows 0 s, 0.25 V, 0.5 V and 0.001 s, −0.3 V, 0.4 V.
 #[test]
-fn equivalent_tables_parse_the_same() {
+fn equivalent_tables_parse_equally() {
     let ways: [(&str, &[u8]); 17] = [
         ("plain", b"0,0.25,0.5\n0.001,-0.3,0.4\n"),
         ("no last line break", b"0,0.25,0.5\n0.001,-0.3,0.4"),

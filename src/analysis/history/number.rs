@@ -217,7 +217,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn counts_beyond_24_bits_stay_exact_near_their_base() {
+    fn large_counts_stay_exact_near_base() {
         let base = 1 << 60;
         for step in [0, 1, -1, 12_345_677, -(1 << 24)] {
             let position: i64 = base + step;

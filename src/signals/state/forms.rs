@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_accept_common_number_notations() {
+    fn accepts_common_number_notations() {
         for (text, value) in [("1", 1.0), (" 0,5 ", 0.5), ("-2.5", -2.5), ("1e-3", 0.001), ("+7", 7.0)] {
             assert_eq!(parse_number(text), Ok(value), "{text}");
         }

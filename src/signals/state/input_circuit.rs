@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn the_curve_ends_at_the_bandwidth() {
+    fn curve_ends_at_bandwidth() {
         let circuit = form("1024", "9000", "10k", "47p").calculate_circuit().unwrap();
         assert!(!circuit.is_within_bandwidth(), "153.6 kHz");
         let course = circuit.operating_points(10);

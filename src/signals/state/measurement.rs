@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_sample_is_shown_and_corrected_samples_form_a_circle() {
+    fn corrected_samples_form_circle() {
         let angle = |at: i32| f64::from(at) / 10_000.0 * std::f64::consts::TAU;
         let capture = Capture {
             sine_v: (0..10_000).map(|at| 0.3 * angle(at).sin() + 0.1).collect(),

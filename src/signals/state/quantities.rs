@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn quantities_match_section_7_with_limits() {
+    fn quantities_match_section_7() {
         let list = signal_quantities(&section_7_example(), Family::Hiperface, Some(50));
         let find = |word: &str| list.iter().find(|own| own.word == word).unwrap_or_else(|| panic!("{word}"));
         // The amplitudes are 2·0.5 and 2·0.5/1.05. Offsets are fractions of 0.5 V. 2 periods in 20 ms are 100 Hz; with
@@ -263,7 +263,7 @@ mod tests {
     /// A sine offset of 1 % causes an error of ±0.5730°, or 1.1459° peak to peak, which is 4.029″ at 1024 periods
     /// (section 6).
     #[test]
-    fn the_error_of_section_6_is_shown_in_arcseconds() {
+    fn shows_section_6_error_in_arcseconds() {
         let angle = |at: i32| f64::from(at) / 1000.0 * 4.0 * std::f64::consts::TAU;
         let capture = Capture {
             sine_v: (0..1000).map(|at| 0.5 * angle(at).sin() + 0.005).collect(),

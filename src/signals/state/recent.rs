@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn signals_without_wire_samples_are_measured() {
+    fn measures_signals_without_wire_samples() {
         let mut recent = RecentSamples::default();
         let pair = SineCosineSamples { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![4.0, 5.0, 6.0] };
         recent.add_batch(Batch {
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_window_has_the_newest_samples_without_a_gap() {
+    fn window_holds_newest_contiguous_samples() {
         let mut recent = RecentSamples::default();
         assert!(recent.latest_window(10).is_none() && !recent.is_due(None));
         recent.add_batch(batch(0, 5, 1_000_000, 0));
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn chunks_are_shared_and_limited_to_the_window() {
+    fn limits_shared_chunks_to_window() {
         let mut recent = RecentSamples::default();
         for at in 0..70 {
             recent.add_batch(batch(at * 10_000, 10_000, 1_000, 0));
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn signals_are_measured_four_times_a_second() {
+    fn measures_four_times_per_second() {
         let mut recent = RecentSamples::default();
         recent.add_batch(batch(0, 100, 1_000_000, 0));
         assert!(recent.is_due(None));

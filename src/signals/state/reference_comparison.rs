@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn nonlinearities_are_shown_in_degrees_and_arcseconds() {
+    fn shows_nonlinearity_in_degrees_and_arcseconds() {
         let capture = capture();
         let analysis = analysed(&capture);
         let told = compute_nonlinearities(&capture, &analysis, 64).unwrap().unwrap();
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_reference_there_is_no_nonlinearity() {
+    fn nonlinearity_requires_reference() {
         let mut capture = capture();
         let analysis = analysed(&capture);
         assert!(matches!(compute_nonlinearities(&capture, &analysis, 100), Some(Err(RevolutionError::Periods { .. }))));
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn an_absolute_position_leads_by_its_offset_minus_half_a_step() {
+    fn absolute_position_leads_by_offset() {
         let mut capture = capture();
         let analysis = analysed(&capture);
         let told = absolute_offset(&capture, Some(&analysis)).unwrap().unwrap();

@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_capture_is_shown_as_lines() {
+    fn shows_capture_as_lines() {
         let capture = Capture {
             time_s: vec![-1e-6, 0.0, 1e-6],
             sine_v: vec![0.3, 0.0, -0.3],
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn unrecorded_samples_leave_a_break_and_refused_ones_are_counted() {
+    fn unrecorded_samples_break_lines() {
         let mut scope = Scope::live(true);
         let broken = |scope: &Scope| {
             let history = scope.recorder.history(&scope.recorder.series()[0]).unwrap();
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn without_times_samples_are_counted_and_backward_times_refused() {
+    fn numbers_untimed_samples() {
         let mut capture = Capture { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![0.0; 3], ..Capture::default() };
         let scope = Scope::from_capture(&capture);
         assert!(scope.recorder.counts_samples() && (value(&scope, 0, 2_000) - 3.0).abs() < 1e-12);

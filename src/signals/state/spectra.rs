@@ -88,7 +88,7 @@ mod tests {
     /// Reduction keeps every peak of a 100 kHz capture, with 1 kHz at 0.5 V on both channels and 8 kHz at 20 mV on the
     /// sine.
     #[test]
-    fn reduced_spectra_keep_every_peak() {
+    fn decimation_keeps_spectrum_peaks() {
         let time_s: Vec<f64> = (0..50_000).map(|at| f64::from(at) * 1e-5).collect();
         let tone = |time: f64, hertz: f64| (std::f64::consts::TAU * hertz * time).sin();
         let sine_v: Vec<f64> =
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn levels_refer_to_the_rms_value() {
+    fn levels_refer_to_rms() {
         // A sine of √2 V peak has 1 V rms; a tenth of it is 20 dB less.
         assert!(to_decibel_volts(2.0_f64.sqrt()).abs() < 1e-12);
         assert!((to_decibel_volts(0.2_f64.sqrt() / 10.0_f64.sqrt() * 1.0) - -20.0).abs() < 1e-9);

@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn the_phase_can_be_typed_in_three_units() {
+    fn parses_phase_in_three_units() {
         let degrees = Form { phase_input: PhaseInput::Degrees, ..form("0x2A5F", "7.2", "1024", "1") };
         assert!((degrees.compute_result().unwrap().phase.to_periods() - 0.02).abs() < 1e-12);
         let typed = |text: &str| text.to_owned();
@@ -330,7 +330,7 @@ mod tests {
     /// Positions from quadrature counters match section 4, and so does the speed limit of 29 rpm for 1 ms with 1024
     /// periods.
     #[test]
-    fn counters_and_check_speed_are_computed() {
+    fn computes_counters_and_check_speed() {
         for (quarters, phase, fine) in [("43", "0.76", 10.76), ("44", "0.98", 10.98), ("43", "0.02", 11.02)] {
             let form = Form { quarters: quarters.to_owned(), ..form("0", phase, "1024", "1") };
             assert!((form.quadrature_position().unwrap().unwrap() - fine).abs() < 1e-12, "{quarters}");
@@ -363,7 +363,7 @@ mod tests {
 
     /// Readings that lead by 2 and by 3 steps yield a mean lead of 2.5 steps.
     #[test]
-    fn readings_measure_the_offset() {
+    fn readings_measure_offset() {
         let mut page = SynchroniseState::default();
         let range = Some(SineCosineRange { periods: 128, turns: 4096 });
         let at = |position, degrees: f64| {

@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_lines_are_shown_and_parsed() {
+    fn shows_and_parses_first_lines() {
         let long = "x".repeat(500);
         let table =
             table(&format!("t (ms);SIN;COS\r\n0;0,1;0,5\r\n1;0,2;0,4\r\n{long}\r\n2;3;4\r\n3;4;5\r\n4;5;6\r\n"));
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn references_apply_only_if_both_are_chosen() {
+    fn references_require_both_columns() {
         let mut table = table("a,b,c,d,e\n0,1,2,3,4\n");
         assert!(!table.select_column(Column::RefSine, Some(3)), "the other one is missing");
         assert_eq!((table.column(Column::RefSine), table.hints.columns), (Some(3), None));
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn text_without_a_table_has_lines_and_no_layout() {
+    fn plain_text_has_no_layout() {
         let table = table("no table at all");
         assert_eq!((table.layout, table.head), (None, vec!["no table at all".to_owned()]));
         assert_eq!(self::table("").width(), 1);

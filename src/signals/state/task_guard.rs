@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_panicking_task_is_reported_as_failed() {
+    fn reports_only_panicking_task() {
         let tasks = TaskRunner::new(Arc::new(|| ()));
         run(&tasks, "ends", TaskResult::Failed(FailedTask::Judge), || TaskResult::Failed(FailedTask::Measure(1)));
         assert_eq!(next(&tasks), Some(FailedTask::Measure(1)));

@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_checked() {
+    fn checks_names() {
         let name = |text: &str| text.parse::<AssetName>().map(|name| name.to_string());
         for good in ["M-17", "Achse 3 · Süd", "電動機/7", &"x".repeat(80)] {
             assert_eq!(name(good), Ok(good.to_owned()));

@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn an_entry_waits_until_it_was_sent_even_if_it_has_the_number_of_one_that_was() {
+    fn entry_with_reused_number_is_sent() {
         let TwoPrograms { _root, mut logbook, mut one, mut two } = two_programs();
         logbook.record(Timestamp::UNIX_EPOCH, &device(), &Event::new(EntryKind::Note, "first")).unwrap();
         let by_both = [&one, &two].map(|database| first_waiting(database, 9).unwrap());
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reply_of_one_server_leaves_the_entries_for_another_alone() {
+    fn servers_acknowledge_separately() {
         let TwoPrograms { _root, mut logbook, mut one, mut two } = two_programs();
         intend(&mut logbook);
         let sent = first_waiting(&one, 9).unwrap();
@@ -316,7 +316,7 @@ mod tests {
 
     /// One program resets the marks because the server has lost rows, while another one is still receiving.
     #[test]
-    fn rows_after_a_new_beginning_are_received_from_the_first_one() {
+    fn reset_receives_from_first_row() {
         let TwoPrograms { _root, mut one, mut two, .. } = two_programs();
         let at = |number: i64| {
             let mark = || Mark { number, uid: number.to_string() };
@@ -336,7 +336,7 @@ mod tests {
 
     /// The entry stays readable, and its planned write cycles are counted.
     #[test]
-    fn an_invalid_result_of_the_server_is_left_out() {
+    fn skips_invalid_server_result() {
         let TwoPrograms { _root, mut logbook, mut one, .. } = two_programs();
         intend(&mut logbook);
         let event = first_waiting(&one, 9).unwrap().events.remove(0).uid;
@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn a_result_is_sent_with_its_event() {
+    fn sends_result_with_event() {
         let TwoPrograms { _root, mut logbook, mut one, .. } = two_programs();
         let entry = intend(&mut logbook);
         let sent = first_waiting(&one, 9).unwrap();

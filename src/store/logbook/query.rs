@@ -250,7 +250,7 @@ mod tests {
 
     /// A row may have been changed by another tool, or received by a version that did not validate it.
     #[test]
-    fn an_unreadable_row_does_not_hide_the_others() {
+    fn unreadable_row_does_not_hide_others() {
         for change in [
             "UPDATE event SET at = 'yesterday' WHERE id = 1",
             "UPDATE event SET what = 'dance' WHERE id = 1",

@@ -38,7 +38,7 @@ fn problem<T: fmt::Debug>(result: Result<T, LogbookError>) -> LogbookErrorKind {
 }
 
 #[test]
-fn cycles_add_up_for_each_device() {
+fn counts_cycles_per_device() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     let own = device("1");
@@ -62,7 +62,7 @@ fn cycles_add_up_for_each_device() {
 }
 
 #[test]
-fn an_intent_without_conclusion_counts_as_planned() {
+fn unfinished_intent_counts_planned_cycles() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     logbook.record_intent(at(0), &device("1"), &intent("data field 1", 8, None)).unwrap();
@@ -74,7 +74,7 @@ fn an_intent_without_conclusion_counts_as_planned() {
 }
 
 #[test]
-fn history_is_newest_first_and_complete() {
+fn history_is_complete_newest_first() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     let own = device("A/B ä\0");
@@ -110,7 +110,7 @@ fn history_is_newest_first_and_complete() {
 }
 
 #[test]
-fn an_entry_is_concluded_once() {
+fn concludes_entry_once() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     let id = logbook.record_intent(at(0), &device("1"), &intent("x", 8, None)).unwrap();
@@ -122,7 +122,7 @@ fn an_entry_is_concluded_once() {
 }
 
 #[test]
-fn an_absurd_count_does_not_break_the_sum() {
+fn sum_saturates_on_absurd_count() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     for _ in 0..3 {
@@ -132,7 +132,7 @@ fn an_absurd_count_does_not_break_the_sum() {
 }
 
 #[test]
-fn two_windows_share_a_logbook() {
+fn windows_share_logbook() {
     let (_root, path) = place();
     let mut first = Logbook::open(&path).unwrap();
     let mut second = Logbook::open(&path).unwrap();
@@ -144,7 +144,7 @@ fn two_windows_share_a_logbook() {
 }
 
 #[test]
-fn concurrent_writers_do_not_lose_entries() {
+fn concurrent_writers_keep_all_entries() {
     let (_root, path) = place();
     std::thread::scope(|scope| {
         for _ in 0..6 {
@@ -160,7 +160,7 @@ fn concurrent_writers_do_not_lose_entries() {
 }
 
 #[test]
-fn a_locked_logbook_is_reported() {
+fn reports_locked_logbook() {
     let (_root, path) = place();
     let patience = Duration::from_millis(20);
     let mut logbook = Logbook::open_with_timeout(&path, patience).unwrap();
@@ -174,7 +174,7 @@ fn a_locked_logbook_is_reported() {
 }
 
 #[test]
-fn a_newer_logbook_is_not_changed() {
+fn does_not_change_newer_logbook() {
     let (_root, path) = place();
     drop(Logbook::open(&path).unwrap());
     for found in [schema::SCHEMA_VERSION + 1, i64::from(i32::MAX), -1] {
@@ -186,7 +186,7 @@ fn a_newer_logbook_is_not_changed() {
 }
 
 #[test]
-fn the_write_ahead_log_of_a_newer_version_is_kept() {
+fn keeps_newer_write_ahead_log() {
     let (_root, path) = place();
     drop(Logbook::open(&path).unwrap());
     let newer = Connection::open(&path).unwrap();
@@ -200,7 +200,7 @@ fn the_write_ahead_log_of_a_newer_version_is_kept() {
 }
 
 #[test]
-fn a_damaged_logbook_is_kept_and_a_new_one_is_begun() {
+fn sets_damaged_logbook_aside() {
     let (root, path) = place();
     drop(Logbook::open(&path).unwrap());
     let whole = fs::read(&path).unwrap();
@@ -231,7 +231,7 @@ fn a_damaged_logbook_is_kept_and_a_new_one_is_begun() {
 }
 
 #[test]
-fn a_logbook_without_a_folder_is_an_error() {
+fn reports_missing_logbook_folder() {
     let (root, path) = place();
     fs::create_dir_all(&path).unwrap();
     assert_eq!(problem(Logbook::open(&path)), LogbookErrorKind::NoAccess);
@@ -243,7 +243,7 @@ fn a_logbook_without_a_folder_is_an_error() {
 
 /// Schema 2 is created with its original statements.
 #[test]
-fn an_older_logbook_keeps_its_entries() {
+fn older_logbook_keeps_entries() {
     let (_root, path) = place();
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     let old = Connection::open(&path).unwrap();
@@ -278,7 +278,7 @@ fn an_older_logbook_keeps_its_entries() {
 }
 
 #[test]
-fn entries_are_filtered_and_searched() {
+fn filters_and_searches_entries() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     logbook.record_intent(at(0), &device("GB1"), &intent("field:1", 1, None)).unwrap();
@@ -314,7 +314,7 @@ fn entries_are_filtered_and_searched() {
 
 /// Schema 3 is created with its original statements, and its rows are as that version wrote them.
 #[test]
-fn a_logbook_of_schema_3_keeps_its_entries_and_takes_new_kinds() {
+fn schema_3_logbook_keeps_entries() {
     let (_root, path) = place();
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     let old = Connection::open(&path).unwrap();
@@ -348,7 +348,7 @@ fn a_logbook_of_schema_3_keeps_its_entries_and_takes_new_kinds() {
 
 /// Entries stay with the asset when its encoder is replaced, and do not move with the old encoder.
 #[test]
-fn an_asset_has_the_entries_of_its_assigned_devices() {
+fn asset_lists_entries_of_assigned_devices() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     let (old, new) = (device("old"), device("new"));
@@ -385,7 +385,7 @@ fn an_asset_has_the_entries_of_its_assigned_devices() {
 }
 
 #[test]
-fn an_entry_is_found_by_its_number() {
+fn finds_entry_by_number() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     let id = logbook.record_intent(at(0), &device("1"), &intent("x", 1, None)).unwrap();
@@ -398,7 +398,7 @@ fn an_entry_is_found_by_its_number() {
 }
 
 #[test]
-fn notes_are_entries_of_a_device_without_a_write() {
+fn notes_are_entries_without_write() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     let (own, simulated) = (device("GB1"), DeviceKey { is_virtual: true, ..device("GB1") });
@@ -418,7 +418,7 @@ fn notes_are_entries_of_a_device_without_a_write() {
 
 /// The server may have lost rows without that version noticing.
 #[test]
-fn a_logbook_of_schema_6_does_not_know_which_rows_the_server_has() {
+fn schema_6_logbook_has_unknown_server_rows() {
     let (_root, path) = place();
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     let old = Connection::open(&path).unwrap();

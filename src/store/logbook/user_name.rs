@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_full_abbreviated_or_omitted() {
+    fn formats_full_abbreviated_or_omitted_names() {
         let name = |choice: UserName, user: &str, real: &str| {
             let real = (!real.is_empty()).then(|| real.to_owned());
             choice.of(Some(user.to_owned()), real).unwrap_or_default()

@@ -58,7 +58,7 @@ fn notice_ids(services: &Services) -> Vec<&'static str> {
 }
 
 #[test]
-fn a_shortened_window_reports_its_length() {
+fn shortened_window_reports_length() {
     let mut source = Source { window_ms: 5_000, ..Source::default() };
     // 500 000 samples at 100 kHz and at 1 MHz.
     assert_eq!(source.limited_window_ms(), None);
@@ -67,7 +67,7 @@ fn a_shortened_window_reports_its_length() {
 }
 
 #[test]
-fn measurements_under_other_limits_are_judged_again() {
+fn new_limits_update_verdicts() {
     let (mut services, _folder) = services();
     let mut signals = started(&mut services);
     let before = signals.diagnosis_settings();
@@ -80,7 +80,7 @@ fn measurements_under_other_limits_are_judged_again() {
 }
 
 #[test]
-fn a_source_that_ends_by_itself_is_reported_and_stopped() {
+fn stops_ended_source() {
     let (mut services, _folder) = services();
     let mut signals = started(&mut services);
     signals.source.live.as_ref().unwrap().feed.stop();
@@ -94,7 +94,7 @@ fn a_source_that_ends_by_itself_is_reported_and_stopped() {
 }
 
 #[test]
-fn a_failed_task_is_reported_and_no_longer_awaited() {
+fn reports_failed_task() {
     let (mut services, _folder) = services();
     let mut signals = started(&mut services);
     signals.source.live.as_mut().unwrap().measuring = true;

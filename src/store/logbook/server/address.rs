@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_password_is_kept_apart_and_is_refused_in_a_setting() {
+    fn rejects_password_in_setting() {
         let cases = [
             ("postgres://bench:s3cret@db.plant:5433/logs", "postgres://bench@db.plant:5433/logs"),
             (
@@ -239,7 +239,7 @@ mod tests {
 
     /// Any character in a password is either unambiguous or makes the address invalid.
     #[test]
-    fn no_character_of_a_password_is_taken_for_another_part_of_the_address() {
+    fn password_characters_are_unambiguous() {
         let printable = || (0x21..0x7fu8).map(char::from);
         for (first, second) in printable().flat_map(|first| printable().map(move |second| (first, second))) {
             let given = format!("postgres://bench:k{first}3{second}y@db.plant/logs");
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parameter_neither_hides_a_password_nor_names_another_host() {
+    fn rejects_unknown_parameters() {
         for name in ["passwor%64", "options", "hostaddr"] {
             let unknown = ServerAddressError::UnknownParameter { name: name.to_owned() };
             let text = format!("postgres://localhost/x?sslmode=disable&{name}=10.0.0.5");
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn only_local_connections_are_unencrypted_by_default() {
+    fn encrypts_remote_connections_by_default() {
         let encryption = |text: &str| ServerAddress::from_setting(text).map(|address| address.encryption);
         for near in
             ["postgres://localhost/x", "postgres://127.0.0.1:5433/x", "postgres://[::1]/x", "postgres://%2Frun/x"]
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_addresses_are_refused() {
+    fn rejects_invalid_addresses() {
         for bad in ["", "db.plant", "host=db.plant password=x", "mysql://db.plant/x", "postgres://", "postgres:///x"] {
             assert_eq!(ServerAddress::from_setting(bad), Err(ServerAddressError::NotAnAddress), "{bad}");
         }

@@ -171,7 +171,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_reason_contains_no_number_of_the_system() {
+    fn reason_omits_system_error_number() {
         let cause = |error: io::Error| match from_io(&error) {
             ServerErrorKind::Unreachable { why } => why,
             other => panic!("{other:?}"),

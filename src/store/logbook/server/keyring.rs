@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_keyring_is_asked_once_until_the_user_acts() {
+    fn asks_keyring_once() {
         let (place, asked) = (Mutex::new(None), Arc::new(AtomicUsize::new(0)));
         let (unlock, unlocked) = bounded::<()>(0);
         let find = |account: &str, patience: u64| {

@@ -4,7 +4,7 @@ use super::*;
 
 /// Schema 5 is created with its original statements and rows. One row has yet to be sent to a server.
 #[test]
-fn a_logbook_of_schema_5_keeps_its_entries_and_links_new_ones() {
+fn schema_5_logbook_links_new_entries() {
     let (_root, path) = place();
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     let old = Connection::open(&path).unwrap();
@@ -36,7 +36,7 @@ fn a_logbook_of_schema_5_keeps_its_entries_and_links_new_ones() {
 }
 
 #[test]
-fn an_undo_names_its_entry_until_it_is_undone_itself() {
+fn undo_names_its_entry_until_undone() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     let mut write = |second, undoes: Option<EntryId>, outcome| {
