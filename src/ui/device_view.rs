@@ -385,7 +385,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn typed_text_is_dropped_when_another_device_replies() {
+    fn drops_typed_text_on_device_change() {
         let mut memory = Memory::<String>::default();
         memory.for_device(None).push_str("48");
         assert_eq!(memory.for_device(Some("00123")), "48", "the first device that is known");

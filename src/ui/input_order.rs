@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn text_after_a_click_or_tab_waits_for_the_next_frame() {
+    fn text_after_click_or_tab_waits() {
         let events = [button(true), button(false), text("12"), key(Key::Tab, true), key(Key::Tab, false), text("3")];
         let expected = [
             vec![button(true), button(false)],
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn without_text_after_it_everything_is_in_one_frame() {
+    fn keeps_input_without_text_in_one_frame() {
         let events = vec![text("1"), key(Key::Enter, true), key(Key::Enter, false), button(true), button(false)];
         let (mut held, mut now) = (DeferredInput::default(), events.clone());
         assert!(!held.split_frame_events(&mut now, false));
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn immediate_input_is_not_deferred() {
+    fn does_not_defer_immediate_input() {
         let (mut held, mut now) = (DeferredInput::default(), vec![button(false), text("1")]);
         assert!(held.split_frame_events(&mut now, false));
         assert_eq!(now, [button(false)]);

@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_as_far_apart_as_their_cost_requires() {
+    fn frame_interval_grows_with_cost() {
         assert_eq!(settled(Duration::from_millis(2)), MIN_INTERVAL, "2 of 50 ms are 4 %");
         let interval = settled(Duration::from_millis(18));
         assert!((85..=95).contains(&interval.as_millis()), "18 of 90 ms are 20 %: {interval:?}");
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn the_interval_returns_when_frames_become_cheap() {
+    fn frame_interval_recovers() {
         let (now, second) = (Duration::ZERO, Duration::from_secs(1));
         let mut pace = LivePace { interval: MAX_INTERVAL, last: Some((now, Duration::ZERO)) };
         for seconds in 1..=10 {

@@ -33,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_selected_renderer_is_the_only_one() {
+    fn tries_only_selected_renderer() {
         assert_eq!(renderers_for(None).first(), Some(&Renderer::Glow));
         assert_eq!(renderers_for(None).len(), NAMES.len());
         assert_eq!(renderers_for(Some("OpenGL")), [Renderer::Glow]);

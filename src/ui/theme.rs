@@ -237,7 +237,7 @@ mod tests {
 
     /// No font may turn 0x40 into 0×40, as contextual alternates do, because users copy addresses into scripts.
     #[test]
-    fn no_font_substitutes_other_characters() {
+    fn fonts_substitute_no_characters() {
         for (name, bytes) in FONTS {
             let tables = usize::from(u16::from_be_bytes([bytes[4], bytes[5]]));
             let tags: Vec<&[u8]> = bytes[12..].chunks(16).take(tables).map(|entry| &entry[..4]).collect();

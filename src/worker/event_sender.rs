@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn progress_follows_the_start_of_its_job_and_late_events_wake() {
+    fn progress_follows_job_start() {
         let (sender, events) = bounded(CAPACITY);
         let wakes = Arc::new(AtomicUsize::new(0));
         let counter = wakes.clone();

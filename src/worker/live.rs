@@ -199,7 +199,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_failure_ends_only_its_own_request() {
+    fn failure_ends_only_its_request() {
         let (live, _changes) = LiveRequests::new();
         live.poll(Some(Duration::from_millis(50)));
         let earlier = live.request_number();
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refused_watch_is_requested_again_after_removal() {
+    fn rejected_watch_is_retried_after_removal() {
         let second = Duration::from_secs(1);
         let watches = WatchList::new(LiveRequests::new().0);
         let mut known = 0;

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_late_sample_is_not_followed_by_a_burst() {
+    fn late_sample_causes_no_burst() {
         let (step, start) = (ms(100), Instant::now());
         let mut pace = PollTiming::default();
         assert_eq!(pace.next_due(None, start), None);
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn watched_values_are_read_between_samples_at_their_own_interval() {
+    fn reads_watched_values_between_samples() {
         for (polling, watches, end, expected) in [
             (100, vec![], 250, ".0 .100 .200"),
             (100, vec![('a', 200)], 450, ".0 a25 .100 .200 a225 .300 .400 a425"),
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn watching_pauses_with_polling_and_continues_with_a_new_list() {
+    fn watching_pauses_with_polling() {
         let start = Instant::now();
         let mut agenda = PollScheduler::default();
         agenda.set_watched(vec![('a', ms(200))]);

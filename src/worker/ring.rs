@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn items_are_drained_in_order_and_once() {
+    fn drains_items_once_in_order() {
         let ring = Ring::new(3);
         assert_eq!(ring.drain(), (vec![], 0));
         ring.push(1);
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_ring_drops_the_oldest_and_counts() {
+    fn full_ring_drops_oldest() {
         let ring = Ring::new(3);
         (0..10).for_each(|item| ring.push(item));
         assert_eq!(format!("{ring:?}"), "Ring(3 of 3, 7 dropped)");
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_of_capacity_zero_keeps_the_newest() {
+    fn zero_capacity_keeps_newest() {
         let ring = Ring::new(0);
         ring.push('a');
         ring.push('b');
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn the_newest_stay_within_their_bytes() {
+    fn newest_items_fit_byte_limit() {
         let ring = Ring::with_byte_limit(9, 8, Vec::len);
         for item in [vec![1; 3], vec![2; 3], vec![3; 4], vec![4; 1]] {
             ring.push(item);
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn losses_between_threads_are_counted() {
+    fn counts_losses_between_threads() {
         let ring = Ring::new(16);
         let (mut taken, mut dropped) = (0, 0);
         std::thread::scope(|scope| {

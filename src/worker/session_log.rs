@@ -175,7 +175,7 @@ mod tests {
     use crate::store::EntryFilter;
 
     #[test]
-    fn a_connection_is_recorded_after_the_logbook_was_in_use() {
+    fn records_connection_after_logbook_is_free() {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at_root(root.path());
         let path = store.logbook_path();

@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_contains_its_values_and_is_never_empty() {
+    fn range_contains_values_and_is_never_empty() {
         for (low, high) in [(0.0, 1.0), (-3.2, 4.7), (5.0, 5.0), (1e9, 1e9 + 1.0), (0.0, 0.0), (-1e-7, 1e-7)] {
             let (from, to) = round_range(low, high, 1e-3);
             assert!(from <= low && to >= high && to - from >= 1e-3, "{low} {high}: {from} {to}");
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn time_is_labelled_in_the_unit_of_its_steps() {
+    fn labels_time_in_step_unit() {
         let second = SECOND;
         let cases: [(i64, i64, &[&str]); 8] = [
             (0, 10 * second, &["0", "5 s", "10 s"]),
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn small_steps_far_from_the_start_use_a_round_base() {
+    fn small_distant_steps_use_round_base() {
         let hour = 3600 * SECOND;
         let (found, base) = tick_labels(hour + 30_000, hour + 33_000);
         assert_eq!(
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn every_time_span_has_a_reasonable_number_of_ticks() {
+    fn time_spans_have_few_ticks() {
         let mut span = 1;
         // A hundred days, the length of the longest view.
         while span < 8_640_000 * SECOND {
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_in_time_has_the_precision_of_the_axis() {
+    fn time_label_has_axis_precision() {
         for (nanoseconds, span, expected) in [
             (12_345_678_901, 30 * SECOND, "12.345 s"),
             (-1_500_000_000, SECOND, "-1.500 s"),

@@ -247,7 +247,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_low_lane_has_labels_at_both_ends() {
+    fn low_lane_labels_both_ends() {
         // Lines at both edges and in the middle. Heights increase downwards.
         let low = [(-5.0, 27.0), (0.0, 13.5), (5.0, 0.0)];
         assert_eq!(labelled_ticks(&low, 0.0, 27.0), [(-5.0, 21.5), (5.0, 5.5)]);

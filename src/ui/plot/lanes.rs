@@ -220,7 +220,7 @@ mod tests {
     const RECT: Rect = Rect { min: egui::Pos2::ZERO, max: pos2(400.0, 200.0) };
 
     #[test]
-    fn every_lane_has_two_ticks_that_do_not_touch() {
+    fn lane_ticks_do_not_overlap() {
         for value in [0.0, 4660.75, -33_488_896.0, 0.58472] {
             for height in [27.0, 40.0, 60.0, 90.0, 200.0] {
                 let (low, high) = axes::round_range(value, value, 8e-5);
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_of_another_recorder_are_not_confused() {
+    fn distinguishes_recorders() {
         let mut reduced = ReducedLane::default();
         let (one, mut other) = (recorder(1.0), recorder(2.0));
         compute_layout(&one, RECT, 1.0, &mut reduced);
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plot_with_long_labels_is_computed_once() {
+    fn computes_plot_with_long_labels_once() {
         let mut reduced = ReducedLane::default();
         let recorder = recorder(123_456.789_1);
         compute_layout(&recorder, RECT, 1.0, &mut reduced);

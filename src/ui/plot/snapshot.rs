@@ -98,7 +98,7 @@ mod tests {
     use egui::{Color32, pos2};
 
     #[test]
-    fn a_part_of_the_window_is_captured() {
+    fn captures_part_of_window() {
         let mut image = ColorImage::filled([8, 6], Color32::BLACK);
         image.pixels[2 * 8 + 4] = Color32::RED;
         let wanted = Rect::from_min_max(pos2(2.0, 1.0), pos2(3.0, 2.0));
@@ -134,7 +134,7 @@ mod tests {
 
     /// The menu is open when the snapshot is requested, and other widgets surround the plot.
     #[test]
-    fn the_snapshot_shows_exactly_the_plot_of_its_frame() {
+    fn snapshot_matches_plot_of_its_frame() {
         let ctx = Context::default();
         let mut shot = Screenshot::default();
         let place = |left: f32| Rect::from_min_size(pos2(left, 2.0), egui::vec2(3.0, 2.0));
@@ -159,7 +159,7 @@ mod tests {
 
     /// A partly hidden plot is not captured, and a message reports this.
     #[test]
-    fn a_partly_hidden_plot_yields_no_snapshot() {
+    fn partly_hidden_plot_yields_no_snapshot() {
         let ctx = Context::default();
         let mut shot = Screenshot::default();
         shot.request(&ctx);

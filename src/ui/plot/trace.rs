@@ -258,7 +258,7 @@ mod tests {
         TraceStyle { colour: Color32::WHITE, factor: 1.0, marks: true, bad: Color32::RED, warning: Color32::YELLOW };
 
     #[test]
-    fn a_segment_is_clipped_at_the_lane() {
+    fn clips_segment_at_lane() {
         assert_eq!(
             clip_segment(pos2(-100.0, 25.0), pos2(200.0, 25.0), LANE),
             Some((pos2(0.0, 25.0), pos2(100.0, 25.0)))
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn a_single_sample_spike_is_drawn_to_its_peak() {
+    fn draws_single_sample_spike_to_peak() {
         let shapes = drawn(50_000, |at| if at == 31_234 { 1.0 } else { 0.5 }, |_| Flags::NONE);
         assert_eq!(shapes.len(), 1, "one mesh");
         let reach = reach_text(&shapes);
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pixel_column_has_a_bar() {
+    fn draws_bar_per_pixel_column() {
         for count in [50_000, 51_234, 499_999] {
             let shapes = drawn(count, |at| (at % 2) as f64, |_| Flags::NONE);
             let [Shape::Mesh(mesh)] = shapes.as_slice() else { panic!("{shapes:?}") };
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn gaps_are_kept_and_marks_are_drawn() {
+    fn keeps_gaps_and_draws_marks() {
         let gap = |at| if at == 5 { Flags::BAD } else { Flags::NONE };
         let shapes = drawn(10, |_| 0.5, gap);
         let lines = shapes.iter().filter(|shape| matches!(shape, Shape::Path(_))).count();
@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn values_beyond_the_lane_are_clamped_to_it() {
+    fn clamps_values_to_lane() {
         for count in [10, 3_000, 50_000] {
             let reach = reach_text(&drawn(count, |at| if at % 2 == 0 { 1e30 } else { -1e30 }, |_| Flags::NONE));
             assert!(LANE.expand(20.0).contains_rect(reach), "{count}: {reach}");

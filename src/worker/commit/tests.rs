@@ -190,7 +190,7 @@ fn write(
 }
 
 #[test]
-fn every_write_takes_all_steps_in_order() {
+fn write_takes_all_steps_in_order() {
     let whole = vec!["confirm", "begin", "apply", "apply", "finish", "lead back"];
     let cases = [
         ("done", 0, false, false, whole, 3),
@@ -218,7 +218,7 @@ fn every_write_takes_all_steps_in_order() {
 }
 
 #[test]
-fn nothing_is_written_without_operations_or_with_another_plans_consent() {
+fn write_requires_operations_and_matching_consent() {
     let root = tempfile::tempdir().unwrap();
     let mut spy = Spy::new(&Store::at_root(root.path()), false, false);
     let done = write(&mut spy, &confirm_plan(Some(CycleCount::complete(0)), &[], false)).ok().unwrap();
@@ -230,7 +230,7 @@ fn nothing_is_written_without_operations_or_with_another_plans_consent() {
 
 /// An unknown count is not 0: the write begins only if forced, and then reports the logbook error (issue 22.4).
 #[test]
-fn an_unusable_logbook_prevents_a_write() {
+fn unusable_logbook_prevents_write() {
     /// A device that checks nothing.
     struct Plain(u32);
     impl Write for Plain {
@@ -271,7 +271,7 @@ fn an_unusable_logbook_prevents_a_write() {
 
 /// While the logbook server is unreachable, writing to a memory that wears out quickly needs permission (issue 30).
 #[test]
-fn an_incomplete_count_needs_a_permit_if_the_memory_wears_out_quickly() {
+fn incomplete_count_requires_permit() {
     let seen = Some(CycleCount { seen: 7, is_complete: false });
     for (limit, cost, refused) in
         [(449, 1, true), (1_000, 2, true), (449, 0, false), (1_000_000, 1, false), (u64::MAX, 1, false)]
@@ -286,7 +286,7 @@ fn an_incomplete_count_needs_a_permit_if_the_memory_wears_out_quickly() {
 }
 
 #[test]
-fn each_operation_tells_beforehand_how_it_can_be_undone() {
+fn operations_announce_undo() {
     let undos = |kind: EntryKind| {
         let agreed = confirm_plan(None, &[0, 1, 3, 4], false);
         let prepared = Prepared { kind, ..agreed.prepared };

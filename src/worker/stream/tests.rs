@@ -67,7 +67,7 @@ fn check(batches: &[Batch<Vec<u64>>], from: u64) -> u64 {
 }
 
 #[test]
-fn an_idle_reader_does_not_block_and_losses_are_counted() {
+fn idle_reader_does_not_block() {
     let sizes: Vec<usize> = (0..2_000).map(|at| 1 + at * 37 % 100).collect();
     let total: usize = sizes.iter().sum();
     let (producer, ..) = numbers(sizes, true);
@@ -84,7 +84,7 @@ fn an_idle_reader_does_not_block_and_losses_are_counted() {
 }
 
 #[test]
-fn an_occasional_reader_can_locate_gaps() {
+fn occasional_reader_locates_gaps() {
     let (producer, ..) = numbers(std::iter::repeat_n(70, 3_000), true);
     let stream = Stream::spawn(producer, 500, Arc::new(VirtualClock::default()), Arc::new(|| ())).unwrap();
     let (mut next, mut read, mut lost) = (0, 0, 0);
@@ -103,7 +103,7 @@ fn an_occasional_reader_can_locate_gaps() {
 }
 
 #[test]
-fn a_batch_larger_than_the_ring_is_kept_alone() {
+fn keeps_batch_larger_than_ring() {
     let batch = |first: u64, count: u64, lost| Batch {
         first,
         time: SampleTime::ORIGIN,
@@ -121,7 +121,7 @@ fn a_batch_larger_than_the_ring_is_kept_alone() {
 }
 
 #[test]
-fn the_window_is_woken_twenty_times_a_second_and_at_the_end() {
+fn wakes_window_twenty_times_per_second() {
     // One second with a batch every millisecond.
     let (producer, ..) = numbers(std::iter::repeat_n(1, 1_000), true);
     let wakes = Arc::new(AtomicUsize::new(0));
@@ -137,7 +137,7 @@ fn the_window_is_woken_twenty_times_a_second_and_at_the_end() {
 }
 
 #[test]
-fn the_last_batch_before_a_silence_wakes_the_reader() {
+fn last_batch_before_silence_wakes_reader() {
     let (producer, ..) = numbers([1, 1], false);
     let (told, wakes) = bounded(8);
     let wake = Arc::new(move || {
@@ -152,7 +152,7 @@ fn the_last_batch_before_a_silence_wakes_the_reader() {
 }
 
 #[test]
-fn the_latest_change_arrives_and_a_dropped_stream_ends() {
+fn latest_change_arrives_before_drop() {
     let (producer, wishes, gone) = numbers([], false);
     let stream = Stream::spawn(producer, 10, Arc::new(RealClock::start()), Arc::new(|| ())).unwrap();
     (0..1_000).for_each(|wish| stream.request_change(wish));
@@ -171,7 +171,7 @@ fn next(source: &mut AnalogueSource, clock: &VirtualClock) -> Option<Batch<Wires
 }
 
 #[test]
-fn the_virtual_source_follows_the_clock() {
+fn virtual_source_follows_clock() {
     let clock = VirtualClock::default();
     clock.sleep_until(Moment::from_elapsed(Duration::from_secs(5)));
     let mut source = AnalogueSource::new(settings(100_000.0), clock.now());
@@ -197,7 +197,7 @@ fn the_virtual_source_follows_the_clock() {
 }
 
 #[test]
-fn the_virtual_source_yields_the_samples_by_index() {
+fn virtual_source_yields_samples_by_index() {
     let clock = VirtualClock::default();
     let mut source = AnalogueSource::new(settings(50_000.0), clock.now());
     let whole =
@@ -208,7 +208,7 @@ fn the_virtual_source_yields_the_samples_by_index() {
 }
 
 #[test]
-fn no_sample_is_missing_while_the_computer_keeps_up() {
+fn loses_no_samples_at_full_speed() {
     // At 44.1 kHz, the sample period is 22 676 ns.
     let clock = VirtualClock::default();
     let checked =

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_is_placed_on_one_line_if_it_fits() {
+    fn short_frame_fits_one_line() {
         // 42 bits in groups of four with 3 + 4 + 1 gaps between them, four single bits as wide as their texts, 123 in
         // total, and seven gaps between fields.
         let placing = arrange_fields(&kit(), 1100.0, GAP);
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_shrink_before_the_frame_wraps() {
+    fn cells_shrink_before_frame_wraps() {
         // 42 · 13 + 24 + 123 + 56 = 749.
         let placing = arrange_fields(&kit(), 749.0, GAP);
         assert_eq!((placing.lines, placing.cell), (1, 13.0));
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_longer_than_a_line_is_split_at_bytes() {
+    fn splits_long_field_at_bytes() {
         let wants = [RequiredSpace { bits: 64, words: 50.0 }];
         let placing = arrange_fields(&wants, 400.0, GAP);
         // 32 bits with 7 groups between them take 32 · 11 + 21 = 373 points.
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_of_four_are_counted_from_the_last_bit() {
+    fn counts_groups_from_last_bit() {
         let piece = PlacedPiece { field: 0, first: 0, bits: 17, line: 0, left: 0.0, width: 0.0 };
         // 17 bits: a single bit followed by four groups of four.
         let offsets: Vec<f32> = [0, 1, 4, 5, 16].map(|at| piece.offset(at, 17, 10.0)).into_iter().collect();
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_frame_takes_no_space() {
+    fn empty_frame_takes_no_space() {
         assert_eq!(arrange_fields(&[], 100.0, GAP).lines, 0);
         let none = [RequiredSpace { bits: 0, words: 10.0 }];
         assert!(arrange_fields(&none, f32::NAN, GAP).pieces.is_empty());

@@ -50,7 +50,7 @@ mod tests {
     use super::HexAddresses::{Banked, Counted};
 
     #[test]
-    fn addresses_are_counted_or_have_a_bank() {
+    fn addresses_count_up_or_have_bank() {
         assert_eq!((Counted.text(0x1F, 32), Counted.heading(0x10, 32)), ("0x1F".to_owned(), "10".to_owned()));
         assert_eq!((Counted.text(0x1F, 2048).as_str(), Counted.width(2048)), ("0x01F", 3));
         let banked = Banked { first: 0x24, size: 64 };

@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn the_least_important_columns_are_hidden_first() {
+    fn hides_least_important_columns_first() {
         use Column::*;
         // 34 + 76 + 92 + 100 + 72 + 84 + 40 + 52 = 550.
         assert_eq!(shown(BYTES, 550.0).len(), 8);
@@ -151,7 +151,7 @@ mod tests {
 
     /// At 622, halfway between the usual width of 694 and the minimum of 550, each column has lost half of what it can.
     #[test]
-    fn columns_are_narrowed_before_one_is_hidden() {
+    fn narrows_columns_before_hiding() {
         let columns = Columns::new(BYTES, 622.0, 100.0);
         let widths: Vec<f32> = columns.iter().map(|(_, range)| range.span()).collect();
         assert_eq!(widths, [36.0, 78.0, 105.0, 100.0, 84.0, 107.0, 44.0, 68.0]);
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn name_and_meaning_take_the_remaining_width() {
+    fn name_and_meaning_share_remaining_width() {
         let columns = Columns::new(BYTES, 794.0, 100.0);
         assert_eq!(columns.column_range(Column::Name), Some(Rangef::new(118.0, 281.0)));
         assert_eq!(columns.column_range(Column::Value), Some(Rangef::new(281.0, 381.0)));

@@ -43,7 +43,7 @@ fn map(sizes: &[usize], free: usize) -> Harness<'static, Memory> {
 }
 
 #[test]
-fn fields_are_selected_by_pointer_and_keys() {
+fn selects_fields_by_pointer_and_keys() {
     let mut harness = map(&[2, 1, 40, 1], 9);
     harness.get_by_label("Field 2").click();
     harness.run();
@@ -74,7 +74,7 @@ fn drag_end(harness: &mut Harness<'_, Memory>, blocks: f32) {
 }
 
 #[test]
-fn the_last_field_is_resized_in_whole_blocks() {
+fn resizes_last_field_in_whole_blocks() {
     let mut harness = map(&[2, 3], 4);
     drag_end(&mut harness, 2.2);
     assert_eq!(harness.state().events, [MapEvent::ResizeLast { blocks: 5 }]);
@@ -87,7 +87,7 @@ fn the_last_field_is_resized_in_whole_blocks() {
 }
 
 #[test]
-fn escape_cancels_a_resize() {
+fn escape_cancels_resize() {
     let mut harness = map(&[2, 3], 4);
     let end = harness.get_by_label("Field 1").rect().right_center();
     harness.drag_at(end);
@@ -101,7 +101,7 @@ fn escape_cancels_a_resize() {
 }
 
 #[test]
-fn a_memory_without_fields_is_all_free() {
+fn memory_without_fields_is_free() {
     let mut harness = map(&[], 8);
     harness.get_by_label("Free").click();
     harness.run();

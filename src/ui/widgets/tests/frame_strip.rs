@@ -18,7 +18,7 @@ fn field(name: &str, value: &str, bits: usize, lit: Option<Verdict>) -> StripFie
 }
 
 #[test]
-fn a_frame_describes_its_fields() {
+fn frame_describes_fields() {
     let fields = vec![
         field("Start", "", 1, None),
         field("MT", "4660", 16, None),

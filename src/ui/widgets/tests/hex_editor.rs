@@ -79,7 +79,7 @@ fn digits_overwrite_nibble_by_nibble() {
 }
 
 #[test]
-fn an_invalid_digit_is_reported_until_the_next_key() {
+fn reports_invalid_digit_until_next_key() {
     let mut harness = editor(64, None);
     type_in(&mut harness, "g");
     harness.get_by_label_contains("\"g\" is not a hexadecimal digit");
@@ -89,7 +89,7 @@ fn an_invalid_digit_is_reported_until_the_next_key() {
 }
 
 #[test]
-fn the_cursor_moves_and_selects() {
+fn moves_and_selects_by_cursor() {
     let mut harness = editor(40, None);
     press(&mut harness, &[(NONE, Key::ArrowDown), (NONE, Key::ArrowRight)]);
     assert_eq!(value(&harness), "0x11: 11");
@@ -110,7 +110,7 @@ fn the_cursor_moves_and_selects() {
 }
 
 #[test]
-fn a_selection_is_cleared_reverted_and_undone() {
+fn clears_reverts_and_undoes_selection() {
     let mut harness = editor(32, None);
     harness.state_mut().view.select(4..7);
     press(&mut harness, &[(NONE, Key::Delete)]);
@@ -121,7 +121,7 @@ fn a_selection_is_cleared_reverted_and_undone() {
 }
 
 #[test]
-fn the_cursor_moves_to_the_undone_edit() {
+fn cursor_moves_to_undone_edit() {
     let mut harness = editor(64, None);
     harness.state_mut().view.select(16..17);
     type_in(&mut harness, "FF");
@@ -136,7 +136,7 @@ fn the_cursor_moves_to_the_undone_edit() {
 }
 
 #[test]
-fn hex_is_pasted_where_it_fits() {
+fn pastes_hex_where_it_fits() {
     let mut harness = editor(32, None);
     let cases = [
         ("0x41, 42\n43", "", Some(put(0, b"ABC"))),
@@ -164,7 +164,7 @@ fn hex_is_pasted_where_it_fits() {
 }
 
 #[test]
-fn text_is_typed_and_copied_in_its_column() {
+fn types_and_copies_text() {
     let mut harness = editor(32, None);
     press(&mut harness, &[(NONE, Key::Tab)]);
     type_in(&mut harness, "Hi");
@@ -182,7 +182,7 @@ fn text_is_typed_and_copied_in_its_column() {
 }
 
 #[test]
-fn tab_moves_through_both_columns_and_on() {
+fn tab_moves_through_columns() {
     let mut harness = editor(32, None);
     press(&mut harness, &[(NONE, Key::Tab)]);
     assert!(harness.get_by_label(BYTES).is_focused());
@@ -196,7 +196,7 @@ fn tab_moves_through_both_columns_and_on() {
 }
 
 #[test]
-fn read_only_bytes_show_the_reason() {
+fn read_only_bytes_show_reason() {
     let mut harness = editor(32, Some(Text::new("widget.hex_nothing")));
     let reason = "The clipboard contains no bytes.";
     for key in [Key::Delete, Key::Backspace] {
@@ -225,7 +225,7 @@ fn press_at(harness: &mut Harness<'_, Bytes>, pos: Pos2, modifiers: Modifiers, r
 }
 
 #[test]
-fn the_pointer_sets_the_cursor_and_selects() {
+fn pointer_sets_cursor_and_selects() {
     let mut harness = editor(32, None);
     let rect = harness.get_by_label(BYTES).rect();
     // The middle of the second of two lines. Columns are 24 points wide and follow 28 points of address.
@@ -242,7 +242,7 @@ fn the_pointer_sets_the_cursor_and_selects() {
 }
 
 #[test]
-fn hovering_a_byte_describes_it() {
+fn hovering_describes_byte() {
     let mut harness = editor(16, None);
     press(&mut harness, &[(CTRL, Key::Home), (NONE, Key::ArrowRight)]);
     harness.state_mut().wanted[5] = 0x41;
@@ -256,7 +256,7 @@ fn hovering_a_byte_describes_it() {
 }
 
 #[test]
-fn the_cursor_stays_visible_and_in_range() {
+fn cursor_stays_visible_and_in_range() {
     let state = Bytes { device: vec![0; 4096], wanted: vec![0; 4096], ..Bytes::default() };
     let mut harness = editor(0, None);
     assert_eq!(value(&harness), "");

@@ -52,7 +52,7 @@ fn step(harness: &mut Harness<'_, Jog>, events: impl IntoIterator<Item = Event>)
 }
 
 #[test]
-fn a_hold_lasts_while_the_pointer_is_down() {
+fn hold_lasts_while_pointer_is_down() {
     let mut harness = jog();
     let at = midpoint(&harness);
     assert_eq!(step(&mut harness, [Event::PointerMoved(at)]), []);
@@ -66,7 +66,7 @@ fn a_hold_lasts_while_the_pointer_is_down() {
 }
 
 #[test]
-fn sliding_off_ends_a_hold_until_the_next_press() {
+fn sliding_off_ends_hold() {
     let mut harness = jog();
     let at = midpoint(&harness);
     step(&mut harness, [Event::PointerMoved(at)]);
@@ -79,7 +79,7 @@ fn sliding_off_ends_a_hold_until_the_next_press() {
 }
 
 #[test]
-fn a_press_that_began_elsewhere_starts_no_hold() {
+fn press_from_elsewhere_starts_no_hold() {
     let mut harness = jog();
     let at = midpoint(&harness);
     let beside = at + Vec2::new(0.0, 200.0);
@@ -89,7 +89,7 @@ fn a_press_that_began_elsewhere_starts_no_hold() {
 }
 
 #[test]
-fn disabling_the_button_or_losing_focus_ends_a_hold() {
+fn disabling_or_losing_focus_ends_hold() {
     // The button is locked by an error, or the window does not have the keyboard focus.
     for cause in [0, 1] {
         let mut harness = jog();
@@ -135,7 +135,7 @@ fn armed() -> Harness<'static, Jog> {
 }
 
 #[test]
-fn a_key_holds_the_button_and_repeats_start_nothing() {
+fn key_holds_button_and_repeats_start_nothing() {
     let mut harness = armed();
     assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
     assert_eq!(step(&mut harness, [key(true, true)]), [Hold]);
@@ -162,7 +162,7 @@ fn step_after(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) 
 
 /// A key repeat may be reported as a release and a new press in two frames, however far apart they are (issue 21.2).
 #[test]
-fn a_key_repeat_split_over_two_frames_starts_no_hold() {
+fn split_key_repeat_starts_no_hold() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
         let mut harness = armed();
         assert_eq!(step_after(&mut harness, apart, Some(key(true, false))), [Press], "{apart}");
@@ -176,7 +176,7 @@ fn a_key_repeat_split_over_two_frames_starts_no_hold() {
 
 /// The user presses the key 0.1 s after its release, with no other event in between (issue 21.2).
 #[test]
-fn a_release_requests_the_frame_that_rearms_the_key() {
+fn release_requests_rearming_frame() {
     let mut harness = armed();
     let next =
         |harness: &Harness<'_, Jog>| harness.output().viewport_output[&ViewportId::ROOT].repaint_delay.as_secs_f64();
@@ -200,7 +200,7 @@ fn a_release_requests_the_frame_that_rearms_the_key() {
 /// If Space is held while the user switches to another window and back, egui reports a key repeat as the first press
 /// (issue 21.2).
 #[test]
-fn a_key_held_during_a_window_change_starts_no_hold() {
+fn key_held_during_window_change_starts_no_hold() {
     for held_before in [false, true] {
         let mut harness = armed();
         if held_before {
@@ -231,7 +231,7 @@ fn a_key_held_during_a_window_change_starts_no_hold() {
 /// A button that was not drawn, was locked or was covered by a dialog cannot detect whether a key has been released
 /// (issue 21.2).
 #[test]
-fn a_key_down_before_the_button_was_enabled_starts_no_hold() {
+fn key_down_before_enabling_starts_no_hold() {
     type Change = fn(&mut Jog, bool);
     let changes: [(&str, Change); 2] =
         [("locked", |jog, on| jog.locked = on), ("covered", |jog, on| jog.around.covered = on)];
@@ -262,7 +262,7 @@ fn a_key_down_before_the_button_was_enabled_starts_no_hold() {
 
 /// A pointer press that began under a dialog has no effect after the dialog is closed either (issue 21.2).
 #[test]
-fn a_press_under_a_dialog_starts_no_hold() {
+fn press_under_dialog_starts_no_hold() {
     let mut harness = jog();
     let at = midpoint(&harness);
     step(&mut harness, [Event::PointerMoved(at)]);
@@ -277,7 +277,7 @@ fn a_press_under_a_dialog_starts_no_hold() {
 
 /// Any key, modifier, other button or second finger ends a hold by the pointer (issue 21.2).
 #[test]
-fn any_other_input_ends_a_pointer_hold() {
+fn other_input_ends_pointer_hold() {
     let other = |key| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
     let finger = || Event::Touch {
         device_id: egui::TouchDeviceId(1),
@@ -315,7 +315,7 @@ fn any_other_input_ends_a_pointer_hold() {
 
 /// A key press on the button during another motion is a request to stop (issue 21.2).
 #[test]
-fn a_key_stops_a_running_motion() {
+fn key_stops_running_motion() {
     let mut harness = armed();
     harness.state_mut().around.moving = true;
     assert_eq!(step(&mut harness, [key(true, false)]), [Stop]);

@@ -104,7 +104,7 @@ fn click(harness: &mut Harness<'_, Registers>, label: &str, from_left: f32, time
 }
 
 #[test]
-fn only_visible_groups_are_requested() {
+fn requests_only_visible_groups() {
     let mut harness = table();
     assert_eq!(harness.state().output.groups, 0..1);
     focus(&mut harness, TABLE);
@@ -118,7 +118,7 @@ fn only_visible_groups_are_requested() {
 }
 
 #[test]
-fn arrow_keys_stop_at_headings_and_skip_bit_fields() {
+fn arrow_keys_skip_bit_fields() {
     let mut harness = table();
     focus(&mut harness, TABLE);
     press(&mut harness, &[(NONE, Key::ArrowDown)]);
@@ -143,7 +143,7 @@ fn arrow_keys_stop_at_headings_and_skip_bit_fields() {
 }
 
 #[test]
-fn a_typed_value_is_refused_or_accepted() {
+fn accepts_or_rejects_typed_value() {
     let mut harness = table();
     harness.state_mut().view.select(place(5, 7));
     focus(&mut harness, TABLE);
@@ -172,7 +172,7 @@ fn a_typed_value_is_refused_or_accepted() {
 }
 
 #[test]
-fn read_only_registers_show_the_reason() {
+fn read_only_registers_show_reason() {
     let mut harness = table();
     harness.state_mut().view.select(place(0, 1));
     focus(&mut harness, TABLE);
@@ -187,7 +187,7 @@ fn read_only_registers_show_the_reason() {
 }
 
 #[test]
-fn the_pointer_selects_folds_and_edits() {
+fn pointer_selects_folds_and_edits() {
     let mut harness = table();
     click(&mut harness, "00:03 register 3", 200.0, 1);
     assert_eq!(harness.state().view.selected(), Some(place(0, 3)));
@@ -204,7 +204,7 @@ fn the_pointer_selects_folds_and_edits() {
 }
 
 #[test]
-fn a_selected_register_is_scrolled_into_view() {
+fn scrolls_to_selected_register() {
     let mut harness = table();
     harness.state_mut().view.set_folded(0x23, true);
     harness.run();
@@ -214,7 +214,7 @@ fn a_selected_register_is_scrolled_into_view() {
 }
 
 #[test]
-fn one_click_edits_a_number_box() {
+fn single_click_edits_number_box() {
     let entry = |harness: &Harness<'_, Registers>| {
         harness.query_by_role(egui::accesskit::Role::TextInput).and_then(|node| node.accesskit_node().label())
     };
@@ -236,7 +236,7 @@ fn one_click_edits_a_number_box() {
 
 /// A click on another box takes the keyboard focus from the one being edited.
 #[test]
-fn typed_text_is_accepted_when_another_box_is_clicked() {
+fn clicking_another_box_accepts_typed_text() {
     let mut harness = table_harness(RegisterKind::Numbers);
     let entry = |harness: &Harness<'_, Registers>| {
         harness.query_by_role(egui::accesskit::Role::TextInput).and_then(|node| node.accesskit_node().label())
@@ -260,7 +260,7 @@ fn typed_text_is_accepted_when_another_box_is_clicked() {
 }
 
 #[test]
-fn typed_text_stays_with_its_register_when_lines_change() {
+fn typed_text_stays_with_its_register() {
     let mut harness = table();
     click(&mut harness, "00:05 register 5", 100.0, 2);
     let typed = |harness: &Harness<'_, Registers>| {
@@ -279,7 +279,7 @@ fn typed_text_stays_with_its_register_when_lines_change() {
 /// A slowly drawn window receives several keys in one frame. None may be lost or handled twice, whether the table has
 /// the keyboard focus or is about to regain it (issue 26.4).
 #[test]
-fn text_typed_in_a_single_frame_is_complete() {
+fn text_typed_in_one_frame_is_complete() {
     let mut harness = table();
     click(&mut harness, "00:05 register 5", 200.0, 1);
     let key = |key| {

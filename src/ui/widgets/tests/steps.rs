@@ -37,7 +37,7 @@ fn procedure(run: Run) -> Harness<'static, Run> {
 }
 
 #[test]
-fn button_presses_are_reported() {
+fn reports_button_presses() {
     let mut harness = procedure(Run { speed: Some(500.5), ..Run::default() });
     for (label, event) in [("Start", StepsEvent::Start), ("Leave out", StepsEvent::Skip)] {
         harness.get_by_label(label).click();
@@ -53,7 +53,7 @@ fn button_presses_are_reported() {
 }
 
 #[test]
-fn a_blocked_start_shows_the_reason() {
+fn blocked_start_shows_reason() {
     let refused = Some("It turns too slowly.");
     for speed in [None, Some(480.0), Some(f64::NAN), Some(f64::INFINITY), Some(-1e300)] {
         let mut harness = procedure(Run { speed, refused, ..Run::default() });
@@ -66,7 +66,7 @@ fn a_blocked_start_shows_the_reason() {
 }
 
 #[test]
-fn a_value_is_allowed_only_within_its_limits() {
+fn gauge_limits_are_inclusive() {
     let gauge = |value| Gauge {
         name: String::new(),
         value,

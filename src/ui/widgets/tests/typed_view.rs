@@ -6,7 +6,7 @@ use super::{theme, window};
 use crate::ui::widgets::typed_view;
 
 #[test]
-fn a_value_is_shown_by_type_and_copied() {
+fn shows_and_copies_value_by_type() {
     let mut harness = window(vec![0xDB, 0x0F, 0x49], |ui, bytes: &mut Vec<u8>| typed_view(ui, &theme(), bytes));
     let value = |label: &str| harness.get_by_label(label).value();
     assert_eq!(value("i16 Big endian").as_deref(), Some("-9457"));
