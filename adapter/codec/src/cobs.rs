@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn unstuffed_bytes_are_refused() {
+    fn rejects_unstuffed_bytes() {
         assert_eq!(decode(&[0x03, 0x11, 0x00]), Err(CobsError::Zero(2)));
         assert_eq!(decode(&[0x03, 0x11]), Err(CobsError::Short(1)));
         assert_eq!(decode(&[0xFF]), Err(CobsError::Short(254)));

@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn gaps_are_found_by_index_and_by_lost_count() {
+    fn finds_gaps_by_index_and_lost_count() {
         let mut stream = Continuity::at_start();
         let cases = [
             (data(0, 10, 0), PacketGap::None),

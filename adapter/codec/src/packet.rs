@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_packets_are_refused() {
+    fn rejects_invalid_packets() {
         assert_eq!(Packet::parse(&[]), Err(PacketError::Length(0)));
         assert_eq!(Packet::parse(&cobs::encode(&[0xFF, 0xFF])), Err(PacketError::Length(2)));
         let long = Packet { seq: 0, op: 1, body: vec![7; MAX_BODY + 1] }.emit();

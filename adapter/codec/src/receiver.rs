@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn packets_are_found_in_any_chunks() {
+    fn finds_packets_in_any_chunks() {
         let sent = [packet(0, 0), packet(1, 20), packet(0, 300), packet(2, 512)];
         let mut bytes = vec![0, 0];
         sent.iter().for_each(|packet| bytes.extend(packet.emit()));
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn damaged_packets_are_dropped_and_counted() {
+    fn drops_and_counts_damaged_packets() {
         let mut receiver = Receiver::default();
         let good = packet(1, 20).emit();
         let mut damaged = good.clone();
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn endless_noise_is_not_buffered() {
+    fn does_not_buffer_endless_noise() {
         let mut receiver = Receiver::default();
         for _ in 0..100 {
             assert_eq!(packets(&mut receiver, &[0x55; 100]), []);
@@ -123,7 +123,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn packets_are_found_after_noise_and_a_zero(noise: Vec<u8>) {
+        fn finds_packets_after_noise_and_zero(noise: Vec<u8>) {
             let mut receiver = Receiver::default();
             let bytes = [noise, vec![0], packet(3, 9).emit()].concat();
             let found = packets(&mut receiver, &bytes);

@@ -188,7 +188,7 @@ fn every_message_round_trips() {
 }
 
 #[test]
-fn every_flipped_bit_is_detected() {
+fn detects_every_flipped_bit() {
     let texts = request_vectors()
         .into_iter()
         .map(|(.., text)| text)
@@ -209,7 +209,7 @@ fn every_flipped_bit_is_detected() {
 
 /// A body that is truncated or has an extra byte is rejected, unless it ends with data of variable length.
 #[test]
-fn every_truncated_body_is_refused() {
+fn rejects_truncated_bodies() {
     for (seq, request, _) in request_vectors() {
         let whole = request.emit(seq);
         let open_end = request.operation() == Operation::UartTransfer;
@@ -233,14 +233,14 @@ fn every_truncated_body_is_refused() {
 }
 
 #[test]
-fn a_version_mismatch_names_both_versions() {
+fn version_mismatch_names_both_versions() {
     let packet = Packet { seq: 0, op: 0x81, body: vec![2, 1, 2, 3] };
     let error = Message::parse(&packet).unwrap_err();
     assert_eq!(error.to_string(), "the adapter uses version 2 of the bridge protocol, but this program uses version 1");
 }
 
 #[test]
-fn unknown_codes_are_reported_or_kept() {
+fn reports_or_keeps_unknown_codes() {
     let packet = |op, body: &[u8]| Packet { seq: 0, op, body: body.to_vec() };
     assert_eq!(Request::parse(&packet(0x50, &[])), Err(BodyError::Operation(0x50)));
     assert_eq!(Request::parse(&packet(0x81, &[])), Err(BodyError::Operation(0x81)));

@@ -162,7 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rates_divide_the_highest_one() {
+    fn rates_divide_highest_rate() {
         for (wanted, actual) in [
             (u32::MAX, 100_000),
             (100_000, 100_000),
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn offset_and_gain_are_corrected_and_limited() {
+    fn corrects_and_limits_offset_and_gain() {
         let correction = Correction { offset: 2050 * 16 + 8, gain: 18_022 };
         assert_eq!(correction.apply(2051), 8);
         // 16 008 · 1.1.

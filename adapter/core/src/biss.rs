@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn clocks_are_never_faster_than_requested() {
+    fn never_exceeds_requested_clock() {
         let cases = [
             (80_000, 80_000),
             (1_000_000, 1_000_000),
@@ -143,7 +143,7 @@ mod tests {
     /// The longest frame times are from `protocol/biss.md`, section 2, for 7 µs busy time and 18 µs time-out, in tenths
     /// of a microsecond. The adapter also allows for a line delay of 1 µs and two more clocks.
     #[test]
-    fn an_interval_holds_the_longest_frame_of_the_reference() {
+    fn interval_holds_longest_frame() {
         for (hz, worst) in [(1_000_000, 700), (2_000_000, 475), (5_000_000, 340), (10_000_000, 295), (80_000, 5875)] {
             let least = setting(hz).least_period_us() * 10;
             assert!((worst..worst + 130 + 2 * 10_000_000 / hz * 10).contains(&least), "{hz} Hz: {least}");
@@ -152,7 +152,7 @@ mod tests {
 
     /// The search lasts long enough for the slowest encoder (7 µs busy time) on the longest line (1 µs delay).
     #[test]
-    fn the_search_covers_a_long_line_and_a_slow_encoder() {
+    fn search_covers_long_line_and_slow_encoder() {
         for hz in [80_000, 1_000_000, 2_000_000, 5_000_000, 10_000_000] {
             let steps = f64::from(setting(hz).search_steps());
             let clock_us = 1e6 / f64::from(setting(hz).clock_hz());
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_has_a_status_a_control_bit_and_data() {
+    fn frame_has_status_control_bit_and_data() {
         // Idle 1, acknowledgement 0, start 1, control bit 1, then the example frame of the reference for 1234 and
         // 18000.
         let words = |head: u32| {

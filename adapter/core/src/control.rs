@@ -128,7 +128,7 @@ mod tests {
 
     /// The expected checksums are from `protocol/biss.md`, section 3.
     #[test]
-    fn checksums_match_the_reference() {
+    fn checksums_match_reference() {
         let header = [(0x00, 0x6), (0x05, 0x9), (0x40, 0x1), (0x42, 0x7), (0x66, 0x1), (0x68, 0x0), (0x69, 0x3)];
         for (address, crc) in header.into_iter().chain([(0x6A, 0x6), (0x6B, 0x5), (0x6E, 0xA), (0x7F, 0xC)]) {
             assert_eq!(crc4(1 << 10 | address, 11), crc, "{address:02X}");
@@ -161,7 +161,7 @@ mod tests {
 
     /// The expected bits are from `protocol/biss.md`, section 3. A read takes one more frame for the stop bit.
     #[test]
-    fn bits_of_the_host_match_the_reference() {
+    fn host_bits_match_reference() {
         for (address, bits) in [
             (0x00, "11000000000001101010000000000000"),
             (0x05, "11000000010110011010000000000000"),
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn a_late_value_is_waited_for() {
+    fn waits_for_late_value() {
         let late = [READ, &"0".repeat(50), "1 01001011 0110 0"].concat();
         let (result, sent) = play(read(0x66), &late);
         assert_eq!(result, Ok(0x4B));
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn every_failure_is_distinguished() {
+    fn distinguishes_failures() {
         let cases = [
             ("0 00000000 00000000 1 0 1 01001011 0110 0", ControlError::NoSlave),
             ("0 10000000 00000000 0 0 1 01001011 0110 0", ControlError::Refused),
@@ -224,7 +224,7 @@ mod tests {
 
     /// Bits 1 to 8 of a control frame select slaves 0 to 7.
     #[test]
-    fn another_slave_has_its_own_bit() {
+    fn slaves_have_separate_bits() {
         let access = RegisterAccess { slave: 2, address: 0x66, value: None };
         let answer = |locked: &str| ["0", locked, "00000000 1 0", "1 01001011 0110 0"].concat();
         assert_eq!(play(access, &answer("00100000")).0, Ok(0x4B));

@@ -30,7 +30,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_are_joined_in_the_order_of_the_clock() {
+    fn joins_words_in_clock_order() {
         let cases: [(u8, [u32; 3], u128); 7] = [
             (1, [1, 0, 0], 1),
             (25, [0x0B4_B234, 7, 7], 0x0B4_B234),

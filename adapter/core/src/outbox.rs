@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_leave_in_order_and_room_returns() {
+    fn sends_bytes_in_order() {
         let mut outbox = Outbox::default();
         outbox.push(&[1, 2, 3], 0);
         outbox.consume(2, 5);
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn a_host_is_stuck_after_two_seconds_without_progress() {
+    fn host_is_stuck_after_two_seconds() {
         let mut outbox = Outbox::default();
         assert!(!outbox.is_stuck(u64::MAX));
         outbox.push(&[1, 2, 3], 1_000_000);

@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn clocks_are_never_faster_than_requested() {
+    fn never_exceeds_requested_clock() {
         let cases = [
             (50_000, 50_000),
             (80_000, 80_000),
@@ -85,7 +85,7 @@ mod tests {
     /// The expected durations are from `protocol/ssi.md`, section 1: at 400 kHz, 25 clocks take 62.5 µs and 33 clocks
     /// take 82.5 µs.
     #[test]
-    fn durations_match_the_reference() {
+    fn durations_match_reference() {
         let burst = |clocks, hz| SsiSetting::new(clocks, hz, 25, SsiFlags::FALLING_EDGE).unwrap();
         assert_eq!(burst(25, 400_000).burst_us(), 63);
         assert_eq!(burst(33, 400_000).burst_us(), 83);
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_settings_are_refused() {
+    fn rejects_invalid_settings() {
         let falling = SsiFlags::FALLING_EDGE;
         for (clocks, hz, flags) in [
             (0, 1_000_000, falling),

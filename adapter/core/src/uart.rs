@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn divisors_are_within_a_thousandth_of_the_baud_rate() {
+    fn divisors_match_baud_within_one_per_mille() {
         for baud in [300, 600, 1200, 2400, 4800, 9600, 19_200, 38_400, 115_200, 1_000_000] {
             let setting = UartSetting::new(baud, 2, 0).unwrap();
             let actual = 120e6 / 8.0 * 256.0 / f64::from(setting.divisor);
@@ -173,7 +173,7 @@ mod tests {
 
     /// A character consists of start bit 0, data with the lowest bit first, parity, and stop bit 1.
     #[test]
-    fn characters_have_their_bits_in_order() {
+    fn orders_character_bits() {
         let line = |parity, byte| {
             let setting = UartSetting::new(9_600, parity, 0).unwrap();
             let bits = setting.encode(byte);
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn received_bits_become_bytes() {
+    fn decodes_received_bits() {
         for parity in [0, 2] {
             let setting = UartSetting::new(9_600, parity, 0).unwrap();
             for byte in [0x00, 0x42, 0x80, 0x01, 0xFF] {

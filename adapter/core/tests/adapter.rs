@@ -12,7 +12,7 @@ const SSI_25: Request =
 const BISS_41: Request = Request::BissConfig { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, timeout_us: 20 };
 
 #[test]
-fn the_adapter_identifies_itself() {
+fn adapter_identifies_itself() {
     let Message::Reply(Reply::Hello(Hello { name, serial, firmware, max_clock_hz, .. })) =
         Bench::new().ask(&Request::Hello)
     else {
@@ -22,7 +22,7 @@ fn the_adapter_identifies_itself() {
 }
 
 #[test]
-fn words_are_read_after_the_pause() {
+fn reads_words_after_pause() {
     let mut bench = Bench::new();
     assert_eq!(refusal(bench.ask(&Request::SsiRead)), (0x11, ErrorCode::BAD_ARGUMENT), "not configured");
     assert_eq!(bench.ask(&SSI_25), Message::Reply(Reply::SsiConfig { clock_hz: 1_000_000 }));
@@ -36,7 +36,7 @@ fn words_are_read_after_the_pause() {
 }
 
 #[test]
-fn frames_and_their_status_are_reported() {
+fn reports_frames_and_status() {
     let mut bench = Bench::new();
     assert_eq!(bench.ask(&BISS_41), Message::Reply(Reply::BissConfig { clock_hz: 2_000_000 }));
     for (head, status, raw) in
@@ -52,7 +52,7 @@ fn frames_and_their_status_are_reported() {
 
 /// A read of address 66h returns 4Bh. The control bits are from `protocol/biss.md`, section 3.
 #[test]
-fn a_register_is_read_by_control_bits() {
+fn reads_register_by_control_bits() {
     let mut bench = Bench::new();
     let read = Request::BissRegisterRead { slave: 0, address: 0x66 };
     assert_eq!(refusal(bench.ask(&read)), (0x22, ErrorCode::BAD_ARGUMENT), "not configured");
@@ -73,7 +73,7 @@ fn a_register_is_read_by_control_bits() {
 }
 
 #[test]
-fn a_stream_has_every_sample_at_its_time() {
+fn stream_has_every_sample_on_time() {
     let mut bench = Bench::new();
     bench.ask(&SSI_25);
     let Message::Reply(Reply::SsiStream { period_us }) = bench.ask(&Request::SsiStream { period_us: 1 }) else {
@@ -100,7 +100,7 @@ fn a_stream_has_every_sample_at_its_time() {
 
 /// A word of 64 clocks fills two of the three 32-bit words of a frame.
 #[test]
-fn long_words_survive_a_stream() {
+fn stream_keeps_long_words() {
     let mut bench = Bench::new();
     bench.model().ssi = |t_us| 0x8000_0001_0000_0000 | t_us;
     bench.ask(&Request::SsiConfig { clocks: 64, clock_hz: 4_000_000, pause_us: 0, flags: SsiFlags::FALLING_EDGE });
@@ -117,7 +117,7 @@ fn long_words_survive_a_stream() {
 }
 
 #[test]
-fn lost_samples_of_a_late_host_are_counted() {
+fn counts_samples_lost_to_late_host() {
     let mut bench = Bench::new();
     bench.ask(&BISS_41);
     bench.ask(&Request::BissStream { period_us: 100 });
@@ -143,7 +143,7 @@ fn lost_samples_of_a_late_host_are_counted() {
 }
 
 #[test]
-fn other_requests_wait_until_a_stream_has_ended() {
+fn other_requests_wait_for_stream_end() {
     let mut bench = Bench::new();
     bench.ask(&SSI_25);
     bench.ask(&BISS_41);
@@ -162,7 +162,7 @@ fn other_requests_wait_until_a_stream_has_ended() {
 }
 
 #[test]
-fn a_stream_ends_without_its_host() {
+fn stream_ends_without_host() {
     let mut bench = Bench::new();
     bench.ask(&SSI_25);
     bench.ask(&Request::SsiStream { period_us: 1_000 });
@@ -187,7 +187,7 @@ fn a_stream_ends_without_its_host() {
 }
 
 #[test]
-fn a_host_that_only_sends_has_to_wait() {
+fn host_must_read_before_sending_more() {
     let mut bench = Bench::new();
     let request = Request::Hello.emit(1).emit();
     let mut sent = 0;
@@ -201,7 +201,7 @@ fn a_host_that_only_sends_has_to_wait() {
 }
 
 #[test]
-fn malformed_packets_are_counted_and_answered() {
+fn counts_and_answers_malformed_packets() {
     let mut bench = Bench::new();
     let mut answer = |packet: Packet| {
         bench.adapter.receive(&packet.emit());
@@ -224,7 +224,7 @@ fn malformed_packets_are_counted_and_answered() {
 /// The adapter answers each valid packet once, never panics on random bytes, and still works afterwards. The
 /// requirement is a million packets.
 #[test]
-fn a_million_random_packets_are_survived() {
+fn survives_million_random_packets() {
     let count = std::env::var("ADAPTER_FUZZ_PACKETS").map_or(1_000_000, |count| count.parse().unwrap());
     let mut bench = Bench::new();
     bench.model().ssi = |t_us| t_us;

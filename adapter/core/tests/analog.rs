@@ -9,7 +9,7 @@ use model::{Bench, refusal};
 
 /// The sine is converted every 10 µs, and the cosine 2 µs after it.
 #[test]
-fn pairs_are_sampled_back_to_back_at_their_time() {
+fn samples_pairs_back_to_back() {
     let mut bench = Bench::new();
     assert_eq!(refusal(bench.ask(&Request::AnalogStream { on: true })).1, ErrorCode::BAD_ARGUMENT, "not configured");
     // The value encodes the time, without repeating within a packet.
@@ -41,7 +41,7 @@ fn pairs_are_sampled_back_to_back_at_their_time() {
 }
 
 #[test]
-fn missed_conversions_and_a_late_host_are_reported() {
+fn reports_missed_conversions() {
     let mut bench = Bench::new();
     bench.ask(&Request::AnalogConfig { sample_hz: 100_000 });
     bench.ask(&Request::AnalogStream { on: true });

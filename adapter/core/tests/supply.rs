@@ -28,7 +28,7 @@ fn status(bench: &mut Bench) -> AdapterStatus {
 }
 
 #[test]
-fn a_supply_is_on_from_its_request_to_the_next_one() {
+fn supply_stays_on_between_requests() {
     let mut bench = Bench::new();
     assert!(!hello(&mut bench).capabilities.contains(Capabilities::SUPPLY_ON) && !bench.model().is_supplied);
     let supplied = Reply::Supply { on: true, millivolt: 8_050, milliampere: 0 };
@@ -45,7 +45,7 @@ fn a_supply_is_on_from_its_request_to_the_next_one() {
 }
 
 #[test]
-fn another_voltage_than_the_requested_one_is_not_switched_on() {
+fn rejects_unrequested_voltage() {
     let mut bench = Bench::new();
     for (requested, connected, is_good) in [
         (8_000, 8_800, true),
@@ -68,7 +68,7 @@ fn another_voltage_than_the_requested_one_is_not_switched_on() {
 }
 
 #[test]
-fn an_overload_switches_the_supply_off_and_is_reported() {
+fn overload_switches_supply_off() {
     let mut bench = Bench::new();
     bench.model().has_fault = true;
     bench.run(1_000);

@@ -24,7 +24,7 @@ fn send(bench: &mut Bench, request: &Request) {
 }
 
 #[test]
-fn a_reply_ends_with_silence_and_has_the_time_of_its_first_edge() {
+fn reply_ends_with_silence() {
     let mut bench = Bench::new();
     assert_eq!(refusal(bench.ask(&transfer(50_000, 5_000))), (0x41, ErrorCode::BAD_ARGUMENT), "not configured");
     assert_eq!(bench.ask(&CONFIG), Message::Reply(Reply::UartConfig { baud: 9_600 }));
@@ -50,7 +50,7 @@ fn a_reply_ends_with_silence_and_has_the_time_of_its_first_edge() {
 }
 
 #[test]
-fn without_a_reply_the_time_out_ends_the_transfer() {
+fn timeout_ends_transfer() {
     let mut bench = Bench::new();
     bench.ask(&CONFIG);
     let start = bench.model().now_us;
@@ -71,7 +71,7 @@ fn without_a_reply_the_time_out_ends_the_transfer() {
 }
 
 #[test]
-fn streams_continue_during_a_transfer() {
+fn streams_continue_during_transfer() {
     let mut bench = Bench::new();
     bench.ask(&Request::SsiConfig { clocks: 25, clock_hz: 1_000_000, pause_us: 30, flags: SsiFlags::FALLING_EDGE });
     bench.ask(&Request::SsiStream { period_us: 1_000 });
