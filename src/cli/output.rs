@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn control_characters_are_shown() {
+    fn escapes_control_characters() {
         assert_eq!(show_control_characters("GB\u{1b}[31m\tÄ µ\r\u{9b}x\n"), "GB\\u{1b}[31m\\tÄ µ\\r\\u{9b}x\n");
     }
 }

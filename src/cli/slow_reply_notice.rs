@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn slow_replies_are_reported_with_a_remedy() {
+    fn reports_slow_replies_with_remedy() {
         assert_eq!(message(1000, &[3, 5, 4]), None, "what takes long does so for other reasons");
         assert_eq!(message(1000, &[299, 301]).unwrap(), "The device answers slowly: a reply takes 300 ms.");
         assert_eq!(
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn the_notice_appears_late_and_only_once() {
+    fn notice_appears_late_and_once() {
         let replies = ReplyTimes::default();
         replies.record(Duration::from_millis(300));
         let pace = |replies| ReplyTiming { replies, timeout: Duration::from_secs(1), longest: Duration::from_secs(2) };

@@ -58,7 +58,7 @@ fn typing_errors(name: &str) -> Vec<String> {
 
 /// No misspelt name may be accepted, as 153 of 393 once were (issue 22.17).
 #[test]
-fn misspelt_names_in_ready_made_profiles_are_reported() {
+fn reports_misspelt_names_in_ready_made_profiles() {
     let mut misspelt = 0;
     for (path, text) in profiles_in("profiles") {
         for (begin, end) in names(&text) {
@@ -79,7 +79,7 @@ fn misspelt_names_in_ready_made_profiles_are_reported() {
 
 /// Covers the ready-made profiles of schema 1, and a profile of each kind saved at that time (issue 22.17).
 #[test]
-fn schema_1_profiles_can_be_opened() {
+fn opens_schema_1_profiles() {
     let files = profiles_in("tests/fixtures/schema-1");
     assert_eq!(
         files.iter().filter(|(path, _)| path.file_stem().unwrap() == "saved").count(),
@@ -121,7 +121,7 @@ fn ready_made_profiles_parse() {
 }
 
 #[test]
-fn an_unknown_kind_is_reported_with_the_known_ones() {
+fn unknown_kind_error_lists_known_kinds() {
     let error = ProfileDocument::parse("(schema: 1, device: \"sse\")", program().studio.formats).unwrap_err();
     let known = "\"hiperface\", \"biss\", \"ssi\", \"interbus\" and \"hiperdrive\"";
     assert_eq!(error.to_string(), format!("device \"sse\" is not supported (supported: {known})"));
@@ -129,7 +129,7 @@ fn an_unknown_kind_is_reported_with_the_known_ones() {
 }
 
 #[test]
-fn tabs_are_in_navigation_order() {
+fn tabs_follow_navigation_order() {
     let tabs: Vec<_> = program().tabs.tabs().map(crate::app::Tab::name).collect();
     assert_eq!(
         tabs,

@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn the_step_of_a_timer_is_measured() {
+    fn measures_timer_step() {
         assert_eq!(measure_timer_step(&VirtualClock::default()), Duration::from_millis(1));
         let ticking = Ticking::default();
         ticking.0.sleep_until(Moment::from_elapsed(Duration::from_micros(14_000)));
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn virtual_time_only_moves_forward() {
+    fn virtual_time_never_decreases() {
         let clock = VirtualClock::default();
         clock.sleep_until(Moment::from_elapsed(Duration::from_secs(3600)));
         clock.sleep_until(Moment::from_elapsed(Duration::from_secs(1)));

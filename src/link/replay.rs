@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_recording_replays_in_order_and_wraps() {
+    fn replays_in_order_and_wraps() {
         let text =
             "# encoder-studio trace 1\n0 > 40 42 02\n0.1 < AA\n0.2 > 40 42 02\n0.3 < BB\n0.4 > 40 49 ** **\n0.5 < CC";
         let clock = Arc::new(VirtualClock::default());

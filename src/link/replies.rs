@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn reply_times_are_shared_by_all_clones() {
+    fn clones_share_reply_times() {
         let (replies, ms) = (ReplyTimes::default(), Duration::from_millis);
         let seen = replies.clone();
         assert_eq!((seen.average(), seen.longest_reply_time()), (None, Duration::ZERO));

@@ -277,7 +277,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ports_are_ordered_by_their_number() {
+    fn sorts_ports_by_number() {
         let mut ports = ["COM10", "/dev/ttyUSB10", "COM3", "/dev/ttyUSB2", "/dev/ttyS0", "COM"];
         ports.sort_by_key(|path| split_port_number(path));
         assert_eq!(ports, ["/dev/ttyS0", "/dev/ttyUSB2", "/dev/ttyUSB10", "COM", "COM3", "COM10"]);
@@ -285,7 +285,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn every_open_failure_has_a_distinct_kind() {
+    fn open_failures_have_distinct_kinds() {
         let error = |kind| serialport::Error::new(kind, "words of the system");
         let io = |kind| error(serialport::ErrorKind::Io(kind));
         assert_eq!(open_error_kind("/dev/nope", &io(ErrorKind::NotFound)), LinkErrorKind::NotFound);

@@ -120,7 +120,7 @@ mod tests {
 
     /// Without polling, each of a hundred short waits would last until the next system tick, up to a second in total.
     #[test]
-    fn polling_does_not_wait_and_short_waits_are_short() {
+    fn polling_does_not_wait() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let clock = Arc::new(RealClock::start());
         let target = listener.local_addr().unwrap().to_string();

@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_broken_trace_names_the_line() {
+    fn broken_trace_names_line() {
         let cases = [
             ("", "the file does not begin with \"# encoder-studio trace 1\""),
             ("# encoder-studio trace 1\n\n0.1 = 40", "line 3 is not of the form \"0.031204 > 40 42 02\""),

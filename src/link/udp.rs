@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn packets_reach_their_target_and_replies_return_to_the_port() {
+    fn delivers_packets_and_replies() {
         let (target, mut packets, clock) = pair();
         packets.send(b"out").unwrap();
         let mut buffer = [0; 16];
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn packets_of_other_senders_are_dropped_and_a_closed_port_is_tolerated() {
+    fn drops_packets_from_other_senders() {
         let (target, mut packets, clock) = pair();
         let to = ("127.0.0.1", packets.port());
         // All addresses in 127/8 belong to this computer.
@@ -348,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn broadcast_replies_come_from_the_addressed_devices() {
+    fn addressed_devices_reply_to_broadcast() {
         let target = UdpSocket::bind("127.0.0.1:0").unwrap();
         let SocketAddr::V4(address) = target.local_addr().unwrap() else { panic!() };
         let clock = Arc::new(RealClock::start());
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn requests_go_to_the_broadcast_address_of_a_network() {
+    fn sends_to_broadcast_address() {
         let of = |ip: [u8; 4], mask: [u8; 4]| {
             broadcast_address(&Ifv4Addr { ip: ip.into(), netmask: mask.into(), prefixlen: 0, broadcast: None })
         };
@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn long_datagrams_are_received_whole() {
+    fn receives_long_datagrams_whole() {
         let (target, mut packets, clock) = pair();
         let long = vec![7; 9000];
         target.send_to(&long, ("127.0.0.1", packets.port())).unwrap();
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wait_in_short_sleeps_ends_with_a_packet_or_at_its_end() {
+    fn wait_ends_with_packet_or_timeout() {
         let (sender, heard) = bounded(1);
         let clock = RealClock::start();
         let until = clock.now() + Duration::from_millis(5);

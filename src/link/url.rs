@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_links_are_refused_with_a_reason() {
+    fn rejects_invalid_links_with_reason() {
         let cases = [
             ("", "\"\" is not a link: a link begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:"),
             (
@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gateway_defaults_to_the_modbus_port() {
+    fn gateway_defaults_to_modbus_port() {
         for (text, whole) in [
             ("modbus:plc", "modbus:plc:502"),
             ("modbus:[::1]?unit=3", "modbus:[::1]:502?unit=3"),
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn links_to_the_same_wire_are_recognized() {
+    fn recognizes_links_to_same_wire() {
         let wire = |text: &str| format!("{:?}", text.parse::<LinkUrl>().unwrap().wire());
         assert_eq!(wire("bridge:/dev/ttyACM0?clock=1"), wire("serial:/dev/ttyACM0"));
         assert_eq!(wire("bridge:tcp:[::1]:4001"), wire("tcp:[::1]:4001"));
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_value_names_the_allowed_ones() {
+    fn bad_value_names_allowed_values() {
         let query: UrlQuery = "baud=fast".parse().unwrap();
         let speeds = WholeNumbers(Quantity::Number, 1..=9);
         let error = query.read("baud", &speeds).unwrap_err();

@@ -237,7 +237,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_parse_print_and_are_refused() {
+    fn parses_formats_and_rejects_values() {
         let told = |allowed: AllowedValues| allowed.to_string();
         let unit = WholeNumbers::<u8>(Quantity::Unit, 1..=247);
         assert_eq!(

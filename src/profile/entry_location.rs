@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_entry_is_found_at_any_depth() {
+    fn finds_entry_at_any_depth() {
         let text =
             "(\n  a: 1, // b: 2\n  list: [(b: \"b: 3\"), (x: Some((y: {\"z\": 4, 7: 5})), b: 6)],\n  ä: 1, c: 2)";
         let cases = [

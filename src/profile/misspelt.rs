@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn typos_are_distinguished_from_other_names() {
+    fn distinguishes_typos_from_other_names() {
         let cases = [
             ("filtr", "filter", Some(1)),
             ("presett", "preset", Some(1)),

@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plans_cost_is_the_sum_of_its_operations() {
+    fn plan_cost_sums_operations() {
         let plan = |ops: &[Step]| Plan { base: (), ops: ops.to_vec() };
         assert_eq!(plan(&[Step::Save, Step::Try, Step::SaveTwice, Step::Save]).write_cycles(), 4);
         assert!(plan(&[]).is_empty());
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn a_consent_covers_only_the_plan_that_was_shown() {
+    fn consent_covers_only_shown_plan() {
         let shown = Plan { base: 1, ops: vec!["a", "b"] };
         let consent = Consent::to(shown.id());
         assert!(consent.covers(shown.clone().id()));

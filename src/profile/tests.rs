@@ -80,7 +80,7 @@ fn lamp(colour: &str) -> Body {
 }
 
 #[test]
-fn a_document_is_parsed_in_the_format_of_its_kind() {
+fn parses_document_in_its_format() {
     let document = parse(TEXT).unwrap();
     assert_eq!(document.device(), "lamp");
     assert_eq!(document.body.get::<Lamp>().unwrap().steps, [(10, UnknownValues::new()), (0x40, UnknownValues::new())]);
@@ -90,7 +90,7 @@ fn a_document_is_parsed_in_the_format_of_its_kind() {
 }
 
 #[test]
-fn bodies_are_equal_if_kind_and_content_are() {
+fn bodies_compare_by_kind_and_content() {
     assert_eq!(lamp("red"), lamp("red"));
     assert_ne!(lamp("red"), lamp("blue"));
     assert_ne!(lamp("red"), Body::new(Fan));
@@ -101,7 +101,7 @@ fn bodies_are_equal_if_kind_and_content_are() {
 }
 
 #[test]
-fn an_unknown_kind_is_reported_with_the_known_ones() {
+fn unknown_kind_error_lists_known_kinds() {
     let told = |formats| ProfileDocument::parse("(schema: 1, device: \"tap\")", formats).unwrap_err().to_string();
     let three = ProfileFormats::new(&[Lamp::FORMAT, Fan::FORMAT, Lamp::FORMAT]);
     assert_eq!(told(Lamp::FORMATS), "device \"tap\" is not supported (supported: \"lamp\")");
@@ -110,7 +110,7 @@ fn an_unknown_kind_is_reported_with_the_known_ones() {
 }
 
 #[test]
-fn a_profile_of_another_kind_names_both() {
+fn kind_mismatch_names_both_kinds() {
     let error = lamp("red").into_profile::<Fan>().unwrap_err();
     assert_eq!(error, lamp("red").wrong_kind_error(Fan::KIND));
     assert_eq!(error.to_string(), "the profile is for a lamp device, not for a fan device");
@@ -118,7 +118,7 @@ fn a_profile_of_another_kind_names_both() {
 }
 
 #[test]
-fn user_entries_and_newer_schema_entries_are_kept() {
+fn keeps_user_and_newer_schema_entries() {
     let own = TEXT.replace("(level: 10)", "(level: 10, extra: {\"by\": \"CK\"})");
     let document = parse(&own).unwrap();
     assert!(document.beyond.is_empty() && document.emit().contains("extra: {\"by\": \"CK\"}"));
@@ -131,7 +131,7 @@ fn user_entries_and_newer_schema_entries_are_kept() {
 
 /// A document is saved over a user's text, and merged with another user's changes (issues 22.25 and 22.26).
 #[test]
-fn a_document_is_merged_into_text_and_with_another() {
+fn merges_document_into_text_and_document() {
     assert_edit_in_place(TEXT, |own: &mut Lamp| own.colour = "blue".to_owned(), "\"red\"", "\"blue\"");
     let (_, carried) = edit_profile(TEXT, |note, own: &mut Lamp| {
         *note = Some("as of today".to_owned());
@@ -156,7 +156,7 @@ fn a_document_is_merged_into_text_and_with_another() {
 }
 
 #[test]
-fn a_cause_displays_the_device_error_and_keeps_its_type() {
+fn cause_keeps_error_type() {
     #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
     #[error("{0} lamps are too many")]
     struct TooMany(u32);
@@ -171,7 +171,7 @@ fn a_cause_displays_the_device_error_and_keeps_its_type() {
 }
 
 #[test]
-fn profiles_of_one_kind_are_compared() {
+fn compares_profiles_of_one_kind() {
     let comparison = lamp("red").compare(&lamp("blue")).unwrap();
     assert_eq!((comparison.compared, comparison.differences().len()), (1, 1));
     assert!(matches!(

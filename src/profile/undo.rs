@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn changes_of_a_value_add_up() {
+    fn value_changes_accumulate() {
         let unlocked = [("status:3", "A8", "E8"), ("field:3@0", "00", "11"), ("status:3", "E8", "A8")];
         assert_eq!(changes(&unlocked), changes(&[("field:3@0", "00", "11")]));
         assert_eq!(changes(&[("a", "1", "2"), ("a", "2", "3")]), changes(&[("a", "1", "3")]));
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn values_that_changed_since_are_named() {
+    fn names_values_changed_since() {
         let write = changes(&[("a", "1", "2"), ("b", "5", "6"), ("c", "", "7")]);
         let since = |undoing: &[(&str, &str, &str)]| {
             let text = |value: Option<String>| value.unwrap_or_default();

@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_unique_within_a_structure() {
+    fn structure_names_are_unique() {
         check("(a: 1, b: (a: -1, b: \"x\"), c: [(a: 1.5), (a: 'c')], d: Some(()), e: true, f: None)", None);
         check("()", None);
         check("(a: 1, a: 1)", Some("a"));

@@ -203,7 +203,7 @@ fn key_stops_motion_without_hold() {
 
 /// A key repeat may be reported as a release in one frame and a press in the next (issue 21.2).
 #[test]
-fn a_key_repeat_split_over_two_frames_starts_no_hold() {
+fn split_key_repeat_starts_no_hold() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
         let mut pad = TestButton::armed();
         pad.apart = apart;
@@ -232,7 +232,7 @@ fn press_after_other_key_starts_no_hold() {
 /// A tenth of a second after a release, the next press starts a hold, even without any other event in between (issue
 /// 21.2).
 #[test]
-fn a_release_requests_the_frame_that_rearms_the_key() {
+fn release_requests_rearming_frame() {
     let mut pad = TestButton::armed();
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
     assert_eq!(pad.state.repaint_delay(), None, "while it is held");

@@ -11,7 +11,7 @@ fn error(query: &str) -> Option<ConfigError> {
 }
 
 #[test]
-fn each_device_reads_its_own_settings() {
+fn devices_read_their_own_settings() {
     let query = "line=low&noise=0.5&ssi-error=error:2&ssi=ahm36,st=12&supply=switched&uart=hiperface&version=2&rpm=60";
     assert_eq!(error(query), None);
     let unknown = error("lin=low").unwrap().to_string();
@@ -25,7 +25,7 @@ fn each_device_reads_its_own_settings() {
 
 proptest! {
     #[test]
-    fn no_value_panics(key in 0..25_usize, value in ".*") {
+    fn arbitrary_value_never_panics(key in 0..25_usize, value in ".*") {
         let _ = Adapter::from_pairs(&[(all_setting_names(attachable_kinds())[key].to_owned(), value)], attachable_kinds());
     }
 }

@@ -11,7 +11,7 @@ use crate::kinds::program;
 /// Scripts rely on the commands, options and their values, but not on descriptions. `ENCODER_STUDIO_RECORD=1` updates
 /// the recorded list.
 #[test]
-fn commands_and_options_are_as_recorded() {
+fn commands_match_recorded_options() {
     let mut text = String::new();
     list(&mut text, "encoder-studio", &command(program().commands));
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/cli/options.txt");

@@ -23,7 +23,7 @@ fn commented_profile(kind: &str) -> String {
 
 /// Saving an unchanged profile keeps the text, for every kind and any line endings (issue 22.26).
 #[test]
-fn unchanged_text_is_kept_verbatim() {
+fn keeps_unchanged_text_verbatim() {
     for kind in program().studio.formats.kinds() {
         let text = commented_profile(kind);
         for text in [text.replace('\n', "\r\n"), text] {
@@ -38,7 +38,7 @@ fn unchanged_text_is_kept_verbatim() {
 /// Saving a different profile over a text writes its exact content, and each user comment is kept or reported as lost
 /// (issue 22.26).
 #[test]
-fn any_rewrite_is_exact_and_lists_lost_comments() {
+fn rewrite_is_exact_and_lists_lost_comments() {
     let all = ready_made();
     for (kind, text) in &all {
         for line_end in ["\n", "\r\n"] {
@@ -121,7 +121,7 @@ proptest::proptest! {
     /// Wherever a text has comments and line endings, saving any profile over it keeps the comments or reports them as
     /// lost (issue 22.26).
     #[test]
-    fn comments_between_any_tokens_are_kept_or_listed(
+    fn keeps_or_lists_comments_between_tokens(
         from in 0_usize..100,
         to in 0_usize..100,
         picks in proptest::collection::vec(0_usize..9, 1..200),

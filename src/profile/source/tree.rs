@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_are_located_despite_comments_and_whitespace() {
+    fn locates_entries_between_comments() {
         let text = "#![enable(implicit_some)]\n// head\n( a: 1, // \"one\n /* b: /* 2 */ */ b : \"x, \\\" y\", c: r#\"(\"#,\r\n d: Some(( e: 'x' )), f: (1, 2), g: [1, 2,], h: {158: -5})\n// end";
         let own = [
             ("a", "1"),
@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn unparsable_text_yields_no_tree() {
+    fn invalid_text_yields_no_tree() {
         for text in ["", "(a: 1", "(a: )", "(a 1)", "(a: 1) b", "(a: \"x)", "[1 2]"] {
             assert_eq!(read(text), None, "{text}");
         }

@@ -232,7 +232,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fact_longer_than_a_page_is_divided() {
+    fn splits_fact_longer_than_page() {
         let faces = Typefaces::load().unwrap();
         let mut flow = Flow::new(&faces);
         let words: Vec<String> = (0..300).map(|number| format!("line{number}")).collect();

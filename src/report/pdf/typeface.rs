@@ -149,7 +149,7 @@ mod tests {
 
     /// U+96FB, U+52D5 and U+6A5F form the Japanese word for an electric motor. The built-in fonts do not contain them.
     #[test]
-    fn characters_without_a_glyph_are_printed_as_code_points() {
+    fn prints_missing_glyphs_as_code_points() {
         let typefaces = Typefaces::load().unwrap();
         let printed = "[U+96FB][U+52D5][U+6A5F]/7 Größe Ω";
         let text: String =

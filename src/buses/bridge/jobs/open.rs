@@ -63,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn links_open_an_adapter_or_report_the_reason() {
+    fn opens_adapter_or_reports_reason() {
         for (text, milliseconds) in [
             ("sim:", 20),
             ("sim:?bridge=on&rpm=60&noise=0.1&margin=7", 7),

@@ -107,7 +107,7 @@ pub(crate) fn count<T>(batches: &[Batch<Vec<T>>]) -> (u64, u64) {
 }
 
 #[test]
-fn unfetched_and_damaged_samples_are_counted_as_missing() {
+fn counts_unfetched_and_damaged_samples() {
     let mut bench = bench(RawFrames, virtual_adapter("fault=flip:0.00002&seed=1"));
     let before = bench.take(Duration::from_secs(1));
     // The computer sleeps for seven seconds, of which the adapter buffers one.
@@ -127,7 +127,7 @@ fn unfetched_and_damaged_samples_are_counted_as_missing() {
 }
 
 #[test]
-fn samples_lost_by_a_stalled_consumer_are_counted() {
+fn counts_samples_lost_to_stalled_consumer() {
     let Bench { clock, bridge, .. } = bench(RawFrames, virtual_adapter("rpm=60"));
     let stream = Stream::spawn(bridge, 4_000, clock, Arc::new(|| ())).unwrap();
     // Virtual time passes as fast as the thread can run.
@@ -249,7 +249,7 @@ fn analog(first_index: u32, lost: u16, samples: Vec<(i16, i16)>) -> Message {
 const SINE_COSINE: SineCosine = SineCosine { sample_hz: 100_000 };
 
 #[test]
-fn full_scale_values_become_volts_and_gaps_are_kept() {
+fn converts_full_scale_to_volts() {
     let device = puppet(vec![
         analog(0, 0, vec![(32_767, 0), (-32_768, 16_384)]),
         analog(2, 0, vec![]),
@@ -280,7 +280,7 @@ fn full_scale_values_become_volts_and_gaps_are_kept() {
 
 /// The cosine rises by 1000 per interval of 20 µs and is sampled 5 µs late, which is a quarter of the interval.
 #[test]
-fn the_cosine_is_corrected_for_its_skew() {
+fn corrects_cosine_skew() {
     let ramp = |from: i16, count: i16| (from..from + count).map(|at| (7, at * 1000)).collect::<Vec<_>>();
     let mut device = puppet(vec![analog(0, 0, ramp(0, 10)), analog(10, 0, ramp(10, 1)), analog(20, 9, ramp(20, 5))]);
     device.capabilities = Capabilities::ANALOG.union(Capabilities::ANALOG_SKEW);
@@ -299,7 +299,7 @@ fn the_cosine_is_corrected_for_its_skew() {
 
 /// An AFS60 with sine and cosine needs 5 V, and allows at most 5.5 V.
 #[test]
-fn a_requested_supply_is_switched_on_within_its_limit() {
+fn switches_requested_supply_on() {
     for (too_high, expected) in [(400, Ok((5_400, 60))), (600, Err((5_000, 5_600, 5_500)))] {
         let mut device = puppet(vec![analog(0, 0, vec![(1, 1)])]);
         device.capabilities = Capabilities::ANALOG.union(Capabilities::SUPPLY);
@@ -330,7 +330,7 @@ fn a_requested_supply_is_switched_on_within_its_limit() {
 }
 
 #[test]
-fn a_stream_with_an_unanswered_start_is_restarted() {
+fn restarts_unanswered_stream() {
     let mut device = puppet(vec![analog(0, 0, vec![(1, 1)])]);
     device.swallowed = vec![Operation::AnalogStream];
     let heard = device.heard.clone();
@@ -348,7 +348,7 @@ fn adapter_error(error: BridgeError) -> AdapterError {
 }
 
 #[test]
-fn missing_adapter_capabilities_are_reported() {
+fn reports_missing_capabilities() {
     let mut lame = puppet(Vec::new());
     lame.capabilities = Capabilities::SSI;
     let error = adapter_error(bench(SINE_COSINE, lame).error());
@@ -367,7 +367,7 @@ fn missing_adapter_capabilities_are_reported() {
 }
 
 #[test]
-fn a_stream_that_ends_or_restarts_by_itself_is_reported() {
+fn reports_unexpected_stream_end() {
     let mut quiet = bench(SINE_COSINE, puppet(vec![analog(0, 0, vec![(1, 1)])]));
     assert_eq!(adapter_error(quiet.error()), AdapterError::Mute);
     assert!(quiet.clock.now().since_start() < Duration::from_secs(6), "three seconds before it began");
@@ -408,7 +408,7 @@ impl ByteLink for UnpluggingLink {
 }
 
 #[test]
-fn a_lost_or_missing_wire_is_reported() {
+fn reports_lost_or_missing_wire() {
     for portions in [0, 1, 2, 3, 10] {
         let clock = Arc::new(VirtualClock::default());
         let link = SimLink::connect(Arc::new(Mutex::new(virtual_adapter("rpm=60"))), clock.clone());

@@ -88,14 +88,14 @@ mod tests {
     }
 
     #[test]
-    fn a_fast_or_slow_clock_is_tracked_for_hours() {
+    fn tracks_fast_or_slow_clock() {
         for parts_per_million in [-100, 100] {
             drift(parts_per_million, 3);
         }
     }
 
     #[test]
-    fn a_stopped_clock_is_resynchronized() {
+    fn resynchronizes_stopped_clock() {
         let mut drift = ClockDrift::default();
         let at = |ms: i64| SampleTime::from_nanoseconds(ms * MS);
         assert_eq!(drift.time(0, at(500)), at(500));

@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn the_adapters_clock_is_estimated_and_resynchronized() {
+    fn estimates_adapter_clock() {
         let mut clocks = ClockOffsetBounds::default();
         // The local clock is 1000 µs ahead. The request is sent at 2000, the adapter samples at 1100 of its clock,
         // and the reply arrives at 2400.

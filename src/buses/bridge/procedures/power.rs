@@ -56,7 +56,7 @@ mod tests {
 
     /// The supply is switched off unless it was on before or another choice was made (issue 22.16).
     #[test]
-    fn the_supply_ends_as_found_or_as_chosen() {
+    fn restores_or_overrides_supply_after_session() {
         use SupplyAfterSession::{AsFound, Off, On};
         let cases = [
             (AsFound, None, true, true),

@@ -87,7 +87,7 @@ mod tests {
 
     /// Without the correction, a delay of 2 µs causes an angle error of 0.72° at 1 kHz and of 3.6° at 5 kHz.
     #[test]
-    fn the_cosine_moves_to_the_time_of_the_sine() {
+    fn aligns_cosine_with_sine() {
         for (hz, limit) in [(50.0, 0.01), (1_000.0, 0.01), (5_000.0, 0.05), (10_000.0, 0.5)] {
             let error = largest_error(hz, &[1000]);
             assert!(error < limit, "{hz} Hz: {error}°");
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn packets_of_any_length_continue() {
+    fn continues_across_packet_lengths() {
         for portions in [vec![124; 8], vec![1; 100], vec![2, 3, 1, 50, 5]] {
             let error = largest_error(1_000.0, &portions);
             assert!(error < 0.05, "{portions:?}: {error}°");
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn after_a_gap_the_previous_samples_do_not_count() {
+    fn gap_discards_previous_samples() {
         let mut correction = SkewCorrection::new(2_000, 10_000).unwrap();
         correction.apply(&mut [(0, 32_767); 10]);
         correction.reset();
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn signals_of_the_same_time_are_not_changed() {
+    fn keeps_simultaneous_signals() {
         assert_eq!(SkewCorrection::new(0, 10_000), None);
         assert_eq!(SkewCorrection::new(10_000, 10_000), None);
         let mut empty: [(i16, i16); 0] = [];

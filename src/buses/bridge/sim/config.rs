@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_is_parsed() {
+    fn parses_every_key() {
         let config = read("line=low&noise=0.5&supply=switched&version=2").unwrap();
         assert_eq!(config, Config { line: EncoderWiring::Low, noise: 0.5, switched_supply: true, version: 2 });
         let faults = "drop:0.5".parse().unwrap();
@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_values_are_reported() {
+    fn reports_invalid_values() {
         let sentence = "`line=bad` is not valid (allowed: good, open, low or high)";
         assert_eq!(read("line=bad").unwrap_err().to_string(), sentence);
         for query in ["noise=2", "noise=NaN", "supply=on", "version=256", "version=-1"] {

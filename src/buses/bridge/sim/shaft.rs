@@ -68,7 +68,7 @@ mod tests {
 
     /// At 60 rpm the shaft makes a revolution of 2^25 steps per second, and wraps after 65 536 revolutions.
     #[test]
-    fn a_turning_shaft_has_the_expected_position() {
+    fn turning_shaft_reaches_expected_position() {
         let mut shaft = Shaft::with_speed(60.0);
         assert_eq!([0, 250, 1_500].map(|ms| shaft.position_at(at(ms)).0), [0, 1 << 23, 3 << 24]);
         let copy = shaft.clone();

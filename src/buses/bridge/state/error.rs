@@ -82,7 +82,7 @@ mod tests {
     use crate::link::UrlQuery;
 
     #[test]
-    fn each_error_code_has_a_distinct_text() {
+    fn error_codes_have_distinct_texts() {
         let words = |code: u8, language| {
             let text = "streaming".to_owned();
             let code = ErrorCode::new(code);
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_capabilities_and_stream_ends_are_explained() {
+    fn explains_missing_capabilities_and_stream_ends() {
         let name = || "box".to_owned();
         let cause = BodyError::Operation(0x94);
         let cases = [
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_body_is_explained_in_both_languages() {
+    fn explains_damaged_body_in_both_languages() {
         let errors = [
             BodyError::Length { op: 0x20, got: 3 },
             BodyError::Operation(0x94),
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn setting_errors_are_explained_in_both_languages() {
+    fn explains_setting_errors_in_both_languages() {
         let queries = "sed=1 seed=x firmware=1 serial=x rpm=x waver=x position=x temperature=x errors=x filter=x \
                        cycles=x pulses=x calibration=x calibration-silent=x echo=x order=x line=x noise=x ssi=x \
                        ssi-error=x ssi=afs60&ssi-error=x supply=x uart=x motor=x version=x";

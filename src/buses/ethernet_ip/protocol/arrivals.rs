@@ -55,7 +55,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn packets_arriving_in_any_order_are_classified() {
+    fn classifies_packets_in_any_order() {
         const NEXT: PacketVerdict = PacketVerdict::New { missing: 0 };
         let mut arrivals = PacketTracker::default();
         for (sequence, expected) in [
@@ -76,7 +76,7 @@ mod tests {
     proptest! {
         /// Accepted sequence numbers never go back, in whatever order the packets arrive.
         #[test]
-        fn accepted_sequence_numbers_only_increase(start: u32, order in proptest::collection::vec(0u32..1000, 1..200)) {
+        fn accepted_sequence_numbers_increase(start: u32, order in proptest::collection::vec(0u32..1000, 1..200)) {
             let mut arrivals = PacketTracker::default();
             let mut counted: Vec<u32> = Vec::new();
             for at in &order {

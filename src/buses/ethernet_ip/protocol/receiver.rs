@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_found_in_any_chunks() {
+    fn finds_frames_in_any_chunks() {
         let sent = [frame(1, 0), frame(2, 16), frame(3, 600), frame(4, 1), frame(5, Frame::MAX_DATA)];
         let bytes: Vec<u8> = sent.iter().flat_map(Frame::emit).collect();
         for size in [1, 7, 23, 24, 25, 1460, bytes.len()] {
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_length_breaks_the_connection_permanently() {
+    fn wrong_length_breaks_connection_permanently() {
         let mut receiver = Receiver::default();
         let mut bytes = frame(1, 4).emit();
         // 65512 exceeds the maximum data length by one.

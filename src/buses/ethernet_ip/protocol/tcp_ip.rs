@@ -222,7 +222,7 @@ mod tests {
     /// The first, last and broadcast addresses match Python's `ipaddress.ip_network("192.168.1.64/26")`: 64, 65 to 126,
     /// and 127.
     #[test]
-    fn unusable_addresses_are_refused() {
+    fn rejects_unusable_addresses() {
         let own = |text: &str| -> Ipv4Addr { text.parse().unwrap() };
         for (address, mask, gateway) in [
             ("192.168.1.50", "255.255.255.0", "0.0.0.0"),
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn name_servers_and_names_are_checked() {
+    fn checks_name_servers_and_domain() {
         let good = InterfaceConfiguration {
             address: Ipv4Addr::new(192, 168, 1, 50),
             mask: Ipv4Addr::new(255, 255, 255, 0),

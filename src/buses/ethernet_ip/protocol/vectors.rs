@@ -49,7 +49,7 @@ fn published_frames_match() {
 
 /// A reply to an earlier request, from another session or to another command does not match.
 #[test]
-fn a_reply_matches_only_its_own_request() {
+fn reply_matches_only_its_request() {
     let request = Frame::unconnected_message(SESSION, [7; 8], vec![0x0E]);
     assert!(request.error_reply(EncapsulationStatus::NO_SESSION).is_reply_to(&request));
     let other = |change: fn(&mut Frame)| {
@@ -181,7 +181,7 @@ fn published_connection_matches() {
 /// ABCDh, followed by 0 words and a reserved byte, or by the number of remaining path words and a reserved byte. The
 /// rejection has status 01 and one extended status word, 0106h.
 #[test]
-fn a_connection_ends_or_is_refused() {
+fn connection_closes_or_fails() {
     let text = "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00";
     let closed = ForwardCloseSuccess { owner: OWNER, application: Vec::new() };
     let reply = Reply::parse(&bytes(text)).unwrap();
@@ -272,7 +272,7 @@ fn published_cyclic_packets_match() {
 /// of 10 characters, and state 3. It has 2 + 16 + 14 + 1 + 10 + 1 = 44 = 2Ch bytes, and the data of the frame have 2 +
 /// 4 + 44 = 50 = 32h bytes.
 #[test]
-fn an_identity_item_is_parsed() {
+fn parses_identity_item() {
     let item = "01 00 00 02 AF 12 C0 A8 01 05 00 00 00 00 00 00 00 00 F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 0A 48 49 50 \
                 45 52 44 52 49 56 45 03";
     let text = format!("63 00 32 00 {} 01 00 0C 00 2C 00 {item}", "00 ".repeat(20));
@@ -306,7 +306,7 @@ fn an_identity_item_is_parsed() {
 /// three characters with its length in two bytes, and a padding byte. The low four bits of the configuration control
 /// are the address source.
 #[test]
-fn the_interface_configuration_is_parsed() {
+fn parses_interface_configuration() {
     let text = "05 01 A8 C0 00 FF FF FF 01 01 A8 C0 00 00 00 00 00 00 00 00 03 00 6C 61 6E 00";
     let configuration = InterfaceConfiguration {
         address: Ipv4Addr::new(192, 168, 1, 5),
@@ -328,7 +328,7 @@ fn the_interface_configuration_is_parsed() {
 }
 
 #[test]
-fn socket_address_items_are_parsed() {
+fn parses_socket_address_items() {
     // Composed by hand: 8000h and 16 bytes. The family is 2, the port is 2222 = 08AEh and the address is 10.0.0.7, all
     // with the high byte first.
     let text = "02 00 00 80 10 00 00 02 08 AE 0A 00 00 07 00 00 00 00 00 00 00 00 01 80 10 00 00 02 08 AE EF 01 02 03 00 \
@@ -345,7 +345,7 @@ fn socket_address_items_are_parsed() {
 
 /// Each code is listed once, and an unknown one is reported as unknown.
 #[test]
-fn status_tables_match_the_specification() {
+fn status_tables_match_specification() {
     for (code, meaning) in [(0x05, "path unknown"), (0x09, "invalid value"), (0x0E, "attribute cannot be set")] {
         assert_eq!(GeneralStatus::new(code).row().map(|row| row.meaning), Some(meaning));
     }

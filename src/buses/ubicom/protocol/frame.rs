@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn truncated_and_damaged_frames_are_refused() {
+    fn rejects_truncated_and_damaged_frames() {
         for text in FRAMES {
             let bytes = parse_hex(text).unwrap();
             for cut in 0..bytes.len() {
@@ -148,7 +148,7 @@ mod tests {
     /// The length in the header is checked. The example printed in the manual (reference 5) is rejected, because it is
     /// one byte too short.
     #[test]
-    fn the_length_in_the_header_is_checked() {
+    fn checks_header_length() {
         let printed = [0x80, 0x01, 0x01, 0x02, 0x00, 0x00, 0x7B];
         assert_eq!(Frame::parse(&printed), Err(FrameError::Length { expected: 8, got: 7 }));
         let longer = [0x80, 0x01, 0x01, 0x03, 0x00, 0x00, 0x00, 0x7A];

@@ -324,7 +324,7 @@ mod tests {
 
     /// The reply to the probe reveals the byte order in which the encoder reads register numbers.
     #[test]
-    fn the_reply_reveals_the_byte_order() {
+    fn reply_reveals_byte_order() {
         let bytes = Request::PROBE.emit(ByteOrder::LowFirst);
         let frame = Frame::parse(&bytes).unwrap();
         assert_eq!(Request::parse(&frame, ByteOrder::LowFirst), Ok(Request::Read { register: 0x0001 }));
@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_requests_are_reported() {
+    fn reports_unknown_requests() {
         let frame = |command, payload| Frame { address: NODE, command, payload };
         let order = ByteOrder::LowFirst;
         assert_eq!(Request::parse(&frame(0x04, &[1]), order), Err(RequestError::Command(0x04)));

@@ -37,7 +37,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_position_of_more_than_forty_bits_is_refused() {
+    fn rejects_position_over_forty_bits() {
         assert_eq!(PositionWord::new(1 << 40), None);
         assert_eq!(PositionWord::new((1 << 40) - 1).map(PositionWord::emit), Some([0xFF; 5]));
     }

@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_found_in_any_chunks() {
+    fn finds_frames_in_any_chunks() {
         let text = [READ, VALUE, TRICKY].join(" ");
         let bytes = parse_hex(&text).unwrap();
         for size in 1..=bytes.len() {
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_frame_after_damage_is_found() {
+    fn finds_frame_after_damage() {
         let mut receiver = Receiver::new(NODE);
         assert_eq!(frames(&mut receiver, &format!("55 80 80 {VALUE}")), [VALUE], "noise before");
         assert_eq!(receiver.skipped_count(), 3);
@@ -141,7 +141,7 @@ mod tests {
 
     /// Silence ends a partial frame that would otherwise never be complete, such as LEN 3 with two bytes (reference 6).
     #[test]
-    fn silence_ends_a_partial_frame() {
+    fn silence_ends_partial_frame() {
         let mut receiver = Receiver::new(NODE);
         assert_eq!(frames(&mut receiver, "80 01 01 03 00 26 00 54"), [""; 0]);
         assert!(receiver.is_waiting());
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn every_partial_frame_is_awaited_and_dropped() {
+    fn drops_partial_frame_after_timeout() {
         let bytes = parse_hex(TRICKY).unwrap();
         for cut in 1..bytes.len() {
             let mut receiver = Receiver::new(NODE);
@@ -168,7 +168,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn noise_before_a_frame_does_not_hide_it(noise in proptest::collection::vec(any::<u8>(), 0..40)) {
+        fn finds_frame_after_noise(noise in proptest::collection::vec(any::<u8>(), 0..40)) {
             let mut receiver = Receiver::new(NODE);
             receiver.push(&noise);
             let mut found: Vec<Vec<u8>> = std::iter::from_fn(|| receiver.next_frame()).collect();

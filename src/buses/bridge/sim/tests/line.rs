@@ -4,7 +4,7 @@ use super::*;
 use crate::sim::SimulatedFaults;
 
 #[test]
-fn line_faults_are_injected() {
+fn injects_line_faults() {
     assert_eq!(Host::with("fault=drop:1").ask(Request::Hello), None);
     assert_eq!(Host::with("fault=silent-after:0").ask(Request::Hello), None);
     let mut host = Host::with("fault=silent-after:2");

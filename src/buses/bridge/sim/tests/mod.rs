@@ -15,7 +15,7 @@ use crate::sim::setting::query_pairs;
 use crate::units::Moment;
 
 #[test]
-fn the_adapter_identifies_itself() {
+fn adapter_identifies_itself() {
     let mut host = Host::with("");
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
     assert_eq!(hello.capabilities.to_bits(), 0b1111);
@@ -30,7 +30,7 @@ fn the_adapter_identifies_itself() {
 }
 
 #[test]
-fn an_adapter_of_another_version_reports_its_version() {
+fn reports_other_adapter_version() {
     let mut host = Host::with("version=2");
     host.send(&Request::Hello);
     host.now = host.now + Duration::from_millis(1);
@@ -41,7 +41,7 @@ fn an_adapter_of_another_version_reports_its_version() {
 }
 
 #[test]
-fn damaged_wires_are_reported() {
+fn reports_damaged_wires() {
     for (query, expected, word) in [
         ("line=open", BissStatus::NO_ACKNOWLEDGE, 0x1FF_FFFF),
         ("line=low", BissStatus::STUCK_LOW, 0),
@@ -61,7 +61,7 @@ fn damaged_wires_are_reported() {
 /// In addition to the usual reply time, a register access takes 47 cycles of 47 µs (7 µs for the acknowledgement, 22 µs
 /// for the clocks and 18 µs for the time-out).
 #[test]
-fn a_register_access_takes_the_expected_time() {
+fn register_access_takes_expected_time() {
     let mut host = Host::with("");
     host.ask(BISS);
     let start = host.now;
@@ -70,14 +70,14 @@ fn a_register_access_takes_the_expected_time() {
 }
 
 #[test]
-fn a_period_is_not_shorter_than_a_frame() {
+fn period_covers_frame() {
     let mut host = Host::with("");
     host.ask(BISS);
     host.expect(Request::BissStream { period_us: 1 }, Reply::BissStream { period_us: 47 });
 }
 
 #[test]
-fn a_stream_blocks_its_bus() {
+fn stream_blocks_its_bus() {
     let mut host = Host::with("");
     host.ask(BISS);
     host.ask(SSI);
@@ -102,7 +102,7 @@ fn a_stream_blocks_its_bus() {
 /// The full scale is 1.25 V. The encoder has 1024 periods per revolution, turns at 60 rpm and has an amplitude of 0.5
 /// V.
 #[test]
-fn analog_samples_match_the_virtual_encoder() {
+fn analog_samples_match_virtual_encoder() {
     let mut host = Host::with("rpm=60");
     let config = Reply::AnalogConfig { sample_hz: 102_396, full_scale_microvolt: 1_250_000, bits: 16 };
     host.expect(Request::AnalogConfig { sample_hz: 102_400 }, config);
@@ -133,7 +133,7 @@ fn analog_samples_match_the_virtual_encoder() {
 
 /// The word of the test encoder has 13 bits per revolution, so a quarter of a revolution is 2048 steps.
 #[test]
-fn without_a_biss_encoder_the_adapter_has_a_shaft() {
+fn adapter_without_biss_encoder_has_shaft() {
     let mut host = Host::to("rpm=60&supply=switched", &[&SsiTestEncoder]);
     host.ask(SSI);
     let word = |host: &mut Host| match host.ask(Request::SsiRead) {
@@ -160,7 +160,7 @@ fn without_a_biss_encoder_the_adapter_has_a_shaft() {
 }
 
 #[test]
-fn all_encoders_share_one_shaft() {
+fn encoders_share_one_shaft() {
     let mut host = Host::with("");
     host.ask(BISS);
     host.ask(Request::AnalogConfig { sample_hz: 100_000 });
@@ -185,7 +185,7 @@ fn all_encoders_share_one_shaft() {
 }
 
 #[test]
-fn the_supply_can_be_switched() {
+fn switches_supply() {
     let mut host = Host::with("supply=switched");
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
     assert!(hello.capabilities.contains(Capabilities::SUPPLY) && !hello.capabilities.contains(Capabilities::SUPPLY_ON));
@@ -213,7 +213,7 @@ fn the_supply_can_be_switched() {
 
 /// Requests that arrive faster than they can be answered are lost, and the adapter answers the next one (issue 22.18).
 #[test]
-fn the_adapter_answers_after_a_flood_of_requests() {
+fn answers_after_request_flood() {
     let mut host = Host::with("");
     host.expect(BISS, Reply::BissConfig { clock_hz: 2_000_000 });
     let read = Request::BissRegisterRead { slave: 0, address: 0x42 };
@@ -229,7 +229,7 @@ fn the_adapter_answers_after_a_flood_of_requests() {
 /// If the host sleeps for ten seconds, the samples that the adapter cannot store are lost, and their number is
 /// reported.
 #[test]
-fn unfetched_samples_are_lost_and_reported() {
+fn reports_unfetched_samples() {
     let mut host = Host::with("");
     host.ask(BISS);
     host.ask(Request::AnalogConfig { sample_hz: 10_000 });

@@ -28,7 +28,7 @@ fn valid_packets() -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn truncated_packets_are_refused() {
+fn rejects_truncated_packets() {
     let [frame, _, _, forward, packet] = valid_packets().try_into().unwrap();
     (0..frame.len()).for_each(|end| assert!(Frame::parse(&frame[..end]).is_err(), "{end}"));
     (0..forward.len()).for_each(|end| assert!(ForwardOpen::parse(&forward[..end]).is_err(), "{end}"));
