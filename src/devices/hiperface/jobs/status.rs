@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_repeated_status_code_is_kept_once_a_minute() {
+    fn keeps_repeated_status_once_per_minute() {
         let mut keeper = RecentStatusCodes::default();
         let at = |seconds| Moment::default() + Duration::from_secs(seconds);
         let (hot, fast) = (StatusCode::TEMPERATURE, StatusCode::TOO_FAST);

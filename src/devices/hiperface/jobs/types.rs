@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn a_users_encoder_type_takes_precedence() {
+    fn user_encoder_type_takes_precedence() {
         let (_root, store) = store_with_table("\u{FEFF}(types: [(code: 0x37, name: \"own\")])".as_bytes());
         let types = encoder_types(&store).unwrap();
         assert_eq!(types.find(0x37).unwrap().name, "own");
@@ -63,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn a_broken_table_is_reported_with_its_location() {
+    fn broken_table_error_has_location() {
         let (_root, store) = store_with_table(b"(types: [\n  (code: 0x37, nam: \"own\")])");
         let error = encoder_types(&store).unwrap_err();
         let StoreError::Refused(cause) = &error else { panic!("{error:?}") };

@@ -214,7 +214,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn distances_take_the_shorter_direction() {
+    fn distance_takes_shorter_direction() {
         assert_eq!(shortest_distance(0, 4095, 4096), 1);
         assert_eq!(shortest_distance(5, 3, 4096), 2);
         assert_eq!(shortest_distance(0, u32::MAX, 1 << 32), 1);

@@ -80,7 +80,7 @@ mod tests {
     /// One count is 1/1023 of 5 V, so 2.5 V is 511.5 counts and 3 V is 613.8 counts. At an amplitude of 0.5 V, a count
     /// is 0.00978 rad.
     #[test]
-    fn counts_convert_to_volts_around_the_mean() {
+    fn converts_counts_to_volts() {
         let signals = Signals::from_counts(613.8, 511.5);
         assert!((signals.sine_v - 0.5).abs() < 1e-12 && signals.cosine_v == 0.0, "{signals:?}");
         assert!((signals.resolution_periods() - 0.001_555_8).abs() < 1e-6, "{}", signals.resolution_periods());

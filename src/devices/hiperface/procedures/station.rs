@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn omitted_parameters_have_factory_settings() {
+    fn omitted_parameters_use_factory_settings() {
         let station = station("").unwrap();
         assert_eq!(station.to_string(), "address 40h at 9600 8E1");
         assert_eq!(station.line.echo, Echo::Unknown);
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn given_access_codes_are_never_printed() {
+    fn never_prints_access_codes() {
         let number = |number| AccessCodeNumber::new(number).unwrap();
         let given: InitialAccessCodes =
             [(number(2), AccessCode::new(0x9D)), (number(2), AccessCode::new(0xA7))].into_iter().collect();
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn line_settings_are_parsed_from_parameters() {
+    fn parses_line_settings() {
         let station = station("baud=38400&parity=odd&address=0x41&echo=off&timeout=11&margin=5&periods=64").unwrap();
         assert_eq!(station.to_string(), "address 41h at 38400 8O1");
         assert_eq!(station.line.echo, Echo::Off);
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rejected_value_names_the_allowed_ones() {
+    fn rejection_lists_allowed_values() {
         let cases = [
             ("baud=115200", "baud=115200 is not valid (allowed: one of 600, 1200, 2400, 4800, 9600, 19200, 38400)"),
             ("parity=mark", "parity=mark is not valid (allowed: none, even or odd)"),

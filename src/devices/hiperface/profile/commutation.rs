@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_round_trips_as_sixteen_bytes() {
+    fn round_trips_as_sixteen_bytes() {
         assert_eq!(record().emit(), RECORD);
         assert_eq!(CommutationRecord::parse(&RECORD), Some(Ok(record())));
         let longer = [&RECORD[..], &[0xFF; 3]].concat();
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn flipped_bits_and_truncations_are_detected() {
+    fn detects_flipped_bits_and_truncation() {
         for bit in 0..RECORD.len() * 8 {
             let mut bytes = RECORD;
             bytes[bit / 8] ^= 1 << (bit % 8);
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn the_crc_matches_the_standard_check_value() {
+    fn crc_matches_standard_check_value() {
         // This is the published check value of CRC-16/CCITT-FALSE for the digits 1 to 9.
         assert_eq!(crc(b"123456789"), 0x29B1);
     }

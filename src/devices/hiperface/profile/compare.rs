@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn only_differences_are_listed() {
+    fn lists_only_differences() {
         let mut changed = [0u8; 16];
         changed[3..5].copy_from_slice(&[0x08, 0x15]);
         changed[15] = 1;
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn longer_and_unreadable_fields_are_missing_on_one_side() {
+    fn lists_bytes_missing_on_one_side() {
         let comparison = compare(
             &[field(0, 0xC8, Some(&[0; 16])), field(1, 0xE8, Some(&[0; 16]))],
             &[field(0, 0xC9, Some(&[0; 32])), field(1, 0xE8, None)],

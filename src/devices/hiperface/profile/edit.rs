@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_are_stored_as_given_or_not_at_all() {
+    fn plans_only_valid_stores() {
         let plan = store(&field(1, 0xE8), 5, &[0x08, 0x00, 0x15]).unwrap();
         assert!(matches!(&plan.ops[..], [Op::Store { field: 1, address: 5, new, .. }] if *new == [0x08, 0x00, 0x15]));
         assert!(store(&field(1, 0xE8), 5, &[0, 0]).unwrap().is_empty());
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn several_edits_form_one_plan() {
+    fn combines_edits_into_one_plan() {
         let fields = [field(1, 0xE8), field(0, 0xE9)];
         let edit = |field, start, bytes: &[u8]| (FieldRange::new(field, start, bytes.len()), bytes.to_vec());
         let edits = [
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn memory_rules_are_enforced() {
+    fn enforces_memory_rules() {
         let status = DataFieldStatus::from_byte;
         assert!(plan_create(MEMORY, 2, status(0xC9)).is_ok());
         assert_eq!(plan_create(MEMORY, 3, status(0xC9)), Err(PlanError::NotNext { field: 3, next: 2 }));

@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_items_are_reported() {
+    fn reports_invalid_items() {
         for text in
             ["", "field", "field:", "field:256", "field:1@", "field:1@0+0", "field:1@+2", "counter:1", "Field:1"]
         {

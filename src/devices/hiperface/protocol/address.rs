@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_40h_to_5fh_are_device_addresses() {
+    fn device_addresses_are_40h_to_5fh() {
         let valid: Vec<u8> = (0..=0xFF).filter(|byte| DeviceAddress::new(*byte).is_some()).collect();
         assert_eq!(valid, (0x40..=0x5F).collect::<Vec<u8>>());
         assert!(DeviceAddress::all().map(DeviceAddress::byte).eq(0x40..=0x5F));

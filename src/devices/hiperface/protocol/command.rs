@@ -134,7 +134,7 @@ mod tests {
     ];
 
     #[test]
-    fn the_command_table_matches_the_manual() {
+    fn command_table_matches_manual() {
         for ((byte, code0, ms), row) in MANUAL.into_iter().zip(COMMANDS) {
             assert_eq!(row.command.byte(), byte);
             assert_eq!(row.code0, code0, "{byte:02X}");
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn every_command_has_its_row_and_byte() {
+    fn every_command_has_row_and_byte() {
         for row in COMMANDS {
             assert_eq!(row.command.row().name, row.name);
             assert_eq!(Command::from_byte(row.command.byte()), Some(row.command));

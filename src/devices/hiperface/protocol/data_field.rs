@@ -218,7 +218,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn status_bytes_decode_as_in_the_reference() {
+    fn status_bytes_match_reference() {
         // byte, exists, writable, code, code required, size
         let cases = [
             (0xC9, true, true, 0, true, 32),
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn a_status_is_encoded_as_in_the_manual() {
+    fn status_encoding_matches_manual() {
         let size = FieldSize::from_bytes(32).unwrap();
         let status = DataFieldStatus::new(size, AccessCodeNumber::ZERO, true);
         assert_eq!(status.byte(), 0xC9);
@@ -252,13 +252,13 @@ mod tests {
     }
 
     #[test]
-    fn sizes_are_rounded_to_blocks_of_sixteen() {
+    fn rounds_sizes_to_blocks() {
         assert!([0, 1, 15, 17, 127, 129, 144].iter().all(|bytes| FieldSize::from_bytes(*bytes).is_none()));
         assert_eq!(FieldSize::all().map(FieldSize::bytes).collect::<Vec<_>>(), [16, 32, 48, 64, 80, 96, 112, 128]);
     }
 
     #[test]
-    fn an_access_code_is_never_printed() {
+    fn debug_output_hides_access_code() {
         assert_eq!(format!("{:?}", AccessCode::FACTORY), "AccessCode(**)");
     }
 }

@@ -168,7 +168,7 @@ mod tests {
     use crate::bits::parse_hex;
 
     #[test]
-    fn requests_and_replies_are_distinguished() {
+    fn distinguishes_requests_from_replies() {
         let heading = |command| FrameDetail::Heading { address: 0x40, command };
         let cases = [
             ("40 42 02", 0x42, FrameDetail::Request(Arguments::None)),
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn access_codes_are_omitted_from_request_descriptions() {
+    fn request_descriptions_omit_access_codes() {
         // In the manual's examples, access code 66h opens field 1, and access code 2 is changed to 66h.
         let cases = [
             ("40 4B 01 05 02 66 08 15 76", Arguments::Store { field: 1, address: 5, data: vec![0x08, 0x15] }),
@@ -199,13 +199,13 @@ mod tests {
     }
 
     #[test]
-    fn the_wrong_checksum_in_the_manual_is_reported() {
+    fn reports_checksum_error_in_manual() {
         let wrong = parse_hex("40 4D 01 E0 55 69").unwrap();
         assert_eq!(describe_frame(&wrong, None), Err(FrameError::Checksum { expected: 0xB9, got: 0x69 }));
     }
 
     #[test]
-    fn a_refusal_is_recognized_by_its_request() {
+    fn recognizes_rejection_by_request() {
         let request = Request::ReadPosition;
         let said = describe_frame(&parse_hex("40 50 1F 0F").unwrap(), Some(&request)).unwrap();
         assert_eq!(said.last(), Some(&FrameDetail::Refused(StatusCode::new(0x1F))));

@@ -156,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_built_in_table_matches_the_reference() {
+    fn built_in_table_matches_reference() {
         let types = EncoderTypes::parse(EncoderTypes::BUILT_IN).unwrap();
         // code, periods, turns, total bits
         let cases = [
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_users_row_overrides_the_built_in_one() {
+    fn user_row_overrides_built_in() {
         let own = r#"(types: [(code: 0x37, name: "XYZ", shape: Some(rotary(periods: 64, turns: 1)))])"#;
         let types = EncoderTypes::built_in().merged_with(EncoderTypes::parse(own).unwrap());
         assert_eq!(types.find(0x37).unwrap().name, "XYZ");
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_table_is_refused_with_its_location() {
+    fn bad_table_error_has_location() {
         let zero = r#"(types: [(code: 1, name: "x", shape: Some(rotary(periods: 0, turns: 1)))])"#;
         let refused = EncoderTypes::parse(zero);
         assert!(matches!(refused, Err(TypeTableError::Range { code: 1, entry: GeometryEntry::Periods, .. })));

@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn the_label_of_the_reference_parses() {
+    fn parses_reference_label() {
         let label = ExtendedLabel::parse(&label()).unwrap();
         assert!(label.checksum_fits);
         assert_eq!(label.geometry, Some(Geometry::Rotary { periods: 16, turns: 4096 }));
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_does_not_shift_pairs() {
+    fn gap_does_not_shift_pairs() {
         let parameter = |number, value| LabelParameter { number, value };
         let mut label = ExtendedLabel::parse(&label()).unwrap();
         label.parameters = vec![parameter(0, 7), parameter(2, 0x48), parameter(3, 115), parameter(9, 1)];
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_linear_label_with_a_second_set_parses() {
+    fn parses_linear_label_with_second_set() {
         let mut bytes = vec![0; 128];
         bytes[1] = 0x01;
         bytes[2..6].copy_from_slice(&1_000_000u32.to_be_bytes());
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn every_truncation_parses_or_is_refused() {
+    fn rejects_labels_below_minimum_size() {
         let whole = label();
         for cut in 0..whole.len() {
             assert_eq!(ExtendedLabel::parse(&whole[..cut]).is_ok(), cut >= ExtendedLabel::MIN_BYTES, "{cut}");
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn label_parts_are_at_the_addresses_of_the_manual() {
+    fn label_addresses_match_manual() {
         let parts = ExtendedLabel::parse_parts(&label()).unwrap();
         assert_eq!(
             parts[..5].iter().map(|(at, count, _)| (*at, *count)).collect::<Vec<_>>(),

@@ -87,7 +87,7 @@ mod tests {
     ];
 
     #[test]
-    fn the_manuals_example_parses_as_printed() {
+    fn parses_manual_example() {
         for (bytes, right) in MANUAL_EXAMPLE {
             match Frame::parse(bytes) {
                 Ok(frame) => assert!(right && frame.emit() == bytes, "{bytes:02X?}"),
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn truncated_and_damaged_frames_are_refused() {
+    fn rejects_corrupt_frames() {
         let frame = [0x40, 0x42, 0x00, 0x0E, 0x05, 0x31, 0x38];
         for cut in 0..frame.len() {
             assert!(Frame::parse(&frame[..cut]).is_err(), "cut at {cut}");
@@ -114,7 +114,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn emitted_frames_parse_back(address: u8, command: u8, payload in proptest::collection::vec(any::<u8>(), 0..140)) {
+        fn emitted_frames_round_trip(address: u8, command: u8, payload in proptest::collection::vec(any::<u8>(), 0..140)) {
             let frame = Frame { address, command, payload: &payload };
             let bytes = frame.emit();
             prop_assert_eq!(Frame::parse(&bytes), Ok(frame));

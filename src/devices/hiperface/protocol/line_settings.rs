@@ -122,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn settings_bytes_decode_as_in_the_reference() {
+    fn settings_bytes_match_reference() {
         // byte, baud, parity, long time-out, bus
         let cases = [
             (0xE4, 9600, Parity::Even, true, false),
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn reserved_values_are_kept_and_not_sent() {
+    fn keeps_but_never_sends_reserved_values() {
         for byte in [0xE7, 0xD4, 0xEC] {
             let settings = LineSettings::from_byte(byte);
             assert_eq!(settings.byte(), byte);

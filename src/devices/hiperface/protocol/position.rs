@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_skm36_position_matches_the_reference() {
+    fn skm36_position_matches_reference() {
         let skm36 = Geometry::Rotary { periods: 128, turns: 4096 };
         assert_eq!(skm36.position_count(), Some(1 << 24));
         let position = skm36.position(0x000E_0531);
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn one_step_has_the_angle_of_the_reference() {
+    fn step_angle_matches_reference() {
         for (periods, step) in [(16, 0.703125), (128, 0.087890625), (512, 0.0219727), (1024, 0.0109863)] {
             let degrees = Geometry::Rotary { periods, turns: 1 }.position(1).degrees().unwrap();
             assert!((degrees - step).abs() < 1e-7, "{periods}: {degrees}");
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_linear_encoder_yields_millimetres() {
+    fn linear_encoder_yields_millimetres() {
         let dme = Geometry::Linear { period_nm: 4_000_000, periods: 0 };
         assert_eq!(dme.position(8).millimetres(), Some(1.0));
         assert_eq!(dme.position(8).turns(), None);
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn setting_a_position_keeps_the_phase() {
+    fn set_position_keeps_phase() {
         // now, wanted, range, expected
         let cases = [
             (0x000E_0531, 0, Some(1 << 24), 17),

@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_requests_map_to_the_encoders_status() {
+    fn bad_requests_map_to_status_codes() {
         let cases: [(&[u8], StatusCode); 12] = [
             (&[0x40, 0x41], StatusCode::UNKNOWN_COMMAND),
             (&[0x40, 0x54], StatusCode::UNKNOWN_COMMAND),
@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn codes_and_their_checksum_are_masked() {
+    fn masks_codes_and_checksum() {
         let store = Request::StoreData { field: 1, address: 5, code: AccessCode::new(0x66), data: vec![0x08, 0x15] };
         assert_eq!(store.emit(0x40).to_masked().to_string(), "40 4B 01 05 02 ** 08 15 **");
         let change = Request::ChangeCode {

@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_code_is_listed_once() {
+    fn lists_each_code_once() {
         let mut bytes: Vec<u8> = CODES.iter().map(|(byte, ..)| *byte).collect();
         bytes.sort_unstable();
         bytes.dedup();
@@ -144,14 +144,14 @@ mod tests {
     }
 
     #[test]
-    fn unknown_codes_keep_their_number() {
+    fn unknown_codes_keep_number() {
         assert_eq!(StatusCode::new(0x7E).to_string(), "7Eh unknown status code");
         assert_eq!(StatusCode::new(0x7E).class(), StatusClass::Unknown);
         assert!(!StatusCode::new(0x7E).is_warning());
     }
 
     #[test]
-    fn warnings_and_invalid_positions_are_classified() {
+    fn classifies_warnings_and_invalid_positions() {
         let warnings: Vec<u8> = (0..=255).filter(|b| StatusCode::new(*b).is_warning()).collect();
         assert_eq!(warnings, [0x08, 0x1C, 0x1D, 0x1E]);
         let spoiling: Vec<u8> = (0..=255).filter(|b| StatusCode::new(*b).invalidates_position()).collect();

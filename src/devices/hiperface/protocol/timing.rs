@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn the_timeout_is_programmable() {
+    fn timeout_is_programmable() {
         let format = CharacterFormat { baud: Baud::new(38400).unwrap(), parity: Parity::Even };
         assert_eq!(Timing::new(format, false).timeout, Duration::from_nanos(286_458));
         assert_eq!(Timing::new(format, true).timeout, Duration::from_nanos(1_145_833));

@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_serial_label_of_the_reference_parses() {
+    fn parses_reference_serial_label() {
         let label = SerialLabel::parse(b"GB0450179V1.2301.02.16").unwrap();
         assert_eq!(label.serial_number, "GB0450179");
         assert_eq!(label.firmware_version, "V1.23");
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn padding_is_trimmed_and_lengths_are_checked() {
+    fn trims_padding_and_checks_length() {
         let label = SerialLabel::parse(b"123456   \0V2 \0       01.01.99").unwrap();
         assert_eq!(label.serial_number, "123456");
         assert_eq!(label.firmware_version, "V2");
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn unprintable_characters_are_escaped() {
+    fn escapes_unprintable_characters() {
         let label = SerialLabel::parse(b"12345\xFF\n89V01.02.16").unwrap();
         assert_eq!(label.serial_number, "12345\\xff\\n89");
     }

@@ -104,7 +104,7 @@ fn has_zero_xor(bytes: &[u8]) -> bool {
 }
 
 #[test]
-fn every_frame_in_the_file_has_a_correct_checksum() {
+fn vector_frames_have_valid_checksums() {
     for line in vector_lines() {
         match line.kind {
             Kind::SingleByte => {}
@@ -123,7 +123,7 @@ fn every_frame_in_the_file_has_a_correct_checksum() {
 }
 
 #[test]
-fn every_request_in_the_file_round_trips() {
+fn vector_requests_round_trip() {
     for line in lines_of_kind(Kind::Request) {
         let (request, address) = line.requested_frame();
         assert_eq!(request.emit(address).bytes(), line.bytes, "line {}", line.number);
@@ -131,7 +131,7 @@ fn every_request_in_the_file_round_trips() {
 }
 
 #[test]
-fn every_reply_in_the_file_matches_its_request() {
+fn vector_replies_match_requests() {
     for line in lines_of_kind(Kind::Reply) {
         let (request, address) = line.requested_frame();
         let answer = request.parse_reply(address, &line.bytes);
@@ -142,7 +142,7 @@ fn every_reply_in_the_file_matches_its_request() {
 }
 
 #[test]
-fn every_error_frame_in_the_file_is_a_refusal_and_a_status_reply() {
+fn error_frames_parse_as_rejection_and_status() {
     for line in lines_of_kind(Kind::ErrorFrame) {
         let pending = line.bytes[1] == 0xD0;
         let codes = vec![StatusCode::new(line.bytes[2])];
@@ -154,7 +154,7 @@ fn every_error_frame_in_the_file_is_a_refusal_and_a_status_reply() {
 }
 
 #[test]
-fn frames_that_are_not_replies_are_refused() {
+fn rejects_non_reply_frames() {
     for line in lines_of_kind(Kind::NotAReply) {
         let (request, address) = line.requested_frame();
         let answer = request.parse_reply(address, &line.bytes);
@@ -163,7 +163,7 @@ fn frames_that_are_not_replies_are_refused() {
 }
 
 #[test]
-fn truncated_and_damaged_replies_are_refused() {
+fn rejects_corrupt_replies() {
     for line in vector_lines() {
         let asked = match line.kind {
             Kind::Reply => vec![line.requested_frame()],
@@ -186,7 +186,7 @@ fn truncated_and_damaged_replies_are_refused() {
 }
 
 #[test]
-fn single_bytes_decode_as_in_the_file() {
+fn decodes_single_byte_vectors() {
     for line in lines_of_kind(Kind::SingleByte) {
         let (what, text) = line.meaning.split_once(": ").unwrap();
         let words: Vec<&str> = text.split(", ").collect();
@@ -219,7 +219,7 @@ fn single_bytes_decode_as_in_the_file() {
 }
 
 #[test]
-fn the_label_in_the_file_parses() {
+fn parses_label_vector() {
     let content = lines_of_kind(Kind::LabelContent).next().unwrap().bytes;
     assert_eq!(content.len(), 64);
     let label = ExtendedLabel::parse(&content).unwrap();
@@ -235,7 +235,7 @@ fn the_label_in_the_file_parses() {
 
 /// Each vector must be in both lists.
 #[test]
-fn file_and_table_have_the_same_requests_and_replies() {
+fn vector_file_matches_table() {
     let mut file = BTreeSet::new();
     for line in vector_lines() {
         match line.kind {
@@ -287,7 +287,7 @@ proptest! {
     }
 
     #[test]
-    fn noise_as_a_label_does_not_panic(bytes in proptest::collection::vec(any::<u8>(), 0..160)) {
+    fn noise_label_does_not_panic(bytes in proptest::collection::vec(any::<u8>(), 0..160)) {
         if let Ok(label) = ExtendedLabel::parse(&bytes) {
             prop_assert!(label.geometry.is_none_or(|geometry| geometry.position_count().is_some_and(|range| range <= 1 << 32)));
         }

@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_is_parsed() {
+    fn parses_every_key() {
         let config = read(
             "seed=7&fault=drop:0.5&model=sel37&type=0x47&serial=AB123&address=0x58&settings=0xE5&rpm=-12.5&\
              position=0x1234&temperature=-10&echo=on&encoders=8&pace=worst&codes=0:12,3:AB",
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_values_are_reported() {
+    fn reports_invalid_values() {
         let cases = [
             (
                 "sed=1",
@@ -232,7 +232,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_value_panics(key in 0..Config::KEYS.len(), value in ".*") {
+        fn arbitrary_values_do_not_panic(key in 0..Config::KEYS.len(), value in ".*") {
             let _ = Config::from_pairs(&[(Config::KEYS[key].to_owned(), value)]).map(|config| super::super::Bus::new(&config));
         }
     }

@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_reads_and_writes_are_refused() {
+    fn rejects_invalid_reads_and_writes() {
         let mut memory = two_fields();
         assert_eq!(memory.read(2, 0, 1, CODE), Err(StatusCode::NO_SUCH_FIELD));
         assert_eq!(memory.read(1, 16, 1, WRONG), Err(StatusCode::OUT_OF_FIELD));
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_definitions_are_refused() {
+    fn rejects_invalid_definitions() {
         let mut memory = two_fields();
         // description, field, status, code, expected result
         let cases = [
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn changing_a_field_needs_its_current_code() {
+    fn field_change_needs_current_code() {
         let mut memory = two_fields();
         let code2 = AccessCodeNumber::new(2).unwrap();
         memory.change_code(code2, CODE, AccessCode::new(0x66)).unwrap();
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn resizing_the_last_field_keeps_its_content() {
+    fn resizing_last_field_keeps_content() {
         let mut memory = two_fields();
         memory.store_bytes(1, 0, &[0x08, 0x15], CODE).unwrap();
         memory.define_field(1, status(0xED), CODE).unwrap();
@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn the_label_is_read_without_a_code_and_never_written() {
+    fn label_is_read_only() {
         let mut memory = Memory::new(8).with_extended_label(&[0x53]);
         assert_eq!(memory.status(0xFF).unwrap().byte(), 0x83);
         assert_eq!(memory.read(0xFF, 0, 64, WRONG).unwrap().len(), 64);

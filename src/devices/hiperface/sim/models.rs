@@ -86,7 +86,7 @@ mod tests {
     use crate::devices::hiperface::protocol::ExtendedLabel;
 
     #[test]
-    fn every_model_is_consistent() {
+    fn models_are_consistent() {
         for model in MODELS {
             assert_eq!(Model::find(model.name), Some(&model));
             assert_eq!(model.serial_number.len(), 9, "{}", model.name);
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn the_kit_encoders_label_matches_the_reference() {
+    fn kit_encoder_label_matches_reference() {
         let label = ExtendedLabel::parse(SEL37_LABEL).unwrap();
         assert!(label.checksum_fits);
         assert_eq!(label.designation, "SEL37-HFB0-K02");

@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turning_shaft_has_the_expected_position() {
+    fn turning_shaft_reaches_expected_position() {
         let mut shaft = Shaft::new(SKM36, 0, 60.0); // 4096 steps per second
         assert_eq!(shaft.position(at(0)), 0);
         assert_eq!(shaft.position(at(250)), 1024);
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_set_position_shifts_the_word_and_not_the_signals() {
+    fn set_position_shifts_word_not_signals() {
         let mut shaft = Shaft::new(SKM36, 24, 0.0);
         assert_eq!((shaft.sine_at(at(0)), shaft.cosine_at(at(0))), (409, 511));
         shaft.set_position(at(0), 0);
@@ -137,7 +137,7 @@ mod tests {
 
     /// At quarter periods, the signals are 511 counts for 2.5 V, 613 counts for 3 V and 409 counts for 2 V.
     #[test]
-    fn the_signals_repeat_every_period() {
+    fn signals_repeat_every_period() {
         for (position, sine, cosine) in [(0, 511, 613), (8, 613, 511), (16, 511, 409), (24, 409, 511)] {
             let shaft = Shaft::new(SKM36, 0x531 / 32 * 32 + position, 0.0);
             assert_eq!((shaft.sine_at(at(0)), shaft.cosine_at(at(0))), (sine, cosine), "{position}");
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scale_of_unknown_length_uses_the_whole_word() {
+    fn unknown_scale_length_uses_whole_word() {
         let shaft = Shaft::new(Geometry::Linear { period_nm: 1_000_000, periods: 0 }, u32::MAX, 60.0);
         assert_eq!(shaft.position(at(0)), u32::MAX);
         assert_eq!(shaft.position(at(1000)), 31);

@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reading_keeps_its_requested_source() {
+    fn reading_keeps_requested_source() {
         let form = Form { source: Source::Typed, phase: "0.27".to_owned(), ..Form::default() };
         let mut commutation = Commutation { form, ..Commutation::default() };
         commutation.request_reading(VectorSlot::OneSide);
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn signals_refine_a_reading() {
+    fn signals_refine_reading() {
         let without = read(Source::Signals, "", rest(40, None)).unwrap();
         assert_eq!((without.fine_periods, without.kind, without.raw), (40.5 / 32.0, PositionKind::Absolute, Some(40)));
         let with = read(Source::Signals, "", rest(40, Some((0.5, 0.0)))).unwrap();
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_positions_are_refused() {
+    fn rejects_invalid_positions() {
         assert_eq!(
             read(Source::Absolute, "", RestPosition { valid: false, ..rest(40, None) }),
             Err("commutation.invalid")

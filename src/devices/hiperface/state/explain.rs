@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn the_remedy_for_an_interrupted_write_matches_its_kind() {
+    fn interrupted_write_remedy_matches_kind() {
         let path = Path::new("b.ron");
         let words = |cycles, kind| {
             let texts = interruption_text(&cut_off(Error::Cancelled, cycles), path, 4, kind);
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_lost_during_a_write_is_reported_as_lost() {
+    fn reports_line_loss_during_write() {
         let gone = || Error::Link(LinkError::new("COM3", LinkErrorKind::Lost));
         let interrupted = Box::new(cut_off(gone(), 1));
         let backup = Path::new("b.ron").to_owned();
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn an_access_code_is_acknowledged_and_not_read_back() {
+    fn access_code_is_not_read_back() {
         let of = |verified| WrittenChanges { ops: 1, written: 1, verified, write_cycles: 1 };
         assert!(verified_text(&of(3)).to_string_in(Language::English).starts_with("Read back and verified"));
         for text in [written_text(&of(0)), verified_text(&of(0))] {

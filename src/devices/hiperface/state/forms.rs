@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_are_hexadecimal_in_every_usual_form() {
+    fn parses_common_hex_notations() {
         assert_eq!(address("41").unwrap().byte(), 0x41);
         assert_eq!(address("0x5F").unwrap().byte(), 0x5F);
         assert_eq!(parse_channel("48h"), Ok(0x48));

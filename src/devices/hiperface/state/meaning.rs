@@ -83,7 +83,7 @@ mod tests {
     /// Damaged replies are marked, and their explanation names the error. The frames are valid replies that were
     /// corrupted on purpose (issue 22.11).
     #[test]
-    fn damaged_replies_are_explained_and_marked() {
+    fn explains_and_marks_damaged_replies() {
         let position = [0x40, 0x42, 0x02];
         let cases: [(&str, &[u8], Option<TraceFault>, &str); 6] = [
             ("good", &[0x40, 0x42, 0x00, 0x0E, 0x05, 0x31, 0x38], None, "position"),

@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn positions_are_read_in_every_unit() {
+    fn parses_positions_in_every_unit() {
         for (unit, turns, value, steps) in [
             (Steps, "", "0", 0),
             (Steps, "", " 1024 ", 1024),
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_positions_are_refused() {
+    fn rejects_invalid_positions() {
         for (unit, turns, value) in [
             (Steps, "", ""),
             (Steps, "", "-1"),
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn a_position_is_the_same_after_conversion_to_any_unit_and_back() {
+    fn unit_conversions_round_trip() {
         let mut geometries = vec![LINEAR, Geometry::Linear { period_nm: 1, periods: 0 }];
         for periods in [1, 7, 16, 50, 128, 1000, 1024, 2048, 131_071] {
             geometries.extend([1, 4096].map(|turns| Geometry::Rotary { periods, turns }));
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn an_entry_follows_its_unit() {
+    fn entry_follows_unit() {
         let degrees = entry(Steps, "", "918833").converted(TurnsAndDegrees, Some(SKM36));
         // 1329 · 360° / 4096 = 116.8066…°
         assert_eq!(degrees, entry(TurnsAndDegrees, "224", "116.807"));

@@ -4,6 +4,6 @@ use crate::app::recorded::assert_recorded;
 use crate::devices::hiperface::jobs::Hiperface;
 
 #[test]
-fn a_draft_matches_the_recorded_text() {
+fn draft_matches_recorded_text() {
     assert_recorded::<Hiperface>("hiperface", "[(0,2,60),(3,15,255)]");
 }

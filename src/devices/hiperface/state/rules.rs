@@ -112,7 +112,7 @@ mod tests {
 
     /// A plan that deletes an edited field is rejected, such as a restore that deletes fields and creates them again.
     #[test]
-    fn a_plan_that_deletes_an_edited_field_is_refused() {
+    fn rejects_deleting_edited_field() {
         let status = DataFieldStatus::from_byte(0xC8);
         let field = FieldImage { number: 0, status, bytes: Some(vec![0; 16]) };
         let memory = FreeMemory { blocks: 2, fields: 1 };

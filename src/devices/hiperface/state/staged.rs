@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edit_is_separate_from_the_device() {
+    fn edits_do_not_touch_device() {
         let mut staged = staged();
         staged.edit_bytes(0, 3, &[0x08, 0x00, 0x15]).unwrap();
         assert_eq!((staged.device_byte(0, 3), staged.byte(0, 3)), (Some(0), Some(0x08)));
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn refused_edits_name_a_reason_and_change_nothing() {
+    fn rejected_edits_change_nothing() {
         let mut staged = staged();
         assert_eq!(staged.edit_bytes(0, 15, &[1, 2]), Err(ByteEditError::Outside { field: 0, last: 15 }));
         assert_eq!(staged.edit_bytes(0, usize::MAX, &[1]), Err(ByteEditError::Outside { field: 0, last: 15 }));
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn edits_can_be_undone_and_redone() {
+    fn undoes_and_redoes_edits() {
         let mut staged = staged();
         staged.edit_bytes(0, 0, &[1, 2]).unwrap();
         staged.edit_bytes(0, 1, &[3]).unwrap();
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn edits_survive_a_fresh_reading() {
+    fn edits_survive_rereading() {
         let mut staged = staged();
         staged.edit_bytes(0, 0, &[1, 2]).unwrap();
         let mut now = [0; 16];
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn edits_wait_for_a_field_that_cannot_be_read() {
+    fn edits_wait_for_unreadable_field() {
         let mut staged = staged();
         staged.edit_bytes(0, 0, &[1, 2]).unwrap();
         let mut locked = fields(&[0; 16]);
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_draft_is_restored() {
+    fn restores_draft() {
         let mut staged = staged();
         staged.edit_bytes(0, 0, &[1, 2]).unwrap();
         let draft: Vec<(u8, usize, u8)> = staged.edited_bytes().collect();

@@ -46,7 +46,7 @@ mod tests {
     /// 130 Ω and 1 kΩ; in the bus version, at most eight encoders without 130 Ω, and a terminator at the encoder
     /// farthest from the master; issue 22.23).
     #[test]
-    fn the_wiring_card_matches_the_manual() {
+    fn wiring_card_matches_manual() {
         assert_wires(
             &TEXTS,
             &WIRES,

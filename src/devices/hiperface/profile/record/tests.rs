@@ -26,7 +26,7 @@ fn profile(text: &str) -> HiperfaceProfile {
 }
 
 #[test]
-fn a_handwritten_profile_parses() {
+fn parses_handwritten_profile() {
     let profile = profile(SHORT);
     assert_eq!(profile.identity.serial_number, "A1");
     let bytes = Some((0..16).collect());
@@ -36,7 +36,7 @@ fn a_handwritten_profile_parses() {
 }
 
 #[test]
-fn a_typo_is_refused() {
+fn rejects_misspelled_key() {
     let cases = [
         ("fields: [(", "fields: [], fields: [(", "fields appears twice"),
         ("status: 0xC8", "status: 0xC9, status: 0xC8", "status appears twice"),
@@ -49,7 +49,7 @@ fn a_typo_is_refused() {
 }
 
 #[test]
-fn emitted_profiles_parse_back() {
+fn emitted_profiles_round_trip() {
     let mut document = parse(SHORT).unwrap();
     let profile = document.body.get_mut::<HiperfaceProfile>().unwrap();
     profile.recorded.position = Some(0x000E_0531);
@@ -68,7 +68,7 @@ fn emitted_profiles_parse_back() {
 }
 
 #[test]
-fn profile_errors_name_their_location() {
+fn profile_errors_have_locations() {
     let cases = [
         ("", "", "line 1, column 1: "),
         ("schema: 1,", "schema: 1,,", "line 2, column 15: "),
@@ -100,7 +100,7 @@ fn profile_errors_name_their_location() {
 
 /// Users may keep their own entries of any structure in `extra` (issue 22.17).
 #[test]
-fn user_entries_are_kept() {
+fn keeps_user_entries() {
     let text = SHORT
         .replace("schema: 1,", "schema: 1, extra: {\"owner\": (name: \"CK\")},")
         .replace("serial_number:", "extra: (colour: Some(\"red\")), serial_number:")
@@ -120,7 +120,7 @@ fn user_entries_are_kept() {
 
 /// Unknown entries in a file that predates `extra` are moved to `extra` and reported by name (issue 22.17).
 #[test]
-fn unknown_entries_of_older_files_move_to_extra() {
+fn moves_unknown_old_entries_to_extra() {
     let text = SHORT.replace("schema: 1,", "schema: 1, owner: \"CK\",").replace("number: 0,", "number: 0, label: 3,");
     let document = parse(&text).unwrap();
     assert_eq!(document.beyond, ["fields[0].label", "owner"]);
@@ -132,7 +132,7 @@ fn unknown_entries_of_older_files_move_to_extra() {
 
 /// A profile with a newer schema is never written, so that its unknown entries are not lost (issue 22.17).
 #[test]
-fn a_newer_schema_is_read_only() {
+fn newer_schema_is_read_only() {
     let newer = SHORT.replace("schema: 1,", "schema: 7, feilds: 1,").replace("number: 0,", "number: 0, statsu: 3,");
     let document = parse(&newer).unwrap();
     assert!(document.is_newer());
@@ -145,7 +145,7 @@ fn a_newer_schema_is_read_only() {
 
 /// Changing a value edits the file in a single place (issue 22.26).
 #[test]
-fn a_change_edits_only_its_value() {
+fn change_edits_only_its_value() {
     let edit = |own: &mut HiperfaceProfile| own.interface.address = 0x41;
     assert_edit_in_place(&commented_profile(), edit, "address: 64", "address: 0x41");
 }
@@ -153,7 +153,7 @@ fn a_change_edits_only_its_value() {
 /// Bytes with custom line breaks are reformatted, and a comment that is lost is reported. All other text remains
 /// unchanged (issue 22.26).
 #[test]
-fn bytes_with_custom_line_breaks_are_reformatted() {
+fn reformats_custom_line_breaks() {
     let (_, carried) = edit_profile(&commented_profile(), |_, own: &mut HiperfaceProfile| {
         own.fields[0].bytes.as_mut().unwrap()[1] = 0xFF;
     });

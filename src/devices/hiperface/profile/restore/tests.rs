@@ -62,7 +62,7 @@ fn ops(profile: &HiperfaceProfile, device: &DeviceState, options: RestoreOptions
 }
 
 #[test]
-fn restore_plans_for_each_case() {
+fn plans_each_restore_case() {
     type Case = (&'static str, Vec<FieldImage>, Vec<FieldImage>, &'static [&'static str]);
     let cases: [Case; 11] = [
         ("nothing differs", vec![field(0, 0xC9, &[])], vec![field(0, 0xC9, &[])], &[]),
@@ -114,7 +114,7 @@ fn restore_plans_for_each_case() {
 }
 
 #[test]
-fn another_size_needs_consent_to_create_again() {
+fn recreating_fields_needs_consent() {
     let wanted = profile("A", vec![field(0, 0xC9, &[(0, 1)]), field(1, 0xC8, &[])]);
     let now = device(1, vec![field(0, 0xC8, &[]), field(1, 0xC8, &[]), field(2, 0x88, &[(0, 9)])]);
     let error = ops(&wanted, &now, RestoreOptions::default()).unwrap_err();
@@ -130,7 +130,7 @@ fn another_size_needs_consent_to_create_again() {
 }
 
 #[test]
-fn profiles_that_do_not_fit_are_refused_before_writing() {
+fn rejects_profiles_that_do_not_fit() {
     let now = device(1, vec![field(0, 0xC8, &[])]);
     let too_large = profile("A", vec![field(0, 0xC8, &[]), field(1, 0xC9, &[])]);
     let error = ops(&too_large, &now, RestoreOptions::default()).unwrap_err();
@@ -140,7 +140,7 @@ fn profiles_that_do_not_fit_are_refused_before_writing() {
 }
 
 #[test]
-fn another_encoder_keeps_its_mounting() {
+fn other_encoder_keeps_mounting() {
     let mut wanted = profile("B", vec![field(0, 0xC9, &[(2, 1), (3, 1), (4, 1), (20, 1)])]);
     wanted.mounting.push(MountingMark {
         item: FieldRange::new(0, 3, 10),
@@ -162,7 +162,7 @@ fn another_encoder_keeps_its_mounting() {
 
 /// Bytes of unknown meaning are written to another encoder only if the user has agreed for each field (issue 22.8).
 #[test]
-fn bytes_of_unknown_meaning_are_copied_only_on_request() {
+fn copies_unknown_bytes_only_on_request() {
     let mut wanted =
         profile("B", vec![field(0, 0xC8, &[(3, 1)]), field(1, 0x88, &[(0, 7)]), field(2, 0xC8, &[(1, 2)])]);
     wanted.mounting.push(MountingMark {
@@ -220,7 +220,7 @@ fn bytes_of_unknown_meaning_are_copied_only_on_request() {
 
 /// Another encoder type requires permission even if another serial number is already permitted (issue 22.9).
 #[test]
-fn another_type_needs_a_separate_permission() {
+fn type_change_needs_permission() {
     let mut wanted = profile("B", vec![]);
     wanted.identity.encoder_type = 0x32;
     let now = device(10, vec![]);
@@ -245,7 +245,7 @@ fn another_type_needs_a_separate_permission() {
 }
 
 #[test]
-fn another_type_and_a_missing_serial_number_are_refused() {
+fn rejects_other_type_and_missing_serial() {
     let mut wanted = profile("A", vec![field(0, 0xC9, &[])]);
     wanted.identity.encoder_type = 0x22;
     let now = device(10, vec![field(0, 0xC9, &[])]);
@@ -257,7 +257,7 @@ fn another_type_and_a_missing_serial_number_are_refused() {
 }
 
 #[test]
-fn unchanged_bytes_are_counted() {
+fn counts_unchanged_bytes() {
     let restore = plan_restore(
         &profile("A", vec![field(0, 0xC9, &[(3, 1)])]),
         &device(10, vec![field(0, 0xC9, &[]), field(1, 0xC8, &[])]),
@@ -273,7 +273,7 @@ fn unchanged_bytes_are_counted() {
 /// Restoring a backup deletes unchanged fields that the write created, starting with the last one. Other profiles never
 /// delete surplus fields (issue 22.12).
 #[test]
-fn restoring_a_backup_deletes_fields_its_write_created() {
+fn restore_deletes_created_fields() {
     let wanted = profile("A", vec![field(0, 0xC9, &[(0, 1)]), field(1, 0xA8, &[(3, 7)]), field(2, 0xC8, &[])]);
     let before = device(100, vec![field(0, 0xC8, &[])]);
     let restore = plan_restore(&wanted, &before, RestoreOptions::default()).unwrap().common;

@@ -190,7 +190,7 @@ pub(super) fn all_vectors() -> Vec<Vector> {
 }
 
 #[test]
-fn a_position_of_type_37_has_turns() {
+fn type_37_position_has_turns() {
     let geometry = EncoderTypes::built_in().find(0x37).unwrap().geometry.unwrap();
     let position = geometry.position(0x000E_0531);
     assert_eq!((position.turns(), position.steps()), (Some(224), Some(1329)));
@@ -198,7 +198,7 @@ fn a_position_of_type_37_has_turns() {
 }
 
 #[test]
-fn requests_and_replies_match_the_table() {
+fn requests_and_replies_match_table() {
     for vector in all_vectors() {
         let line = bytes(vector.bytes);
         assert_eq!(vector.request.emit(vector.address).bytes(), line, "{}", vector.bytes);
@@ -211,13 +211,13 @@ fn requests_and_replies_match_the_table() {
 
 /// Requests with different access codes are not equal, even though both are displayed without their code.
 #[test]
-fn requests_with_other_codes_are_not_equal() {
+fn requests_with_different_codes_differ() {
     assert_ne!(read(1, 5, 2, CODE), read(1, 5, 2, CODE_66));
     assert_ne!(change_code(2, CODE, CODE_66), change_code(2, CODE_66, CODE));
 }
 
 #[test]
-fn error_replies_reject_the_request() {
+fn error_replies_reject_request() {
     let wrong_old = change_code(2, AccessCode::new(0x00), CODE_66);
     let cases = [
         ("40 50 01 11", false, 1),
@@ -252,7 +252,7 @@ fn error_replies_reject_the_request() {
 }
 
 #[test]
-fn wrong_checksums_are_reported() {
+fn reports_wrong_checksums() {
     let misprint = Frame::parse(&bytes("40 4D 01 E0 55 69")).unwrap_err();
     assert_eq!(misprint, FrameError::Checksum { expected: 0xB9, got: 0x69 });
     let other = Frame::parse(&bytes("40 42 03")).unwrap_err();
@@ -260,7 +260,7 @@ fn wrong_checksums_are_reported() {
 }
 
 #[test]
-fn silence_inside_a_request_leaves_no_frame() {
+fn silence_within_request_yields_no_frame() {
     for vector in all_vectors() {
         let line = bytes(vector.bytes);
         for gap in 1..line.len() {
@@ -276,7 +276,7 @@ fn silence_inside_a_request_leaves_no_frame() {
 }
 
 #[test]
-fn another_sender_is_refused_except_after_an_address_change_or_broadcast() {
+fn rejects_unexpected_sender() {
     let from_41 = bytes("41 42 00 0E 05 31 39");
     let mismatch = Err(ReplyError::Address { expected: 0x40, got: 0x41 });
     assert_eq!(Request::ReadPosition.parse_reply(0x40, &from_41), mismatch);
@@ -291,7 +291,7 @@ fn another_sender_is_refused_except_after_an_address_change_or_broadcast() {
 }
 
 #[test]
-fn other_lengths_and_arguments_are_refused() {
+fn rejects_wrong_lengths_and_arguments() {
     let length = |command, got| ReplyError::Length { command, got };
     let other = |expected, got| ReplyError::Command { expected, got };
     let cases = [

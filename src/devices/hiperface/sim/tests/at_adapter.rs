@@ -7,7 +7,7 @@ use crate::devices::hiperface::sim::AttachableEncoder;
 /// The reply begins after eleven bits per character, 44 bits of silence, and half of the maximum of 5 ms for the
 /// command.
 #[test]
-fn the_adapters_uart_reaches_a_hiperface_encoder() {
+fn adapter_uart_reaches_encoder() {
     let mut host = Host::to("uart=hiperface", &[&AttachableEncoder]);
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
     assert!(hello.capabilities.contains(Capabilities::UART));

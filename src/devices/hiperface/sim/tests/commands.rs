@@ -4,7 +4,7 @@ use super::*;
 use crate::devices::hiperface::protocol::{Command, StatusCode};
 
 #[test]
-fn the_manuals_example_works_with_the_right_checksum() {
+fn manual_example_works_with_correct_checksum() {
     let mut host = Host::new(&blank());
     host.expect("40 4E 0E", "40 4E 08 00 06");
     host.expect("40 4D 00 C9 55 91", "40 4D 00 C9 C4");
@@ -27,7 +27,7 @@ fn the_manuals_example_works_with_the_right_checksum() {
 }
 
 #[test]
-fn the_default_encoder_can_be_read() {
+fn reads_default_encoder() {
     let mut host = Host::with("");
     host.expect("40 42 02", "40 42 00 0E 05 31 38");
     host.expect("FF 42 BD", "40 42 00 0E 05 31 38");
@@ -45,7 +45,7 @@ fn the_default_encoder_can_be_read() {
 }
 
 #[test]
-fn the_other_vectors_of_the_reference_match() {
+fn remaining_reference_vectors_match() {
     let mut host = Host::with("temperature=-10");
     host.expect("40 44 48 4C", "40 44 48 FF F6 45");
     host.expect("40 4B 00 00 04 55 DE AD BE EF 78", "40 4B 00 00 04 0F");
@@ -66,7 +66,7 @@ fn the_other_vectors_of_the_reference_match() {
 }
 
 #[test]
-fn the_kit_encoder_describes_itself() {
+fn kit_encoder_describes_itself() {
     let mut host = Host::with("model=sel37");
     host.expect("40 52 12", "40 52 E4 FF 80 01 88");
     host.expect("40 4C FF F3", "40 4C FF 83 70");
@@ -83,7 +83,7 @@ fn the_kit_encoder_describes_itself() {
 }
 
 #[test]
-fn model_and_type_can_be_chosen() {
+fn simulates_chosen_model_and_type() {
     let mut host = Host::with("model=sks36");
     host.expect("40 42 02", "40 42 00 00 05 31 36");
     host.expect("40 52 12", "40 52 E4 32 80 01 45");
@@ -95,7 +95,7 @@ fn model_and_type_can_be_chosen() {
 }
 
 #[test]
-fn requests_are_checked_in_order() {
+fn checks_requests_in_order() {
     let mut host = Host::with("");
     let cases = [
         ("checksum", "40 42 03", "40 50 0A 1A"),
@@ -130,7 +130,7 @@ fn requests_are_checked_in_order() {
 }
 
 #[test]
-fn an_overlong_request_is_one_wrong_frame() {
+fn overlong_request_is_one_bad_frame() {
     let mut host = Host::with("");
     let request = format!("40 42 {}", "00 ".repeat(300));
     host.expect(&request, "40 50 0C 1C");
@@ -153,7 +153,7 @@ fn queued_status_codes_flag_every_reply() {
 }
 
 #[test]
-fn the_counter_overflows_with_a_warning() {
+fn counter_overflow_raises_warning() {
     let mut host = Host::with("");
     host.encoder_mut().set_counter(0x00FF_FFFF);
     host.expect("40 46 06", "40 46 FF FF FF F9");
@@ -164,7 +164,7 @@ fn the_counter_overflows_with_a_warning() {
 }
 
 #[test]
-fn heat_warns_once_and_again_after_a_reset() {
+fn overheating_warns_once_per_reset() {
     let mut host = Host::with("");
     host.encoder_mut().set_temperature(115);
     host.expect("40 50 10", "40 50 00 10");
@@ -179,7 +179,7 @@ fn heat_warns_once_and_again_after_a_reset() {
 }
 
 #[test]
-fn a_moving_shaft_is_sampled_when_the_reply_starts() {
+fn samples_shaft_at_reply_start() {
     // At 60 rpm, the shaft moves by 4096 steps per second, or 4.096 steps per millisecond.
     let mut host = Host::with("rpm=60&position=0");
     // After 3 characters, 44 bits of silence and 3.7 ms, the reply starts at 11.72 ms and step 48.004.
@@ -194,7 +194,7 @@ fn a_moving_shaft_is_sampled_when_the_reply_starts() {
 }
 
 #[test]
-fn the_address_changes_immediately_and_persists() {
+fn address_change_is_immediate_and_persistent() {
     let mut host = Host::with("");
     host.expect("40 55 41 55 01", "40 55 41 54");
     host.expect("40 42 02", "");
@@ -205,7 +205,7 @@ fn the_address_changes_immediately_and_persists() {
 }
 
 #[test]
-fn configured_access_codes_are_required() {
+fn requires_configured_access_codes() {
     let mut host = Host::with("codes=0:66");
     host.expect("40 4A 00 00 04 55 5B", "40 50 0F 1F");
     host.expect("40 4A 00 00 04 66 68", "40 4A 00 00 04 45 4D 44 37 75");

@@ -8,7 +8,7 @@ use crate::devices::hiperface::protocol::Command;
 const POSITION: &str = "40 42 00 0E 05 31 38";
 
 #[test]
-fn a_flipped_bit_is_a_parity_error_if_parity_is_on() {
+fn flipped_bit_causes_parity_error() {
     // Requests whose address byte is intact are rejected because of their parity.
     let refused = |settings: u8, fault: &str| {
         let mut host = Host::with(&format!("settings={settings}&fault={fault}&seed=11"));
@@ -28,7 +28,7 @@ fn a_flipped_bit_is_a_parity_error_if_parity_is_on() {
 }
 
 #[test]
-fn a_lossy_line_drops_bytes_in_both_directions() {
+fn lossy_line_drops_bytes_both_ways() {
     let mut host = Host::with("fault=drop:0.05&seed=5");
     let lengths: Vec<usize> = (0..200).map(|_| parse_hex(&host.ask("40 42 02")).unwrap().len()).collect();
     for length in [0, 4, 6, 7] {
@@ -39,7 +39,7 @@ fn a_lossy_line_drops_bytes_in_both_directions() {
 }
 
 #[test]
-fn the_seed_determines_the_faults() {
+fn seed_determines_faults() {
     let run = |seed: u32| {
         let mut host = Host::with(&format!("fault=drop:0.1,flip:0.1,garbage:0.1&seed={seed}"));
         (0..50).map(|_| host.ask("40 42 02")).collect::<Vec<_>>()
@@ -49,14 +49,14 @@ fn the_seed_determines_the_faults() {
 }
 
 #[test]
-fn a_delay_comes_before_each_reply() {
+fn delays_each_reply() {
     let prompt = Host::with("").duration("40 42 02");
     let delayed = Host::with("fault=delay:100").duration("40 42 02");
     assert_eq!(delayed, prompt + ms(100.0));
 }
 
 #[test]
-fn silence_after_some_frames_is_permanent() {
+fn configured_silence_is_permanent() {
     let mut host = Host::with("fault=silent-after:3");
     host.expect("40 42 02", POSITION);
     host.expect("41 42 03", ""); // addressed to another encoder
@@ -71,7 +71,7 @@ fn silence_after_some_frames_is_permanent() {
 }
 
 #[test]
-fn power_can_fail_in_the_second_store() {
+fn power_fails_during_second_store() {
     let mut host = Host::with("fault=die-in-store:2&settings=0xE4");
     host.expect("40 4B 00 00 04 55 DE AD BE EF 78", "40 4B 00 00 04 0F");
     host.expect("40 4B 00 00 04 66 DE AD BE EF 4B", "40 50 0F 1F"); // rejected, so nothing is stored
@@ -90,14 +90,14 @@ fn power_can_fail_in_the_second_store() {
 }
 
 #[test]
-fn half_of_one_byte_is_one_byte() {
+fn power_loss_keeps_single_stored_byte() {
     let mut host = Host::with("fault=die-in-store:1");
     host.expect("40 4B 00 00 01 55 77 28", "");
     assert_eq!(host.encoder().memory().field_bytes(0).unwrap()[..2], [0x77, b'M']);
 }
 
 #[test]
-fn bytes_received_before_opening_are_discarded() {
+fn discards_bytes_before_opening() {
     let mut host = Host::with("");
     host.send("40 42 02");
     host.wait(ms(50.0));
@@ -122,7 +122,7 @@ fn noise() -> impl Strategy<Value = Vec<u8>> {
 
 proptest! {
     #[test]
-    fn noise_never_panics_and_the_bus_becomes_idle(
+    fn bus_becomes_idle_after_noise(
         calls in proptest::collection::vec((0..400_000u64, noise(), any::<u8>(), 0..12u8), 1..25),
         encoders in 1..4u8,
         seed in any::<u32>(),

@@ -32,7 +32,7 @@ fn durations_at_9600_baud() {
 }
 
 #[test]
-fn a_longer_store_takes_longer() {
+fn longer_store_takes_longer() {
     let mut host = Host::with("");
     // 11 + 6 characters, 44 bits, 20 ms and 4 · 1.5 ms
     let duration = host.duration("40 4B 00 00 04 55 DE AD BE EF 78");
@@ -40,7 +40,7 @@ fn a_longer_store_takes_longer() {
 }
 
 #[test]
-fn a_store_takes_effect_at_the_end_of_its_processing() {
+fn store_takes_effect_after_processing() {
     let mut host = Host::with("");
     host.send("40 4B 00 00 04 55 DE AD BE EF 78");
     // 11 characters, 44 bits, 26 ms: 43.19 ms
@@ -51,7 +51,7 @@ fn a_store_takes_effect_at_the_end_of_its_processing() {
 }
 
 #[test]
-fn bytes_arrive_character_by_character() {
+fn bytes_arrive_one_by_one() {
     let mut host = Host::with("");
     host.send("40 42 02");
     assert_eq!(host.bus.poll(host.now + ms(12.8)), [0u8; 0]); // the first byte is complete at 12.87 ms
@@ -62,7 +62,7 @@ fn bytes_arrive_character_by_character() {
 }
 
 #[test]
-fn a_gap_shorter_than_the_timeout_does_not_end_the_frame() {
+fn short_gap_does_not_end_frame() {
     let mut host = Host::with("");
     host.send("40 42");
     host.wait(CHARACTER * 2 + ms(4.5));
@@ -70,7 +70,7 @@ fn a_gap_shorter_than_the_timeout_does_not_end_the_frame() {
 }
 
 #[test]
-fn a_gap_of_the_timeout_splits_the_frame() {
+fn timeout_gap_splits_frame() {
     let mut host = Host::with("");
     host.send("40 42");
     host.wait(CHARACTER * 2 + ms(4.6));
@@ -80,7 +80,7 @@ fn a_gap_of_the_timeout_splits_the_frame() {
 }
 
 #[test]
-fn the_short_timeout_is_11_bits() {
+fn short_timeout_is_11_bits() {
     let mut host = Host::with("settings=0xA4");
     host.expect("40 42 02", POSITION);
     host.send("40 42");
@@ -89,7 +89,7 @@ fn the_short_timeout_is_11_bits() {
 }
 
 #[test]
-fn bytes_sent_while_the_encoder_is_busy_are_lost() {
+fn busy_encoder_ignores_bytes() {
     let mut host = Host::with("");
     host.send("40 4B 00 00 04 55 DE AD BE EF 78");
     host.wait(ms(25.0));
@@ -97,14 +97,14 @@ fn bytes_sent_while_the_encoder_is_busy_are_lost() {
 }
 
 #[test]
-fn the_echo_comes_before_the_reply() {
+fn echo_precedes_reply() {
     let mut host = Host::with("echo=on");
     host.expect("40 42 02", &format!("40 42 02 {POSITION}"));
     host.expect("41 42 03", "41 42 03");
 }
 
 #[test]
-fn every_character_format_works() {
+fn supports_every_character_format() {
     for speed in 0..7u8 {
         for parity in [0x00, 0x20, 0x30] {
             let settings = 0xC0 | parity | speed;
@@ -116,7 +116,7 @@ fn every_character_format_works() {
 }
 
 #[test]
-fn a_mismatched_format_yields_garbage_in_both_directions() {
+fn mismatched_format_garbles_both_directions() {
     let mut host = Host::with("");
     for settings in [0xE5, 0xE3, 0xC4, 0xF4] {
         host.set_format(settings);
@@ -138,7 +138,7 @@ fn a_mismatched_format_yields_garbage_in_both_directions() {
 }
 
 #[test]
-fn several_encoders_answer_under_their_addresses() {
+fn encoders_answer_at_own_address() {
     let mut host = Host::with("encoders=3");
     host.expect("40 42 02", POSITION);
     host.expect("41 42 03", "41 42 00 0E 05 31 39");
@@ -150,7 +150,7 @@ fn several_encoders_answer_under_their_addresses() {
 }
 
 #[test]
-fn several_replies_to_a_broadcast_collide() {
+fn broadcast_replies_collide() {
     let mut host = Host::with("encoders=2");
     let garbage = parse_hex(&host.ask("FF 42 BD")).unwrap();
     assert!(!garbage.is_empty() && garbage.iter().all(|byte| (0x80..0xFF).contains(byte)), "{garbage:02X?}");
@@ -160,7 +160,7 @@ fn several_replies_to_a_broadcast_collide() {
 }
 
 #[test]
-fn one_long_poll_equals_many_short_ones() {
+fn long_poll_equals_short_polls() {
     let mut short = Host::with("fault=flip:0.02,garbage:0.02&seed=3");
     let mut long = Host::with("fault=flip:0.02,garbage:0.02&seed=3");
     for _ in 0..50 {
@@ -179,7 +179,7 @@ fn one_long_poll_equals_many_short_ones() {
 
 /// A UART drops bytes that exceed its buffer, so the line is idle again as soon as the buffer is empty (issue 22.18).
 #[test]
-fn the_encoder_answers_after_a_flood_of_bytes() {
+fn encoder_recovers_from_byte_flood() {
     let mut host = Host::with("");
     for _ in 0..2_000 {
         host.bus.on_bytes(host.now, &[0x55; 512]);

@@ -13,7 +13,7 @@ fn restarted() -> Host {
 }
 
 #[test]
-fn after_power_up_the_stored_settings_apply() {
+fn stored_settings_apply_after_power_up() {
     let mut host = Host::with("settings=0xE5");
     host.set_format(0xE5);
     host.expect("40 42 02", POSITION);
@@ -21,7 +21,7 @@ fn after_power_up_the_stored_settings_apply() {
 }
 
 #[test]
-fn settings_change_through_the_power_up_windows() {
+fn power_up_windows_change_settings() {
     // start of the request in ms after power-on, settings of the host, whether the encoder replies
     let cases = [
         ("INIT", 0.0, 0xE4, false),
@@ -49,7 +49,7 @@ fn settings_change_through_the_power_up_windows() {
 }
 
 #[test]
-fn a_plausible_command_in_the_window_keeps_the_factory_settings() {
+fn valid_command_keeps_factory_settings() {
     for (what, request, keeps) in [
         ("read status", "40 50 10", true),
         ("broadcast", "FF 50 AF", true),
@@ -68,7 +68,7 @@ fn a_plausible_command_in_the_window_keeps_the_factory_settings() {
 }
 
 #[test]
-fn settings_57_apply_after_the_reset() {
+fn settings_57_apply_after_reset() {
     let mut host = Host::with("");
     host.expect("40 57 E5 55 A7", "40 57 E5 F2");
     host.expect("40 52 12", "40 52 E5 37 80 01 41");
@@ -81,7 +81,7 @@ fn settings_57_apply_after_the_reset() {
 }
 
 #[test]
-fn settings_67_apply_immediately_and_until_the_reset() {
+fn settings_67_apply_until_reset() {
     let mut host = Host::with("");
     host.expect("40 67 E6 C1", "40 67 E6 C1"); // reply still at 9600 baud
     host.set_format(0xE6);
@@ -95,7 +95,7 @@ fn settings_67_apply_immediately_and_until_the_reset() {
 }
 
 #[test]
-fn a_reset_has_no_reply_and_clears_the_queue() {
+fn reset_clears_queue_without_reply() {
     let mut host = Host::with("");
     host.encoder_mut().queue_code(crate::devices::hiperface::protocol::StatusCode::new(0x1D));
     host.expect("FF 53 AC", "");
@@ -105,7 +105,7 @@ fn a_reset_has_no_reply_and_clears_the_queue() {
 }
 
 #[test]
-fn stored_data_survives_a_power_cycle() {
+fn stored_data_survives_power_cycle() {
     let mut host = Host::with("");
     host.expect("40 43 00 00 12 34 55 70", "40 43 03");
     host.expect("40 47 07", "40 47 07");
@@ -118,7 +118,7 @@ fn stored_data_survives_a_power_cycle() {
 }
 
 #[test]
-fn a_power_cut_truncates_a_reply() {
+fn power_cut_truncates_reply() {
     let mut host = Host::with("");
     host.send("40 42 02");
     host.wait(ms(14.0)); // the reply started at 11.7 ms, so one character has arrived and one is in transit

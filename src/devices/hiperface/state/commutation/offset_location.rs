@@ -112,7 +112,7 @@ mod tests {
     const PLATE: &[u8; 16] = b"EMD71K-4 3000rpm";
 
     #[test]
-    fn only_an_empty_location_is_proposed() {
+    fn proposes_only_empty_location() {
         let service: Vec<u8> = [PLATE.as_slice(), b"SERVICE\x00\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF", &[0xFF; 16]].concat();
         let empty = &[0; 32];
         for (label, fields, record, number) in [
@@ -133,7 +133,7 @@ mod tests {
     /// The existing record has the offset 5305 1EB8h and four pole pairs. Its CRC was calculated with Python's
     /// `binascii.crc_hqx`.
     #[test]
-    fn an_existing_record_is_proposed_for_replacement() {
+    fn proposes_replacing_existing_record() {
         let record = [0x43, 0x4F, 0x31, 0x00, 0x53, 0x05, 0x1E, 0xB8, 4, 0, 0, 0, 0, 0, 0x2A, 0x23];
         let fields = memory(&[(0xD8, &record), (0xD9, &[0; 32])]);
         assert_eq!(proposed_location(&fields, Storage::Record, None), Ok((0, 0)));
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_are_shown_as_text() {
+    fn shows_bytes_as_text() {
         assert_eq!(ascii(b"EMD71K-4 \x0B\xB8\xFFrpm"), "EMD71K-4 ···rpm");
     }
 }

@@ -8,7 +8,7 @@ fn form(link: &str) -> LinkForm {
 }
 
 #[test]
-fn links_round_trip_through_the_form() {
+fn links_round_trip_through_form() {
     let same = [
         "sim:",
         "sim:?model=sel37&rpm=60&fault=drop:0.01",
@@ -45,7 +45,7 @@ fn links_round_trip_through_the_form() {
 }
 
 #[test]
-fn the_entries_match_the_link() {
+fn entries_match_link() {
     let serial = form("serial:COM3?address=0x41&parity=odd&baud=19200");
     assert_eq!((serial.kind, serial.port.as_str(), serial.address.as_str()), (LinkKind::Serial, "COM3", "41"));
     assert_eq!((serial.parity, serial.baud.bits_per_second()), (Parity::Odd, 19200));
@@ -78,7 +78,7 @@ fn entries_accept_common_notations() {
 }
 
 #[test]
-fn switching_the_kind_of_link_keeps_only_its_settings() {
+fn switching_link_kind_drops_other_settings() {
     let mut changed = form("sim:?model=sel37&rpm=60&seed=7&address=0x41");
     changed.kind = LinkKind::Serial;
     changed.port = "COM3".to_owned();
@@ -88,7 +88,7 @@ fn switching_the_kind_of_link_keeps_only_its_settings() {
 }
 
 #[test]
-fn rejected_entries_name_the_allowed_values() {
+fn rejected_entries_list_allowed_values() {
     type Change = fn(&mut LinkForm);
     let cases: [(&str, Change, &str, &str); 23] = [
         ("serial:x", |f| f.port.clear(), "form.port_missing", "COM3"),

@@ -74,7 +74,7 @@ mod tests {
     use crate::devices::hiperface::protocol::{DataFieldStatus, StatusCode};
 
     #[test]
-    fn findings_are_worded_for_terminal_and_window() {
+    fn finding_text_fits_terminal_and_window() {
         let status = DataFieldStatus::from_byte(0xAA);
         let cases = [
             (

@@ -36,7 +36,7 @@ mod tests {
     use crate::devices::hiperface::protocol::COMMANDS;
 
     #[test]
-    fn commands_have_their_protocol_names() {
+    fn commands_use_protocol_names() {
         for row in COMMANDS {
             assert_eq!(command_text(row.command).to_string_in(Language::English), row.name);
             assert_ne!(command_text(row.command).to_string_in(Language::German), row.name);

@@ -45,7 +45,7 @@ mod tests {
     use crate::devices::hiperface::protocol::StatusCode;
 
     #[test]
-    fn damage_texts_match_the_protocol_errors() {
+    fn reply_damage_text_matches_protocol_error() {
         let cases = [
             ReplyDamage::Reply(ReplyError::Frame(FrameError::Short { got: 2 })),
             ReplyDamage::Reply(ReplyError::Frame(FrameError::Checksum { expected: 0x0A, got: 0xB0 })),

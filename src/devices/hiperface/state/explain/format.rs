@@ -116,7 +116,7 @@ mod tests {
     use crate::units::Parity;
 
     #[test]
-    fn codes_have_their_protocol_names() {
+    fn codes_use_protocol_names() {
         for byte in 0..=0xFF {
             let code = StatusCode::new(byte);
             assert_eq!(status_code_name(code).to_string_in(Language::English), code.text());
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn properties_have_their_protocol_names() {
+    fn properties_use_protocol_names() {
         for byte in 0..=0xFF {
             let (field, line) = (DataFieldStatus::from_byte(byte), LineSettings::from_byte(byte));
             assert_eq!(field_status(field).to_string_in(Language::English), field.to_string());
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn german_texts_have_german_words_and_commas() {
+    fn german_text_uses_decimal_comma() {
         let cases = [
             (
                 field_status(DataFieldStatus::from_byte(0xAA)),

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn decode_output_is_unchanged() {
+    fn decode_output_is_stable() {
         let cases = [
             ("40 42 02", "address 40h: read position (42h)|request"),
             ("40 42 00 0E 05 31 38", "address 40h: read position (42h)|reply: position 918833 (000E0531h)"),
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn the_trace_is_translated_to_german() {
+    fn translates_trace_to_german() {
         let cases = [
             ("40 42 02", "Adresse 40h: Position lesen (42h)|Anfrage"),
             (

@@ -83,7 +83,7 @@ mod tests {
     use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, DeviceAddress, LineSettings};
 
     #[test]
-    fn operations_are_described_in_plain_words() {
+    fn describes_operations_in_plain_words() {
         let status = DataFieldStatus::from_byte;
         let define = |from: Option<u8>, to| Op::Define { field: 1, from: from.map(status), to: status(to) };
         let store = |old, new| Op::Store { field: 1, address: 3, status: status(0xC9), old, new };

@@ -17,7 +17,7 @@ use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
-fn link_errors_are_explained_in_both_languages() {
+fn explains_link_errors_in_both_languages() {
     let queries = [
         "baud=1",
         "parity=x",
@@ -37,7 +37,7 @@ fn link_errors_are_explained_in_both_languages() {
 }
 
 #[test]
-fn virtual_encoder_setting_errors_are_explained_in_both_languages() {
+fn explains_simulator_errors_in_both_languages() {
     let queries = [
         "sed=1",
         "seed=x",
@@ -67,7 +67,7 @@ fn virtual_encoder_setting_errors_are_explained_in_both_languages() {
 }
 
 #[test]
-fn profile_errors_are_explained_in_both_languages() {
+fn explains_profile_errors_in_both_languages() {
     let good = r#"(schema: 1, device: "hiperface", identity: (serial_number: "A1", encoder_type: 0x37),
         interface: (address: 0x40, settings: 0xE4), fields: [(number: 0, status: 0xC8, bytes: "00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F")])"#;
     assert!(ProfileDocument::parse(good, HiperfaceProfile::FORMATS).is_ok());
@@ -95,7 +95,7 @@ fn profile_errors_are_explained_in_both_languages() {
 }
 
 #[test]
-fn items_checked_by_a_write_are_named_in_both_languages() {
+fn names_checked_items_in_both_languages() {
     let range = |start, count| PlanItem::Item(Item::Field(FieldRange { field: 1, start, count }));
     let cases = [
         (range(3, Some(2)), "Datenfeld 1 ab 3 (2 Bytes)"),

@@ -57,7 +57,7 @@ mod tests {
     use crate::profile::Cause;
 
     #[test]
-    fn type_table_errors_are_explained_in_both_languages() {
+    fn explains_table_errors_in_both_languages() {
         let zero = r#"(types: [(code: 1, name: "x", shape: Some(rotary(periods: 0, turns: 1)))])"#;
         let cause = EncoderTypes::parse(zero).unwrap_err();
         let why = type_table_error_text(&cause);

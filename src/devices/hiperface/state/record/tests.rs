@@ -38,7 +38,7 @@ fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
 }
 
 #[test]
-fn a_single_position_read_keeps_the_polled_samples() {
+fn single_read_keeps_polled_samples() {
     let mut record = Record::default();
     record.add_samples((0..=10).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
     // This position was read between polled samples but is reported after them.
@@ -104,7 +104,7 @@ fn lines_break_between_stop_and_start() {
 /// Records ten minutes at 1 kHz and 600 rpm across the end of the range. Polling pauses for three seconds every ten
 /// thousand samples.
 #[test]
-fn a_long_recording_keeps_every_break_and_wrap() {
+fn long_recording_keeps_breaks_and_wraps() {
     let mut record = Record::default();
     record.track.poll(Some(Duration::from_millis(1)), false);
     let (mut microseconds, mut expected) = (0, Vec::new());
