@@ -240,7 +240,7 @@ mod tests {
     use crate::devices::interbus::protocol::Flags;
 
     #[test]
-    fn wear_is_reported_confirmed_and_refused_at_its_limits() {
+    fn enforces_wear_limits() {
         let identity = Identity {
             serial_number: "1".to_owned(),
             steps: 4096,

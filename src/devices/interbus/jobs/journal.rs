@@ -115,7 +115,7 @@ mod tests {
 
     /// Mode number 1 is position mode, and 6 is cam program 4.
     #[test]
-    fn an_excursion_is_stored_as_mode_numbers() {
+    fn stores_mode_switch_as_numbers() {
         let mode = |number| StartupMode::parse(Value::from_word(number));
         let excursion = ModeSwitch { found: mode(1), sent: vec![mode(3), mode(6)] };
         assert_eq!(emit(&excursion), "[1, 3, 6]\n");

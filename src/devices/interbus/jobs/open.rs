@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn links_open_a_gateway_or_report_the_reason() {
+    fn opens_gateway_or_reports_reason() {
         for text in [
             "sim:",
             "sim:?steps=360&rpm=60&order=low-first&unit=3&input=16&output=32&cycle=1",

@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_is_read_with_its_mode() {
+    fn interprets_word_by_mode() {
         let cams = StartupMode::Cams(ProgramNumber::new(3).unwrap());
         let word = reading(0x0012_3456, StartupMode::K3, (8192 * 4096 - 1, 4096), 0);
         assert_eq!((word.position(), word.rpm(), word.cams()), (Some(1_193_046), None, None));
@@ -146,7 +146,7 @@ mod tests {
 
     /// With 1000 steps over 3 turns, turn 1 begins at step 333.3, so its first whole step is 334.
     #[test]
-    fn a_position_is_split_into_turns_and_steps() {
+    fn splits_position_into_turns_and_steps() {
         let place = |word| reading(word, StartupMode::K3, (1000, 3), 0).turn_position();
         assert_eq!(place(333).map(|own| (own.turns, own.steps)), Some((0, 333)));
         assert_eq!(place(334).map(|own| (own.turns, own.steps)), Some((1, 0)));
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn swapped_words_are_detected() {
+    fn detects_swapped_words() {
         assert_eq!(swapped_position_word(0x3456_0012), Some(0x0012_3456));
         assert_eq!(swapped_position_word(0x0012_3456), None);
         // Stray bits in both orders are not conclusive.

@@ -99,14 +99,14 @@ mod tests {
     }
 
     #[test]
-    fn omitted_parameters_have_defaults() {
+    fn omitted_parameters_use_defaults() {
         let station = station("").unwrap();
         assert_eq!(station.to_string(), "unit 1, IN at 0, OUT at 0");
         assert_eq!((station.link.order, station.link.handshake), (WordOrder::HighFirst, Duration::from_secs(2)));
     }
 
     #[test]
-    fn gateway_settings_are_parsed_from_parameters() {
+    fn parses_gateway_settings() {
         let station =
             station("unit=17&input=0x1000&output=2048&order=low-first&handshake=500&cycle=20&timeout=250").unwrap();
         assert_eq!(station.to_string(), "unit 17, IN at 4096, OUT at 2048");
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rejected_value_names_the_allowed_ones() {
+    fn rejection_lists_allowed_values() {
         let cases = [
             ("unit=256", "unit=256 is not valid (allowed: a unit ID from 0 to 255)"),
             ("input=65535", "input=65535 is not valid (allowed: an input register from 0 to 65534)"),

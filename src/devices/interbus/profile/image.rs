@@ -141,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn directions_have_the_codes_of_the_manual() {
+    fn direction_codes_match_manual() {
         for (text, code) in [("cw", 3), ("3", 3), ("ccw", 4), ("4", 4)] {
             let direction: Direction = text.parse().unwrap();
             assert_eq!((direction.code(), Direction::from_code(code)), (code, Some(direction)), "{text}");
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_is_stored_at_its_number() {
+    fn stores_program_by_number() {
         let parameters =
             Parameters { steps: 255, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
         let mut image = Image::from_parameters(parameters);

@@ -258,7 +258,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn items_are_named_as_on_the_command_line() {
+    fn item_names_match_command_line() {
         for text in [
             "steps",
             "revolutions",
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn items_round_trip_through_an_image() {
+    fn items_round_trip_through_image() {
         // Five parameters, the shift, eight programs with a mask and eight cams.
         assert_eq!(Item::all_writable().count(), 5 + 1 + 8 * 9);
         let full = image();
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_printed_as_they_are_typed() {
+    fn values_print_as_typed() {
         let said = |value: ItemValue| value.to_string();
         assert_eq!(said(ItemValue::Cam(cam_between(3500, 40))), "3500..40");
         assert_eq!(said(ItemValue::Mask(0x0B)), "0x0B");

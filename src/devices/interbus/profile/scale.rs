@@ -197,7 +197,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn degrees_and_millimetres_become_the_nearest_step() {
+    fn rounds_units_to_nearest_step() {
         let degrees = |steps, zero| Scale::in_degrees(steps, zero).unwrap();
         let millimetres = |steps, zero| Scale::in_millimetres(steps, zero).unwrap();
         // Each row contains a scale, a range, a value, the nearest step and the rounding error. 8192 / 360 is 22.7556,
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn out_of_range_values_name_the_limits() {
+    fn range_error_names_limits() {
         for (scale, range, value, least, most) in [
             (Scale::default(), 1000, 1000.0, 0.0, 999.0),
             (Scale::new(Unit::Steps, 1.0, 10).unwrap(), 1000, -1.0, 0.0, 999.0),

@@ -126,7 +126,7 @@ fn published_replies_match() {
 
 /// The read-outs and their units are from references 3 and 7.
 #[test]
-fn read_outs_have_their_units() {
+fn read_outs_have_units() {
     let read = |read_out: ReadOutNumber, word| match Reply::parse(word) {
         Reply::ReadOut(value) => read_out.value(value),
         other => panic!("{other:?}"),
@@ -154,7 +154,7 @@ fn read_outs_have_their_units() {
 
 /// The labels are the numbers of the contradictions in reference 6. Number 8 is the echo of 255 steps.
 #[test]
-fn contradictions_in_the_manual_are_resolved() {
+fn resolves_manual_contradictions() {
     assert_eq!(id_code(Class::K3, Interface::Standard), 55, "1: 37h");
     assert_eq!(Command::Preset.emit(), 0x4000_0000, "2: fired by bit 30");
     assert_eq!(Command::in_mode(0x0A00_03E8, Position), Ok(set_command(P::ZeroShift, 1000)), "2: which 0A does not");
@@ -176,7 +176,7 @@ fn contradictions_in_the_manual_are_resolved() {
 
 /// Some words mean different things in different modes, and some must not be sent (reference 6.3).
 #[test]
-fn the_mode_determines_the_meaning_of_a_word() {
+fn mode_determines_word_meaning() {
     let (zero, start) = (value(0), Command::Velocity(true));
     let shared = [
         (0x4000_0000, Command::Preset, Command::CamStart(cam(0), zero)),
@@ -210,7 +210,7 @@ fn the_mode_determines_the_meaning_of_a_word() {
 
 /// The echoes are from references 4 and 5, except that the echo of a cam is an assumption.
 #[test]
-fn the_mode_determines_the_echo() {
+fn mode_determines_echo() {
     assert_eq!(Reply::parse(0xC200_00FF).echoed_command(Parameterisation), Some(set_command(P::Steps, 255)));
     assert_eq!(Reply::parse(0xC200_00FF).echoed_command(Cams), Some(Command::CamStart(cam(1), value(255))));
     assert_eq!(Reply::parse(0xE600_0213).echoed_command(Cams), Some(Command::CamStop(cam(3), value(0x213))));
@@ -245,7 +245,7 @@ fn published_cam_outputs_match() {
 
 /// The identification codes are from references 1 and 7.
 #[test]
-fn classes_have_their_id_codes() {
+fn class_id_codes_match() {
     use Interface::{Loop2, OpticalFibre, Standard};
     for class in [Class::K1, Class::K2] {
         assert_eq!([Standard, OpticalFibre, Loop2].map(|interface| id_code(class, interface)), [54, 54, 178]);
@@ -265,7 +265,7 @@ fn classes_have_their_id_codes() {
 
 /// The LED states are from reference 1.
 #[test]
-fn led_states_match_the_reference() {
+fn led_states_match_reference() {
     use LedState::{Blinking, Off, On};
     let says = |ul, ba, rc, rbda| Leds { ul, ba, rc, rbda }.row().map(|row| row.meaning);
     assert_eq!(says(On, Off, On, Off), Some("no run"));
@@ -277,7 +277,7 @@ fn led_states_match_the_reference() {
 
 /// The positions are from reference 7, where wrapping is an assumption.
 #[test]
-fn the_gear_rounds_down() {
+fn gear_rounds_down() {
     let cases = [
         (255, 1, 0, 0),
         (255, 1, 4095, 127),
@@ -303,7 +303,7 @@ fn the_gear_rounds_down() {
 
 /// Some limits of the parameters depend on the gear (reference 3).
 #[test]
-fn parameter_limits_are_checked() {
+fn checks_parameter_limits() {
     let gear = Gear::new(3600, 10).unwrap();
     for (parameter, low, high) in [
         (P::Steps, 1, 81_920),
@@ -330,7 +330,7 @@ fn parameter_limits_are_checked() {
 
 /// A cam is also on at its edges (reference 7).
 #[test]
-fn cams_are_on_between_their_edges() {
+fn cams_are_on_between_edges() {
     let on = |start, stop, at| Cam { start: value(start), stop: value(stop) }.is_on(value(at));
     assert_eq!([15, 213, 214, 14].map(|at| on(15, 213, at)), [true, true, false, false]);
     assert_eq!([5, 50, 100, 99, 20, 21].map(|at| on(100, 20, at)), [true, false, true, false, true, false]);
@@ -372,7 +372,7 @@ proptest! {
 
     /// Random words seldom begin like the words in the manual, so these do.
     #[test]
-    fn words_near_the_manuals_round_trip(high in prop::sample::select(vec![0x2010, 0x2020, 0x2021, 0x2040, 0x2080]), low: u16) {
+    fn documented_word_prefixes_round_trip(high in prop::sample::select(vec![0x2010, 0x2020, 0x2021, 0x2040, 0x2080]), low: u16) {
         let word = high << 16 | u32::from(low);
         for command in Command::all_meanings(word) {
             prop_assert_eq!(command.emit(), word);
@@ -380,14 +380,14 @@ proptest! {
     }
 
     #[test]
-    fn a_word_has_one_meaning_per_mode(word: u32, mode in prop::sample::select(EncoderMode::ALL.to_vec())) {
+    fn word_has_one_meaning_per_mode(word: u32, mode in prop::sample::select(EncoderMode::ALL.to_vec())) {
         let legal = Command::all_meanings(word).into_iter().filter(|command| command.is_legal_in(mode)).count();
         prop_assert!(legal <= 1);
     }
 
     /// The formula for the window is from the reference.
     #[test]
-    fn the_window_matches_its_formula(position in 0..=0x1FF_FFFF_u32, outputs: u8, at in 0..=25_u8) {
+    fn window_matches_formula(position in 0..=0x1FF_FFFF_u32, outputs: u8, at in 0..=25_u8) {
         let output = CamOutput::at_position(value(position), outputs, shift(at));
         let window = (u64::from(position) << 8 >> at) & 0x01FF_FF00;
         prop_assert_eq!(u64::from(output.emit()), window | u64::from(outputs));
@@ -396,7 +396,7 @@ proptest! {
 
     /// At all edges, next to them, and at a random position, the outputs equal those of the original programs.
     #[test]
-    fn compiled_programs_equal_plain_ones(programs in arbitrary_programs(), anywhere in 0..=0x1FF_FFFF_u32) {
+    fn compiled_programs_match_originals(programs in arbitrary_programs(), anywhere in 0..=0x1FF_FFFF_u32) {
         let compiled = CompiledPrograms::new(&programs);
         let cams = programs.iter().flat_map(|program| program.cams.iter().flatten());
         let edges = cams.flat_map(|cam| [cam.start.get(), cam.stop.get()]);

@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_is_parsed() {
+    fn parses_every_key() {
         let query = "preset=99&zero-shift=500&steps=100&revolutions=2&direction=ccw&rpm=-5&position=0x10&serial=7&\
                      operating-time=8&temperature=-1.25&temperature-bits=16&complement=bit&program=8&cams=none&stores=449&\
                      steps-minus-one=on&busy=20&stale=3&selection=output&class=K2&encoders=2&unit=17&input=100&output=0x200&\
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn an_omitted_half_of_the_gear_takes_its_maximum() {
+    fn omitted_gear_part_defaults_to_maximum() {
         let gear =
             |query: &str| read(query).map(|config| (config.memory.gear.total_steps(), config.memory.gear.turns()));
         assert_eq!(gear("steps=360"), Ok((360, 4096)));
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_values_are_reported() {
+    fn reports_invalid_values() {
         let keys = Config::KEYS.join(", ");
         let cases = [
             ("sed=1", format!("a virtual INTERBUS encoder has no setting `sed`; valid settings are {keys}")),
@@ -216,7 +216,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_value_panics(key in 0..Config::KEYS.len(), value in ".*|[0-9]{1,9}|0x[0-9A-F]{1,7}") {
+        fn arbitrary_values_do_not_panic(key in 0..Config::KEYS.len(), value in ".*|[0-9]{1,9}|0x[0-9A-F]{1,7}") {
             let _ = Config::from_pairs(&[(Config::KEYS[key].to_owned(), value)]).map(|config| Gateway::new(&config));
         }
     }

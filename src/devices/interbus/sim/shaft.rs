@@ -47,7 +47,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_turning_shaft_has_the_expected_position() {
+    fn turning_shaft_reaches_expected_position() {
         let at = |ms| Moment::START + Duration::from_millis(ms);
         let mut shaft = Shaft::new(100, 60.0);
         assert_eq!((shaft.position_at(at(0)), shaft.position_at(at(1_000))), (100, 8292));

@@ -137,7 +137,7 @@ mod tests {
     use crate::app::connect::parameters::tests::assert_round_trip;
 
     #[test]
-    fn links_round_trip_through_the_form() {
+    fn links_round_trip_through_form() {
         let links = [
             "sim:",
             "sim:?cams=demo&rpm=6",
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_entries_are_refused_by_name() {
+    fn rejection_names_invalid_entry() {
         let refused = |change: fn(&mut InterbusForm)| {
             let mut form = InterbusForm::default();
             change(&mut form);
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn switching_the_interface_keeps_only_its_settings() {
+    fn switching_interface_drops_other_settings() {
         let mut form = InterbusForm::from_url(&"sim:?rpm=60&busy=5&unit=7".parse().unwrap());
         (form.kind, form.host) = (InterbusLinkKind::Gateway, "gate".to_owned());
         assert_eq!(form.url().unwrap().to_string(), "modbus:gate:502?unit=7");

@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_accepted_or_refused_with_their_limits() {
+    fn rejects_numbers_beyond_limits() {
         assert_eq!(parse_number(" 33 554 431 "), Ok(33_554_431));
         assert_eq!(parse_number("0x1FF"), Ok(511));
         assert!(parse_number("-1").is_err() && parse_number("1.5").is_err() && parse_number("").is_err());

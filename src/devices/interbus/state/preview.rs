@@ -69,7 +69,7 @@ mod tests {
 
     /// Cam 3 of program 2 is on from 15 to 213 (reference 7).
     #[test]
-    fn outputs_are_compared_with_their_program() {
+    fn compares_outputs_with_program() {
         let mut program = Program { mask: 8, ..Program::default() };
         program.cams[3] = Some(Cam { start: Value::new(15).unwrap(), stop: Value::new(213).unwrap() });
         let mut programs = [None; ProgramNumber::COUNT];

@@ -105,7 +105,7 @@ mod tests {
     use crate::app::Language;
 
     #[test]
-    fn typed_words_are_decoded_or_refused_with_a_reason() {
+    fn decodes_typed_words() {
         let says = |reading: Reading, text: &str| -> Vec<String> {
             let lines = reading.decode_words(text).into_iter();
             lines.map(|line| line.meaning.unwrap_or_else(|why| why).to_string_in(Language::English)).collect()

@@ -106,7 +106,7 @@ mod tests {
     /// Damaged replies, rejections and replies with an error word must all be explained and marked (Modbus application
     /// protocol 1.1b3, 6.4 and 7; reference 2; issue 22.11).
     #[test]
-    fn damaged_replies_are_explained_and_marked() {
+    fn explains_and_marks_damaged_replies() {
         let request = "00 07 00 00 00 06 01 04 00 00 00 02";
         let cases = [
             ("good", "00 07 00 00 00 07 01 04 04 00 00 03 E8", None),

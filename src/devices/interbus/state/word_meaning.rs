@@ -160,7 +160,7 @@ mod tests {
 
     /// The words are from references 3, 5 and 7.
     #[test]
-    fn words_are_decoded_in_their_mode() {
+    fn decodes_words_by_mode() {
         let english = |text: Text| text.to_string_in(Language::English);
         for (word, mode, says) in [
             (0x0200_00FF, EncoderMode::Position, "Steps := 255"),

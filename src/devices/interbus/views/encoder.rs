@@ -171,7 +171,7 @@ mod tests {
     /// shield to the housing, and in Loop the housing to PE), and 6.1 (10 to 30 V DC absolute, 3.5 W, 500 kBaud or 2
     /// MBaud). See issue 22.23.
     #[test]
-    fn the_wiring_card_matches_the_manual() {
+    fn wiring_card_matches_manual() {
         assert_notes(
             &TEXTS,
             &WIRING,

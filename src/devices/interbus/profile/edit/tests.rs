@@ -16,7 +16,7 @@ fn sent(device: &Image, wanted: &Image) -> Vec<(Parameter, u32)> {
 }
 
 #[test]
-fn equal_values_are_not_written() {
+fn skips_equal_values() {
     let plan = plan_edits(&image(), &image()).unwrap();
     assert_eq!(plan, InterbusPlan { base: Base::default(), ops: vec![] });
     // Values that are not to be written need not be known.
@@ -27,7 +27,7 @@ fn equal_values_are_not_written() {
 
 /// If the zero shift is beyond the new measuring range, it must be changed before the range (issue 22.6).
 #[test]
-fn a_zero_shift_must_be_within_the_measuring_range() {
+fn rejects_zero_shift_beyond_range() {
     let device = Image::from_parameters(Parameters {
         steps: 255,
         revolutions: 1,
@@ -57,7 +57,7 @@ fn a_zero_shift_must_be_within_the_measuring_range() {
 /// Only the differences are written to an encoder that already has 60 of the 64 cams. Each changed program uses one
 /// EEPROM write cycle.
 #[test]
-fn a_full_set_writes_only_differences() {
+fn full_set_writes_only_differences() {
     let device = image();
     let wanted = image_with(
         &device,
@@ -100,7 +100,7 @@ fn a_full_set_writes_only_differences() {
 }
 
 #[test]
-fn all_parameters_need_one_store() {
+fn stores_all_parameters_once() {
     let device = image();
     let items = [
         ("steps", Number(7200)),
@@ -120,7 +120,7 @@ fn all_parameters_need_one_store() {
 
 /// Each parameter must be within its limits when it is sent: steps ≤ 8192 · turns, and preset < steps (reference 3).
 #[test]
-fn parameters_are_sent_in_a_legal_order() {
+fn sends_parameters_in_legal_order() {
     use Parameter::{Preset, Steps, Turns};
     let image = Image::from_parameters(image().parameters);
     let gear = |steps, turns, preset| {
@@ -150,7 +150,7 @@ fn parameters_are_sent_in_a_legal_order() {
 }
 
 #[test]
-fn the_shift_is_stored_with_a_changed_program() {
+fn stores_shift_with_changed_program() {
     let device = image();
     let (zero, eight) = (WindowShift::new(0).unwrap(), WindowShift::new(8).unwrap());
     let items = [("shift", Number(8)), ("cam-mask:3", ItemValue::Mask(1)), ("cam-mask:6", ItemValue::Mask(2))];
@@ -172,7 +172,7 @@ fn the_shift_is_stored_with_a_changed_program() {
 }
 
 #[test]
-fn invalid_values_are_refused_with_both_limits() {
+fn invalid_value_error_names_limits() {
     let device = image();
     let refusal = |items: &[(&str, ItemValue)]| plan_edits(&device, &image_with(&device, items)).unwrap_err();
     assert_eq!(refusal(&[("steps", Number(8193))]), GearError::Steps { steps: 8193, turns: 1, most: 8192 }.into());
@@ -196,7 +196,7 @@ fn invalid_values_are_refused_with_both_limits() {
 
 /// Cams that are not written may lie beyond the new range, unless they are active.
 #[test]
-fn a_shorter_range_refuses_enabled_cams_beyond_it() {
+fn shorter_range_rejects_cams_beyond_it() {
     let device = image();
     let shorter = image_with(&device, &[("steps", Number(750))]);
     // Cam 7 of program 1 ends at 750, and cam 7 of program 8 at 757.
@@ -213,7 +213,7 @@ fn a_shorter_range_refuses_enabled_cams_beyond_it() {
 }
 
 #[test]
-fn unread_values_are_not_changed() {
+fn leaves_unread_values_unchanged() {
     let device = Image::from_parameters(image().parameters);
     let refusal = |items: &[(&str, ItemValue)]| plan_edits(&device, &image_with(&device, items)).unwrap_err();
     assert_eq!(refusal(&[("cam-mask:4", ItemValue::Mask(1))]), PlanError::NotRead { item: parse_item("cam-mask:4") });
@@ -224,7 +224,7 @@ fn unread_values_are_not_changed() {
 }
 
 #[test]
-fn a_preset_is_programmed_before_each_trigger() {
+fn programs_preset_before_each_trigger() {
     let parameters = image().parameters;
     let plan = plan_preset(&parameters, 500).unwrap();
     let again = ParameterChange { parameter: Parameter::Preset, from: 500, to: 500 };

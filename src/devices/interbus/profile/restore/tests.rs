@@ -19,7 +19,7 @@ fn operations(restore: &Restore) -> Vec<String> {
 }
 
 #[test]
-fn an_equal_profile_writes_nothing() {
+fn equal_profile_writes_nothing() {
     let restore = plan_restore(&profile(MINE), &device(MINE, &[]), RestoreOptions::default()).unwrap();
     // 5 parameters, the shift, 8 masks, 64 cams.
     assert_eq!((restore.plan.is_empty(), restore.unchanged), (true, 78));
@@ -27,7 +27,7 @@ fn an_equal_profile_writes_nothing() {
 }
 
 #[test]
-fn only_differences_are_written() {
+fn writes_only_differences() {
     let items =
         [("steps", Number(4096)), ("preset", Number(1)), ("cam:3:4", Cam(cam_between(1, 2))), ("shift", Number(8))];
     let restore = plan_restore(&profile(MINE), &device(MINE, &items), RestoreOptions::default()).unwrap();
@@ -40,7 +40,7 @@ fn only_differences_are_written() {
 }
 
 #[test]
-fn another_encoder_is_refused_and_keeps_its_mounting() {
+fn other_encoder_needs_permission() {
     let of = profile(MINE);
     let other = device("7654321", &[("preset", Number(7)), ("zero-shift", Number(9)), ("cam-mask:1", Mask(0))]);
     let refused = PlanError::OtherDevice { profile: MINE.to_owned(), device: "7654321".to_owned() };
@@ -60,7 +60,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
 
 /// The marks in the file decide which values depend on the mounting, even if they mark unusual items.
 #[test]
-fn only_marked_items_belong_to_the_mounting() {
+fn mounting_covers_only_marked_items() {
     let mut of = profile(MINE);
     of.mounting.retain(|mark| mark.item == Item::Preset);
     if let Some(mark) = of.mounting.first_mut() {
@@ -75,14 +75,14 @@ fn only_marked_items_belong_to_the_mounting() {
 /// A handwritten profile without a serial number may be written to any encoder, except for the mounting-dependent
 /// values.
 #[test]
-fn a_profile_without_identity_suits_any_encoder() {
+fn profile_without_identity_fits_any_encoder() {
     let options = RestoreOptions::default();
     let restore = plan_restore(&profile(""), &device(MINE, &[("preset", Number(7))]), options).unwrap();
     assert_eq!((restore.plan.is_empty(), restore.mounting_left), (true, vec![Item::Preset]));
 }
 
 #[test]
-fn a_kept_preset_must_be_within_the_range() {
+fn rejects_kept_preset_beyond_range() {
     let other = device("7654321", &[("steps", Number(8192)), ("preset", Number(5000))]);
     let options = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
     let left = PlanError::MountingLeft { item: Item::Preset, value: 5000, low: 0, high: 3599 };
@@ -93,7 +93,7 @@ fn a_kept_preset_must_be_within_the_range() {
 /// An encoder that reports its steps minus one, or does not count turns, is a different type. Allowing another type
 /// does not allow another serial number (issue 22.9).
 #[test]
-fn another_type_needs_a_separate_permission() {
+fn type_change_needs_permission() {
     let mut own = device(MINE, &[("preset", Number(7))]);
     let (device_only, type_only) = (
         RestoreOptions { allow_other_device: true, ..RestoreOptions::default() },
@@ -122,7 +122,7 @@ fn another_type_needs_a_separate_permission() {
 }
 
 #[test]
-fn only_needed_programs_are_read() {
+fn reads_only_needed_programs() {
     let mut of = profile(MINE);
     let numbers = |profile: &InterbusProfile| -> Vec<u8> {
         programs_to_read(profile).into_iter().map(ProgramNumber::get).collect()
@@ -140,7 +140,7 @@ fn only_needed_programs_are_read() {
 }
 
 #[test]
-fn values_missing_on_the_encoder_are_listed() {
+fn lists_values_missing_on_encoder() {
     let mut own = device(MINE, &[]);
     (own.image.shift, own.image.programs[2]) = (None, None);
     let restore = plan_restore(&profile(MINE), &own, RestoreOptions::default()).unwrap();
@@ -150,7 +150,7 @@ fn values_missing_on_the_encoder_are_listed() {
 
 /// The profiles are written to an encoder with the test programs.
 #[test]
-fn ready_made_profiles_plan_the_expected_writes() {
+fn sample_profiles_plan_expected_writes() {
     let read = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/interbus").join(name);
         let text = std::fs::read_to_string(path).unwrap();
@@ -180,7 +180,7 @@ fn ready_made_profiles_plan_the_expected_writes() {
 }
 
 #[test]
-fn a_comparison_lists_the_differences() {
+fn comparison_lists_differences() {
     let (left, mut right) = (profile(MINE), profile("7654321"));
     right.recorded.temperature_tenths = None;
     assert_eq!(left.compare(&right).compared, 78);

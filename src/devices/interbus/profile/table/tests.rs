@@ -28,7 +28,7 @@ fn rows(table: &CamTable) -> Vec<(u8, u8, &str, u32, u32)> {
 }
 
 #[test]
-fn columns_are_found_by_name_or_position() {
+fn finds_columns_by_name_or_position() {
     for (text, expected) in [
         ("program,cam,name,start,stop\n2,3,feed,10,20\n", (2, 3, "feed", 10, 20)),
         ("Programm;Nocken;Spur;Ein;Aus\n2;3;Vorschub;10;20\n", (2, 3, "Vorschub", 10, 20)),
@@ -50,7 +50,7 @@ fn columns_are_found_by_name_or_position() {
 }
 
 #[test]
-fn decimal_commas_are_accepted_if_no_delimiter() {
+fn accepts_unambiguous_decimal_comma() {
     let degrees = options(Scale::in_degrees(3600.0, 0).unwrap(), 3600);
     for (text, delimiter) in [
         ("10,5;20,25°", Delimiter::Semicolon),
@@ -67,7 +67,7 @@ fn decimal_commas_are_accepted_if_no_delimiter() {
 }
 
 #[test]
-fn rounding_of_an_edge_is_reported() {
+fn reports_rounded_edges() {
     // There are 8192 steps per turn, and the zero of the machine is at 1000. 10° are 227.56 steps, and 228 steps are
     // 10.0195°. 350° are 7964.44 steps, and 7964 steps are 349.9805°.
     let table = options(Scale::in_degrees(8192.0, 1000).unwrap(), 8192).read("feed;350;10\nplain;0;90");
@@ -83,7 +83,7 @@ fn rounding_of_an_edge_is_reported() {
 }
 
 #[test]
-fn a_full_turn_pulse_ends_just_before_its_start() {
+fn full_turn_pulse_ends_before_start() {
     let degrees = options(Scale::in_degrees(1000.0, 0).unwrap(), 1000);
     for (text, start, stop) in [("0;360", 0, 999), ("90;450", 250, 249), ("-90;270", 750, 749), ("350;370", 972, 28)] {
         assert_eq!(rows(&degrees.read(text)), [(1, 0, "", start, stop)], "{text}");
@@ -93,7 +93,7 @@ fn a_full_turn_pulse_ends_just_before_its_start() {
 }
 
 #[test]
-fn two_pulses_on_one_track_take_two_cams_with_a_note() {
+fn two_pulses_per_track_use_two_cams() {
     let table = steps("name;start;stop\nGlue;10;20\nfeed;0;500\nglue;40;50\n");
     assert_eq!(rows(&table), [(1, 0, "Glue", 10, 20), (1, 1, "feed", 0, 500), (1, 2, "glue", 40, 50)]);
     let cams = vec![cam(0), cam(2)];
@@ -103,7 +103,7 @@ fn two_pulses_on_one_track_take_two_cams_with_a_note() {
 }
 
 #[test]
-fn cams_without_a_number_take_the_free_ones() {
+fn unnumbered_cams_take_free_numbers() {
     let table = steps("cam;name;start;stop\n;a;1;2\n0;b;3;4\n;c;5;6\n2;d;7;8\n");
     assert_eq!(rows(&table), [(1, 1, "a", 1, 2), (1, 0, "b", 3, 4), (1, 3, "c", 5, 6), (1, 2, "d", 7, 8)]);
     let filled = table.to_programs();
@@ -117,7 +117,7 @@ fn problem(line: u64, column: u64, what: TableProblemKind) -> TableProblem {
 }
 
 #[test]
-fn errors_name_line_and_column_and_valid_rows_are_kept() {
+fn keeps_valid_rows_despite_errors() {
     let text = "program;cam;name;start;stop\n\
         9;0;a;1;2\n\
         1;8;b;1;2\n\
@@ -150,7 +150,7 @@ fn errors_name_line_and_column_and_valid_rows_are_kept() {
 }
 
 #[test]
-fn a_ninth_cam_in_a_program_is_refused() {
+fn rejects_ninth_cam() {
     let text: String = (0..9).map(|row| format!("track {row};{};{}\n", row * 10, row * 10 + 5)).collect();
     let table = steps(&text);
     assert_eq!(table.rows.len(), 8);
@@ -158,7 +158,7 @@ fn a_ninth_cam_in_a_program_is_refused() {
 }
 
 #[test]
-fn empty_tables_are_reported() {
+fn reports_empty_table() {
     for text in ["", "\n \n", ";;\n", "name;start;stop\n"] {
         assert_eq!(steps(text).problems[0].kind, TableProblemKind::Empty, "{text:?}");
     }
@@ -172,7 +172,7 @@ fn empty_tables_are_reported() {
 }
 
 #[test]
-fn a_header_with_another_unit_is_reported() {
+fn reports_unit_mismatch_in_header() {
     let table = options(Scale::in_degrees(1000.0, 0).unwrap(), 1000).read("name;start [mm];stop [mm]\nfeed;36;72\n");
     assert_eq!(rows(&table), [(1, 0, "feed", 100, 200)]);
     assert_eq!(table.notes, [TableNote::OtherUnit { header: Unit::Millimetres, used: Unit::Degrees }]);
@@ -180,7 +180,7 @@ fn a_header_with_another_unit_is_reported() {
 }
 
 #[test]
-fn emitted_tables_parse_back() {
+fn emitted_tables_round_trip() {
     let parameters =
         |steps| Parameters { steps, revolutions: 4096, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
     let edges = |start, stop| Some(Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() });

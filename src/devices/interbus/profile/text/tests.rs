@@ -39,7 +39,7 @@ fn replaced(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn emitted_profiles_parse_back() {
+fn emitted_profiles_round_trip() {
     let mut full = profile("1234567");
     full.names.set_program(program(8), "\"best\" cartons".to_owned());
     full.names.set_cam(program(8), cam(0), "Leimdüse".to_owned());
@@ -58,7 +58,7 @@ fn emitted_profiles_parse_back() {
 }
 
 #[test]
-fn a_short_profile_leaves_the_rest_unset() {
+fn short_profile_leaves_rest_unset() {
     let read = parse(SHORT).unwrap();
     assert_eq!(read.image.parameters.direction, Direction::Counterclockwise);
     assert_eq!((read.image.shift, read.image.known_programs().count()), (None, 1));
@@ -72,7 +72,7 @@ fn a_short_profile_leaves_the_rest_unset() {
 }
 
 #[test]
-fn unknown_fields_are_kept_in_place() {
+fn keeps_unknown_fields_in_place() {
     let text = replaced("zero_shift: 0", "zero_shift: 0, gearbox: 3");
     let text = text.replace("mask: 0b101", "mask: 5, colour: \"red\"").replace("stop: 0x28", "stop: 40, lamp: 7");
     let once = ProfileDocument::parse(&text, InterbusProfile::FORMATS).unwrap().emit();
@@ -85,7 +85,7 @@ fn unknown_fields_are_kept_in_place() {
 }
 
 #[test]
-fn errors_name_their_entry() {
+fn errors_name_entry() {
     let cases = [
         ("steps: 3600, ", "", "parameters.steps is missing"),
         ("steps: 3600", "steps: -1", "parameters.steps must be a number from 0 to 33554431"),
@@ -119,7 +119,7 @@ const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests
 
 /// When a value changes, the rest of the text stays unchanged (issue 22.26).
 #[test]
-fn a_change_edits_only_its_value() {
+fn change_edits_only_its_value() {
     let edit = |own: &mut InterbusProfile| {
         let program = own.image.program_mut(ProgramNumber::new(2).unwrap()).unwrap().as_mut().unwrap();
         program.set_cam(cam(1), Some(cam_between(15, 20)));
@@ -129,7 +129,7 @@ fn a_change_edits_only_its_value() {
 
 /// When an entry is added or removed, no other line changes (issue 22.26).
 #[test]
-fn adding_or_removing_an_entry_changes_only_its_line() {
+fn entry_change_affects_only_its_line() {
     let (_, carried) = edit_profile(COMMENTED, |note, own: &mut InterbusProfile| {
         let program = own.image.program_mut(ProgramNumber::new(2).unwrap()).unwrap().as_mut().unwrap();
         program.set_cam(cam(1), None);
@@ -147,7 +147,7 @@ fn adding_or_removing_an_entry_changes_only_its_line() {
 
 /// In a ready-made profile, the comment about a value is updated with the value (issue 22.26).
 #[test]
-fn generated_comments_follow_their_values() {
+fn generated_comments_follow_values() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/interbus/packaging-machine.ron"));
     let (document, carried) = edit_profile(text, |_, own: &mut InterbusProfile| {
         let program = own.image.program_mut(ProgramNumber::new(1).unwrap()).unwrap().as_mut().unwrap();
@@ -159,7 +159,7 @@ fn generated_comments_follow_their_values() {
 
 /// When two users have changed a common profile, the changes of both are listed by entry (issue 22.25).
 #[test]
-fn divergent_changes_are_listed_by_entry() {
+fn lists_divergent_changes_by_entry() {
     let base = parse_document(COMMENTED);
     let theirs = parse_document(&COMMENTED.replace("start: 10,", "start: 12,").replace("mask: 3", "mask: 1"));
     let mine = parse_document(&COMMENTED.replace("start: 10,", "start: 14,").replace("stop: 200", "stop: 222"));

@@ -18,7 +18,7 @@ fn word() -> impl Strategy<Value = u32> {
 
 proptest! {
     #[test]
-    fn any_words_keep_the_memory_consistent(words in prop::collection::vec((word(), 0_u64..30), 0..60), stores in 495_u32..505) {
+    fn arbitrary_words_keep_memory_consistent(words in prop::collection::vec((word(), 0_u64..30), 0..60), stores in 495_u32..505) {
         let mut master = Master::with(&format!("stale=1&busy=5&cams=demo&steps=360&revolutions=1&stores={stores}&rpm=60"));
         for (word, pause) in words {
             let before = master.encoder.store_count();

@@ -16,7 +16,7 @@ fn outputs(master: &mut Master, position: i32) -> u32 {
 }
 
 #[test]
-fn the_manuals_example_matches() {
+fn manual_cam_example_matches() {
     let mut master = Master::with(SETTINGS);
     master.exchange(&[
         (0x2080_0001, 0xE080_0001),
@@ -33,7 +33,7 @@ fn the_manuals_example_matches() {
 }
 
 #[test]
-fn cams_are_on_as_in_the_reference() {
+fn cam_states_match_reference() {
     let mut master = Master::with(SETTINGS);
     // Cam 0 is on from 15 to 213. Cam 1 is on from 100 to 20, across the end of the range.
     master.put(&[0x2080_0002, 0x4000_000F, 0x6000_00D5, 0x4200_0064, 0x6200_0014, 0x2040_0003, 0x8000_0000]);
@@ -49,7 +49,7 @@ fn cams_are_on_as_in_the_reference() {
 /// As in the reference, the position is 1ABCDEFh with cam 5 on. With the largest gear, a position step is about one
 /// disc step.
 #[test]
-fn the_shift_selects_the_position_bits_of_the_window() {
+fn shift_selects_window_position_bits() {
     let cases = [(0, 0x01CD_EF20), (4, 0x00BC_DE20), (8, 0x01AB_CD20), (25, 0x0000_0020)];
     for (shift, expected) in cases {
         let mut master = Master::with("cams=none");
@@ -61,7 +61,7 @@ fn the_shift_selects_the_position_bits_of_the_window() {
 }
 
 #[test]
-fn edges_beyond_the_range_and_nonexistent_cams_are_refused() {
+fn rejects_invalid_edges_and_cams() {
     let mut master = Master::with(SETTINGS);
     master.put(&[0x2080_0001, 0x4000_0001, 0x8000_0000]);
     let position = 0x0000_6400;
@@ -83,7 +83,7 @@ fn edges_beyond_the_range_and_nonexistent_cams_are_refused() {
 }
 
 #[test]
-fn cams_mask_and_shift_are_read_from_the_running_program() {
+fn reads_back_running_program() {
     let mut master = Master::with(SETTINGS);
     master.put(&[0x2080_0001, 0x4600_0015, 0x6600_0213, 0x2040_0008, 0x2010_0004, 0x8000_0000]);
     let live = 0x0000_0608;
@@ -105,7 +105,7 @@ fn cams_mask_and_shift_are_read_from_the_running_program() {
 }
 
 #[test]
-fn unstored_changes_keep_the_outputs_invalid() {
+fn unstored_changes_keep_outputs_invalid() {
     let mut master = Master::with(SETTINGS);
     master.put(&[0x2080_0001]);
     master.exchange(&[(0x4600_0015, 0xC600_0015), (0x2020_0013, 0xA000_0015), (0, 0x8000_0000)]);
@@ -115,7 +115,7 @@ fn unstored_changes_keep_the_outputs_invalid() {
 }
 
 #[test]
-fn a_changed_program_is_stored_when_another_one_is_selected() {
+fn selecting_program_stores_pending_changes() {
     let mut master = Master::with(SETTINGS);
     master.put(&[0x2080_0001, 0x4000_0001, 0x2080_0002]);
     assert_eq!(master.encoder.store_count(), 4);
@@ -125,7 +125,7 @@ fn a_changed_program_is_stored_when_another_one_is_selected() {
 }
 
 #[test]
-fn presets_are_cam_words_while_a_program_runs() {
+fn running_program_treats_presets_as_cams() {
     let mut master = Master::with(SETTINGS);
     master.put(&[0x2080_0001, 0x4000_0005, 0x8000_0000]);
     // The start of cam 0 is set to 0, so its echo looks like the word of a busy encoder.
@@ -133,7 +133,7 @@ fn presets_are_cam_words_while_a_program_runs() {
 }
 
 #[test]
-fn selecting_a_program_can_enable_its_outputs_directly() {
+fn program_selection_can_enable_outputs() {
     let mut master = Master::with(&format!("{SETTINGS}&selection=output&program=7"));
     master.exchange(&[
         (0, 0x0000_6400),
@@ -144,7 +144,7 @@ fn selecting_a_program_can_enable_its_outputs_directly() {
 }
 
 #[test]
-fn the_demo_has_the_example_and_cams_across_the_end() {
+fn demo_has_example_and_wrapping_cams() {
     for steps in [1, 2, 20, 4096] {
         let config = config(&format!("steps={steps}&revolutions=1&cams=demo"));
         for number in [1, 2, 3] {

@@ -44,7 +44,7 @@ fn hex(bytes: &[u8]) -> String {
 const READ: &str = "00 01 00 00 00 06 01 04 00 00 00 02";
 
 #[test]
-fn words_are_two_registers_in_the_default_order() {
+fn words_span_two_registers() {
     // 1193046 is 123456h. The gear drops one of 33554432 steps, so this is the position at disc position 123457h.
     let mut host = Host::with("position=1193047");
     host.exchange(&[
@@ -58,7 +58,7 @@ fn words_are_two_registers_in_the_default_order() {
 }
 
 #[test]
-fn word_order_registers_and_unit_are_configurable() {
+fn register_layout_is_configurable() {
     let mut host = Host::with("position=1193047&order=low-first&unit=17&input=100&output=0x200");
     host.exchange(&[
         ("00 01 00 00 00 06 11 04 00 64 00 02", "00 01 00 00 00 07 11 04 04 34 56 00 12"),
@@ -72,7 +72,7 @@ fn word_order_registers_and_unit_are_configurable() {
 
 /// The encoder processes half a word, written by function 6, before the other half is written.
 #[test]
-fn a_single_register_is_half_a_word() {
+fn single_register_holds_half_word() {
     let mut host = Host::with("position=0");
     host.exchange(&[
         ("00 01 00 00 00 06 01 06 00 00 02 00", "00 01 00 00 00 06 01 06 00 00 02 00"),
@@ -83,7 +83,7 @@ fn a_single_register_is_half_a_word() {
 }
 
 #[test]
-fn invalid_requests_get_the_matching_exception() {
+fn invalid_requests_get_matching_exception() {
     let mut host = Host::with("");
     let cases = [
         ("a function of coils", "00 01 00 00 00 06 01 01 00 00 00 02", "81 01"),
@@ -109,7 +109,7 @@ fn invalid_requests_get_the_matching_exception() {
 }
 
 #[test]
-fn split_and_concatenated_frames_are_accepted() {
+fn accepts_split_and_joined_frames() {
     let mut host = Host::with("position=1193047");
     let reply = "00 01 00 00 00 07 01 04 04 00 12 34 56";
     let all = bytes(READ);
@@ -126,7 +126,7 @@ fn split_and_concatenated_frames_are_accepted() {
 }
 
 #[test]
-fn several_encoders_have_consecutive_registers() {
+fn encoders_have_consecutive_registers() {
     let mut host = Host::with("encoders=2&serial=4000&position=0&steps=360&revolutions=1");
     host.exchange(&[
         ("00 01 00 00 00 0B 01 10 00 02 00 02 04 20 21 00 00", "00 01 00 00 00 06 01 10 00 02 00 02"),
@@ -140,7 +140,7 @@ fn several_encoders_have_consecutive_registers() {
 }
 
 #[test]
-fn several_clients_share_the_encoder() {
+fn clients_share_encoder() {
     let mut host = Host::with("position=0");
     let mut other = host.second_client();
     host.exchange(&[("00 01 00 00 00 0B 01 10 00 00 00 02 04 02 00 01 68", "00 01 00 00 00 06 01 10 00 00 00 02")]);
@@ -158,7 +158,7 @@ fn several_clients_share_the_encoder() {
 }
 
 #[test]
-fn replies_are_delayed_and_stay_in_order() {
+fn delayed_replies_stay_in_order() {
     let mut host = Host::with("position=0&fault=delay:100");
     host.gateway.on_bytes(host.now, &bytes(READ));
     let due = Moment::START + Duration::from_millis(102);
@@ -167,7 +167,7 @@ fn replies_are_delayed_and_stay_in_order() {
 }
 
 #[test]
-fn configured_faults_are_injected() {
+fn injects_configured_faults() {
     let good = "00 01 00 00 00 07 01 04 04 00 00 00 00";
     let mut silent = Host::with("position=0&fault=silent-after:2");
     silent.exchange(&[(READ, good), (READ, good), (READ, ""), (READ, "")]);
@@ -190,7 +190,7 @@ fn configured_faults_are_injected() {
 
 /// A request that the gateway rejects has no effect on the encoder. A request whose reply is lost does.
 #[test]
-fn a_gateway_exception_keeps_the_word_from_the_encoder() {
+fn gateway_exception_blocks_write() {
     let mut host = Host::with("exception=1");
     let write = "00 01 00 00 00 0B 01 10 00 00 00 02 04 02 00 01 68";
     host.exchange(&[(write, "00 01 00 00 00 03 01 90 0B")]);
@@ -203,7 +203,7 @@ fn a_gateway_exception_keeps_the_word_from_the_encoder() {
 }
 
 #[test]
-fn an_encoder_without_power_answers_only_after_a_new_connection() {
+fn unpowered_encoder_needs_new_connection() {
     let mut host = Host::with("position=0&fault=die-in-store:1");
     host.exchange(&[
         ("00 01 00 00 00 0B 01 10 00 00 00 02 04 06 00 00 03", "00 01 00 00 00 06 01 10 00 00 00 02"),
@@ -217,7 +217,7 @@ fn an_encoder_without_power_answers_only_after_a_new_connection() {
 }
 
 #[test]
-fn the_motor_handle_turns_the_shaft() {
+fn motor_handle_turns_shaft() {
     let mut host = Host::with("position=0&steps=8192&revolutions=1");
     let motor = host.gateway.shaft_motor();
     assert_eq!(host.ask(READ), "00 01 00 00 00 07 01 04 04 00 00 00 00");

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn the_worked_example_of_the_reference_matches() {
+fn worked_reference_example_matches() {
     let mut master = Master::with("stale=1&position=5000&steps=8192&revolutions=1");
     let steps = [
         (0x0000_0000, [0x0000_1388, 0x0000_1388]),
@@ -28,7 +28,7 @@ fn the_worked_example_of_the_reference_matches() {
 }
 
 #[test]
-fn busy_words_last_the_configured_time() {
+fn busy_words_last_configured_time() {
     let mut master = Master::with("busy=20&stale=2&position=7&steps=8192&revolutions=1");
     master.write(0x0200_0168);
     let words: Vec<u32> = (0..5)
@@ -52,7 +52,7 @@ fn busy_words_last_the_configured_time() {
 }
 
 #[test]
-fn steps_and_turns_scale_positions_as_in_the_reference() {
+fn position_scaling_matches_reference() {
     // Steps, turns, disc position and resulting position.
     let cases = [
         (255, 1, 0, 0),
@@ -74,7 +74,7 @@ fn steps_and_turns_scale_positions_as_in_the_reference() {
 }
 
 #[test]
-fn out_of_range_values_are_wrong_data_and_change_nothing() {
+fn out_of_range_values_change_nothing() {
     let mut master = Master::with("steps=8192&revolutions=1");
     let wrong = [0x0200_2001, 0x0200_0000, 0x0400_0000, 0x0400_1001, 0x0600_0002, 0x0600_0005, 0x0800_2000];
     for word in wrong {
@@ -90,7 +90,7 @@ fn out_of_range_values_are_wrong_data_and_change_nothing() {
 }
 
 #[test]
-fn undocumented_codes_are_unknown() {
+fn rejects_undocumented_codes() {
     let mut master = Master::with("position=0");
     for code in [6, 8, 9, 10, 11, 12, 13, 14, 15] {
         master.exchange(&[(code << 25, 0x8400_0000), (0x8000_0000, 0), (0, 0)]);
@@ -105,7 +105,7 @@ fn undocumented_codes_are_unknown() {
 }
 
 #[test]
-fn only_the_edge_of_run_ends_a_parameterisation() {
+fn only_run_edge_ends_parameterisation() {
     let mut master = Master::with("position=9&steps=8192&revolutions=1");
     master.exchange(&[(0x0600_0003, 0xC600_0003), (0, 0xC600_0003), (0x4000_0000, 0xC600_0003)]);
     master.exchange(&[(0x2021_0000, 0xC600_0003), (0x2080_0001, 0xC600_0003)]);
@@ -132,7 +132,7 @@ fn each_programmed_preset_triggers_once() {
 }
 
 #[test]
-fn every_preset_is_reachable_with_any_gear_and_zero_shift() {
+fn every_preset_is_reachable() {
     for (steps, turns, zero_shift) in [(255, 1, 0), (360, 1, 359), (1000, 10, 1), (8191, 1, 5), (33_554_431, 4096, 9)] {
         for preset in [0, 1, steps / 3, steps - 1] {
             let mut master = Master::with(&format!("steps={steps}&revolutions={turns}&rpm=0&position=30000000"));
@@ -143,7 +143,7 @@ fn every_preset_is_reachable_with_any_gear_and_zero_shift() {
 }
 
 #[test]
-fn the_other_direction_counts_backwards() {
+fn reverse_direction_counts_backwards() {
     let mut master = Master::with("steps=360&revolutions=1");
     master.put(&[0x0600_0004, 0x8000_0000, 0]);
     assert_eq!([0, 2048, 4096].map(|place| master.position(place)), [0, 270, 180]);
@@ -151,7 +151,7 @@ fn the_other_direction_counts_backwards() {
 }
 
 #[test]
-fn zero_shift_moves_the_position_within_the_range() {
+fn zero_shift_moves_position_within_range() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
     master.put(&[0x0A00_00C8, 0x8000_0000, 0]);
     // 180 + 200 wraps to 20 of 360 steps, and 180 + 359 wraps to 179. A zero shift of 360 is out of range.
@@ -162,7 +162,7 @@ fn zero_shift_moves_the_position_within_the_range() {
 }
 
 #[test]
-fn the_word_holds_the_speed_while_requested() {
+fn word_holds_speed_while_requested() {
     let mut master = Master::with("rpm=1500&position=0&steps=8192&revolutions=1");
     master.exchange(&[(0x2040_0001, 1500), (0x2021_0009, 0xA000_0002), (0, 1500), (0x2040_0000, 0), (0, 0)]);
     master.encoder.motor().set_rpm(-3.0);
@@ -173,7 +173,7 @@ fn the_word_holds_the_speed_while_requested() {
 }
 
 #[test]
-fn older_encoders_report_steps_less_one() {
+fn older_encoders_report_steps_minus_one() {
     let mut master = Master::with("steps-minus-one=on&revolutions=1&steps=360&position=4096");
     master.exchange(&[(0x2021_0001, 0xA000_0167), (0, 180), (0x2021_000A, 0xA000_0003), (0, 180)]);
     master.exchange(&[(0x0200_00FF, 0xC200_00FF), (0x8000_0000, 128), (0, 128), (0x2021_0001, 0xA000_00FF)]);
@@ -181,7 +181,7 @@ fn older_encoders_report_steps_less_one() {
 }
 
 #[test]
-fn default_restores_factory_parameters_and_keeps_the_cams() {
+fn factory_reset_keeps_cams() {
     let mut master = Master::with("steps=360&revolutions=1&direction=ccw&preset=5&zero-shift=6&cams=demo");
     let programs = *master.encoder.memory().program(program(2));
     master.exchange(&[(0x0E00_0001, 0x8200_0000), (0x0E00_0000, 0xCE00_0000)]);
@@ -192,7 +192,7 @@ fn default_restores_factory_parameters_and_keeps_the_cams() {
 }
 
 #[test]
-fn encoders_of_other_classes_ignore_commands() {
+fn other_classes_ignore_commands() {
     for (class, expected) in [("K1", 0x0FFF), ("K2", 0x0000_5FFE)] {
         let mut master = Master::with(&format!("class={class}&steps=0x2000&revolutions=1"));
         master.set_shaft_position(0x5FFE);

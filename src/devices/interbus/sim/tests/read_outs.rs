@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn every_read_out_of_the_manual_has_its_value() {
+fn read_outs_match_manual() {
     let mut master = Master::with(
         "serial=4000&steps=360&revolutions=2&direction=ccw&preset=12&zero-shift=34&position=0&temperature=25.3",
     );
@@ -42,7 +42,7 @@ fn every_read_out_of_the_manual_has_its_value() {
 }
 
 #[test]
-fn behaviour_the_reference_leaves_open_is_configurable() {
+fn unspecified_behaviour_is_configurable() {
     let cold = |bits: &str| Master::with(&format!("temperature=-10&temperature-bits={bits}"));
     cold("25").exchange(&[(0x2021_000C, 0xA1FF_FF9C)]);
     cold("16").exchange(&[(0x2021_000C, 0xA000_FF9C)]);
@@ -51,7 +51,7 @@ fn behaviour_the_reference_leaves_open_is_configurable() {
 }
 
 #[test]
-fn a_stale_read_out_remains_for_the_configured_time() {
+fn stale_read_out_lasts_configured_time() {
     let mut master = Master::with("stale=2&serial=4000&steps=360&revolutions=1&position=0");
     master.write(0x2021_0000);
     assert_eq!([0; 4].map(|_| master.read()), [0, 0, 0xA000_0FA0, 0xA000_0FA0]);
@@ -60,7 +60,7 @@ fn a_stale_read_out_remains_for_the_configured_time() {
 }
 
 #[test]
-fn operating_time_is_counted() {
+fn counts_operating_time() {
     let mut master = Master::with("operating-time=7");
     master.wait(25 * 60_000);
     master.exchange(&[(0x2021_0008, 0xA000_0009)]);

@@ -4,7 +4,7 @@ use super::*;
 use crate::devices::interbus::protocol::StartupMode;
 
 #[test]
-fn unstored_values_are_lost_without_power() {
+fn power_loss_discards_unstored_values() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
     master.put(&[0x0200_00B4, 0x8000_0000, 0, 0x0200_0009]);
     master.encoder.disconnect();
@@ -16,7 +16,7 @@ fn unstored_values_are_lost_without_power() {
 
 /// The gateway still sends the same word after the power loss, and the encoder processes it as a new one.
 #[test]
-fn the_masters_word_is_processed_when_power_returns() {
+fn processes_master_word_after_power_up() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
     master.put(&[0x0200_00B4]);
     master.power_cycle();
@@ -24,7 +24,7 @@ fn the_masters_word_is_processed_when_power_returns() {
 }
 
 #[test]
-fn mode_zero_point_and_an_executed_preset_survive_without_a_store() {
+fn mode_and_preset_survive_without_store() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
     master.put(&[0x0800_0005, 0x8000_0000, 0, 0x4000_0000, 0, 0x2080_0004, 0x8000_0000]);
     master.power_cycle();
@@ -34,7 +34,7 @@ fn mode_zero_point_and_an_executed_preset_survive_without_a_store() {
 }
 
 #[test]
-fn power_lost_in_a_store_loses_the_parameters() {
+fn power_loss_during_store_loses_parameters() {
     let mut master = Master::with("steps=360&revolutions=1&cams=demo&fault=die-in-store:2");
     master.put(&[0x0600_0004, 0x8000_0000, 0, 0x0200_00B4]);
     master.write(0x8000_0000);
@@ -50,7 +50,7 @@ fn power_lost_in_a_store_loses_the_parameters() {
 }
 
 #[test]
-fn power_lost_in_a_program_store_loses_that_program() {
+fn power_loss_during_store_loses_program() {
     let mut master = Master::with("steps=360&revolutions=1&cams=demo&fault=die-in-store:1");
     master.put(&[0x2080_0001, 0x4000_0001]);
     master.write(0x8000_0000);
@@ -62,7 +62,7 @@ fn power_lost_in_a_program_store_loses_that_program() {
 }
 
 #[test]
-fn a_worn_out_eeprom_keeps_nothing() {
+fn worn_out_eeprom_keeps_nothing() {
     let mut master = Master::with("steps=360&revolutions=1&stores=499&position=4096");
     master.exchange(&[(0x0600_0004, 0xC600_0004), (0x8000_0000, 180), (0, 180)]);
     assert_eq!(master.encoder.store_count(), 500);

@@ -23,7 +23,7 @@ fn walk(settings: &str, words: &[(&str, &str)]) {
 }
 
 #[test]
-fn parameters_are_echoed() {
+fn echoes_parameters() {
     walk(
         "position=0",
         &[
@@ -53,7 +53,7 @@ fn parameters_are_echoed() {
 }
 
 #[test]
-fn cams_are_echoed_with_both_upper_bits_set() {
+fn cam_echoes_set_both_upper_bits() {
     walk(
         "position=0&steps=33554431",
         &[
@@ -81,7 +81,7 @@ fn cams_are_echoed_with_both_upper_bits_set() {
 }
 
 #[test]
-fn values_are_read_out() {
+fn reads_out_values() {
     let settings = "position=1193046&steps=4000&revolutions=4096&temperature=25.3&operating-time=1000";
     walk(
         settings,
@@ -102,7 +102,7 @@ fn values_are_read_out() {
 }
 
 #[test]
-fn a_k1_encoder_sends_the_position_within_a_turn() {
+fn k1_encoder_sends_position_within_turn() {
     // Disc position 1FFEh of 2000h is FFFh of 1000h.
     walk("class=K1&position=24574", &[("00000000", "00000FFF"), ("02000168", "00000FFF")]);
 }

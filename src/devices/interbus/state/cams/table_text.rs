@@ -115,7 +115,7 @@ mod tests {
     use crate::devices::interbus::protocol::ProgramNumber;
 
     #[test]
-    fn a_table_is_described_in_sentences() {
+    fn describes_table_in_sentences() {
         let scale = Scale::in_degrees(8192.0, 1000).unwrap();
         let options = TableOptions { scale, range: 8192, program: ProgramNumber::new(2).unwrap() };
         let table = options.read("name;start;stop\nfeed;350;10\nglue;20;30\nglue;40;x\nGlue;100;110,5\n");
@@ -138,7 +138,7 @@ mod tests {
     /// The message about rounding repeats the value as typed. For example, 10.05 is rounded to step 10, which is 0.05
     /// lower.
     #[test]
-    fn rounding_shows_the_value_as_typed() {
+    fn rounding_shows_typed_value() {
         let scale = Scale::default();
         let options = TableOptions { scale, range: 3600, program: ProgramNumber::FIRST };
         let table = options.read("name;start;stop\nglue;10,05;20\n");

@@ -44,7 +44,7 @@ fn chart(cams: &[(u8, u32, u32)]) -> Chart {
 }
 
 #[test]
-fn a_cam_across_the_end_is_two_segments() {
+fn wrapping_cam_has_two_segments() {
     let whole = |start, stop| on_ranges(edges(start, stop), 1000);
     assert_eq!(whole(15, 213), [PositionRange { first: 15, last: 213 }]);
     assert_eq!(whole(900, 20), [PositionRange { first: 0, last: 20 }, PositionRange { first: 900, last: 999 }]);
@@ -56,7 +56,7 @@ fn a_cam_across_the_end_is_two_segments() {
 }
 
 #[test]
-fn simulated_outputs_are_compared_with_the_encoders() {
+fn compares_simulated_and_actual_outputs() {
     // Example of the manual and reference 7: the cam from 15 to 213 is on at 15 and 213 but not at 214. The cam from
     // 100 to 20 is on at 5 but not at 50.
     let chart = chart(&[(3, 15, 213), (5, 100, 20)]);
@@ -74,7 +74,7 @@ fn simulated_outputs_are_compared_with_the_encoders() {
 }
 
 #[test]
-fn edges_can_be_dragged_across_the_end() {
+fn drags_edges_across_range_end() {
     for (cam, edge, by, expected) in [
         ((100, 199), Edge::Start, 10, (110, 199)),
         ((100, 199), Edge::Start, 150, (199, 199)),
@@ -94,7 +94,7 @@ fn edges_can_be_dragged_across_the_end() {
 }
 
 #[test]
-fn cams_can_be_moved_and_drawn() {
+fn moves_and_draws_cams() {
     for (cam, by, expected) in [
         ((100, 199), 50, (150, 249)),
         ((100, 199), -150, (950, 49)),
@@ -111,7 +111,7 @@ fn cams_can_be_moved_and_drawn() {
 }
 
 #[test]
-fn the_keyboard_moves_to_the_next_grid_line() {
+fn keys_move_to_next_grid_line() {
     let steps = Scale::default();
     for (position, forward, expected) in [(100, true, 150), (101, true, 150), (100, false, 50), (101, false, 100)] {
         assert_eq!(next_grid_line(&steps, 40.0, position, forward), expected, "{position}");
@@ -126,7 +126,7 @@ fn the_keyboard_moves_to_the_next_grid_line() {
 }
 
 #[test]
-fn grid_lines_are_at_round_values() {
+fn grid_lines_have_round_values() {
     for (at_least, expected) in [(0.3, 0.5), (1.0, 1.0), (1.1, 2.0), (2.0, 2.0), (3.0, 5.0), (5.5, 10.0), (73.0, 100.0)]
     {
         assert!((round_up_1_2_5(at_least) - expected).abs() < 1e-12, "{at_least}");
@@ -155,7 +155,7 @@ fn grid_lines_are_at_round_values() {
 }
 
 #[test]
-fn a_view_stays_within_the_range() {
+fn view_stays_in_range() {
     let whole = VisibleRange::full(1000);
     assert!(whole.is_whole(1000));
     let near = whole.zoomed(10.0, 900.0, 1000);
@@ -196,7 +196,7 @@ fn edges_snap_to_nearby_positions() {
 }
 
 #[test]
-fn a_switched_off_cam_is_free() {
+fn disabled_cam_counts_as_free() {
     let mut own = staged(&[(0, 1, 2), (1, 1, 2)]);
     assert_eq!(Chart::from_edits(&own, program()).unwrap().unused_cam(), Some(cam(2)));
     own.apply_edit(&Edit::Switch { program: program(), cam: cam(0), on: false }).unwrap();
@@ -207,7 +207,7 @@ fn a_switched_off_cam_is_free() {
 }
 
 #[test]
-fn a_lane_describes_its_cam_and_its_problems() {
+fn lane_describes_cam_and_problems() {
     let mut own = staged(&[(3, 900, 20), (4, 10, 30)]);
     for number in [3, 4] {
         own.apply_edit(&Edit::Name { program: program(), cam: cam(number), name: "glue".to_owned() }).unwrap();

@@ -10,7 +10,7 @@ use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
-fn profile_errors_are_explained_in_both_languages() {
+fn explains_profile_errors_in_both_languages() {
     let good = r#"(schema: 1, device: "interbus", parameters: (steps: 3600, revolutions: 1, direction: "cw", preset: 0,
         zero_shift: 0), shift: 8, mounting: [(item: "preset")], programs: [(program: 1, mask: 1, cams: [(cam: 0,
         start: 1, stop: 2)])])"#;
@@ -39,7 +39,7 @@ fn profile_errors_are_explained_in_both_languages() {
 }
 
 #[test]
-fn every_exception_is_named_in_both_languages() {
+fn names_exceptions_in_both_languages() {
     for code in 0..=u8::MAX {
         let exception = Exception::new(code);
         assert_in_both_languages(&super::gateway::exception_name(exception), &exception.name());

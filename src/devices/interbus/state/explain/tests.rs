@@ -39,7 +39,7 @@ fn assert_explains(text: &Text, facts: &[&str]) {
 }
 
 #[test]
-fn encoder_errors_name_a_remedy() {
+fn encoder_errors_name_remedy() {
     let requested = RequestedItem::Input { register: 16 };
     let standing = |found, is| LeftState { out: 0x2080_0003, parameterising: true, found, is };
     let set = Command::Set(Parameter::Steps, value(8193));
@@ -102,7 +102,7 @@ fn encoder_errors_name_a_remedy() {
 
 /// The exception codes are from *Modbus application protocol* 1.1b3, chapter 7.
 #[test]
-fn gateway_exceptions_are_explained_with_their_code() {
+fn gateway_exception_text_has_code() {
     let requested = RequestedItem::Write { register: 2048, word: 0x4000_0000 };
     for code in [1, 2, 3, 4, 5, 6, 8, 0xA, 0xB, 0x7F] {
         let exception = Exception::new(code);
@@ -117,7 +117,7 @@ fn gateway_exceptions_are_explained_with_their_code() {
 
 /// The error words are from reference 2.
 #[test]
-fn error_words_are_explained() {
+fn explains_error_words() {
     for word in [0x8200_0000, 0x8400_0000, 0x8600_0000, 0x9800_0004, 0x9800_0005, 0x8000_0000] {
         let sent = Command::Shift(WindowShift::default());
         assert_explains(
@@ -128,7 +128,7 @@ fn error_words_are_explained() {
 }
 
 #[test]
-fn plan_refusals_name_both_limits() {
+fn plan_errors_name_both_limits() {
     let beyond = |edge| {
         let item = Item::Cam(ProgramNumber::new(2).unwrap(), CamNumber::new(5).unwrap());
         PlanError::CamBeyondRange { item, edge, position: 3600, last: 3599 }
@@ -163,7 +163,7 @@ fn plan_refusals_name_both_limits() {
 }
 
 #[test]
-fn an_interrupted_write_names_the_remaining_steps() {
+fn interrupted_write_lists_remaining_steps() {
     let told = |write_cycles, left, kind| -> Vec<String> {
         let done = WrittenChanges { ops: 1, write_cycles, written: 1, verified: 1 };
         let shift = Some((WindowShift::default(), WindowShift::default()));
@@ -191,7 +191,7 @@ fn an_interrupted_write_names_the_remaining_steps() {
 
 /// The advice to complete the write follows the advice to return the encoder to its mode (issue 22.5).
 #[test]
-fn completing_a_write_is_advised_after_the_return_to_operation() {
+fn advises_return_to_operation_first() {
     let standing = LeftState { out: 0, parameterising: true, found: None, is: None };
     for kind in [ChangeKind::Restore, ChangeKind::Edits, ChangeKind::Preset, ChangeKind::Default] {
         let done = WrittenChanges { ops: 1, write_cycles: 1, written: 1, verified: 1 };
@@ -216,14 +216,14 @@ fn completing_a_write_is_advised_after_the_return_to_operation() {
 /// If the number of earlier EEPROM write cycles is unknown, the message names the option that permits the write (issue
 /// 22.4).
 #[test]
-fn a_write_with_unknown_wear_names_the_override() {
+fn unknown_wear_names_override() {
     let refused = job_error_texts(&JobError::NotStarted(NotStarted::WearUnknown { cost: 2 }));
     assert_explains(&refused[0], &["2"]);
     assert!(refused[0].terminal_text().contains("--force-wear"), "{refused:?}");
 }
 
 #[test]
-fn operations_are_described_one_by_one() {
+fn describes_each_operation() {
     use crate::devices::interbus::profile::{CamChange, ParameterChange, ProgramChange};
     let words = |op: &Op| {
         let own = super::operation_texts(op);
@@ -258,7 +258,7 @@ fn operations_are_described_one_by_one() {
 }
 
 #[test]
-fn only_a_lost_wire_counts_as_a_lost_connection() {
+fn only_lost_link_ends_connection() {
     let gone = || Error::Link(LinkError::new("plc:502", LinkErrorKind::Lost));
     let standing = LeftState { out: 0, parameterising: false, found: None, is: None };
     for error in [gone(), Error::ModeNotRestored { cause: Box::new(gone()), standing }] {

@@ -51,7 +51,7 @@ fn cam_edges(staged: &StagedEdits, own: u8) -> (u32, u32) {
 }
 
 #[test]
-fn an_edit_is_separate_from_the_encoder() {
+fn edits_do_not_touch_encoder() {
     let mut staged = staged();
     assert!(!staged.is_dirty() && staged.differences().is_empty());
     assert_eq!(staged.apply_edit(&edge(1, 3, Edge::Stop, 399)), Ok(true));
@@ -75,7 +75,7 @@ fn an_edit_is_separate_from_the_encoder() {
 }
 
 #[test]
-fn refused_edits_name_the_limits_and_change_nothing() {
+fn rejected_edits_name_limits() {
     let mut staged = StagedEdits::default();
     assert_eq!(staged.apply_edit(&Edit::Preset(1)), Err(EditError::NothingRead));
     staged = self::staged();
@@ -108,7 +108,7 @@ fn refused_edits_name_the_limits_and_change_nothing() {
 }
 
 #[test]
-fn both_parts_of_a_gear_can_change_together() {
+fn gear_parts_can_change_together() {
     let mut staged = staged();
     assert_eq!(staged.apply_edit(&Edit::Gear { steps: 40_960, revolutions: 10 }), Ok(true));
     let refused = GearError::Steps { steps: 40_960, turns: 4, most: 32_768 };
@@ -117,7 +117,7 @@ fn both_parts_of_a_gear_can_change_together() {
 }
 
 #[test]
-fn programs_are_copied_mirrored_and_shifted() {
+fn copies_mirrors_and_shifts_programs() {
     let mut staged = staged();
     staged.refresh_programs(&[(number(5), Program { cams: [Some(edges(0, 0)); 8], mask: 0 })], None);
     staged.apply_edit(&name(3, " feed ")).unwrap();
@@ -136,7 +136,7 @@ fn programs_are_copied_mirrored_and_shifted() {
 }
 
 #[test]
-fn only_an_enabled_cam_beyond_the_range_blocks_mirroring() {
+fn enabled_cam_beyond_range_blocks_mirroring() {
     let mut staged = staged();
     staged.apply_edit(&Edit::Steps(340)).unwrap();
     let refused = EditError::Beyond { program: number(1), cam: cam(3), last: 339 };
@@ -148,7 +148,7 @@ fn only_an_enabled_cam_beyond_the_range_blocks_mirroring() {
 }
 
 #[test]
-fn a_table_is_one_edit_and_enables_its_cams() {
+fn table_import_is_one_edit() {
     let mut staged = staged();
     let mut filled = ImportedProgram { program: number(1), cams: [None; 8], names: Default::default() };
     filled.cams[1] = Some(edges(900, 20));
@@ -165,7 +165,7 @@ fn a_table_is_one_edit_and_enables_its_cams() {
 }
 
 #[test]
-fn edits_can_be_undone_and_redone() {
+fn undoes_and_redoes_edits() {
     let mut staged = staged();
     for to in [310, 320, 330] {
         staged.apply_edit(&edge(1, 3, Edge::Start, to)).unwrap();
@@ -191,7 +191,7 @@ fn edits_can_be_undone_and_redone() {
 }
 
 #[test]
-fn edits_and_undo_survive_a_fresh_reading() {
+fn edits_and_undo_survive_rereading() {
     let mut staged = staged();
     staged.apply_edit(&edge(1, 3, Edge::Stop, 399)).unwrap();
     staged.apply_edit(&Edit::Switch { program: number(1), cam: cam(7), on: true }).unwrap();
@@ -211,7 +211,7 @@ fn edits_and_undo_survive_a_fresh_reading() {
 }
 
 #[test]
-fn values_that_are_not_reread_are_kept() {
+fn partial_rereading_keeps_other_values() {
     let mut staged = staged();
     staged.refresh_programs(&[(number(2), Program { mask: 0x93, ..program() })], None);
     staged.refresh_parameters(parameters(500, 1));
@@ -225,7 +225,7 @@ fn values_that_are_not_reread_are_kept() {
 }
 
 #[test]
-fn a_draft_is_restored_and_waits_for_unread_values() {
+fn restored_draft_waits_for_unread_values() {
     let mut staged = staged();
     for edit in [
         edge(1, 3, Edge::Stop, 399),
@@ -275,7 +275,7 @@ fn drafts_round_trip_as_text() {
 }
 
 #[test]
-fn missing_values_can_be_added_to_a_profile() {
+fn adds_missing_values_to_profile() {
     let mut staged = StagedEdits::for_profile(Image::from_parameters(parameters(1000, 1)), CamNames::default());
     let switch = Edit::Switch { program: number(2), cam: cam(4), on: true };
     assert_eq!(staged.apply_edit(&switch), Err(EditError::NoCam { program: number(2), cam: cam(4) }));
@@ -298,7 +298,7 @@ fn missing_values_can_be_added_to_a_profile() {
 }
 
 #[test]
-fn names_are_saved_and_not_written() {
+fn names_are_saved_but_not_written() {
     let mut encoder = staged();
     encoder.apply_edit(&name(0, "feed")).unwrap();
     encoder.apply_edit(&Edit::ProgramName { program: number(1), name: "size 2".to_owned() }).unwrap();
@@ -316,7 +316,7 @@ fn names_are_saved_and_not_written() {
 }
 
 #[test]
-fn marks_show_values_beyond_the_range_and_conflicts() {
+fn marks_out_of_range_and_conflicting_values() {
     let mut staged = staged();
     staged.apply_edit(&Edit::Preset(400)).unwrap();
     staged.apply_edit(&Edit::Steps(340)).unwrap();

@@ -127,7 +127,7 @@ fn drag(harness: &mut Harness<'_, Page>, from: egui::Pos2, by: Vec2) {
 }
 
 #[test]
-fn edges_are_moved_by_keys() {
+fn keys_move_edges() {
     let mut harness = lanes();
     assert_eq!(value(&harness, "Cam 0: start"), "100");
     focus(&mut harness, "Cam 0: start");
@@ -150,7 +150,7 @@ fn edges_are_moved_by_keys() {
 }
 
 #[test]
-fn edges_and_cams_are_dragged() {
+fn drags_edges_and_cams() {
     let mut harness = lanes();
     let by = steps(&harness, 100.0);
     let from = harness.get_by_label("Cam 0: stop").rect().center();
@@ -168,7 +168,7 @@ fn edges_and_cams_are_dragged() {
 }
 
 #[test]
-fn escape_cancels_a_drag() {
+fn escape_cancels_drag() {
     let mut harness = lanes();
     let from = harness.get_by_label("Cam 0: stop").rect().center();
     harness.drag_at(from);
@@ -185,7 +185,7 @@ fn escape_cancels_a_drag() {
 }
 
 #[test]
-fn a_cam_is_drawn_in_the_lane_of_a_switched_off_cam() {
+fn draws_cam_in_disabled_lane() {
     let mut harness = lanes();
     let lane = harness.get_by_label("Cam 4").rect();
     let first = harness.get_by_label("Cam 0: start").rect().center().x;
@@ -210,7 +210,7 @@ fn ask(harness: &mut Harness<'_, Page>, label: &str, action: Action, data: Optio
 }
 
 #[test]
-fn a_screen_reader_sets_edges() {
+fn screen_reader_sets_edges() {
     for ring in [false, true] {
         let mut harness = draw(page(), ring);
         let label = if ring { "Cam 0: start, on the ring" } else { "Cam 0: start" };
@@ -247,7 +247,7 @@ fn lanes_describe_cams_and_outputs() {
 }
 
 #[test]
-fn the_wheel_zooms_and_keys_scroll_into_view() {
+fn wheel_zooms_and_keys_scroll() {
     let mut harness = lanes();
     let lane = harness.get_by_label("Cam 0 · feed").rect();
     harness.hover_at(lane.center());
@@ -266,7 +266,7 @@ fn the_wheel_zooms_and_keys_scroll_into_view() {
 
 /// Cam 4 is drawn from a few steps next to the start of cam 0 (100) to a few next to its stop (299).
 #[test]
-fn both_edges_of_a_drawn_cam_snap() {
+fn drawn_cam_snaps_both_edges() {
     let mut harness = draw_with_options(page(), false, true);
     let lane = harness.get_by_label("Output 7").rect();
     let start = harness.get_by_label("Cam 0: start").rect().center();
@@ -279,7 +279,7 @@ fn both_edges_of_a_drawn_cam_snap() {
 }
 
 #[test]
-fn the_chart_stays_within_its_width() {
+fn chart_stays_within_width() {
     for width in [420.0, 600.0, 860.0] {
         let harness = window(page(), move |ui, page: &mut Page| {
             ui.set_max_width(width);
@@ -306,7 +306,7 @@ fn the_chart_stays_within_its_width() {
 }
 
 #[test]
-fn a_ring_is_turned_by_keys_and_pointer() {
+fn keys_and_pointer_turn_ring() {
     let mut harness = draw(page(), true);
     focus(&mut harness, "Cam 3: stop, on the ring");
     press(&mut harness, &[(NONE, Key::ArrowRight), (Modifiers::NONE, Key::Delete)]);

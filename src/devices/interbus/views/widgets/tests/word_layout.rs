@@ -15,7 +15,7 @@ fn draw(shift: u8, word: Option<u32>, width: f32) -> egui_kittest::Harness<'stat
 }
 
 #[test]
-fn groups_describe_their_bits() {
+fn groups_describe_bits() {
     // The word 00BCDE20h contains position 1ABCDEFh with a shift of 4, and cam 5 is on. The window contains bits 20 to
     // 4 (reference 7).
     let harness = draw(4, Some(0x00BC_DE20), 860.0);
@@ -33,7 +33,7 @@ fn groups_describe_their_bits() {
 }
 
 #[test]
-fn bits_wrap_to_a_second_line_if_narrow() {
+fn narrow_layout_wraps_bits() {
     for (width, lines) in [(860.0, 1.0), (544.0, 1.0), (543.0, 2.0), (280.0, 2.0)] {
         let harness = draw(8, None, width);
         let (word, high) = (harness.get_by_label("Word").rect(), harness.get_by_label("Invalid, bit 31").rect());
