@@ -163,7 +163,7 @@ mod tests {
     use crate::devices::ssi::protocol::Families;
 
     #[test]
-    fn every_built_in_family_is_in_the_help_and_has_a_profile() {
+    fn built_in_families_have_help_and_profile() {
         let command = SsiLayoutArgs::augment_args(clap::Command::new("test"));
         let option = command.get_arguments().find(|option| option.get_id() == "spec").unwrap();
         let help = option.get_long_help().unwrap().to_string();

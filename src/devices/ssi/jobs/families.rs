@@ -20,7 +20,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn user_families_precede_built_in_ones() {
+    fn user_families_precede_built_in() {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at_root(root.path());
         assert_eq!(families(&store), (Families::built_in(), Vec::new()));

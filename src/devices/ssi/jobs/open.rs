@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn links_open_an_adapter_or_report_the_reason() {
+    fn opens_adapter_or_reports_reason() {
         for text in [
             "sim:",
             "sim:?ssi=atm60,code=gray&rpm=60&seed=7&fault=drop:0.01",

@@ -220,7 +220,7 @@ mod tests {
 
     /// Frames of an AFS60 from reference section 8: 18 binary bits, with ERRDIG, ERRSI and ERRSYNC on the last clocks.
     #[test]
-    fn words_are_judged_step_by_step() {
+    fn judges_words_step_by_step() {
         let layout = layout("afs60");
         let good = 0x15_5E68;
         let judged = |words: &[u64]| verdicts(&check_words(&identity(400_000, None), &layout, words));
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_layout_is_bad() {
+    fn reports_wrong_layout_as_bad() {
         // The layout expects zeros after 12 bits, but the AHS36 sends 14 position bits.
         let words = [0x2A5B << 1, 0x2A5C << 1, 0x2A5F << 1];
         let lines = check_words(&identity(400_000, None), &layout("ahs36,st=12"), &words);
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn adapter_and_supply_are_judged() {
+    fn judges_adapter_and_supply() {
         let judged = |clock_hz, measured: Option<(u16, u16)>| {
             let supply = Some(Supply { millivolt: 5_000, measured });
             verdicts(&check_words(&identity(clock_hz, supply), &layout("afs60"), &[0x15_5E68]))[..2].to_vec()

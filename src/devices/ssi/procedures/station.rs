@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn line_settings_are_parsed_from_parameters() {
+    fn parses_line_settings() {
         let usual = station("").unwrap();
         assert_eq!(
             (usual.asking, usual.supply),
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rejected_value_names_the_allowed_ones() {
+    fn rejection_lists_allowed_values() {
         for (query, message) in [
             ("margin=-1", "margin=-1 is not valid (allowed: a time in milliseconds from 0 to 2000)"),
             ("clock=79999", "clock=79999 is not valid (allowed: a frequency in hertz from 80000 to 10000000)"),

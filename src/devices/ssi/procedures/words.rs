@@ -82,7 +82,7 @@ mod tests {
     use crate::buses::bridge::protocol::StreamData;
 
     #[test]
-    fn a_packet_yields_a_run_of_timed_words() {
+    fn packet_yields_timed_words() {
         let data = SsiData { first_index: 7, t0_us: 0, period_us: 50, lost: 0, width: 4, values: vec![1, 0x1FF_FFFF] };
         let time = SampleTime::from_nanoseconds(3_000_000);
         let portion = Chunk { first: 7, time, period_ns: 50_000, lost: 2, data: StreamData::Ssi(data.clone()) };

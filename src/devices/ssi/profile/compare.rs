@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn only_differences_are_listed() {
+    fn lists_only_differences() {
         let left = profile("ahm36");
         let mut right = profile("ahm36,code=gray,st=12,err=following,direction=ccw,preset=7");
         right.reading.clock_hz = 1_000_000;
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn values_absent_on_one_side_are_listed() {
+    fn lists_one_sided_values() {
         let comparison = compare(&profile("afs60s"), &SsiProfile { family: None, ..profile("afs60,err=none") });
         let bit = |at: usize| {
             ["name", "clock", "meaning", "active_low", "cleared_by_transfer"].map(|part| format!("errors[{at}].{part}"))

@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn an_adopted_entry_no_longer_differs() {
+    fn adopted_entry_no_longer_differs() {
         let (mut left, right) =
             (profile("ahm36"), profile("ahm36,code=gray,st=12,err=following,direction=ccw,preset=7"));
         left.reading.cable_metres = Some(30);
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_of_another_kind_is_adopted_as_a_whole() {
+    fn adopts_whole_range_of_other_kind() {
         let (bits, steps) = (profile("ahs36"), profile("ahs36,steps=360"));
         assert_eq!(bits.clone().with_item("steps", &steps).descriptor.range, steps.descriptor.range);
         let without = profile("afs60,err=none").with_item("errors[2].clock", &profile("afs60s"));

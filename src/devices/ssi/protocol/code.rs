@@ -167,7 +167,7 @@ mod tests {
 
     /// The code words are from reference section 8, "Gray".
     #[test]
-    fn gray_words_match_the_reference() {
+    fn gray_words_match_reference() {
         let pairs = [
             (1000, 0x21C),
             (8191, 0x1000),
@@ -184,7 +184,7 @@ mod tests {
 
     /// The code words are from the column "Graycode", 0 to 15, in section 2.4 of the manual.
     #[test]
-    fn gray_words_match_the_manual() {
+    fn gray_words_match_manual() {
         let table = [0, 1, 3, 2, 6, 7, 5, 4, 12, 13, 15, 14, 10, 11, 9, 8];
         for (number, word) in table.into_iter().enumerate() {
             assert_eq!(to_gray(number as u64), word);
@@ -193,7 +193,7 @@ mod tests {
 
     /// The table is from reference section 2, with the columns N, n, code(0), code(1), code(N/2) and code(N−1).
     #[test]
-    fn gray_excess_matches_the_reference() {
+    fn gray_excess_matches_reference() {
         let table = [
             (10, 4, 0x2, 0x6, 0xC, 0xA),
             (100, 7, 0x09, 0x08, 0x60, 0x49),
@@ -216,7 +216,7 @@ mod tests {
 
     /// The invalid words are from reference section 8.
     #[test]
-    fn words_outside_gray_excess_are_refused() {
+    fn rejects_words_outside_gray_excess() {
         let coding = PositionCode::new(Code::GrayExcess, 9).unwrap();
         for word in [0x0, 0x1, 0x3, 0x8, 0x9, 0xB] {
             assert_eq!(coding.decode(word), None, "{word:X}");

@@ -170,7 +170,7 @@ mod tests {
     const INVERSE: &str = "111001001101100000100010011";
 
     #[test]
-    fn bits_are_sampled_as_the_host_does() {
+    fn samples_bits_like_host() {
         // The clock frequencies are 400 kHz, 2 MHz and 25 kHz. At 25 kHz, half a period is longer than tm.
         for (half, pause) in [(1.25, 30.0), (0.25, 30.0), (20.0, 200.0)] {
             let found = extract_frames(&recording(&[GRAY, INVERSE, GRAY], half, pause)).unwrap();
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn incomplete_bursts_are_skipped_and_counted() {
+    fn skips_and_counts_incomplete_bursts() {
         let mut levels = recording(&[GRAY, GRAY, "1010", GRAY], 1.25, 30.0);
         // The recording begins and ends in the middle of a burst.
         levels.drain(..20);
@@ -194,14 +194,14 @@ mod tests {
     }
 
     #[test]
-    fn swapped_clock_wires_are_detected_by_the_idle_level() {
+    fn idle_level_reveals_swapped_clock() {
         let mut levels = recording(&[GRAY, INVERSE], 1.25, 60.0);
         levels.iter_mut().for_each(|own| own.clock = !own.clock);
         assert_eq!(extract_frames(&levels).unwrap().frames, [0x0D9_3EEC, 0x726_C113]);
     }
 
     #[test]
-    fn invalid_recordings_are_refused_with_a_reason() {
+    fn rejects_invalid_recordings() {
         let row = |at: f64, clock| LineLevels { at: at * 1e-6, clock, data: false };
         assert_eq!(extract_frames(&[]), Err(BurstError::NoClock));
         assert_eq!(extract_frames(&[row(0.0, true), row(9.0, true)]), Err(BurstError::NoClock));

@@ -128,7 +128,7 @@ mod tests {
 
     /// Frames of an AFS60 from reference section 8, with 18 position bits followed by ERRDIG, ERRSI and ERRSYNC.
     #[test]
-    fn cleared_errors_count_per_frame_and_static_ones_once() {
+    fn counts_static_errors_once() {
         let layout = layout("afs60");
         let mut tally = FindingCounts::default();
         let good = 0x15_5E68;
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn fault_patterns_and_padding_errors_are_counted() {
+    fn counts_fault_patterns_and_padding_errors() {
         let kh53 = layout("kh53");
         let mut tally = FindingCounts::default();
         for (number, frame) in (0..).zip([5, 0xFF_FFFE, 0xFF_FFFE, 5, 0xFF_FFFE]) {

@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn emitted_specifications_parse_back() {
+    fn emitted_specifications_round_trip() {
         for text in [
             "frame,clocks=25,mt=12,st=13,code=gray",
             "frame,clocks=26,mt=12,st=12,code=gray,over=padded,area=25,lead=1,ones=26",
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_specifications_are_refused_with_a_reason() {
+    fn rejects_invalid_specifications() {
         assert_eq!(FrameDescriptor::parse("ahm36,code=gray"), None);
         let said = |text: &str| FrameDescriptor::parse(text).unwrap().unwrap_err().to_string();
         assert!(said("frame,clock=3").starts_with("there is no \"clock\"; names: clocks, mt, st"));

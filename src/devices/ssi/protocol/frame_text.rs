@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_frames_are_refused_with_a_reason() {
+    fn rejects_invalid_frames() {
         for text in ["", "0x", "0b", "12", "+1", "0x+1", "0xG", "frame", "-1"] {
             assert!(matches!(parse_frame(text, 15), Err(FrameTextError::Form(_))), "{text}");
         }

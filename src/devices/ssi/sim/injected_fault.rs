@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn fault_names_are_those_of_the_layout() {
+    fn fault_names_match_layout() {
         let safe = layout("afs60s");
         assert_eq!(InjectedFault::setting_names(&safe), ["ERRDIG", "ERRSI", "ERRSYNC", "safety-fault"]);
         let read = InjectedFault::read("errsi:4, ERRSYNC , Safety-Fault", &safe).unwrap();
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn cleared_errors_depend_on_the_time_since_the_last_transfer() {
+    fn cleared_errors_depend_on_transfer_interval() {
         let safe = layout("afs60s");
         let one = |text| InjectedFault::read(text, &safe).unwrap()[0];
         let (once, often) = (one("ERRSYNC"), one("ERRSYNC:0.5"));

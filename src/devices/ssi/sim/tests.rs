@@ -54,7 +54,7 @@ fn words_follow_code_preset_and_direction() {
 }
 
 #[test]
-fn invalid_values_are_reported() {
+fn reports_invalid_values() {
     let sentence = "`ssi-error=ERRDIG` is not valid (allowed: ERROR, separated by commas; append :SECONDS to make an \
                     error recur)";
     assert_eq!(read("ssi=ahm36&ssi-error=ERRDIG").unwrap_err().to_string(), sentence);
@@ -68,14 +68,14 @@ fn invalid_values_are_reported() {
 
 proptest! {
     #[test]
-    fn no_value_panics(key in 0..2_usize, value in ".*") {
+    fn arbitrary_values_do_not_panic(key in 0..2_usize, value in ".*") {
         let _ = AttachableEncoder::DEFAULT_ADAPTER.attach_device(&[(AttachableEncoder::DEFAULT_ADAPTER.setting_names()[key].to_owned(), value)]);
     }
 }
 
 /// The shaft turns even if no other device is attached. At 60 rpm, a revolution of 2^13 steps takes a second.
 #[test]
-fn the_encoder_turns_without_other_devices() {
+fn encoder_turns_without_other_devices() {
     let mut host = Host::to("ssi=atm60,code=binary&rpm=60", &[&AttachableEncoder::DEFAULT_ADAPTER]);
     host.expect(SSI, Reply::SsiConfig { clock_hz: 500_000 });
     let mut words = (0..3).map(|_| {

@@ -143,7 +143,7 @@ mod tests {
     use crate::app::connect::parameters::tests::assert_round_trip;
 
     #[test]
-    fn links_round_trip_through_the_form() {
+    fn links_round_trip_through_form() {
         let links = [
             "sim:",
             "sim:?rpm=6",
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_entries_are_refused_by_name() {
+    fn rejection_names_invalid_entry() {
         let refused = |change: fn(&mut SsiForm)| {
             let mut form = SsiForm::default();
             change(&mut form);
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn switching_the_interface_keeps_only_its_settings() {
+    fn switching_interface_drops_other_settings() {
         let mut form = SsiForm::from_url(&"sim:?rpm=60&noise=0.1&margin=7&clock=1000000".parse().unwrap());
         (form.kind, form.port) = (SsiLinkKind::Adapter, "COM3".to_owned());
         assert_eq!(form.url().unwrap().to_string(), "bridge:COM3?margin=7&clock=1000000");

@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_lost_wire_counts_as_a_lost_connection() {
+    fn only_lost_link_ends_connection() {
         let gone = JobError::Link(LinkError::new("COM3", LinkErrorKind::Lost));
         assert_eq!(connection_loss_text(&gone).unwrap().id(), "link.lost");
         assert_eq!(connection_loss_text(&JobError::Adapter(AdapterError::Silent)), None);

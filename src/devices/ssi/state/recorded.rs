@@ -4,6 +4,6 @@ use crate::app::recorded::assert_recorded;
 use crate::devices::ssi::jobs::Ssi;
 
 #[test]
-fn a_draft_matches_the_recorded_text() {
+fn draft_matches_recorded_text() {
     assert_recorded::<Ssi>("ssi", "[\"(path:[Entry(\\\"clocks\\\")],from:Some(\\\"24\\\"))\"]");
 }

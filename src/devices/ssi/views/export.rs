@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_long_line_of_a_sheet_continues_below_its_value() {
+    fn wraps_long_sheet_lines() {
         let sheet = "Monoflopzeit   15 bis 25 µs (die Pause muss länger sein)\n\n  Code  Dual\nDer Geber wird nicht programmiert.";
         let expected = "Monoflopzeit   15 bis 25 µs (die\n               Pause muss länger\n               sein)\n\n  Code  Dual\nDer Geber wird nicht\nprogrammiert.";
         assert_eq!(wrap_sheet(sheet, 32), expected);

@@ -79,7 +79,7 @@ mod tests {
     /// lengths and clock frequencies), figure 2 and reference section 1 (the plus wires of clock and data idle high,
     /// and the minus wires idle low; issue 22.23).
     #[test]
-    fn the_wiring_card_matches_the_manual() {
+    fn wiring_card_matches_manual() {
         assert_wires(
             &TEXTS,
             &WIRES,

@@ -35,7 +35,7 @@ fn of_family(text: &str) -> SsiProfile {
 }
 
 #[test]
-fn a_handwritten_profile_parses() {
+fn parses_handwritten_profile() {
     let short = profile(SHORT);
     assert_eq!(short.descriptor, of_family("ahm36").descriptor, "what is left out is as usual");
     assert_eq!((short.name.as_str(), &short.family), ("", &None));
@@ -123,7 +123,7 @@ const FULL: &str = r#"(
 "#;
 
 #[test]
-fn a_profile_is_emitted_as_if_handwritten() {
+fn emits_profile_like_handwritten() {
     assert_eq!(document(full_profile()).emit(), FULL);
     assert_eq!(profile(FULL), full_profile());
     let cases = [
@@ -146,7 +146,7 @@ fn a_profile_is_emitted_as_if_handwritten() {
 }
 
 #[test]
-fn a_whole_number_of_revolutions_is_an_integer() {
+fn whole_revolutions_are_integers() {
     let text = document(of_family("ahm36,steps=100,revolutions=25")).emit();
     assert!(text.contains("revolutions: \"25\","), "{text}");
     assert_eq!(profile(&text.replace("\"25\"", "25")), profile(&text));
@@ -154,7 +154,7 @@ fn a_whole_number_of_revolutions_is_an_integer() {
 
 proptest! {
     #[test]
-    fn emitted_profiles_parse_back(
+    fn emitted_profiles_round_trip(
         layout in any_layouts(),
         name in ".{0,12}",
         preset in any::<u64>(),
@@ -181,7 +181,7 @@ proptest! {
 proptest! {
     /// Any numbers yield either a valid frame that survives a round trip, or an error with the reason.
     #[test]
-    fn any_numbers_are_parsed_or_refused(
+    fn arbitrary_frames_round_trip_or_fail(
         clocks in 0..=70_u8,
         (multiturn, singleturn) in (0..=40_u8, 0..=40_u8),
         (area, lead, between) in (any::<Option<u8>>(), 0..=8_u8, 0..=8_u8),
@@ -213,7 +213,7 @@ proptest! {
 }
 
 #[test]
-fn unknown_fields_are_kept() {
+fn keeps_unknown_fields() {
     let text = FULL
         .replace("schema: 1,", "schema: 1, owner: (name: \"CK\", floors: [1, 2]),")
         .replace("clocks: 51,", "clocks: 51, drawn: \"a\",")
@@ -248,7 +248,7 @@ fn unknown_fields_are_kept() {
 }
 
 #[test]
-fn profile_errors_name_their_location() {
+fn profile_errors_have_locations() {
     let cases = [
         ("frame:", "fram:", "line 3, column 5: fram is unknown, and frame is missing"),
         ("clocks: 27,", "", "frame.clocks is missing"),
@@ -323,7 +323,7 @@ fn profile_errors_name_their_location() {
 
 /// Changing a value edits the text only at that value (issue 22.26).
 #[test]
-fn a_change_edits_only_its_value() {
+fn change_edits_only_its_value() {
     let edit = |own: &mut SsiProfile| {
         own.preset = 9;
         own.reading.clock_hz = 250_000;

@@ -33,7 +33,7 @@ fn format_strings_match_linuxcnc() {
 
 /// A handwritten layout may give its bits any names, but LinuxCNC requires a unique pin name for each bit.
 #[test]
-fn each_bit_has_a_unique_pin() {
+fn each_bit_has_unique_pin() {
     let mut frame = layout("ahs36").descriptor().clone();
     let names = ["LAMP", "lamp", "", "50 % \n load", "position"];
     let [error] = frame.errors.as_slice() else { panic!("{frame:?}") };
@@ -47,7 +47,7 @@ fn each_bit_has_a_unique_pin() {
 }
 
 #[test]
-fn limits_of_linuxcnc_are_reported() {
+fn reports_linuxcnc_limits() {
     let cases = [
         ("atm60,steps=3600,code=gray-excess", "LinuxCNC cannot decode gray excess"),
         ("ahs36,code=gray,st=12,over=padded", "LinuxCNC cannot decode Gray code that also covers zeros or error bits"),
@@ -85,7 +85,7 @@ fn limits_of_linuxcnc_are_reported() {
 }
 
 #[test]
-fn a_parity_bit_is_not_an_error_bit_in_the_sheet() {
+fn sheet_separates_parity_from_error_bits() {
     let sheet = |layout: &Layout| {
         settings_sheet(layout, None, "", &english_text).lines().map(str::to_owned).collect::<Vec<_>>()
     };
@@ -109,7 +109,7 @@ fn flags_have_unique_names() {
 }
 
 #[test]
-fn the_sheet_has_a_row_for_each_clock() {
+fn sheet_has_row_per_clock() {
     let table = bit_table(&layout("ahs36,st=12,err=following"), &english_text);
     let rows: Vec<&str> = table.lines().collect();
     assert_eq!(rows.len(), 16);

@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn each_family_frame_is_found_with_minimal_settings() {
+    fn finds_family_frames_with_minimal_settings() {
         let families = Families::built_in();
         for family in families.iter() {
             let spread = spread(&families, family);
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn default_settings_are_omitted() {
+    fn omits_default_settings() {
         let cases = [
             ("ahm36,code=binary,mt=12,st=14,clocks=27,align=left,err=fix", "ahm36"),
             ("atm60,mt=12,st=13,align=tree12_13,err=none", "atm60"),
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_a_family_cannot_send_have_no_settings() {
+    fn unsupported_frames_have_no_settings() {
         let families = Families::built_in();
         for family in families.iter() {
             let own = frame(&families, &family.key).unwrap();

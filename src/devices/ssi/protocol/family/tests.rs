@@ -16,7 +16,7 @@ fn error_flag(resolved: &ResolvedFrame, name: &str) -> Flags {
 }
 
 #[test]
-fn every_built_in_family_parses() {
+fn built_in_families_parse() {
     let (families, errors) = Families::read(Families::BUILT_IN);
     assert_eq!(errors, []);
     for (family, (file, _)) in families.iter().zip(Families::BUILT_IN) {
@@ -25,7 +25,7 @@ fn every_built_in_family_parses() {
 }
 
 #[test]
-fn family_errors_name_their_location() {
+fn family_errors_have_locations() {
     let (_, good) = Families::BUILT_IN[0];
     let whole = good.lines().position(|line| line.trim_start().starts_with("frames:")).unwrap() + 1;
     let key = good.lines().position(|line| line.trim_start().starts_with("key:")).unwrap() + 1;
@@ -80,7 +80,7 @@ const GOLDEN: [(&str, u64, u64, &str, &str); 28] = [
 
 /// Ignoring one of these settings would yield a wrong position.
 #[test]
-fn settings_that_would_be_ignored_are_refused() {
+fn rejects_ineffective_settings() {
     let cases = [
         ("ahm36,steps=3600,mt=12", "steps and mt cannot be used together"),
         ("ahm36,steps=3600,st=12", "steps and st cannot be used together"),
@@ -94,7 +94,7 @@ fn settings_that_would_be_ignored_are_refused() {
 }
 
 #[test]
-fn frames_match_the_reference() {
+fn frames_match_reference() {
     for (text, turns, steps, error, bits) in GOLDEN {
         let resolved = resolve(text).unwrap_or_else(|reason| panic!("{text}: {reason}"));
         let layout = &resolved.layout;
@@ -120,7 +120,7 @@ fn frames_match_the_reference() {
 
 /// Delaying the whole 25-bit frame by one clock loses its last bit (reference section 8, "full, SHIFT-RIGHT only").
 #[test]
-fn shifting_right_alone_loses_the_last_bit() {
+fn right_shift_alone_loses_last_bit() {
     let layout = resolve("atm60,shift=1").unwrap().layout;
     let position = 0x5A5 << 13 | 0x1234;
     assert_eq!(layout.encode(position, Flags::NONE), Some(0x05A_591A));
@@ -136,7 +136,7 @@ fn shifting_right_alone_loses_the_last_bit() {
 /// The pattern is tested before the frame is decoded. A frame in which only some of its ones are set is suspicious, but
 /// its position remains valid (reference section 6, trap 1).
 #[test]
-fn the_kh53_has_an_error_pattern() {
+fn kh53_has_error_pattern() {
     for code in ["binary", "gray"] {
         let layout = resolve(&format!("kh53,code={code}")).unwrap().layout;
         let fault = layout.decode(0xFF_FFFE);
@@ -154,7 +154,7 @@ fn the_kh53_has_an_error_pattern() {
 
 /// All ones can be a safety fault, a stuck line or a valid position (reference section 6, traps 4 and 7).
 #[test]
-fn a_safety_fault_and_a_stuck_line_are_distinguished() {
+fn distinguishes_safety_fault_from_stuck_line() {
     let safe = resolve("afm60s").unwrap().layout;
     assert_eq!(safe.clock_count(), 33);
     let fault = safe.decode(0x1_FFFF_FFFF);
@@ -179,7 +179,7 @@ fn a_safety_fault_and_a_stuck_line_are_distinguished() {
 /// At a lower resolution, the frame of an AFS60 becomes shorter, whereas that of an AHS36 does not (reference section
 /// 6, trap 5).
 #[test]
-fn only_some_frames_shrink_with_the_resolution() {
+fn some_frames_shrink_with_resolution() {
     let clocks = |text: &str| resolve(text).unwrap().layout.clock_count();
     assert_eq!([clocks("afs60,st=13"), clocks("afs60,st=18")], [16, 21]);
     assert_eq!([clocks("ahs36,st=8"), clocks("ahs36,st=8,err=following")], [15, 15]);
@@ -187,7 +187,7 @@ fn only_some_frames_shrink_with_the_resolution() {
 }
 
 #[test]
-fn wrong_padding_is_reported() {
+fn reports_wrong_padding() {
     let layout = resolve("ahs36,st=12").unwrap().layout;
     let reading = layout.decode(0b101010111100010);
     assert_eq!(layout.to_findings(reading), [FrameFinding::Padding]);
@@ -196,7 +196,7 @@ fn wrong_padding_is_reported() {
 
 /// A round axis with 100 steps over 12.5 turns has 8 steps per turn (reference section 5).
 #[test]
-fn a_round_axis_divides_into_turns() {
+fn rotary_axis_divides_into_turns() {
     let layout = resolve("ahm36,steps=100,revolutions=25/2").unwrap().layout;
     let range = layout.descriptor().range;
     assert_eq!(layout.position_code().last_position(), 99);
@@ -207,7 +207,7 @@ fn a_round_axis_divides_into_turns() {
 }
 
 #[test]
-fn unsupported_settings_are_refused_with_a_reason() {
+fn rejects_unsupported_settings() {
     let cases = [
         ("ttk70,clocks=32", "TTK70 SSI supports at most 31 clocks, not 32"),
         ("ahs36,clocks=14", "ERROR is on clock 15, but the frame has only 14 clocks"),
@@ -254,7 +254,7 @@ fn unsupported_settings_are_refused_with_a_reason() {
 
 /// Direction and preset change the position, but not the meaning of its bits.
 #[test]
-fn direction_and_preset_do_not_change_the_frame() {
+fn direction_and_preset_keep_frame() {
     let (plain, set) = (resolve("ahs36").unwrap(), resolve("ahs36,direction=ccw,preset=16383").unwrap());
     assert_eq!(plain.layout, set.layout);
     assert_eq!((plain.direction, plain.preset), (Direction::Clockwise, 0));
@@ -262,7 +262,7 @@ fn direction_and_preset_do_not_change_the_frame() {
 }
 
 #[test]
-fn undocumented_settings_are_accepted_with_advice() {
+fn accepts_undocumented_settings_with_advice() {
     assert_eq!(resolve("ahs36,steps=360,code=bcd").unwrap().advice, [SettingAdvice::Code(Code::Bcd)]);
     assert_eq!(resolve("kh53,clocks=25").unwrap().advice, [SettingAdvice::Clocks { bits: 24, clocks: 25 }]);
     assert_eq!(resolve("ttk70,clocks=31").unwrap().advice, []);

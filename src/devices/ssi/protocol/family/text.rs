@@ -216,14 +216,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn emitted_settings_parse_back(settings in settings()) {
+        fn emitted_settings_round_trip(settings in settings()) {
             let text = settings.emit("ahm36");
             prop_assert_eq!(Settings::parse(&text), Ok(("ahm36".to_owned(), settings)), "{}", text);
         }
     }
 
     #[test]
-    fn only_changed_settings_are_emitted() {
+    fn emits_only_changed_settings() {
         let set = Settings { code: Some(Code::Gray), singleturn: Some(12), ..Settings::default() };
         assert_eq!(set.emit("ahm36"), "ahm36,code=gray,st=12");
         assert_eq!(Settings::default().emit("kh53"), "kh53");

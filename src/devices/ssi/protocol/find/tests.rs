@@ -37,7 +37,7 @@ fn is_same_frame(one: &Layout, other: &Layout) -> bool {
 }
 
 #[test]
-fn the_class_of_every_family_ranks_first() {
+fn every_family_class_ranks_first() {
     let families = Families::built_in();
     for (family, speed) in families.iter().zip([0.3, -1.7, 13.2].into_iter().cycle()) {
         for (code, speed) in [("binary", speed), ("gray", -speed)] {
@@ -62,7 +62,7 @@ fn the_class_of_every_family_ranks_first() {
 }
 
 #[test]
-fn settings_are_found() {
+fn finds_settings() {
     let families = Families::built_in();
     let settings = [
         "ahs36,st=12,code=gray",
@@ -104,7 +104,7 @@ fn indistinguishable_layouts_form_one_class() {
 }
 
 #[test]
-fn a_shaft_at_rest_yields_no_layout() {
+fn resting_shaft_yields_no_layout() {
     let families = Families::built_in();
     for family in families.iter() {
         let truth = layout(&family.key);
@@ -128,7 +128,7 @@ fn noise_and_stuck_lines_yield_no_layout() {
 /// Frames without a family are recognised, both Gray excess that passes the end of the range and a frame with a parity
 /// bit.
 #[test]
-fn encoders_of_no_family_are_found() {
+fn finds_encoders_without_family() {
     let families = Families::built_in();
     let excess = Layout::new(FrameDescriptor {
         clocks: 12,
@@ -156,7 +156,7 @@ fn encoders_of_no_family_are_found() {
 
 /// The layout is found even if some frames are disturbed and others contain errors. Both kinds are counted.
 #[test]
-fn disturbed_frames_do_not_hide_the_layout() {
+fn disturbed_frames_do_not_hide_layout() {
     let truth = layout("ahm36,st=12,code=gray");
     let mut frames = turning(&truth, 1.9);
     for frame in frames.iter_mut().step_by(50) {
@@ -194,7 +194,7 @@ fn reads(proposal: &LayoutProposal, frames: &[u64], meant: &[Option<u64>]) -> bo
 /// a 1 before the position looks like its highest bit. A decreasing binary position looks like swapped wires, and 3600
 /// steps look like 3598 as long as the shaft skips the first and the last one (issue 22.22).
 #[test]
-fn independent_recordings_are_recognized() {
+fn recognizes_independent_recordings() {
     let vectors = [
         ("AHM36 in Gray", false, include_str!("../../../../../tests/vectors/ssi_find/ahm36_gray.txt")),
         ("8 and 8 bits in a tree", false, include_str!("../../../../../tests/vectors/ssi_find/tree_8_8_gray.txt")),
@@ -236,7 +236,7 @@ fn independent_recordings_are_recognized() {
 /// A layout that decodes a frame incorrectly is never reported as certain. `cargo bench --bench ssi` tests all thousand
 /// recordings (issue 22.22).
 #[test]
-fn no_confirmed_layout_is_wrong() {
+fn confirmed_layouts_are_correct() {
     let families = Families::built_in();
     let mut ticks = 0;
     for seed in 0..40 {
@@ -253,7 +253,7 @@ fn no_confirmed_layout_is_wrong() {
 
 /// Every layout found can be passed to `--layout` as printed (issue 22.22).
 #[test]
-fn every_proposal_round_trips_as_text() {
+fn proposals_round_trip_as_text() {
     let families = Families::built_in();
     let mut texts = Vec::new();
     for seed in 0..12 {

@@ -75,7 +75,7 @@ proptest! {
 
     /// A parity bit detects every single inverted bit, and a repetition detects every inverted bit in either word.
     #[test]
-    fn flipped_bits_are_detected_by_parity_and_repetition(layout in layouts(), position in any::<u64>(), at in 0..64_u8) {
+    fn parity_and_repetition_detect_flipped_bits(layout in layouts(), position in any::<u64>(), at in 0..64_u8) {
         let last = layout.position_code().last_position();
         let position = last.checked_add(1).map_or(position, |count| position % count);
         let clocks = layout.clock_count();
@@ -90,7 +90,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bits_decode_without_panic(layout in layouts(), frame in any::<u64>()) {
+    fn arbitrary_bits_do_not_panic(layout in layouts(), frame in any::<u64>()) {
         let reading = layout.decode(frame);
         prop_assert!(reading.position <= layout.position_code().last_position());
         prop_assert_eq!(layout.to_cells(frame).len(), usize::from(layout.clock_count()));
@@ -113,7 +113,7 @@ fn bit(name: &str, clock: u8) -> ErrorBit {
 }
 
 #[test]
-fn impossible_layouts_are_refused_with_a_reason() {
+fn rejects_impossible_layouts() {
     let parity = |clock| Some(Parity { clock, even: true });
     let cases: [(&str, FrameDescriptor, &str); 11] = [
         ("no clocks", FrameDescriptor { clocks: 0, area: 0, ..plain() }, "a frame has 1 to 64 clocks, not 0"),
@@ -180,7 +180,7 @@ fn impossible_layouts_are_refused_with_a_reason() {
 /// The frames contain the position ABCDEFh in Gray code and an error bit of 1, which the Gray code may or may not cover
 /// (reference section 8).
 #[test]
-fn gray_decodes_with_and_without_the_error_bit() {
+fn gray_decodes_with_optional_error_bit() {
     let descriptor = |coded| FrameDescriptor {
         clocks: 25,
         code: Code::Gray,
@@ -200,7 +200,7 @@ fn gray_decodes_with_and_without_the_error_bit() {
 /// If the lowest bit is 1, the frames depend on whether the Gray code covers the zeros around the position (reference
 /// section 2).
 #[test]
-fn gray_may_cover_the_position_or_also_the_zeros() {
+fn gray_code_may_cover_zeros() {
     let descriptor =
         |coded| FrameDescriptor { clocks: 14, area: 14, code: Code::Gray, coded, ..FrameDescriptor::binary(0, 12) };
     let position = Layout::new(descriptor(GrayCoverage::Position)).unwrap();
@@ -215,6 +215,6 @@ fn gray_may_cover_the_position_or_also_the_zeros() {
 }
 
 #[test]
-fn the_smallest_frame_passes_the_checks() {
+fn smallest_frame_passes_checks() {
     assert_eq!(Ok(Layout::default()), Layout::new(FrameDescriptor::binary(0, 1)));
 }

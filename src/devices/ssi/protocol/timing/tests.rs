@@ -21,7 +21,7 @@ fn times(key: &str) -> Times {
 /// Without a family, tm is 15 to 25 µs, the clock is at most 2 MHz, and the cable table of all SSI encoders applies. 33
 /// bits at 400 kHz take 82.5 µs. The interval between positions is unknown (reference section 1).
 #[test]
-fn any_encoder_has_the_general_times() {
+fn any_encoder_uses_general_times() {
     let reads = ReadConditions { cable_metres: Some(80.0), ..reads(33, 400e3, 20) };
     let timing = Times::for_any_encoder(&reads);
     assert_eq!(timing.burst, Duration::from_nanos(82_500));
@@ -39,7 +39,7 @@ fn any_encoder_has_the_general_times() {
 
 /// The durations are from reference section 1, "Duration (bits/f)".
 #[test]
-fn bursts_match_the_reference() {
+fn bursts_match_reference() {
     let table = [(25, 400e3, 62_500), (25, 1e6, 25_000), (25, 1.5e6, 16_667), (33, 400e3, 82_500)];
     for (clocks, clock_hz, nanoseconds) in table {
         let timing = times("afm60").calculate_timing(&reads(clocks, clock_hz, 100));
@@ -53,7 +53,7 @@ fn bursts_match_the_reference() {
 }
 
 #[test]
-fn cable_lengths_match_the_manual() {
+fn cable_lengths_match_manual() {
     let table =
         [(49.9, Some(400_000)), (50.0, Some(300_000)), (150.0, Some(200_000)), (399.0, Some(100_000)), (400.0, None)];
     for (metres, most_hz) in table {
@@ -89,7 +89,7 @@ fn family_timing_limits_cause_warnings() {
 }
 
 #[test]
-fn position_ages_are_computed() {
+fn computes_position_age() {
     let micros = |all: f64| Duration::from_secs_f64(all * 1e-6);
     // 25 clocks at 500 kHz take 50 µs.
     let burst = reads(25, 500e3, 300);

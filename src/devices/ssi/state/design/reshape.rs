@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_without_zeros_grows_and_shrinks_with_its_position() {
+    fn unpadded_frame_resizes_with_position() {
         // AFM60 with 12 + 18 bits, and the error bit after them on clock 31.
         let before = FrameDescriptor { clocks: 31, errors: vec![error(31)], ..FrameDescriptor::binary(12, 18) };
         let now = with_positions(&before, bits(12, 15), Code::Gray).unwrap();
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn trailing_zeros_absorb_changes_of_the_position() {
+    fn trailing_zeros_absorb_position_changes() {
         // AHS36 with 14 clocks for the position and the error bit on clock 15.
         let before =
             FrameDescriptor { clocks: 15, area: 14, errors: vec![error(15)], ..FrameDescriptor::binary(0, 12) };
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_repeated_frame_grows_in_both_copies() {
+    fn repeated_frame_grows_in_both_copies() {
         let before = FrameDescriptor {
             clocks: 27,
             parity: Some(Parity { clock: 13, even: true }),
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn impossible_frames_are_refused() {
+    fn rejects_impossible_frames() {
         let plain = FrameDescriptor::binary(0, 12);
         assert!(with_positions(&plain, bits(0, 0), Code::Binary).is_err());
         let odd = Range::Steps { per_turn: 361, turns: 1 };

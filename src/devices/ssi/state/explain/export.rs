@@ -89,7 +89,7 @@ mod tests {
 
     /// The English texts in the catalogue match those of the command line.
     #[test]
-    fn both_languages_have_the_same_content() {
+    fn both_languages_have_same_content() {
         let codes = [Code::Binary, Code::Gray, Code::GrayExcess, Code::Bcd].map(ExportText::CodeName);
         let obstacles = [
             ModuleObstacle::GrayExcess,

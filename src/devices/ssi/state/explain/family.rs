@@ -42,7 +42,7 @@ mod tests {
     use crate::devices::ssi::protocol::Families;
 
     #[test]
-    fn family_notes_are_translated_to_german() {
+    fn translates_family_notes_to_german() {
         for family in Families::built_in().iter() {
             for words in family.notes.iter().chain([&family.source]) {
                 let text = note_text(family, words);

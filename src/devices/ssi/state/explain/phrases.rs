@@ -16,7 +16,7 @@ use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
-fn link_errors_are_explained_in_both_languages() {
+fn explains_link_errors_in_both_languages() {
     for text in ["margin=x", "clock=1", "pause=0", "voltage=48"] {
         let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, Duration::ZERO).unwrap_err();
@@ -25,7 +25,7 @@ fn link_errors_are_explained_in_both_languages() {
 }
 
 #[test]
-fn profile_errors_are_explained_in_both_languages() {
+fn explains_profile_errors_in_both_languages() {
     let good = r#"(schema: 1, device: "ssi", direction: "cw", preset: 0, reading: (clock_hz: 1000), frame: (clocks: 15,
         singleturn: 14, errors: [(name: "ERROR", clock: 15, meaning: "invalid")], patterns: [(name: "fault",
         word: "ones", meaning: "invalid")]))"#;
@@ -69,7 +69,7 @@ fn profile_errors_are_explained_in_both_languages() {
 }
 
 #[test]
-fn nested_phrases_are_translated_to_german() {
+fn translates_nested_phrases_to_german() {
     let cases = [
         (
             LayoutError::Overlap { clock: 14, first: ClockUse::Position, second: ClockUse::Error("ERROR".to_owned()) },

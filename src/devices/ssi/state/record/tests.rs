@@ -33,7 +33,7 @@ fn names(record: &Record) -> Vec<(String, u64)> {
 }
 
 #[test]
-fn words_around_a_gap_are_not_consecutive() {
+fn words_around_gap_are_not_consecutive() {
     let mut record = Record::new(layout("afs60"));
     record.add_words(vec![run(0, &[1, 2, 3]), run(3, &[4, 5])], 0);
     assert_eq!((record.latest_words(21), record.count(21)), (vec![1, 2, 3, 4, 5], 5));
@@ -44,7 +44,7 @@ fn words_around_a_gap_are_not_consecutive() {
 }
 
 #[test]
-fn renaming_an_error_bit_keeps_its_count() {
+fn renamed_error_bit_keeps_count() {
     let mut record = Record::new(layout("afs60"));
     record.add_words(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
     // The words themselves are no longer stored, but their positions remain recorded.
@@ -60,7 +60,7 @@ fn renaming_an_error_bit_keeps_its_count() {
 }
 
 #[test]
-fn a_cleared_count_stays_cleared_with_another_layout() {
+fn cleared_count_survives_layout_change() {
     let mut record = Record::new(layout("afs60"));
     record.add_words(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
     record.reset_tally();
@@ -70,7 +70,7 @@ fn a_cleared_count_stays_cleared_with_another_layout() {
 }
 
 #[test]
-fn the_last_word_belongs_to_this_session() {
+fn last_word_belongs_to_session() {
     let mut record = Record::new(layout("afs60"));
     record.add_words(vec![run(0, &[GOOD])], 0);
     assert!(record.last().is_some());

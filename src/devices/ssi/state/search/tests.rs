@@ -11,7 +11,7 @@ fn of(text: &str, clocks: u8) -> Result<Frames, Text> {
 }
 
 #[test]
-fn frames_are_read_one_per_line() {
+fn reads_one_frame_per_line() {
     assert_eq!(parse_frames("1010\n\n# comment\n0b1111\n", 25), Ok((4, vec![0b1010, 0b1111])));
     assert_eq!(parse_frames("0B10_10\n1 1 1 1\n", 25), Ok((4, vec![0b1010, 0b1111])));
     assert_eq!(parse_frames("time;frame\n0.1;0x1F\n0.2;0x2\n", 25), Ok((25, vec![0x1F, 2])));
@@ -24,7 +24,7 @@ fn frames_are_read_one_per_line() {
 }
 
 #[test]
-fn clock_counts_parse_or_are_refused() {
+fn parses_clock_count() {
     assert_eq!(read_clocks(" 25 "), Ok(25));
     assert_eq!(read_clocks("0x40"), Ok(64));
     for (text, id) in [("0", "ssi_find.clocks_range"), ("65", "ssi_find.clocks_range"), ("many", "ssi_form.whole")] {
@@ -33,7 +33,7 @@ fn clock_counts_parse_or_are_refused() {
 }
 
 #[test]
-fn an_invalid_line_is_reported() {
+fn reports_invalid_line() {
     let said = |text: &str| parse_frames(text, 8).unwrap_err();
     let line = said("1010\n10\n");
     assert_eq!(line.id(), "ssi_find.line");
@@ -51,7 +51,7 @@ const OWN: &str =
     "t_s,raw,turns,steps,degrees,millimetres,valid\n0.000000,0,0,0,0,,true\n0.001000,14237420,291,10843,238.25,,true\n";
 
 #[test]
-fn the_table_of_positions_has_frames() {
+fn reads_frames_from_position_table() {
     let read = of(OWN, 27).unwrap();
     assert_eq!((read.clocks, read.frames, read.are_numbers), (27, vec![0, 0x0D9_3EEC], true));
     let said = |text: &str| of(text, 27).unwrap_err();
@@ -96,7 +96,7 @@ fn saleae_csv(heading: &str, delimiter: char, decimal: char) -> String {
 }
 
 #[test]
-fn edges_of_logic_analysers_are_frames() {
+fn reads_frames_from_logic_analyser() {
     let expected = |text: &str| {
         let read = of(text, 27).unwrap();
         assert_eq!((read.clocks, read.frames, read.left_out), (4, vec![0b1011], 0), "{text}");
@@ -132,7 +132,7 @@ fn edges_of_logic_analysers_are_frames() {
 }
 
 #[test]
-fn invalid_recordings_are_refused_with_a_remedy() {
+fn invalid_recording_error_names_remedy() {
     let good = saleae_csv("Time [s],Channel 0,Channel 1", ',', '.');
     let cases = [
         ("Time [s],Channel 0\n0,1\n1,0\n".to_owned(), "ssi_capture.one_channel"),
@@ -165,7 +165,7 @@ fn invalid_recordings_are_refused_with_a_remedy() {
 }
 
 #[test]
-fn a_huge_file_is_refused_with_a_remedy() {
+fn rejects_huge_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("capture.csv");
     std::fs::File::create(&path).unwrap().set_len(crate::store::MAX_TEXT + 1).unwrap();

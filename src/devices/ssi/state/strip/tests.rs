@@ -92,7 +92,7 @@ proptest! {
     #![proptest_config(ProptestConfig { max_global_rejects: 200_000, ..ProptestConfig::default() })]
 
     #[test]
-    fn moves_can_be_reversed(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8, following: bool) {
+    fn moves_are_reversible(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8, following: bool) {
         let strip = Strip::from_layout(&layout);
         let handle = strip.strip_handles()[which.index(strip.strip_handles().len())];
         let at = strip.clock(handle).unwrap();
@@ -110,7 +110,7 @@ proptest! {
     }
 
     #[test]
-    fn limits_are_reached_and_not_passed(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8) {
+    fn moves_stop_at_limits(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8) {
         let strip = Strip::from_layout(&layout);
         let handle = strip.strip_handles()[which.index(strip.strip_handles().len())];
         let (least, most) = strip.limits(handle, false);
@@ -122,7 +122,7 @@ proptest! {
     }
 
     #[test]
-    fn every_clock_is_in_a_field_and_has_a_label(layout in layouts()) {
+    fn every_clock_has_field_and_label(layout in layouts()) {
         let strip = Strip::from_layout(&layout);
         let mut next = 1;
         for field in strip.fields() {
@@ -145,7 +145,7 @@ proptest! {
 }
 
 #[test]
-fn frames_are_divided_into_fields() {
+fn divides_frames_into_fields() {
     let tree = family("atm60", &Settings { multiturn: Some(8), singleturn: Some(8), ..Settings::default() });
     let position = [(Kind::Before, 1, 4), (Kind::Turns, 5, 12), (Kind::Steps, 13, 20), (Kind::Behind, 21, 25)];
     assert_eq!(kinds(&tree), position);
@@ -173,7 +173,7 @@ fn frames_are_divided_into_fields() {
 
 /// An AHS36 has 14 position bits and the error bit on clock 15. The position is then shortened to 12 bits.
 #[test]
-fn error_bits_optionally_follow_the_end_of_the_steps() {
+fn error_bits_can_follow_step_end() {
     let strip = family("ahs36", &Settings::default());
     assert!(bits_follow_position(strip.layout()));
     let fixed = strip.with_part_moved(Handle::StepsEnd, 12, false);
@@ -189,7 +189,7 @@ fn error_bits_optionally_follow_the_end_of_the_steps() {
 
 /// An ATM60 frame with 25 clocks, 8 turn bits and 8 step bits, in both tree formats and right-aligned.
 #[test]
-fn moving_boundaries_yields_the_formats_of_the_manual() {
+fn moved_boundaries_yield_manual_formats() {
     let position = 0xA5 << 8 | 0x3C;
     let whole = Strip::from_layout(&Layout::new(FrameDescriptor::binary(12, 13)).unwrap());
     let tree = whole.with_part_moved(Handle::LeadEnd, 4, true).with_part_moved(Handle::StepsEnd, 20, true);
@@ -207,7 +207,7 @@ fn moving_boundaries_yields_the_formats_of_the_manual() {
 
 /// A TTK70 is extended to 31 clocks. The pattern of a KH53 becomes longer together with its frame.
 #[test]
-fn extending_the_frame_adds_zeros() {
+fn extending_frame_adds_zeros() {
     let ttk = family("ttk70", &Settings::default());
     let longer = ttk.with_part_moved(Handle::FrameEnd, 31, true);
     assert_eq!(frame(&longer, 0x12_3456, &[0]), 0x091A_2B40);
@@ -246,7 +246,7 @@ fn step_positions_move_as_one_field() {
 }
 
 #[test]
-fn cells_show_their_decoded_values() {
+fn cells_show_decoded_values() {
     let strip = family("afs60", &Settings { singleturn: Some(13), clocks: Some(18), ..Settings::default() });
     // The position is 1234h, ERRSI is active, and clock 18 carries a 1 although it should always be 0.
     let shown = strip.cell_states(0x91A2 << 2 | 1);

@@ -35,7 +35,7 @@ fn span_texts(diagram: &BurstDiagram) -> Vec<String> {
 
 /// 33 bits at 400 kHz take 82.5 µs, and tm is 15 to 25 µs (reference section 1).
 #[test]
-fn a_short_pause_is_drawn_without_a_break() {
+fn draws_short_pause_without_break() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
     let times =
         ["T = 2.5 µs", "Burst of 33 clocks: 82.5 µs", "Pause: 40 µs", "tm = 15 µs … 25 µs", "Minimum pause: 25 µs"];
@@ -59,7 +59,7 @@ fn a_short_pause_is_drawn_without_a_break() {
 /// An AHM36 in synchronous mode starts to sample a position 20 µs after the last clock. The position is ready 125 µs
 /// later.
 #[test]
-fn the_sampling_moment_is_shown() {
+fn shows_sampling_moment() {
     let synchronous = diagram("ahm36", 400e3, 200.0, true);
     let marks: Vec<_> = synchronous.marks().iter().map(|mark| (mark.event, micros(mark.at))).collect();
     // 27 clocks take 67.5 µs.
@@ -78,7 +78,7 @@ fn the_sampling_moment_is_shown() {
 }
 
 #[test]
-fn a_long_pause_is_drawn_with_a_marked_break() {
+fn draws_long_pause_with_break() {
     let diagram = diagram("afm60", 400e3, 82_500.0, false);
     // The first section contains the burst, the events up to 25 µs after it, and a margin of two fifths of a burst. The
     // second one begins with the same margin before the next burst.
@@ -89,7 +89,7 @@ fn a_long_pause_is_drawn_with_a_marked_break() {
 }
 
 #[test]
-fn a_point_in_time_is_described() {
+fn describes_point_in_time() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
     let told = |at: f64| {
         diagram.texts_at(at * 1e-6).iter().map(|text| text.to_string_in(Language::English)).collect::<Vec<_>>()
@@ -119,7 +119,7 @@ fn times_have_four_significant_figures() {
 }
 
 #[test]
-fn frequencies_are_formatted_and_parsed_with_units() {
+fn formats_and_parses_frequency_units() {
     for (hertz, english, german) in [
         (0.0, "0 Hz", "0 Hz"),
         (999.0, "999 Hz", "999 Hz"),
@@ -150,9 +150,9 @@ fn frequencies_are_formatted_and_parsed_with_units() {
 }
 
 proptest! {
-    /// Every event is on the axis. The sections of the axis are in order and together not much longer than a burst.
+    /// The sections of the axis are in order and together not much longer than a burst.
     #[test]
-    fn every_event_is_on_the_axis(hz in 1e3..2e6_f64, pause in 0.0..1e6_f64, synchronous: bool, key in 0..3_usize) {
+    fn every_event_is_on_axis(hz in 1e3..2e6_f64, pause in 0.0..1e6_f64, synchronous: bool, key in 0..3_usize) {
         let diagram = diagram(["ahm36", "atm60", "ttk70"][key], hz, pause, synchronous);
         let pieces = diagram.sections();
         prop_assert!(pieces.iter().all(|piece| piece.from < piece.to));

@@ -140,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_shrink_to_a_minimum_width_and_then_wrap() {
+    fn cells_shrink_before_wrapping() {
         // The required widths are 25 · 28 + 20 = 720, 25 · 17 + 20 = 445 and 32 · 17 + 20 = 564.
         for (room, clocks, cell, lines) in [
             (1000.0, 25, 28.0, 1),

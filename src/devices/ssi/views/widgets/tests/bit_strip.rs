@@ -61,7 +61,7 @@ fn value(harness: &Harness<'_, Design>, label: &str) -> String {
 }
 
 #[test]
-fn boundaries_are_moved_by_keys() {
+fn keys_move_boundaries() {
     let mut harness = tree();
     let split = "Boundary between the turn bits and the step bits";
     assert_eq!(value(&harness, split), "after clock 12");
@@ -80,7 +80,7 @@ fn boundaries_are_moved_by_keys() {
 }
 
 #[test]
-fn focus_follows_the_zeros_between() {
+fn focus_follows_zeros_between_fields() {
     let mut harness = tree();
     focus(&mut harness, "Start of the step bits");
     press(&mut harness, &[(NONE, Key::ArrowRight)]);
@@ -105,7 +105,7 @@ fn drag(harness: &mut Harness<'_, Design>, label: &str, cells: f32) {
 }
 
 #[test]
-fn boundaries_are_dragged() {
+fn drags_boundaries() {
     let mut harness = tree();
     drag(&mut harness, "Boundary between the turn bits and the step bits", 3.1);
     assert_eq!(moves(&harness), [StripEvent::Moved(Handle::Split, 15)]);
@@ -124,7 +124,7 @@ fn boundaries_are_dragged() {
 }
 
 #[test]
-fn a_drag_previews_the_frame_and_can_be_cancelled() {
+fn cancelled_drag_only_previews() {
     let mut harness = tree();
     let from = harness.get_by_label("End of the position bits").rect().center();
     harness.drag_at(from);
@@ -143,7 +143,7 @@ fn a_drag_previews_the_frame_and_can_be_cancelled() {
 }
 
 #[test]
-fn error_bits_are_dragged_to_another_clock() {
+fn drags_error_bits_to_other_clock() {
     let mut harness = strip(&layout("afs60", &Settings { clocks: Some(24), ..Settings::default() }), 860.0);
     assert_eq!(
         value(&harness, "Error bit ERRSYNC"),
@@ -158,7 +158,7 @@ fn error_bits_are_dragged_to_another_clock() {
 }
 
 #[test]
-fn cells_can_be_selected_and_bits_toggled() {
+fn selects_cells_and_toggles_bits() {
     let mut harness = tree();
     let cells = harness.get_by_label("Frame").rect();
     // The middle of clock 7's cell, and the number above it.
@@ -177,7 +177,7 @@ fn cells_can_be_selected_and_bits_toggled() {
 }
 
 #[test]
-fn every_frame_stays_within_its_width() {
+fn frames_stay_within_width() {
     for (bits, width) in [((1, 1), 200.0), ((32, 32), 300.0), ((32, 32), 600.0), ((32, 32), 880.0), ((12, 13), 470.0)] {
         let plain = crate::devices::ssi::protocol::FrameDescriptor::binary(bits.0, bits.1);
         let harness = strip(&Layout::new(plain).unwrap(), width);
@@ -191,7 +191,7 @@ fn every_frame_stays_within_its_width() {
 }
 
 #[test]
-fn a_handle_describes_its_purpose_and_range() {
+fn handle_describes_purpose_and_range() {
     let mut harness = tree();
     // Turns and steps share clocks 5 to 20 and keep at least one bit each. The position has four zeros before it and
     // five after it.

@@ -25,7 +25,7 @@ fn diagram(clock_hz: f64, pause_us: u64) -> BurstDiagram {
 }
 
 #[test]
-fn the_accessible_value_lists_the_times() {
+fn accessible_value_lists_times() {
     for (clock_hz, pause_us) in [(400e3, 200), (2e6, 600_000), (1e3, 1), (80e3, 0)] {
         for width in [300.0_f32, 880.0] {
             let diagram = diagram(clock_hz, pause_us);
@@ -45,7 +45,7 @@ fn the_accessible_value_lists_the_times() {
 }
 
 #[test]
-fn hovering_shows_the_clock() {
+fn hovering_shows_clock() {
     let mut harness = window(diagram(400e3, 200), |ui, own: &mut BurstDiagram| {
         timing_diagram(ui, &theme(), &TimingDiagram { label: "Burst", diagram: own, frame: None });
     });

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn labels_of_moments_are_next_to_their_lines() {
+    fn moment_labels_are_next_to_lines() {
         let two = [flag((10.0, 80.0)), flag((300.0, 60.0))];
         assert_eq!(
             place_labels(&two, (0.0, 400.0)),
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn durations_are_placed_in_lanes() {
+    fn places_durations_in_lanes() {
         let bar = |begin, end, width| Bar { ends: (begin, end), width };
         let put = place_bars(&[bar(0.0, 200.0, 100.0), bar(200.0, 210.0, 50.0), bar(0.0, 5.0, 40.0)], (0.0, 300.0));
         let expected = [(0, 50.0), (0, 216.0), (1, 11.0)].map(|(level, left)| LabelPlacement { level, left });
@@ -125,7 +125,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn labels_of_moments_never_overlap(places in prop::collection::vec((0.0..500_f32, 20.0..150_f32), 1..5)) {
+        fn moment_labels_never_overlap(places in prop::collection::vec((0.0..500_f32, 20.0..150_f32), 1..5)) {
             let all: Vec<LabelExtent> = places.into_iter().map(flag).collect();
             let put = place_labels(&all, (0.0, 520.0));
             for (one, (a, at)) in all.iter().zip(&put).enumerate() {
@@ -138,7 +138,7 @@ mod tests {
         }
 
         #[test]
-        fn labels_of_durations_never_cover_other_lines(ends in prop::collection::vec((0.0..500_f32, 0.0..500_f32, 20.0..150_f32), 1..7)) {
+        fn duration_labels_never_cover_lines(ends in prop::collection::vec((0.0..500_f32, 0.0..500_f32, 20.0..150_f32), 1..7)) {
             let bar = |(a, b, width): &(f32, f32, f32)| Bar { ends: (a.min(*b), a.max(*b)), width: *width };
             let all: Vec<Bar> = ends.iter().map(bar).collect();
             let put = place_bars(&all, (0.0, 500.0));
