@@ -15,7 +15,7 @@ pub(crate) fn adapter_sources(folders: &[&str]) -> Vec<(PathBuf, String)> {
 }
 
 #[test]
-fn the_adapters_codec_and_core_need_no_operating_system() {
+fn adapter_core_needs_no_operating_system() {
     for folder in ["codec/src", "core/src"] {
         let root = &adapter_sources(&[folder]).into_iter().find(|(path, _)| path.ends_with("lib.rs")).unwrap().1;
         assert!(root.contains("#![no_std]") && root.contains("#![forbid(unsafe_code)]"), "{folder}");
@@ -23,7 +23,7 @@ fn the_adapters_codec_and_core_need_no_operating_system() {
 }
 
 #[test]
-fn every_module_of_the_adapter_is_documented_and_short() {
+fn adapter_modules_are_documented_and_short() {
     for (path, text) in adapter_sources(&["codec/src", "core/src", "core/tests", "firmware/src"]) {
         assert!(text.starts_with("//!"), "{} does not open with //!", path.display());
         let length = text.lines().count();

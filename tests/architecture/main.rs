@@ -100,7 +100,7 @@ fn layers_use_only_lower_layers() {
 
 /// Layers on the same level may use each other only as listed here.
 #[test]
-fn modules_of_one_layer_use_each_other_only_where_allowed() {
+fn same_level_uses_are_listed() {
     const ALLOWED: [(&str, &str); 4] =
         [("profile", "protocol"), ("link", "sim"), ("worker", "procedures"), ("cli", "app")];
     for source in sources().iter().filter(|source| source.place.floor() < 6) {
@@ -115,7 +115,7 @@ fn modules_of_one_layer_use_each_other_only_where_allowed() {
 
 /// Two folders that depend on each other would effectively be a single folder. Subfolders count as part of a folder.
 #[test]
-fn no_two_folders_of_the_core_use_each_other() {
+fn core_folders_are_acyclic() {
     let sources: Vec<Source> = sources().into_iter().filter(|source| source.place.owner == Owner::Core).collect();
     let folders: BTreeSet<&str> = sources.iter().filter_map(|source| source.folder()).collect();
     let mut uses: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
@@ -138,7 +138,7 @@ fn no_two_folders_of_the_core_use_each_other() {
 
 /// The list of kinds may use everything. Devices may use buses, and so may Signals for an adapter's inputs.
 #[test]
-fn devices_and_buses_are_used_only_where_allowed() {
+fn device_and_bus_uses_are_allowed() {
     for source in sources() {
         let lists = source.path == LIST_OF_KINDS || source.path.starts_with("src/kinds/");
         for (used, place) in source.uses(&source.text) {
@@ -153,7 +153,7 @@ fn devices_and_buses_are_used_only_where_allowed() {
 }
 
 #[test]
-fn the_lower_layers_are_pure() {
+fn lower_layers_are_pure() {
     const FORBIDDEN: [&str; 12] = [
         "std::net",
         "std::fs",
@@ -177,7 +177,7 @@ fn the_lower_layers_are_pure() {
 }
 
 #[test]
-fn simulators_use_no_clock_and_no_procedures() {
+fn simulators_use_no_clock_or_procedures() {
     for source in sources().iter().filter(|source| source.place.layer == "sim") {
         for (line, code) in source.code() {
             for word in ["std::thread", "Instant", "SystemTime"] {
@@ -192,7 +192,7 @@ fn simulators_use_no_clock_and_no_procedures() {
 }
 
 #[test]
-fn only_the_window_and_the_command_line_give_consent() {
+fn only_front_ends_give_consent() {
     let gives = |source: &Source| !source.is_test() && source.code().any(|(_, code)| code.contains("Consent::to("));
     let mut found: Vec<String> = sources().into_iter().filter(gives).map(|source| source.path).collect();
     found.sort();
@@ -201,14 +201,14 @@ fn only_the_window_and_the_command_line_give_consent() {
 
 /// Operations require a confirmed plan. The only function that confirms a plan also saves the backup.
 #[test]
-fn only_write_plan_confirms_a_plan() {
+fn only_write_plan_confirms() {
     let confirms = |source: &Source| source.code().any(|(_, code)| code.contains("ConfirmedPlan::confirm("));
     let found: Vec<String> = sources().into_iter().filter(confirms).map(|source| source.path).collect();
     assert_eq!(found, ["src/worker/commit.rs"]);
 }
 
 #[test]
-fn every_module_is_documented_and_short() {
+fn modules_are_documented_and_short() {
     for source in sources() {
         assert!(source.text.starts_with("//!"), "{} does not open with //!", source.path);
         let length = source.text.lines().count();
@@ -258,7 +258,7 @@ impl Known {
 }
 
 #[test]
-fn every_text_is_in_the_table_and_every_row_is_used() {
+fn text_table_is_complete_and_used() {
     let sources = sources();
     let known = Known::read(&sources);
     let areas: BTreeSet<&str> =
@@ -290,7 +290,7 @@ fn every_text_is_in_the_table_and_every_row_is_used() {
 }
 
 #[test]
-fn only_the_window_draws() {
+fn only_window_draws() {
     for source in sources().iter().filter(|source| source.place.layer != "ui") {
         for (line, code) in source.code() {
             assert!(!code.contains("egui") && !code.contains("eframe"), "{}:{line} names egui", source.path);
@@ -301,7 +301,7 @@ fn only_the_window_draws() {
 /// All texts in the window come from the catalogues. A literal in a view must be a text ID or invisible. It counts as
 /// text if it contains three or more consecutive letters that are not all capitals.
 #[test]
-fn no_view_contains_a_literal_text() {
+fn views_contain_no_literals() {
     /// Code before a literal that is an identifier for egui, an argument of a text, or a name for the system or the
     /// compiler.
     const NAMES: [&str; 21] = [
@@ -349,7 +349,7 @@ fn no_view_contains_a_literal_text() {
 }
 
 #[test]
-fn every_used_text_is_in_the_table() {
+fn used_texts_are_in_table() {
     let sources = sources();
     let known = Known::read(&sources);
     for source in sources.iter().filter(|source| source.place.floor() >= 5 && !source.is_test()) {
@@ -440,7 +440,7 @@ fn unescaped(text: &str) -> String {
 }
 
 #[test]
-fn literal_texts_are_detected() {
+fn detects_literals() {
     let source =
         "fn a<'x>() { // \"no text\"\n  say(\"page.memory\"); b('\"', \"one \\\"two\\\"\");\n  c(\"{value:.3} mm\"); }";
     let found: Vec<(usize, String)> = literals(source).into_iter().map(|own| (own.line, own.text)).collect();

@@ -75,7 +75,7 @@ fn read<'t>(text: &'t str, before: &[String], ends: &mut Vec<Vec<String>>) -> &'
 }
 
 #[test]
-fn paths_are_found_in_nested_imports() {
+fn finds_paths_in_nested_imports() {
     let module: Vec<String> = ["app", "biss", "words"].map(ToOwned::to_owned).to_vec();
     let text = "use crate::link::{Ctx, trace::{\n    self, Trace as T,\n}};\n// use crate::ui::Theme;\nuse super::super::ssi::Form;\n\
                 fn a(x: super::Edit) -> self::inner::B { crate::app::explain::biss::words(x) }\n";

@@ -102,7 +102,7 @@ pub(crate) fn modules_of(path: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_module_has_one_owner_and_one_layer() {
+fn module_has_one_owner_and_layer() {
     let place = |path| Place::of(&modules_of(path));
     let device = |name: &str, layer| Some(Place { owner: Owner::Device(name.to_owned()), layer });
     let bus = |name: &str, layer| Some(Place { owner: Owner::Bus(name.to_owned()), layer });

@@ -62,7 +62,7 @@ fn texts(line: &str) -> impl Iterator<Item = (&'static str, &str)> {
 }
 
 #[test]
-fn no_text_has_a_forbidden_word() {
+fn texts_contain_no_forbidden_words() {
     let mut found = Vec::new();
     let mut read = 0;
     for file in fs::read_dir("assets/texts").unwrap() {
@@ -100,7 +100,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 #[test]
-fn no_comment_has_a_forbidden_word() {
+fn comments_contain_no_forbidden_words() {
     let (mut files, mut found, mut read) = (Vec::new(), Vec::new(), 0);
     for folder in ["src", "adapter/codec/src", "adapter/core/src", "adapter/firmware/src"] {
         sources(Path::new(folder), &mut files);
@@ -125,7 +125,7 @@ fn no_comment_has_a_forbidden_word() {
 }
 
 #[test]
-fn only_complete_words_match() {
+fn matches_whole_words_only() {
     assert!(has("Nobody acknowledges.", "nobody") && has("as all the same", "all the same"));
     assert!(!has("Recommend it.", "mend") && !has("clamps", "lamps"));
     assert_eq!(comment("    /// Who comes."), Some((true, "Who comes.")));

@@ -58,7 +58,7 @@ fn captures() {
 }
 
 #[test]
-fn tables_of_devices() {
+fn device_tables() {
     fuzz("devices", &files("assets/devices"), |bytes| {
         let Ok(text) = std::str::from_utf8(bytes) else { return };
         let _ = EncoderTypes::parse(text);

@@ -13,7 +13,7 @@ const ARGUMENTS: &str = "NEW_KIND_ARGUMENTS";
 
 /// Runs the program in a process started by [`start`]. Without arguments, the program requests the window.
 #[test]
-fn the_program() {
+fn program_under_test() {
     let arguments = std::env::var(ARGUMENTS).unwrap_or_default();
     let words = std::iter::once("encoder-studio").chain(arguments.lines()).map(Into::into);
     let program = program();
@@ -26,7 +26,7 @@ fn the_program() {
 /// Starts the program with the given arguments in a separate process and folder.
 fn start(home: &Path, arguments: &[&str]) -> Child {
     let mut command = Command::new(std::env::current_exe().unwrap());
-    command.args(["--exact", "cli::the_program", "--nocapture"]).env(ARGUMENTS, arguments.join("\n"));
+    command.args(["--exact", "cli::program_under_test", "--nocapture"]).env(ARGUMENTS, arguments.join("\n"));
     command.env("HOME", home).env("XDG_DATA_HOME", home).env("XDG_CONFIG_HOME", home).current_dir(home);
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
@@ -40,7 +40,7 @@ fn run(home: &Path, arguments: &[&str]) -> (i32, String, String) {
 }
 
 #[test]
-fn the_encoder_is_identified_read_saved_compared_and_restored() {
+fn command_line_round_trip() {
     let home = tempfile::tempdir().unwrap();
     let run = |arguments: &[&str]| run(home.path(), arguments);
     let done = |printed: &str| (0, printed.to_owned(), String::new());
@@ -67,7 +67,7 @@ fn the_encoder_is_identified_read_saved_compared_and_restored() {
 }
 
 #[test]
-fn unsupported_commands_are_usage_errors() {
+fn rejects_unsupported_commands() {
     let home = tempfile::tempdir().unwrap();
     for arguments in [["status", "novo", "--link", "sim:"], ["identify", "novo", "--link", "modbus:plc"]] {
         let (status, printed, said) = run(home.path(), &arguments);
@@ -76,7 +76,7 @@ fn unsupported_commands_are_usage_errors() {
 }
 
 #[test]
-fn the_encoder_can_be_simulated() {
+fn simulates_encoder() {
     let home = tempfile::tempdir().unwrap();
     let mut served = start(home.path(), &["simulate", "novo", "--listen", "127.0.0.1:0", "--set", "serial=7000"]);
     let lines = BufReader::new(served.stdout.take().unwrap()).lines().map(Result::unwrap);

@@ -26,7 +26,7 @@ use super::novo::state::Encoder;
 const DELIVERED: Values = [0, 3, 0, 65535];
 
 #[test]
-fn the_kind_is_offered_and_connects_from_the_dialog() {
+fn dialog_connects_new_kind() {
     assert_eq!(program().tabs.page_text_ids(Encoder::TAB), ["page.values", "page.backups"]);
     let mut desk = Desk::new();
     let actions = [
@@ -48,7 +48,7 @@ fn the_kind_is_offered_and_connects_from_the_dialog() {
 
 /// A secret link parameter appears in no message, name, setting or other file.
 #[test]
-fn a_secret_parameter_is_neither_shown_nor_kept() {
+fn hides_secret_parameter() {
     let mut desk = Desk::connected("?serial=77&pin=4711");
     assert_eq!(desk.shown().data_source(), "sim:?serial=77");
     assert_eq!(desk.studio.settings.links_of(Encoder::TAB), ["sim:?serial=77"]);
@@ -98,7 +98,7 @@ fn a_secret_parameter_is_neither_shown_nor_kept() {
 }
 
 #[test]
-fn positions_are_polled_and_recorded() {
+fn polls_and_records_positions() {
     // The shaft turns one turn, or 4096 steps, per second.
     let mut desk = Desk::connected("?rpm=60");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
@@ -118,7 +118,7 @@ fn positions_are_polled_and_recorded() {
 }
 
 #[test]
-fn edits_are_undone_reviewed_written_and_restored() {
+fn edit_write_and_restore() {
     let mut desk = Desk::connected("");
     desk.set(0, 100);
     desk.set(2, 9);
@@ -155,7 +155,7 @@ fn edits_are_undone_reviewed_written_and_restored() {
 }
 
 #[test]
-fn a_value_that_is_not_accepted_is_reported_and_stays_edited() {
+fn rejected_value_stays_edited() {
     // The second of the two values to write, at 10h and 12h, cannot be changed.
     let mut desk = Desk::connected("?stuck=0x12");
     desk.set(0, 100);
@@ -173,7 +173,7 @@ fn a_value_that_is_not_accepted_is_reported_and_stays_edited() {
 }
 
 #[test]
-fn a_profile_is_saved_and_restored_to_another_encoder_only_on_request() {
+fn restores_other_encoder_only_on_request() {
     let mut desk = Desk::connected("");
     let (id, path) = (desk.shown().id(), desk.path("novo.ron"));
     desk.command(DeviceCommand::AskSave);
@@ -204,7 +204,7 @@ fn a_profile_is_saved_and_restored_to_another_encoder_only_on_request() {
 }
 
 #[test]
-fn a_payload_of_another_kind_is_refused_and_reported() {
+fn rejects_payload_of_another_kind() {
     let mut desk = Desk::connected("");
     let id = desk.shown().id();
     desk.studio.handle_action(StudioAction::device(id, Interbus::Check));
@@ -225,7 +225,7 @@ impl App for Shown {
 }
 
 #[test]
-fn the_window_shows_its_tab_and_its_values() {
+fn window_shows_tab_and_values() {
     let mut desk = Desk::connected("?rpm=60");
     desk.set(0, 4321);
     desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
