@@ -8,7 +8,7 @@ use super::support::Bench;
 const FIELDS: &str = r#"[{"status":"C9","bytes":"0815"}]"#;
 
 #[test]
-fn an_encoder_at_an_adapter_is_read_and_written() {
+fn reads_and_writes_encoder_behind_adapter() {
     let bench = Bench::new();
     let Some(adapter) = bench.serial_adapter(&["--fields", FIELDS]) else { return };
     let run = |words: &[&str]| bench.run(&[words, &["--link", &adapter.url, "--json"]].concat()).json();
@@ -29,7 +29,7 @@ fn an_encoder_at_an_adapter_is_read_and_written() {
 
 /// The encoder has executed the store, but its reply is lost. The host reads the byte back and does not store it again.
 #[test]
-fn a_store_whose_reply_is_lost_is_not_repeated() {
+fn lost_store_reply_is_not_retried() {
     let bench = Bench::new();
     let Some(adapter) = bench.serial_adapter(&["--fields", FIELDS, "--lose-command", "4B"]) else { return };
     let run = |words: &[&str]| bench.run(&[words, &["--link", &adapter.url, "--json"]].concat());
@@ -42,7 +42,7 @@ fn a_store_whose_reply_is_lost_is_not_repeated() {
 
 /// In transfer 2, the request reaches the encoder, but the reply does not reach the host.
 #[test]
-fn a_lost_reply_is_requested_again() {
+fn lost_reply_is_requested_again() {
     let bench = Bench::new();
     let Some(adapter) = bench.serial_adapter(&["--lose", "2"]) else { return };
     let told = bench.run(&["identify", "hiperface", "--link", &adapter.url, "--json"]).json();
@@ -50,7 +50,7 @@ fn a_lost_reply_is_requested_again() {
 }
 
 #[test]
-fn the_supply_is_switched_on_and_restored() {
+fn supply_is_switched_on_and_restored() {
     let bench = Bench::new();
     let Some(adapter) = bench.serial_adapter(&["--supply", "off"]) else { return };
     let position = |parameters: &str| {
@@ -68,7 +68,7 @@ fn the_supply_is_switched_on_and_restored() {
 }
 
 #[test]
-fn a_silent_encoder_or_adapter_is_named() {
+fn silence_names_encoder_or_adapter() {
     let bench = Bench::new();
     let Some(adapter) = bench.serial_adapter(&[]) else { return };
     let wrong_address = format!("{}?address=0x45", adapter.url);
@@ -82,7 +82,7 @@ fn a_silent_encoder_or_adapter_is_named() {
 
 /// Register 66h contains 80, which is 30 °C (BiSS reference 2).
 #[test]
-fn a_configuration_pin_at_an_adapter_is_read_and_written() {
+fn reads_and_writes_configuration_pin_behind_adapter() {
     let bench = Bench::new();
     let Some(adapter) = bench.serial_adapter(&["--pin", "--supply", "off"]) else { return };
     let link = format!("{}?pin=on&voltage=5", adapter.url);

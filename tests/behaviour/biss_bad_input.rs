@@ -4,7 +4,7 @@ use super::biss_profile::PROFILE;
 use super::support::Bench;
 
 #[test]
-fn a_broken_profile_is_refused_with_its_name_and_error() {
+fn broken_profile_is_rejected_by_name() {
     let bench = Bench::new();
     let good = bench.write("good.ron", PROFILE);
     let edited = |from: &str, to: &str| {
@@ -36,7 +36,7 @@ fn a_broken_profile_is_refused_with_its_name_and_error() {
 /// A profile with a newer schema can be compared. The message states that it cannot be used for anything else (issue
 /// 22.17).
 #[test]
-fn a_profile_of_a_newer_schema_is_read_only() {
+fn newer_schema_is_read_only() {
     let bench = Bench::new();
     let good = bench.write("good.ron", PROFILE);
     let newer = bench.write("newer.ron", PROFILE.replacen("schema: 1", "schema: 99", 1));
@@ -53,7 +53,7 @@ fn a_profile_of_a_newer_schema_is_read_only() {
 }
 
 #[test]
-fn a_valid_link_is_required() {
+fn requires_valid_link() {
     let bench = Bench::new();
     let good = bench.write("good.ron", PROFILE);
     let commands: [&[&str]; 9] = [
@@ -122,7 +122,7 @@ fn invalid_arguments_are_usage_errors() {
 
 /// Each shipped profile can be restored to an encoder of its type.
 #[test]
-fn the_ready_made_profiles_are_compared_with_an_encoder() {
+fn compares_ready_made_profiles() {
     let bench = Bench::new();
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/biss");
     let mut count = 0;

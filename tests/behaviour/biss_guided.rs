@@ -21,7 +21,7 @@ fn written(encoder: &Foreign) -> Vec<String> {
 const CALIBRATION: [&str; 6] = ["0x6B 2A", "0x6A 01", "0x00:0x00 01", "0x00:0x00 02", "0x6A 00", "0x6B 00"];
 
 #[test]
-fn a_calibration_runs_both_ways() {
+fn calibration_runs_both_ways() {
     let bench = Bench::new();
     let turning = ["--rpm", "-500", "--reverse"];
     let (Some(kit), Some(adapter)) = (bench.kit(&turning), bench.adapter(&turning)) else { return };
@@ -38,7 +38,7 @@ fn a_calibration_runs_both_ways() {
 }
 
 #[test]
-fn a_wiegand_test_runs_both_ways_and_is_saved_on_request() {
+fn wiegand_test_saves_on_request() {
     let bench = Bench::new();
     let turning = ["--rpm", "600", "--reverse"];
     for save in [false, true] {
@@ -58,7 +58,7 @@ fn a_wiegand_test_runs_both_ways_and_is_saved_on_request() {
 }
 
 #[test]
-fn an_unsuitable_motor_is_reported_with_the_measured_values() {
+fn unsuitable_motor_reports_measured_values() {
     let bench = Bench::new();
     let cases: [(&[&str], &str, &[&str]); 5] = [
         (&["--rpm", "0"], "calibrate", &["at rest", "counterclockwise"]),
@@ -81,7 +81,7 @@ fn an_unsuitable_motor_is_reported_with_the_measured_values() {
 }
 
 #[test]
-fn a_dynamic_filter_prevents_a_calibration() {
+fn dynamic_filter_prevents_calibration() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&["--rpm", "-500", "--filter", "4"]) else { return };
     let ran = ask(&bench, &encoder, &["do", "biss", "calibrate"]);
@@ -91,7 +91,7 @@ fn a_dynamic_filter_prevents_a_calibration() {
 
 /// The encoder is returned to operation, but its calibration table is lost.
 #[test]
-fn a_failed_run_returns_to_operation() {
+fn failed_run_returns_to_operation() {
     let bench = Bench::new();
     let failing = ["--rpm", "-500", "--reverse", "--calibration-fails", "0x33"];
     let (Some(kit), Some(adapter)) = (bench.kit(&failing), bench.adapter(&failing)) else { return };
@@ -105,7 +105,7 @@ fn a_failed_run_returns_to_operation() {
 /// A mounting run covers temperature, calibration, Wiegand test, preset and data, in this order. The motor stands still
 /// until the data have been read, and stops after the test.
 #[test]
-fn a_mounting_run_performs_all_steps() {
+fn mounting_performs_all_steps() {
     let bench = Bench::new();
     let file = bench.write("p.ron", PROFILE);
     let turning = ["--rpm", "-600", "--reverse", "--stops", "--rests", "12"];
@@ -143,7 +143,7 @@ fn invalid_mounting_steps_are_usage_errors() {
 /// The virtual encoder turns 515 revolutions in each direction, which takes 15.5 s at 2000 rpm. A failed test must not
 /// be reported as a success (issue 22.19): 5.2 V is below the required 5.3 V (reference 4).
 #[test]
-fn the_virtual_encoder_passes_the_guided_procedures() {
+fn virtual_encoder_passes_guided_procedures() {
     let bench = Bench::new();
     let link = "sim:?rpm=-500&motor=reverse&calibration=0.2";
     let calibrated = bench.run(&["do", "biss", "calibrate", "--yes", "--json", "--link", link]).json();
@@ -159,7 +159,7 @@ fn the_virtual_encoder_passes_the_guided_procedures() {
 
 /// The first question asks what drives the motor. A motor controlled with this encoder is rejected.
 #[test]
-fn on_a_terminal_the_user_names_the_motor_source() {
+fn terminal_asks_for_motor_source() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&["--rpm", "-500", "--reverse"]) else { return };
     let command = ["do", "biss", "calibrate", "--link", &encoder.url];

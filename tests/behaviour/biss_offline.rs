@@ -7,7 +7,7 @@ use super::support::Bench;
 
 /// The examples are from ubicom.md 6, bridge.md 2 and biss.md 2.
 #[test]
-fn golden_bytes_are_explained() {
+fn explains_example_bytes() {
     let bench = Bench::new();
     let cases: [(&str, &[&str]); 12] = [
         ("80 01 01 02 00 26 00 55", &["read", "0x66", "temperature"]),
@@ -35,7 +35,7 @@ fn golden_bytes_are_explained() {
 
 /// Every frame of the table in BiSS reference 2 is decoded.
 #[test]
-fn position_frames_are_checked() {
+fn checks_position_frames() {
     let bench = Bench::new();
     let table = [
         ("000000000FA", 0, 0, false, false),
@@ -62,7 +62,7 @@ fn position_frames_are_checked() {
 /// A word printed by `position` can be decoded in decimal and in hexadecimal. This one is turn 1234h at 270° (UBICOM
 /// reference 6).
 #[test]
-fn position_words_are_decoded_as_printed() {
+fn decodes_printed_position_words() {
     let bench = Bench::new();
     let table = bench.run(&["position", "biss", "--csv", "--count", "1", "--link", "sim:"]).out;
     let raw = format!("raw={}", table.lines().nth(1).unwrap().split(',').nth(1).unwrap());
@@ -80,7 +80,7 @@ fn position_words_are_decoded_as_printed() {
 }
 
 #[test]
-fn damaged_frames_name_the_failed_checksum() {
+fn corrupt_frame_names_failed_checksum() {
     let bench = Bench::new();
     let cases: [(&str, &[&str]); 7] = [
         ("024698000CE", &["CRC-6", "0E", "0F"]),
@@ -111,7 +111,7 @@ fn damaged_frames_name_the_failed_checksum() {
 }
 
 #[test]
-fn a_recording_replays_the_encoders_replies() {
+fn replays_recorded_replies() {
     let bench = Bench::new();
     for (link, way) in [("sim:?temperature=25", ""), ("sim:?temperature=25&bridge=on", "?bridge=on")] {
         let trace = bench.file("t.trace");
@@ -123,7 +123,7 @@ fn a_recording_replays_the_encoders_replies() {
 }
 
 #[test]
-fn two_profiles_are_compared_without_a_link() {
+fn compares_profiles_offline() {
     let bench = Bench::new();
     let left = bench.write("left.ron", PROFILE);
     let equal = bench.run(&["diff", &left, &left, "--json"]).json();
@@ -151,7 +151,7 @@ fn two_profiles_are_compared_without_a_link() {
 /// A misspelt name prevents a restore, and the message states its position. A profile with a newer schema can be
 /// compared but not restored (issue 22.17).
 #[test]
-fn a_misspelt_name_is_reported_and_a_newer_schema_is_read_only() {
+fn reports_misspelt_name_and_newer_schema() {
     let bench = Bench::new();
     for (name, slip, place) in [("filter", "filtr", "line 14, column 5"), ("preset", "presett", "line 15, column 5")] {
         let file = bench.write("slip.ron", PROFILE.replace(&format!("    {name}:"), &format!("    {slip}:")));

@@ -36,7 +36,7 @@ fn identify_prints_every_key() {
 }
 
 #[test]
-fn the_configuration_pin_may_echo_and_use_either_byte_order() {
+fn configuration_pin_echo_and_byte_order() {
     let bench = Bench::new();
     let Some(echoing) = bench.kit(&["--echo", "--order", "big"]) else { return };
     for parameters in ["", "?echo=on&order=high-first", "?timeout=300&margin=20"] {
@@ -51,7 +51,7 @@ fn the_configuration_pin_may_echo_and_use_either_byte_order() {
 /// Error register 12h reports the multiturn counter and a weak magnetic field. Warning 01h reports the temperature
 /// (BiSS reference 7).
 #[test]
-fn status_names_the_set_bits() {
+fn status_names_set_bits() {
     let bench = Bench::new();
     let Some(well) = both(&bench, &[]) else { return };
     let Some(ill) = both(&bench, &["--errors", "0x12", "--warnings", "1", "--filter", "4"]) else { return };
@@ -79,7 +79,7 @@ fn status_names_the_set_bits() {
 /// encoder has factory settings. The other has the errors of reference 7, is hotter than its data sheet allows (105
 /// °C), and is on a noisy line.
 #[test]
-fn a_check_judges_the_encoders_own_diagnostics() {
+fn check_judges_encoder_diagnostics() {
     let bench = Bench::new();
     let check = |link: &str| bench.run(&["do", "biss", "check", "--link", link, JSON]);
     let verdicts = |told: &Value| {
@@ -114,7 +114,7 @@ fn a_check_judges_the_encoders_own_diagnostics() {
 /// Without a frame format from the encoder or the link, the position is only a raw word (issue 22.20). The shaft is at
 /// turn 1234h and 270°.
 #[test]
-fn a_position_is_raw_until_the_link_gives_the_frame() {
+fn position_is_raw_without_frame_format() {
     let bench = Bench::new();
     let Some(adapter) = bench.adapter(&["--stranger"]) else { return };
     let read = |parameters: &str| {
@@ -133,7 +133,7 @@ fn a_position_is_raw_until_the_link_gives_the_frame() {
 /// Each connection returns the same word for turn 1234h and 270°. Over BiSS, the frame and its CRC are returned as
 /// well.
 #[test]
-fn the_position_has_turns_steps_and_degrees() {
+fn position_has_turns_steps_and_degrees() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &[]) else { return };
     let raw = 0x2469_8000;
@@ -159,7 +159,7 @@ fn the_position_has_turns_steps_and_degrees() {
 
 /// The shaft turns counterclockwise at 360° per second.
 #[test]
-fn positions_of_a_turning_shaft_are_printed() {
+fn prints_positions_while_turning() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--rpm", "-60"]) else { return };
     for encoder in &encoders {
@@ -180,7 +180,7 @@ fn positions_of_a_turning_shaft_are_printed() {
 }
 
 #[test]
-fn a_frame_with_a_wrong_crc_is_counted_and_not_printed() {
+fn counts_frames_with_wrong_crc() {
     let bench = Bench::new();
     let Some(encoder) = bench.adapter(&["--damage", "3"]) else { return };
     let ran = ask(&bench, &encoder, &["position", "biss", "--csv", "--count", "20", "--interval", "0"]);
@@ -195,7 +195,7 @@ fn a_frame_with_a_wrong_crc_is_counted_and_not_printed() {
 }
 
 #[test]
-fn registers_are_read_by_name() {
+fn reads_registers_by_name() {
     let bench = Bench::new();
     let data = r#"{"0x24:0x10": "A1B2C3", "0x43:0x3F": "7E", "0x04:0x00": "0102"}"#;
     let Some(encoders) = both(&bench, &["--data", data, "--temperature", "25", "--preset", "008001340200"]) else {
@@ -224,7 +224,7 @@ fn registers_are_read_by_name() {
 }
 
 #[test]
-fn a_value_without_a_meaning_has_no_meaning_key() {
+fn omits_missing_meaning_from_json() {
     let bench = Bench::new();
     let read = |item: &str| bench.run(&["read", "biss", item, "--link", "sim:", JSON]).json();
     assert_eq!(read("0x24:0x10"), json!({"item": "0x24:0x10", "value": 0}));
@@ -259,7 +259,7 @@ fn reading_writes_nothing() {
 }
 
 #[test]
-fn wire_and_adapter_faults_are_reported() {
+fn reports_wire_and_adapter_faults() {
     let bench = Bench::new();
     let cases: [(&[&str], &[&str]); 6] = [
         (&["--line", "open"], &["acknowledged the request", "MA+"]),
@@ -280,7 +280,7 @@ fn wire_and_adapter_faults_are_reported() {
 }
 
 #[test]
-fn a_silent_or_garbled_encoder_is_an_error() {
+fn fails_on_silent_or_garbled_encoder() {
     let bench = Bench::new();
     for arguments in [&["--silent-after", "0"][..], &["--silent-after", "40"], &["--silent-after", "2000"]] {
         let Some(encoders) = both(&bench, arguments) else { return };
@@ -298,7 +298,7 @@ fn a_silent_or_garbled_encoder_is_an_error() {
 }
 
 #[test]
-fn a_line_lost_during_reading_is_reported() {
+fn reports_line_lost_while_reading() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &[]) else { return };
     for mut encoder in encoders {
@@ -313,7 +313,7 @@ fn a_line_lost_during_reading_is_reported() {
 }
 
 #[test]
-fn ctrl_c_ends_a_stream_between_two_lines() {
+fn ctrl_c_ends_stream_between_lines() {
     let bench = Bench::new();
     for (link, options, status) in [
         ("sim:", &["--csv"][..], 0),
@@ -331,7 +331,7 @@ fn ctrl_c_ends_a_stream_between_two_lines() {
 }
 
 #[test]
-fn access_codes_are_refused() {
+fn rejects_access_codes() {
     let bench = Bench::new();
     bench.run(&["identify", "biss", "--link", "sim:", "--code", "0=66"]).fails(2, &["--code"]);
     let mut command = bench.program(&["read", "biss", "0x66", "--link", "sim:", "--json"]);

@@ -50,7 +50,7 @@ fn examine(path: &str) {
 const WARM: [&str; 2] = ["--set", "temperature=25"];
 
 #[test]
-fn the_configuration_pin_answers_the_frames_of_the_reference() {
+fn configuration_pin_answers_reference_frames() {
     let bench = Bench::new();
     if python("ubicom_host.py").is_none() {
         return;
@@ -70,7 +70,7 @@ fn the_configuration_pin_answers_the_frames_of_the_reference() {
 
 /// Like the real encoder (UBICOM reference 1), the simulation does not understand requests at another speed.
 #[test]
-fn the_baud_rate_can_be_set_in_the_link() {
+fn link_sets_baud_rate() {
     let bench = Bench::new();
     let terminal = Simulated::start(&bench, &[&["biss", "--pty", &bench.file("enc")], &WARM[..]].concat());
     let ask = |parameters: &str| {
@@ -86,7 +86,7 @@ fn the_baud_rate_can_be_set_in_the_link() {
 
 /// Saving a preset restarts the encoder. It does not answer for half a second and then returns to operation.
 #[test]
-fn a_restart_is_silent_and_configured_faults_are_injected() {
+fn restart_is_silent_and_faults_are_injected() {
     let bench = Bench::new();
     if python("ubicom_host.py").is_none() {
         return;
@@ -158,7 +158,7 @@ fn examine_adapter(path: &str) {
 }
 
 #[test]
-fn the_adapter_reads_frames_and_registers_of_every_bank() {
+fn adapter_reads_frames_and_all_banks() {
     let bench = Bench::new();
     if python("bridge_host.py").is_none() {
         return;
@@ -174,7 +174,7 @@ fn the_adapter_reads_frames_and_registers_of_every_bank() {
 
 /// Each frame has its time, its CRC, and the position of a shaft that turns ten times per second.
 #[test]
-fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
+fn streams_20k_frames_per_second_without_gaps() {
     let bench = Bench::new();
     if python("bridge_host.py").is_none() {
         return;
@@ -197,7 +197,7 @@ fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
 
 /// Between host and adapter, damaged bytes are dropped and lost bytes are requested again.
 #[test]
-fn configured_adapter_line_faults_are_injected() {
+fn injects_adapter_line_faults() {
     let bench = Bench::new();
     if python("bridge_host.py").is_none() {
         return;
@@ -221,7 +221,7 @@ fn configured_adapter_line_faults_are_injected() {
 
 /// The client has started a stream that it does not read.
 #[test]
-fn an_interrupt_ends_the_simulation_with_a_busy_client() {
+fn interrupt_ends_simulation_with_busy_client() {
     let bench = Bench::new();
     let port = Simulated::start(&bench, &["biss", "--bridge", "--listen", "127.0.0.1:0"]);
     let mut client = TcpStream::connect(&port.place).unwrap();
@@ -234,7 +234,7 @@ fn an_interrupt_ends_the_simulation_with_a_busy_client() {
 }
 
 #[test]
-fn impossible_simulations_are_refused() {
+fn rejects_impossible_simulations() {
     let bench = Bench::new();
     bench.run(&["simulate", "biss"]).fails(2, &["--listen"]);
     let listen = ["--listen", "127.0.0.1:0"];

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::support::{Bench, Simulated};
 
 #[test]
-fn a_new_user_can_read_save_change_compare_and_restore() {
+fn reads_saves_compares_and_restores() {
     let bench = Bench::new();
     let simulated = Simulated::start(&bench, &["biss", "--listen", "127.0.0.1:0"]);
     let link = format!("--link=tcp:{}", simulated.place);

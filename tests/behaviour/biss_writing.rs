@@ -33,7 +33,7 @@ fn saved(registers: &[&str]) -> Vec<String> {
 }
 
 #[test]
-fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
+fn three_bytes_take_one_save() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--data", AS_PROFILE, "--preset", PRESET]) else { return };
     let wanted = PROFILE.replace("[\"00 01 02", "[\"00 A1 A2").replace("0E 0F\"", "0E EE\"");
@@ -69,7 +69,7 @@ fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
 }
 
 #[test]
-fn write_stores_exactly_these_bytes() {
+fn write_stores_exact_bytes() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--data", AS_PROFILE]) else { return };
     for encoder in &encoders {
@@ -96,7 +96,7 @@ fn write_stores_exactly_these_bytes() {
 
 /// A restore stores the filter and the preset value, but does not execute a preset (reference 5.4 and 5.5).
 #[test]
-fn filter_and_preset_value_are_restored_without_executing_the_preset() {
+fn restore_does_not_execute_preset() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--data", AS_PROFILE, "--filter", "4"]) else { return };
     let file = bench.write("p.ron", PROFILE);
@@ -117,7 +117,7 @@ fn filter_and_preset_value_are_restored_without_executing_the_preset() {
 }
 
 #[test]
-fn the_mounting_of_another_encoder_is_not_changed() {
+fn restore_keeps_mounting_of_other_encoder() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&["--serial-number", "7", "--data", AS_PROFILE]) else { return };
     let file = bench.write("p.ron", PROFILE);
@@ -137,7 +137,7 @@ fn the_mounting_of_another_encoder_is_not_changed() {
 
 /// The message names the other type, and the restore is rejected unless the user permits it explicitly (issue 22.9).
 #[test]
-fn an_encoder_of_another_type_needs_a_separate_permission() {
+fn other_type_needs_permission() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&[]) else { return };
     let types = ["01 01 68 11 00 01", "01 01 68 11 00 02"];
@@ -157,7 +157,7 @@ fn an_encoder_of_another_type_needs_a_separate_permission() {
 }
 
 #[test]
-fn without_consent_nothing_is_written() {
+fn writes_nothing_without_consent() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&[]) else { return };
     let file = bench.write("p.ron", PROFILE);
@@ -177,7 +177,7 @@ fn without_consent_nothing_is_written() {
 }
 
 #[test]
-fn unwritable_values_are_refused() {
+fn rejects_unwritable_values() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&[]) else { return };
     let cases: [(i32, &[&str], &[&str]); 16] = [
@@ -211,7 +211,7 @@ fn unwritable_values_are_refused() {
 }
 
 #[test]
-fn data_is_not_written_while_the_shaft_turns() {
+fn does_not_write_data_while_turning() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&["--rpm", "30"]) else { return };
     ask(&bench, &encoder, &["write", "biss", "0x24:0x00", "1", "--yes"]).fails(1, &["Stop the shaft"]);
@@ -253,7 +253,7 @@ fn filter_and_preset_are_actions() {
 /// The flash is rated for 1000 write cycles (manual 6.1). A warning is printed from 800 cycles. Beyond 1000, a write
 /// must be forced.
 #[test]
-fn a_worn_flash_is_reported_and_written_only_if_forced() {
+fn worn_flash_needs_force() {
     let bench = Bench::new();
     let write = |more: &[&str]| {
         let words = ["do", "biss", "preset", "98304", "0", "--yes", "--link", "sim:", "--json"];
@@ -278,7 +278,7 @@ fn a_worn_flash_is_reported_and_written_only_if_forced() {
 
 /// The connection is lost once while reading and at three points while writing.
 #[test]
-fn a_link_lost_during_a_write_is_reported_with_the_backup() {
+fn lost_link_names_backup() {
     let bench = Bench::new();
     let file = bench.write("p.ron", PROFILE);
     let Some(whole) = bench.kit(&[]) else { return };
@@ -299,7 +299,7 @@ fn a_link_lost_during_a_write_is_reported_with_the_backup() {
 /// Registers that were written but never saved are reported, and a comparison does not show them as the encoder's
 /// content. Only `lead-back` restores the mode (issue 22.15).
 #[test]
-fn unsaved_registers_of_a_killed_write_are_not_compared() {
+fn compare_ignores_unsaved_registers() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--data", AS_PROFILE, "--preset", PRESET, "--left-in", "4"]) else { return };
     let file = bench.write("p.ron", PROFILE);
@@ -328,7 +328,7 @@ fn unsaved_registers_of_a_killed_write_are_not_compared() {
 
 /// The adapter's supply is restored when the program exits (issue 22.16).
 #[test]
-fn the_adapters_supply_is_restored_on_exit() {
+fn restores_adapter_supply_on_exit() {
     let bench = Bench::new();
     let Some(adapter) = bench.adapter(&["--supply", "off"]) else { return };
     let supplied = |parameters: &str| -> Vec<String> {
@@ -347,7 +347,7 @@ fn the_adapters_supply_is_restored_on_exit() {
 
 /// The mode and password set by another host are reset (reference 5).
 #[test]
-fn an_encoder_left_in_a_mode_is_returned_to_operation() {
+fn returns_encoder_to_operation() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--left-in", "4"]) else { return };
     for encoder in &encoders {
@@ -363,7 +363,7 @@ fn an_encoder_left_in_a_mode_is_returned_to_operation() {
 /// Restoring the mode discards unsaved changes, so the program asks for confirmation on a terminal unless `--yes` was
 /// given. Scripts need no `--yes`, because nothing is stored (issue 22.15).
 #[test]
-fn on_a_terminal_the_return_to_operation_needs_confirmation() {
+fn terminal_confirms_return_to_operation() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&[]) else { return };
     let lead_back = ["do", "biss", "lead-back", "--link", &encoder.url];

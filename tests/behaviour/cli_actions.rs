@@ -10,7 +10,7 @@ fn act(bench: &Bench, encoder: &Foreign, arguments: &[&str]) -> Ran {
 }
 
 #[test]
-fn data_fields_are_created_protected_resized_and_deleted() {
+fn data_field_lifecycle() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C9","bytes":"0815"}]"#]) else { return };
     let steps: [(&[&str], &str); 7] = [
@@ -38,7 +38,7 @@ fn data_fields_are_created_protected_resized_and_deleted() {
 }
 
 #[test]
-fn the_memory_cannot_be_overfilled() {
+fn memory_cannot_be_overfilled() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--blocks", "2"]) else { return };
     act(&bench, &encoder, &["create-field", "0", "48"]).fails(1, &["48", "32"]);
@@ -46,7 +46,7 @@ fn the_memory_cannot_be_overfilled() {
 }
 
 #[test]
-fn a_position_is_set_in_phase_or_exactly() {
+fn sets_position_in_phase_or_exactly() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&[]) else { return };
     act(&bench, &encoder, &["set-position", "4096"]).json();
@@ -66,7 +66,7 @@ fn a_position_is_set_in_phase_or_exactly() {
 }
 
 #[test]
-fn an_address_is_set_with_any_form_of_reply() {
+fn sets_address_despite_reply_form() {
     let bench = Bench::new();
     for reply in [&[][..], &["--reply-from", "new"], &["--no-repeat"], &["--reply-from", "new", "--no-repeat"]] {
         let Some(encoder) = bench.encoder(reply) else { return };
@@ -80,7 +80,7 @@ fn an_address_is_set_with_any_form_of_reply() {
 }
 
 #[test]
-fn settings_are_stored_and_the_counter_is_cleared() {
+fn stores_settings_and_clears_counter() {
     let bench = Bench::new();
     for reply in [&[][..], &["--no-repeat"]] {
         let Some(encoder) = bench.encoder(&[reply, &["--counter", "0xFFFFFF"]].concat()) else { return };
@@ -103,7 +103,7 @@ fn settings_are_stored_and_the_counter_is_cleared() {
 }
 
 #[test]
-fn a_reset_is_awaited() {
+fn waits_for_reset() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&[]) else { return };
     let ran = act(&bench, &encoder, &["reset"]);
@@ -115,7 +115,7 @@ fn a_reset_is_awaited() {
 const LABEL: &str = "530000000010000010 0053454C33372D484642302D4B30322020202000030048 0073";
 
 #[test]
-fn an_encoder_is_identified_by_its_extended_label() {
+fn extended_label_identifies_encoder() {
     let bench = Bench::new();
     let Some(encoder) =
         bench.encoder(&["--type", "FF", "--label", &format!("{LABEL}{}", "00".repeat(30)), "--position", "0x0531"])
@@ -131,7 +131,7 @@ fn an_encoder_is_identified_by_its_extended_label() {
 }
 
 #[test]
-fn a_linear_encoder_reports_millimetres() {
+fn linear_encoder_reports_millimetres() {
     let bench = Bench::new();
     // A label of a linear encoder with 1000 periods of 1,000,000 nm each.
     let label = format!("00 01 000F4240 000003E8 {} {}", "20".repeat(18), "00".repeat(36));
@@ -142,7 +142,7 @@ fn a_linear_encoder_reports_millimetres() {
 }
 
 #[test]
-fn an_unknown_type_takes_periods_and_turns_from_the_link() {
+fn unknown_type_uses_periods_from_link() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--type", "77", "--position", "0x0531"]) else { return };
     let ran = bench.run(&["position", "hiperface", "--link", &encoder.url, "--json"]);
@@ -157,7 +157,7 @@ fn an_unknown_type_takes_periods_and_turns_from_the_link() {
 /// Restoring a profile to another encoder creates data fields, and restoring the backup deletes them again. A field
 /// that was changed in the meantime is kept with those before it, and named in the message (issue 22.12).
 #[test]
-fn undoing_a_restore_deletes_only_the_fields_it_created() {
+fn undo_deletes_only_created_fields() {
     let bench = Bench::new();
     let bytes = |byte: &str| byte.repeat(16);
     let fields = format!(

@@ -55,7 +55,7 @@ fn near(told: &Value, key: &str, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn the_parameters_of_the_reference_signal_are_recovered() {
+fn recovers_reference_signal() {
     let bench = Bench::new();
     // Either 360 points of a period or the six points at 0, 60 … 300°. They cover one step less than the period.
     for (count, header) in [(360, "time,sin,cos\n"), (6, "")] {
@@ -77,7 +77,7 @@ fn the_parameters_of_the_reference_signal_are_recovered() {
 /// The noise is 2 mV rms at an amplitude of 0.5 V, with 1000 points per period over 7.25 periods. The standard
 /// deviation of a parameter is σ·√(2/n) = 33 µV. The limit is five standard deviations.
 #[test]
-fn noise_moves_the_parameters_within_its_statistics() {
+fn noise_error_stays_within_statistics() {
     let bench = Bench::new();
     let mut noise = fastrand::Rng::with_seed(11);
     let mut rows = rows(&REFERENCE, 7250, 0.3, -7.25);
@@ -99,7 +99,7 @@ fn noise_moves_the_parameters_within_its_statistics() {
 }
 
 #[test]
-fn columns_and_units_are_detected_or_given() {
+fn columns_and_units() {
     let bench = Bench::new();
     let rows = rows(&REFERENCE, 500, 0.0, 3.0);
     let plain = bench.run(&["analyse", &bench.write("p.csv", table("", &rows)), "--json"]).json();
@@ -132,7 +132,7 @@ fn columns_and_units_are_detected_or_given() {
 }
 
 #[test]
-fn bad_captures_are_refused_with_one_sentence() {
+fn bad_capture_fails_with_one_sentence() {
     let bench = Bench::new();
     let good = rows(&REFERENCE, 200, 0.0, 1.0);
     let made = |change: fn(&mut [f64; 3])| {
@@ -172,7 +172,7 @@ fn bad_captures_are_refused_with_one_sentence() {
 }
 
 #[test]
-fn a_spike_is_excluded_and_reported() {
+fn spike_is_excluded_and_reported() {
     let bench = Bench::new();
     let mut rows = rows(&REFERENCE, 720, 0.0, 2.0);
     rows[123][1] = 4.5;
@@ -212,7 +212,7 @@ fn wrong_usage_exits_with_status_2() {
 }
 
 #[test]
-fn the_example_captures_are_judged_as_documented() {
+fn example_captures_match_documentation() {
     let bench = Bench::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/signals");
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
@@ -243,7 +243,7 @@ fn the_example_captures_are_judged_as_documented() {
 /// of noise from `random.Random(16).gauss`, four decimals; reference `360·turn mod 360`, absolute `floor(32·16·true −
 /// 0.5) mod 512`; decimal commas.
 #[test]
-fn the_example_revolution_reveals_its_eccentricity() {
+fn example_revolution_shows_eccentricity() {
     let bench = Bench::new();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/signals/revolution-with-reference.csv");
     let path = path.to_str().unwrap();
@@ -287,7 +287,7 @@ fn the_example_revolution_reveals_its_eccentricity() {
 }
 
 #[test]
-fn limits_are_those_of_the_named_family() {
+fn limits_come_from_named_family() {
     let bench = Bench::new();
     let weak = Signal { amplitude: 0.43, offset_cosine: 0.0, offset_sine: 0.0, ratio: 1.0, phase_deg: 0.0 };
     let file = bench.write("weak.csv", table("t,sin,cos\n", &rows(&weak, 400, 0.0, 3.0)));
@@ -298,7 +298,7 @@ fn limits_are_those_of_the_named_family() {
 }
 
 #[test]
-fn interference_and_a_broken_wire_are_reported() {
+fn reports_interference_and_broken_wire() {
     let bench = Bench::new();
     let good = rows(&REFERENCE, 20_000, 0.0, 400.0);
     let disturbed: Vec<[f64; 3]> =
@@ -323,7 +323,7 @@ fn interference_and_a_broken_wire_are_reported() {
 /// The frequency is 2 kHz at a sample interval of 2.5 µs. It is uncertain if the recorder was slow, the file contains a
 /// second recording, or there are too few samples.
 #[test]
-fn the_frequency_is_reported_and_marked_if_uncertain() {
+fn uncertain_frequency_is_marked() {
     let bench = Bench::new();
     let row = |at: usize, step: f64| {
         let angle = TAU * 2_000.0 * step * at as f64;
@@ -351,7 +351,7 @@ fn the_frequency_is_reported_and_marked_if_uncertain() {
 
 /// The virtual adapter turns its shaft once per second. Its sampled signals are ideal.
 #[test]
-fn an_adapter_is_sampled_and_analysed() {
+fn analyses_adapter_samples() {
     let bench = Bench::new();
     let arguments = ["analyse", "--link", "sim:?rpm=60", "--seconds", "0.2", "--rate", "20000", "--json"];
     let ran = bench.run(&arguments);

@@ -22,7 +22,7 @@ fn profile(bench: &Bench) -> String {
 const SIM: &str = "sim:?serial=HF0000001";
 
 #[test]
-fn a_profile_edited_by_hand_is_accepted() {
+fn accepts_hand_edited_profile() {
     let bench = Bench::new();
     let file = profile(&bench);
     let told = bench.run(&["restore", &file, "--yes", "--link", SIM, "--json"]).json();
@@ -34,7 +34,7 @@ fn a_profile_edited_by_hand_is_accepted() {
 }
 
 #[test]
-fn a_broken_profile_is_refused_with_its_name_and_error() {
+fn broken_profile_is_rejected_by_name() {
     let bench = Bench::new();
     profile(&bench);
     let good = bench.read("good.ron");
@@ -67,7 +67,7 @@ fn a_broken_profile_is_refused_with_its_name_and_error() {
 /// A profile with a newer schema can be compared. The message states that it cannot be used for anything else (issue
 /// 22.17).
 #[test]
-fn a_profile_of_a_newer_schema_is_read_only() {
+fn newer_schema_is_read_only() {
     let bench = Bench::new();
     profile(&bench);
     let newer = bench.write("newer.ron", bench.read("good.ron").replacen("schema: 1", "schema: 99", 1));
@@ -80,7 +80,7 @@ fn a_profile_of_a_newer_schema_is_read_only() {
 }
 
 #[test]
-fn unreadable_files_are_refused() {
+fn rejects_unreadable_files() {
     let bench = Bench::new();
     fs::create_dir(bench.path("folder")).unwrap();
     let huge = bench.file("huge");
@@ -97,7 +97,7 @@ fn unreadable_files_are_refused() {
 }
 
 #[test]
-fn a_profile_of_another_encoder_is_refused_before_writing() {
+fn other_encoder_is_rejected_before_writing() {
     let bench = Bench::new();
     let file = profile(&bench);
     let Some(encoder) = bench.encoder(&["--serial", "XX9999999"]) else { return };
@@ -117,7 +117,7 @@ fn a_profile_of_another_encoder_is_refused_before_writing() {
 /// A drive may be connected even if nothing answers on a serial line, so a search needs confirmation from the user.
 /// Other commands run without it, as scripts expect (issue 22.30).
 #[test]
-fn a_search_in_a_script_needs_only_master() {
+fn scripted_search_needs_only_master() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&[]) else { return };
     bench
@@ -136,7 +136,7 @@ fn ready_made(kind: &str, name: &str) -> String {
 
 /// Options for data fields are rejected for devices without data fields before the link is opened (issue 22.8).
 #[test]
-fn data_field_options_are_refused_for_other_devices() {
+fn data_field_options_need_hiperface() {
     let bench = Bench::new();
     let profiles = [
         ready_made("biss", "dynamic-filter"),
@@ -153,7 +153,7 @@ fn data_field_options_are_refused_for_other_devices() {
 
 /// The message names the other type, and the restore is rejected unless the user permits it explicitly (issue 22.9).
 #[test]
-fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
+fn other_biss_encoder_needs_permission() {
     let bench = Bench::new();
     let text = fs::read_to_string(ready_made("biss", "dynamic-filter")).unwrap();
     let other = text.replace("device_id: \"01 01", "device_id: \"02 01");
@@ -167,7 +167,7 @@ fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
 
 /// The message names the other type, and the restore is rejected unless the user permits it explicitly (issue 22.9).
 #[test]
-fn a_profile_of_another_type_needs_a_separate_permission() {
+fn other_type_needs_permission() {
     let bench = Bench::new();
     let file = profile(&bench);
     let Some(encoder) = bench.encoder(&["--serial", "XX9999999", "--type", "0x32"]) else { return };
@@ -185,7 +185,7 @@ fn a_profile_of_another_type_needs_a_separate_permission() {
 }
 
 #[test]
-fn without_consent_nothing_is_written() {
+fn writes_nothing_without_consent() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C8"}]"#]) else { return };
     let file = profile(&bench);
@@ -203,7 +203,7 @@ fn without_consent_nothing_is_written() {
 }
 
 #[test]
-fn a_valid_link_is_required() {
+fn requires_valid_link() {
     let bench = Bench::new();
     for command in [&["identify", "hiperface"][..], &["status", "hiperface"], &["read", "hiperface", "counter"]] {
         bench.run(&[command, &["--json"]].concat()).fails(2, &["--link"]);
@@ -220,7 +220,7 @@ fn a_valid_link_is_required() {
 }
 
 #[test]
-fn an_invalid_port_is_reported() {
+fn reports_invalid_port() {
     let bench = Bench::new();
     let file = bench.write("file", "text");
     let cases = [
@@ -237,7 +237,7 @@ fn an_invalid_port_is_reported() {
 }
 
 #[test]
-fn out_of_range_values_name_both_limits() {
+fn range_error_names_both_limits() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C9"}]"#]) else { return };
     let cases: [(&[&str], &[&str]); 11] = [
@@ -284,7 +284,7 @@ fn invalid_arguments_are_usage_errors() {
 }
 
 #[test]
-fn a_failed_save_leaves_no_file() {
+fn failed_save_leaves_no_file() {
     let bench = Bench::new();
     bench.write("file", "text");
     fs::create_dir(bench.path("folder")).unwrap();
@@ -303,7 +303,7 @@ fn a_failed_save_leaves_no_file() {
 }
 
 #[test]
-fn a_closed_output_pipe_does_not_panic() {
+fn closed_output_pipe_does_not_panic() {
     let bench = Bench::new();
     let arguments = ["position", "hiperface", "--link", "sim:", "--count", "100000", "--interval", "0"];
     let mut child = bench.program(&arguments).spawn().unwrap();

@@ -15,7 +15,7 @@ fn run_guarded(bench: &Bench) -> Option<Foreign> {
 }
 
 #[test]
-fn a_field_with_an_unknown_code_is_saved_as_locked_and_not_written() {
+fn field_with_unknown_code_stays_locked() {
     let bench = Bench::new();
     let Some(encoder) = run_guarded(&bench) else { return };
     let file = bench.file("p.ron");
@@ -35,7 +35,7 @@ fn a_field_with_an_unknown_code_is_saved_as_locked_and_not_written() {
 }
 
 #[test]
-fn a_complete_save_fails_and_leaves_no_file() {
+fn complete_save_fails_without_code() {
     let bench = Bench::new();
     let Some(encoder) = run_guarded(&bench) else { return };
     let file = bench.file("p.ron");
@@ -45,7 +45,7 @@ fn a_complete_save_fails_and_leaves_no_file() {
 }
 
 #[test]
-fn a_code_opens_a_field_and_is_never_printed() {
+fn code_opens_field_and_stays_secret() {
     let bench = Bench::new();
     let Some(encoder) = run_guarded(&bench) else { return };
     let trace = bench.file("t.trace");
@@ -90,7 +90,7 @@ fn a_code_opens_a_field_and_is_never_printed() {
 }
 
 #[test]
-fn a_wrong_code_is_refused_with_its_number() {
+fn wrong_code_is_rejected_by_number() {
     let bench = Bench::new();
     let Some(encoder) = run_guarded(&bench) else { return };
     for arguments in [&["read", "hiperface", "field:1"][..], &["write", "hiperface", "field:1", "00", "--yes"]] {
@@ -102,7 +102,7 @@ fn a_wrong_code_is_refused_with_its_number() {
 }
 
 #[test]
-fn an_invalid_code_is_not_echoed() {
+fn invalid_code_is_not_echoed() {
     let bench = Bench::new();
     for wrong in ["5=A7", "2=A7A7", "2:A7", "A7"] {
         let ran = bench.run(&["identify", "hiperface", "--link", "sim:", "--code", wrong]);
@@ -117,7 +117,7 @@ fn an_invalid_code_is_not_echoed() {
 }
 
 #[test]
-fn a_recording_without_the_reply_does_not_reveal_the_code() {
+fn recording_does_not_reveal_code() {
     let bench = Bench::new();
     let Some(encoder) = run_guarded(&bench) else { return };
     let trace = bench.file("t.trace");

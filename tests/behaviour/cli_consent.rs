@@ -5,7 +5,7 @@ use serde_json::json;
 use super::support::{Bench, frame, python, run_on_terminal};
 
 #[test]
-fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
+fn terminal_writes_only_after_yes() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C8","bytes":"0815"}]"#]) else { return };
     if python("master.py").is_none() {
@@ -28,7 +28,7 @@ fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
 
 /// Before the first byte is sent on a terminal, the user must confirm that no drive is on the line (issue 22.30).
 #[test]
-fn on_a_terminal_the_user_must_rule_out_a_drive_on_the_line() {
+fn terminal_asks_about_drive_on_line() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&[]) else { return };
     if python("master.py").is_none() {
@@ -49,7 +49,7 @@ fn on_a_terminal_the_user_must_rule_out_a_drive_on_the_line() {
 }
 
 #[test]
-fn mounting_values_are_not_copied_to_another_encoder_by_default() {
+fn mounting_values_are_not_copied_by_default() {
     let bench = Bench::new();
     // The field has a commutation offset as this program stores it, followed by other bytes.
     let fields = format!(r#"[{{"status":"C9","bytes":"434F31{}0815"}}]"#, "00".repeat(13));
@@ -91,7 +91,7 @@ fn mounting_values_are_not_copied_to_another_encoder_by_default() {
 }
 
 #[test]
-fn two_writes_in_one_second_keep_two_backups() {
+fn two_quick_writes_keep_two_backups() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C8"}]"#]) else { return };
     let backups = ["00", "01", "02"].map(|byte| {
@@ -108,7 +108,7 @@ fn two_writes_in_one_second_keep_two_backups() {
 /// On a terminal, an existing file is replaced only after confirmation. Without a terminal it is replaced, and a
 /// message is printed (issue 22.28).
 #[test]
-fn on_a_terminal_save_asks_before_replacing_a_file() {
+fn terminal_asks_before_replacing_file() {
     let bench = Bench::new();
     let file = bench.file("layout.ron");
     let save = ["save", "ssi", "--layout", "ahm36", "-o", file.as_str()];
@@ -147,7 +147,7 @@ fn on_a_terminal_save_asks_before_replacing_a_file() {
 /// If the logbook's write cycles cannot be read, a write to any kind of device is rejected before the user is asked for
 /// consent (issue 22.4).
 #[test]
-fn a_write_refused_for_unknown_wear_needs_no_confirmation() {
+fn unknown_wear_is_rejected_without_prompt() {
     if python("master.py").is_none() {
         return;
     }

@@ -12,7 +12,7 @@ use super::support::{Bench, ended, frame, signal};
 const FIELDS: &str = r#"[{"status":"C9","bytes":"0815"},{"status":"88","bytes":"01"}]"#;
 
 #[test]
-fn a_silent_encoder_ends_a_command_in_time() {
+fn silent_encoder_times_out() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--silent"]) else { return };
     let ran = bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]);
@@ -23,7 +23,7 @@ fn a_silent_encoder_ends_a_command_in_time() {
 }
 
 #[test]
-fn a_silent_encoder_behind_an_echo_is_detected() {
+fn detects_silent_encoder_behind_echo() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--silent", "--echo"]) else { return };
     let ran = bench.run(&["save", "hiperface", "--link", &encoder.url, "-o", &bench.file("p.ron")]);
@@ -33,7 +33,7 @@ fn a_silent_encoder_behind_an_echo_is_detected() {
 }
 
 #[test]
-fn garbage_is_never_mistaken_for_a_value() {
+fn garbage_is_not_a_value() {
     let bench = Bench::new();
     for seed in ["1", "2"] {
         let Some(encoder) = bench.encoder(&["--nonsense", "--seed", seed]) else { return };
@@ -63,7 +63,7 @@ fn unplugging_ends_polling_with_one_message() {
 }
 
 #[test]
-fn an_interrupt_ends_polling_immediately() {
+fn interrupt_ends_polling() {
     let bench = Bench::new();
     for (interval, name) in [("0", "INT"), ("100", "TERM"), ("60000", "INT")] {
         let Some(encoder) = bench.encoder(&[]) else { return };
@@ -78,7 +78,7 @@ fn an_interrupt_ends_polling_immediately() {
 }
 
 #[test]
-fn power_loss_in_a_restore_names_the_backup_and_the_next_one_completes() {
+fn second_restore_completes_after_power_loss() {
     let bench = Bench::new();
     let wanted = r#"[{"status":"C9","bytes":"00112233445566778899"},{"status":"88","bytes":"02"}]"#;
     let Some(source) = bench.encoder(&["--fields", wanted]) else { return };
@@ -108,7 +108,7 @@ fn power_loss_in_a_restore_names_the_backup_and_the_next_one_completes() {
 }
 
 #[test]
-fn noise_on_the_line_is_tolerated() {
+fn tolerates_line_noise() {
     let bench = Bench::new();
     let url = "sim:?seed=3&fault=drop:0.01,flip:0.005";
     for _ in 0..3 {
@@ -118,7 +118,7 @@ fn noise_on_the_line_is_tolerated() {
 }
 
 #[test]
-fn an_unprotected_field_is_named_and_the_next_restore_protects_it() {
+fn second_restore_protects_unprotected_field() {
     let bench = Bench::new();
     let Some(source) = bench.encoder(&["--fields", r#"[{"status":"88","bytes":"0A0B0C0D"}]"#]) else { return };
     let there = r#"[{"status":"88","bytes":"01020304"}]"#;
@@ -137,7 +137,7 @@ fn an_unprotected_field_is_named_and_the_next_restore_protects_it() {
 
 /// Encoders found before the interruption are printed. This encoder answers at the first format and address.
 #[test]
-fn a_search_can_be_interrupted() {
+fn interrupt_ends_search() {
     let bench = Bench::new();
     for (query, found) in [("settings=0xE5&address=0x43", false), ("address=0x40", true)] {
         let link = format!("sim:?{query}");

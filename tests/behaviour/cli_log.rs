@@ -9,7 +9,7 @@ fn lines(text: &str) -> Vec<Value> {
 }
 
 #[test]
-fn a_write_is_logged_with_its_old_and_new_values() {
+fn logs_old_and_new_values() {
     let bench = Bench::new();
     let empty = bench.run(&["log"]);
     assert_eq!((empty.status, empty.out.as_str()), (Some(0), "no entries\n"));
@@ -43,7 +43,7 @@ fn a_write_is_logged_with_its_old_and_new_values() {
 }
 
 #[test]
-fn entries_are_selected_and_the_newest_is_first() {
+fn newest_entry_comes_first() {
     let bench = Bench::new();
     for (device, item, value) in [("hiperface", "field:0@0+1", "77"), ("hiperdrive", "158", "-100000")] {
         assert_eq!(bench.run(&["write", device, item, value, "--yes", "--link", "sim:"]).status, Some(0));
@@ -67,7 +67,7 @@ fn entries_are_selected_and_the_newest_is_first() {
 
 /// Neither the old nor the new access code appears in an entry.
 #[test]
-fn access_codes_are_not_in_the_logbook() {
+fn logbook_omits_access_codes() {
     let bench = Bench::new();
     let change = ["do", "hiperface", "change-code", "2", "A7", "--yes", "--link", "sim:", "--json"];
     assert_eq!(bench.run(&change).status, Some(0));
@@ -77,7 +77,7 @@ fn access_codes_are_not_in_the_logbook() {
 }
 
 #[test]
-fn a_damaged_logbook_is_kept_and_a_new_one_is_begun() {
+fn corrupt_logbook_is_kept_and_replaced() {
     let bench = Bench::new();
     std::fs::create_dir_all(bench.path("data/encoder-studio")).unwrap();
     bench.write("data/encoder-studio/logbook.sqlite", "no database, and not a short one at that. ".repeat(30));
@@ -110,7 +110,7 @@ fn kinds(bench: &Bench, options: &[&str]) -> Vec<String> {
 }
 
 #[test]
-fn each_kind_of_event_is_logged() {
+fn logs_each_event_kind() {
     for device in ["hiperface", "biss", "interbus", "hiperdrive"] {
         let bench = Bench::new();
         let file = bench.path("saved.ron");
@@ -135,7 +135,7 @@ fn each_kind_of_event_is_logged() {
 
 /// A command that only reads works without a logbook, but reports on stderr that nothing was recorded.
 #[test]
-fn reading_goes_on_without_a_logbook() {
+fn reading_needs_no_logbook() {
     let bench = Bench::new();
     std::fs::create_dir_all(bench.path("data/encoder-studio/logbook.sqlite")).unwrap();
     let ran = bench.run(&["identify", "hiperface", "--link", "sim:", "--json"]);
@@ -145,7 +145,7 @@ fn reading_goes_on_without_a_logbook() {
 }
 
 #[test]
-fn an_asset_is_assigned_and_selects_entries() {
+fn asset_selects_entries() {
     let bench = Bench::new();
     let write = |value: &str, options: &[&str]| {
         let command = ["write", "hiperface", "field:0@3+2", value, "--yes", "--link", "sim:"];
@@ -172,7 +172,7 @@ fn an_asset_is_assigned_and_selects_entries() {
 
 /// A company's rules may forbid user names in the logbook.
 #[test]
-fn the_settings_choose_how_the_user_is_named() {
+fn settings_choose_user_name() {
     let bench = Bench::new();
     std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
     let user_with = |settings: &str| {

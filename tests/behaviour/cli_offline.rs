@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::support::Bench;
 
 #[test]
-fn a_recording_replays_the_encoders_replies() {
+fn replays_recorded_replies() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C9","bytes":"0815"}]"#]) else { return };
     let trace = bench.file("t.trace");
@@ -29,14 +29,14 @@ fn a_recording_replays_the_encoders_replies() {
 }
 
 #[test]
-fn an_unwritable_trace_is_reported() {
+fn reports_unwritable_trace() {
     let bench = Bench::new();
     let trace = bench.file("none/t.trace");
     bench.run(&["identify", "hiperface", "--link", "sim:", "--trace", &trace, "--json"]).fails(1, &["none/t.trace"]);
 }
 
 #[test]
-fn golden_frames_are_explained() {
+fn explains_example_frames() {
     let bench = Bench::new();
     let cases = [
         ("40420E0531", None),
@@ -69,7 +69,7 @@ fn golden_frames_are_explained() {
 }
 
 #[test]
-fn the_access_code_of_a_captured_frame_is_not_printed() {
+fn captured_access_code_is_not_printed() {
     let bench = Bench::new();
     // The example of the manual writes 08 15 to field 1 at address 5. Decoding repeats the input and adds nothing.
     let told = bench.run(&["decode", "hiperface", "40 4B 01 05 02 66 08 15 76", "--json"]).json();
@@ -79,7 +79,7 @@ fn the_access_code_of_a_captured_frame_is_not_printed() {
 }
 
 #[test]
-fn the_virtual_encoder_needs_no_hardware() {
+fn virtual_encoder_needs_no_hardware() {
     let bench = Bench::new();
     let told = bench.run(&["identify", "hiperface", "--link", "sim:", "--json"]).json();
     assert_eq!((&told["address"], &told["baud"], &told["parity"]), (&json!(0x40), &json!(9600), &json!("even")));

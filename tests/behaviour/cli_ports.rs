@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::support::Bench;
 
 #[test]
-fn ports_are_listed() {
+fn lists_ports() {
     let bench = Bench::new();
     assert!(bench.run(&["ports", "--json"]).json()["ports"].is_array());
     let text = bench.run(&["ports"]);
@@ -15,7 +15,7 @@ fn ports_are_listed() {
 }
 
 #[test]
-fn a_port_in_use_is_refused() {
+fn rejects_port_in_use() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&[]) else { return };
     let polling = ["position", "hiperface", "--link", &encoder.url, "--count", "100000", "--interval", "20"];
@@ -38,7 +38,7 @@ fn server(serve: impl FnOnce(TcpStream) + Send + 'static) -> String {
 }
 
 #[test]
-fn a_line_that_is_never_silent_ends_a_command_within_ten_seconds() {
+fn busy_line_times_out() {
     let bench = Bench::new();
     let talk = |mut client: TcpStream| {
         while client.write_all(&[0x40, 0x50]).is_ok() {
@@ -55,7 +55,7 @@ fn a_line_that_is_never_silent_ends_a_command_within_ten_seconds() {
 }
 
 #[test]
-fn a_server_that_hangs_up_is_reported() {
+fn reports_server_hangup() {
     let bench = Bench::new();
     bench.run(&["identify", "hiperface", "--link", &server(drop), "--json"]).fails(1, &["lost"]);
     let after_a_request = |mut client: TcpStream| {
@@ -67,7 +67,7 @@ fn a_server_that_hangs_up_is_reported() {
 }
 
 #[test]
-fn without_a_backup_folder_nothing_is_written() {
+fn writes_nothing_without_backup_folder() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C8"}]"#]) else { return };
     bench.write("data", "a file where the folder should be");

@@ -8,7 +8,7 @@ use super::support::{Bench, Foreign, ended, signal};
 const HEADER: &str = "t_s,raw,turns,steps,degrees,valid,codes";
 
 #[test]
-fn a_table_has_one_header_and_a_line_per_reading() {
+fn prints_one_header_and_line_per_reading() {
     let bench = Bench::new();
     // An SKM36 has 128 periods of 32 steps and 4096 turns. The position 0E0531h is turn 224 and step 1329, or
     // 116.806640625°.
@@ -28,7 +28,7 @@ fn a_table_has_one_header_and_a_line_per_reading() {
 }
 
 #[test]
-fn millimetres_and_status_codes_have_columns() {
+fn prints_millimetre_and_status_columns() {
     let bench = Bench::new();
     // Type 90h has periods of 1 mm. 0E0531h is 918833 steps of 1/32 mm.
     let Some(encoder) = bench.encoder(&["--type", "90", "--status", "1C08"]).map(Foreign::waited_for) else { return };
@@ -43,7 +43,7 @@ fn millimetres_and_status_codes_have_columns() {
 }
 
 #[test]
-fn ctrl_c_ends_a_stream_between_two_lines() {
+fn ctrl_c_ends_stream_between_lines() {
     let bench = Bench::new();
     // Without a number of lines, a table runs until Ctrl-C, which is then not a failure. A stream with a number of
     // lines is interrupted by it.

@@ -21,7 +21,7 @@ fn user_of_the_last_entry(bench: &Bench) -> Value {
 }
 
 #[test]
-fn broken_settings_are_named_with_the_place_and_count_as_a_server_that_is_away() {
+fn broken_settings_count_as_unreachable_server() {
     let bench = bench_with("(\n    user_name: Initials,\n    logbook: postgres,\n)");
     let ran = bench.run(&IDENTIFY);
     assert_eq!(ran.status, Some(0), "{ran:?}");
@@ -36,7 +36,7 @@ fn broken_settings_are_named_with_the_place_and_count_as_a_server_that_is_away()
 }
 
 #[test]
-fn without_a_readable_rule_the_user_is_not_named() {
+fn unreadable_rule_hides_user() {
     let bench = bench_with("(user_name: Initials");
     let ran = bench.run(&IDENTIFY);
     assert!(ran.status == Some(0) && ran.err.contains("line 1, column "), "{ran:?}");
@@ -51,7 +51,7 @@ fn without_a_readable_rule_the_user_is_not_named() {
 }
 
 #[test]
-fn a_misspelt_setting_is_named_with_its_place() {
+fn misspelt_setting_is_located() {
     let bench = bench_with("(theme: Dark,\n  logbok: \"postgres://db.plant/logs\")");
     let ran = bench.run(&IDENTIFY);
     assert!(ran.status == Some(0) && ran.err.contains("line 2, column 3: logbok is not a setting"), "{ran:?}");
@@ -59,7 +59,7 @@ fn a_misspelt_setting_is_named_with_its_place() {
 
 /// A broken setting is reported, but ignored if it does not concern the logbook.
 #[test]
-fn another_broken_setting_does_not_matter_to_a_write() {
+fn unrelated_broken_setting_allows_write() {
     let bench = bench_with("(theme: Pink)");
     let ran = bench.run(&WRITE);
     assert!(ran.status == Some(0) && ran.err.contains("line 1, column ") && ran.err.contains("Pink"), "{ran:?}");
@@ -67,7 +67,7 @@ fn another_broken_setting_does_not_matter_to_a_write() {
 }
 
 #[test]
-fn the_server_of_the_environment_is_used_without_readable_settings() {
+fn environment_server_needs_no_settings() {
     let Some(server) = Postgres::start() else { return };
     let bench = bench_with("(");
     let ran = bench.run_with_server(&server.url(), &WRITE);

@@ -50,7 +50,7 @@ fn examine(path: &str) {
 }
 
 #[test]
-fn a_pseudoterminal_answers_the_reference_frames_for_successive_clients() {
+fn pseudoterminal_serves_successive_clients() {
     let bench = Bench::new();
     if python("master.py").is_none() {
         return;
@@ -73,7 +73,7 @@ fn a_pseudoterminal_answers_the_reference_frames_for_successive_clients() {
 }
 
 #[test]
-fn a_tcp_port_answers_the_reference_frames_for_successive_clients() {
+fn tcp_port_serves_successive_clients() {
     let bench = Bench::new();
     if python("master.py").is_none() {
         return;
@@ -89,7 +89,7 @@ fn a_tcp_port_answers_the_reference_frames_for_successive_clients() {
 }
 
 #[test]
-fn an_interrupt_ends_the_simulation_with_a_connected_client() {
+fn interrupt_ends_simulation_with_connected_client() {
     let bench = Bench::new();
     for name in ["INT", "TERM"] {
         let simulated = Simulated::start(&bench, &["hiperface", "--listen", "127.0.0.1:0"]);
@@ -104,7 +104,7 @@ fn an_interrupt_ends_the_simulation_with_a_connected_client() {
 }
 
 #[test]
-fn after_a_reset_the_encoder_is_silent_and_then_answers() {
+fn encoder_is_silent_after_reset() {
     let bench = Bench::new();
     let simulated = Simulated::start(&bench, &["hiperface", "--listen", "127.0.0.1:0"]);
     let mut line = TcpStream::connect(&simulated.place).unwrap();
@@ -139,7 +139,7 @@ fn after_a_reset_the_encoder_is_silent_and_then_answers() {
 }
 
 #[test]
-fn power_lost_in_a_store_returns_with_the_next_client() {
+fn power_returns_with_next_client() {
     let bench = Bench::new();
     if python("master.py").is_none() {
         return;
@@ -157,7 +157,7 @@ fn power_lost_in_a_store_returns_with_the_next_client() {
 }
 
 #[test]
-fn a_restore_works_on_the_virtual_encoder_over_both_wires() {
+fn restores_virtual_encoder_over_both_wires() {
     let bench = Bench::new();
     let terminal = Simulated::start(&bench, &["hiperface", "--pty", &bench.file("enc"), "--set", "serial=HF0000001"]);
     let port = Simulated::start(&bench, &["hiperface", "--listen", "127.0.0.1:0", "--set", "serial=HF0000001"]);
@@ -175,7 +175,7 @@ fn a_restore_works_on_the_virtual_encoder_over_both_wires() {
 }
 
 #[test]
-fn impossible_simulations_are_refused() {
+fn rejects_impossible_simulations() {
     let bench = Bench::new();
     bench.run(&["simulate", "hiperface"]).fails(2, &["--listen"]);
     bench.run(&["simulate", "hiperface", "--listen", "127.0.0.1:0", "--fault", "explode:1"]).fails(2, &["explode:1"]);

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::support::Bench;
 
 #[test]
-fn frames_are_encoded_and_decoded() {
+fn encodes_and_decodes_frames() {
     let bench = Bench::new();
     let table: [(&[&str], &str, &str); 6] = [
         (&["ahm36", "--turns", "0x123", "--steps", "0x2A5B"], "000100100011101010010110110", "091D4B6"),
@@ -56,7 +56,7 @@ fn frames_are_encoded_and_decoded() {
 }
 
 #[test]
-fn layouts_are_exported() {
+fn exports_layouts() {
     let bench = Bench::new();
     let export = |format: &str| bench.run(&["ssi", "export", "--layout", "ahs36,code=gray", "--format", format]).out;
     assert_eq!(export("linuxcnc"), "error%1bposition%14ge\n");
@@ -106,7 +106,7 @@ fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
 
 /// The first layout listed by `ssi find` decodes the frames correctly and can be used as printed (issue 22.22).
 #[test]
-fn layouts_of_recorded_frames_are_found() {
+fn finds_layout_of_recorded_frames() {
     let bench = Bench::new();
     // Each recording, and whether its frames leave the layout ambiguous.
     for (name, ambiguous) in
@@ -149,7 +149,7 @@ fn layouts_of_recorded_frames_are_found() {
 
 /// The layout of any frame can be written as one word, in the notation printed by `ssi find` (issue 22.22).
 #[test]
-fn any_frame_has_a_one_word_specification() {
+fn one_word_specifies_any_frame() {
     let bench = Bench::new();
     let decoded = |layout: &str, frame: &str| bench.run(&["ssi", "decode", "--json", "--layout", layout, frame]).json();
     // Section 8 of the reference: AHM36 in Gray code, and the same with swapped wires.
@@ -163,7 +163,7 @@ fn any_frame_has_a_one_word_specification() {
 }
 
 #[test]
-fn invalid_arguments_are_reported() {
+fn reports_invalid_arguments() {
     let bench = Bench::new();
     let fails = |status: i32, words: &[&str], said: &[&str]| {
         bench.run(&[&["ssi"], words].concat()).fails(status, said);

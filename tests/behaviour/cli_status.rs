@@ -17,7 +17,7 @@ fn position(bench: &Bench, codes: &str) -> Option<(Ran, Value)> {
 
 /// Reading status codes removes them from the encoder, so `status` records them in the logbook (issue 22.10).
 #[test]
-fn status_codes_are_kept_in_the_logbook() {
+fn logbook_keeps_status_codes() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--status", "1E"]).map(Foreign::waited_for) else { return };
     assert_eq!(bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).status, Some(0));
@@ -27,7 +27,7 @@ fn status_codes_are_kept_in_the_logbook() {
 }
 
 #[test]
-fn status_reads_the_entire_queue_and_always_exits_with_success() {
+fn status_reads_entire_queue() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--status", "1E080120"]).map(Foreign::waited_for) else { return };
     let told = bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).json();
@@ -45,7 +45,7 @@ fn status_reads_the_entire_queue_and_always_exits_with_success() {
 /// Request 50h removes a code from the encoder, so repeating it would lose a code. A reply is therefore accepted even
 /// if it takes ten times as long as allowed (17.6 ms, reference 4, issue 22.10).
 #[test]
-fn codes_in_late_replies_are_not_lost() {
+fn keeps_codes_in_late_replies() {
     let bench = Bench::new();
     for milliseconds in [120, 180, 250, 400] {
         let late = format!("{milliseconds}:10");
@@ -59,7 +59,7 @@ fn codes_in_late_replies_are_not_lost() {
 
 /// The reply to 50h is replaced with other data, including a repeated old reply (issue 22.10).
 #[test]
-fn each_code_is_reported_once_or_as_lost() {
+fn reports_each_code_once_or_as_lost() {
     let bench = Bench::new();
     let spoilt = [
         "good,the-last",
@@ -87,7 +87,7 @@ fn each_code_is_reported_once_or_as_lost() {
 
 /// A device server sends a reply twice (issue 22.10).
 #[test]
-fn a_duplicated_reply_loses_no_code() {
+fn duplicate_reply_loses_no_code() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--status", "1E080120", "--status-replies", "twice,twice,twice,twice"]) else {
         return;
@@ -108,7 +108,7 @@ fn warnings_alone_are_ok() {
 }
 
 #[test]
-fn a_warning_leaves_the_position_valid_and_is_named() {
+fn warning_keeps_position_valid() {
     let bench = Bench::new();
     for codes in ["1E08", "090F"] {
         let Some((ran, line)) = position(&bench, codes) else { return };
@@ -120,7 +120,7 @@ fn a_warning_leaves_the_position_valid_and_is_named() {
 }
 
 #[test]
-fn a_code_about_the_position_makes_it_invalid() {
+fn position_code_invalidates_position() {
     let bench = Bench::new();
     for code in ["01", "06", "1F", "20", "1E23"] {
         let Some((ran, line)) = position(&bench, code) else { return };
@@ -130,7 +130,7 @@ fn a_code_about_the_position_makes_it_invalid() {
 }
 
 #[test]
-fn codes_met_while_reading_are_named_and_the_value_is_printed() {
+fn read_prints_value_despite_codes() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--status", "1D06"]).map(Foreign::waited_for) else { return };
     let ran = bench.run(&["read", "hiperface", "counter", "--link", &encoder.url, "--json"]);
@@ -139,7 +139,7 @@ fn codes_met_while_reading_are_named_and_the_value_is_printed() {
 }
 
 #[test]
-fn the_check_prints_a_verdict_per_line() {
+fn check_prints_verdict_per_line() {
     let bench = Bench::new();
     let check = ["do", "hiperface", "check", "--link"];
     let good = bench.run(&[&check[..], &["sim:", "--json"]].concat()).json();

@@ -56,7 +56,7 @@ impl Device {
 }
 
 #[test]
-fn a_write_is_undone_in_the_usual_way() {
+fn undoes_write() {
     for (kind, item, value, cycles) in [
         ("hiperface", "field:0@3+2", "C0FF", 1),
         ("interbus", "cam:2:5", "10..20", 1),
@@ -89,7 +89,7 @@ fn a_write_is_undone_in_the_usual_way() {
 }
 
 #[test]
-fn what_changed_since_is_not_overwritten() {
+fn undo_keeps_later_changes() {
     let device = Device::start("hiperface");
     let first = device.write("field:0@3+2", "0001");
     let second = device.write("field:0@4+1", "02");
@@ -107,7 +107,7 @@ fn what_changed_since_is_not_overwritten() {
 
 /// The two entries refer to each other, in JSON and in text.
 #[test]
-fn an_undo_names_its_entry() {
+fn undo_names_its_entry() {
     let device = Device::start("hiperface");
     let write = device.write("field:0@3+2", "C0FF");
     assert_eq!(device.undo(&write).status, Some(0));
@@ -132,7 +132,7 @@ fn an_undo_names_its_entry() {
 
 /// Only the parameters of the undone write are changed.
 #[test]
-fn an_undo_leaves_later_writes_to_other_parameters() {
+fn undo_keeps_other_parameters() {
     let device = Device::start("hiperdrive");
     let before = device.read("158");
     let first = device.write("158", "-100000");
@@ -142,7 +142,7 @@ fn an_undo_leaves_later_writes_to_other_parameters() {
 }
 
 #[test]
-fn a_deleted_field_returns_with_its_bytes() {
+fn undo_restores_deleted_field() {
     let device = Device::start("hiperface");
     let fields = device.run(&["identify", "hiperface"]).json()["data_fields"].to_string();
     assert_eq!(device.run(&["do", "hiperface", "create-field", &fields, "32", "--yes"]).status, Some(0));
@@ -157,7 +157,7 @@ fn a_deleted_field_returns_with_its_bytes() {
 }
 
 #[test]
-fn what_cannot_be_undone_is_told_with_what_to_do_instead() {
+fn failed_undo_names_alternative() {
     let device = Device::start("hiperface");
     let act = |words: &[&str]| {
         let ran = device.run(&[&["do", "hiperface"], words, &["--yes"]].concat());
@@ -177,7 +177,7 @@ fn what_cannot_be_undone_is_told_with_what_to_do_instead() {
 }
 
 #[test]
-fn another_device_is_refused() {
+fn rejects_other_device() {
     let device = Device::start("hiperface");
     let entry = device.write("field:0@3+2", "C0FF");
     let other = Simulated::start(&device.bench, &["hiperface", "--listen", "127.0.0.1:0", "--set", "serial=HF0000001"]);
@@ -190,7 +190,7 @@ fn another_device_is_refused() {
 
 /// The backup was made on another computer. A file with the same path may exist here.
 #[test]
-fn the_bench_of_a_missing_backup_is_named() {
+fn missing_backup_names_bench() {
     let device = Device::start("hiperface");
     let entry = device.write("field:0@3+2", "C0FF");
     let logbook = device.bench.path("data/encoder-studio/logbook.sqlite");
@@ -212,7 +212,7 @@ fn the_bench_of_a_missing_backup_is_named() {
 }
 
 #[test]
-fn a_moment_of_the_logbook_is_compared() {
+fn compares_with_logbook_entry() {
     let device = Device::start("hiperface");
     let before = device.read("field:0@3+2");
     let entry = device.write("field:0@3+2", "C0FF");

@@ -33,7 +33,7 @@ fn identify_prints_every_key() {
 }
 
 #[test]
-fn address_and_baud_rate_of_the_link_are_used() {
+fn uses_address_and_baud_rate_of_link() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--address", "45"]) else { return };
     let url = format!("{}?address=0x45&baud=19200&parity=none", encoder.url);
@@ -42,7 +42,7 @@ fn address_and_baud_rate_of_the_link_are_used() {
 }
 
 #[test]
-fn the_position_has_turns_steps_and_degrees() {
+fn position_has_turns_steps_and_degrees() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&[]) else { return };
     let ran =
@@ -60,7 +60,7 @@ fn the_position_has_turns_steps_and_degrees() {
 }
 
 #[test]
-fn single_values_are_read() {
+fn reads_single_values() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS, "--counter", "0x012345"]) else { return };
     let cases = [
@@ -81,7 +81,7 @@ fn single_values_are_read() {
 }
 
 #[test]
-fn write_stores_exactly_these_bytes() {
+fn write_stores_exact_bytes() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     let arguments = ["write", "hiperface", "field:0@3+2", "aabb", "--link", &encoder.url, "--yes", "--json"];
@@ -96,7 +96,7 @@ fn write_stores_exactly_these_bytes() {
 }
 
 #[test]
-fn changes_by_another_host_are_found_restored_and_verified() {
+fn restores_changes_by_another_host() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     let file = save(&bench, &encoder, "as-saved.ron");
@@ -129,7 +129,7 @@ fn changes_by_another_host_are_found_restored_and_verified() {
 }
 
 #[test]
-fn restoring_equal_values_writes_nothing_and_keeps_no_backup() {
+fn equal_values_write_nothing() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     let file = save(&bench, &encoder, "p.ron");
@@ -139,7 +139,7 @@ fn restoring_equal_values_writes_nothing_and_keeps_no_backup() {
 }
 
 #[test]
-fn two_files_are_compared_without_a_link() {
+fn compares_files_offline() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     let left = save(&bench, &encoder, "left.ron");
@@ -154,7 +154,7 @@ fn two_files_are_compared_without_a_link() {
 }
 
 #[test]
-fn a_dry_run_prints_the_later_plan_and_writes_nothing() {
+fn dry_run_prints_plan_and_writes_nothing() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     save(&bench, &encoder, "p.ron");
@@ -188,7 +188,7 @@ fn a_dry_run_prints_the_later_plan_and_writes_nothing() {
 }
 
 #[test]
-fn missing_fields_are_created_and_surplus_ones_kept_and_named() {
+fn creates_missing_and_keeps_surplus_fields() {
     let bench = Bench::new();
     let Some(two) = bench.encoder(&["--fields", FIELDS]) else { return };
     let Some(none) = bench.encoder(&[]) else { return };
@@ -211,7 +211,7 @@ fn missing_fields_are_created_and_surplus_ones_kept_and_named() {
 }
 
 #[test]
-fn only_the_last_field_is_resized_by_default() {
+fn resizes_only_last_field_by_default() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     let Some(other) = bench.encoder(&["--fields", r#"[{"status":"C8","bytes":"0815"},{"status":"A9"}]"#]) else {
@@ -226,7 +226,7 @@ fn only_the_last_field_is_resized_by_default() {
 }
 
 #[test]
-fn an_echoing_converter_is_detected_or_configured() {
+fn detects_echoing_converter() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--echo", "--fields", FIELDS]) else { return };
     for echo in ["", "?echo=auto", "?echo=on"] {

@@ -4,7 +4,7 @@ use super::hiperdrive_tap::Tapped;
 use super::support::Bench;
 
 #[test]
-fn unwritable_values_are_refused_with_a_reason() {
+fn unwritable_value_is_rejected_with_reason() {
     let bench = Bench::new();
     let cases: [(&[&str], i32, &[&str]); 32] = [
         // Both the program's and the drive's rejection name both limits.
@@ -57,7 +57,7 @@ fn unwritable_values_are_refused_with_a_reason() {
 }
 
 #[test]
-fn ports_without_a_drive_are_named() {
+fn names_ports_without_drive() {
     let bench = Bench::new();
     let hub = "sim:?hub=4&drives=1,0,1";
     for words in [
@@ -85,7 +85,7 @@ fn ports_without_a_drive_are_named() {
 }
 
 #[test]
-fn options_and_actions_of_other_devices_are_refused() {
+fn rejects_options_of_other_devices() {
     let bench = Bench::new();
     for (words, said) in [
         (&["read", "interbus", "steps", "--drive", "1"][..], "--drive is not for interbus"),
@@ -121,7 +121,7 @@ fn options_and_actions_of_other_devices_are_refused() {
 }
 
 #[test]
-fn without_consent_nothing_is_written() {
+fn writes_nothing_without_consent() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &[]);
     for words in
@@ -133,7 +133,7 @@ fn without_consent_nothing_is_written() {
 }
 
 #[test]
-fn a_missing_device_is_reported_within_ten_seconds() {
+fn missing_device_times_out() {
     let bench = Bench::new();
     // Port 1 accepts no connections.
     let ran = bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1:1"]);
@@ -146,7 +146,7 @@ fn a_missing_device_is_reported_within_ten_seconds() {
 }
 
 #[test]
-fn a_failed_save_leaves_no_file() {
+fn failed_save_leaves_no_file() {
     let bench = Bench::new();
     let file = bench.file("none.ron");
     bench.run(&["save", "hiperdrive", "-o", &file, "--link", "enip:127.0.0.1:1"]).fails(1, &["127.0.0.1:1"]);

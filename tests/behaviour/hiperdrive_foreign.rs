@@ -50,7 +50,7 @@ fn change(session: &mut Session<Hiperdrive>, change: Change) -> Result<Committed
 }
 
 #[test]
-fn targets_of_any_behaviour_are_read_and_written() {
+fn reads_and_writes_all_target_variants() {
     let cases: [(&[&str], &str); 6] = [
         (&[], ""),
         (&["--counted", "--pieces"], ""),
@@ -99,7 +99,7 @@ fn targets_of_any_behaviour_are_read_and_written() {
 
 /// Runs typical user commands.
 #[test]
-fn the_commands_work_with_a_foreign_target() {
+fn commands_work_with_independent_target() {
     let bench = Bench::new();
     let Some(foreign) = bench.target(&["--topology=hub8", "--drives=1,2", "--counted", "--serial=815"]) else { return };
     let link = ["--link", foreign.url.as_str()];
@@ -122,7 +122,7 @@ fn the_commands_work_with_a_foreign_target() {
 }
 
 #[test]
-fn another_device_is_identified_and_refused() {
+fn rejects_other_device() {
     let bench = Bench::new();
     let Some(foreign) = bench.target(&["--product=Valve island"]) else { return };
     let mut session = session(&bench, &foreign, "");
@@ -132,7 +132,7 @@ fn another_device_is_identified_and_refused() {
 }
 
 #[test]
-fn devices_are_found_by_broadcast() {
+fn finds_devices_by_broadcast() {
     let bench = Bench::new();
     let Some(foreign) = bench.target(&["--serial=77"]) else { return };
     let Some(other) = bench.target(&["--product=Valve island"]) else { return };
@@ -150,7 +150,7 @@ fn devices_are_found_by_broadcast() {
 }
 
 #[test]
-fn services_settings_and_positions_are_written_as_planned() {
+fn writes_follow_plan() {
     let bench = Bench::new();
     let Some(foreign) = bench.target(&["--busy=200"]) else { return };
     let mut session = session(&bench, &foreign, "");
@@ -181,7 +181,7 @@ fn services_settings_and_positions_are_written_as_planned() {
 /// The program waits as long as the manual allows, after each value of parameter 47 and after parameter 152 changes
 /// from 0 to 1. A hub may take 8000 ms, which is handled the same way (issue 21.8).
 #[test]
-fn slow_services_are_answered_late_and_executed_once() {
+fn slow_service_runs_once() {
     let bench = Bench::new();
     let slow = "--slow=47:-4:1700,47:-3:1400,47:-2:1400,47:-1:1400,47:1:190,152:1:1300";
     let Some(foreign) = bench.target(&["--topology=hub4", "--drives=1,3", slow]) else { return };
@@ -206,7 +206,7 @@ fn slow_services_are_answered_late_and_executed_once() {
 /// A number whose length differs from the manual is never printed, saved or written. The message states both lengths
 /// and a remedy (issue 21.9).
 #[test]
-fn a_number_of_another_length_is_not_shown() {
+fn hides_number_of_wrong_length() {
     let bench = Bench::new();
     let (file, other) = (bench.file("file.ron"), bench.file("other.ron"));
     {
@@ -246,7 +246,7 @@ fn a_number_of_another_length_is_not_shown() {
 
 /// A limit beyond the turns of the drive is not sent. The message states both limits in scaled steps (issue 21.10).
 #[test]
-fn limits_beyond_the_turns_of_the_drive_are_not_sent() {
+fn does_not_send_limits_beyond_drive_turns() {
     let bench = Bench::new();
     let Some(foreign) = bench.target(&[]) else { return };
     let ask = |words: &[&str]| bench.run(&[words, &["--link", foreign.url.as_str()]].concat());
@@ -268,7 +268,7 @@ fn limits_beyond_the_turns_of_the_drive_are_not_sent() {
 }
 
 #[test]
-fn a_silent_or_lost_target_ends_everything_in_time() {
+fn silent_or_lost_target_times_out() {
     let bench = Bench::new();
     let cases: [(&[&str], &str); 3] =
         [(&["--silent-after=9"], "?timeout=60"), (&["--vanish-after=9"], ""), (&["--garbage"], "?timeout=60")];
@@ -299,7 +299,7 @@ fn comes(what: &str, mut has_come: impl FnMut() -> bool) {
 }
 
 #[test]
-fn the_cyclic_connection_is_opened_as_accepted_and_closed() {
+fn opens_and_closes_cyclic_connection() {
     let bench = Bench::new();
     let cases: [(&[&str], &str); 4] = [
         (&[], "OPEN 16"),
@@ -334,7 +334,7 @@ fn the_cyclic_connection_is_opened_as_accepted_and_closed() {
 
 /// The target reports 29 °C in parameter 11 and 33 °C in parameter 119 (reference 6).
 #[test]
-fn temperatures_are_read_through_the_parameter_words() {
+fn reads_temperatures_through_parameter_words() {
     let bench = Bench::new();
     let (device, drive) = (ParameterNumber::new(11).unwrap(), ParameterNumber::new(119).unwrap());
     let cases: [(&[&str], Option<ParameterResult>); 5] = [
@@ -378,7 +378,7 @@ fn temperatures_are_read_through_the_parameter_words() {
 }
 
 #[test]
-fn another_master_is_reported_and_a_lost_target_ends_the_connection() {
+fn reports_other_master_and_lost_target() {
     let bench = Bench::new();
     let Some(owned) = bench.target(&["--owned"]) else { return };
     let error = session(&bench, &owned, "").run_inline(HiperdriveJob::Take).unwrap_err();
@@ -396,7 +396,7 @@ fn another_master_is_reported_and_a_lost_target_ends_the_connection() {
 }
 
 #[test]
-fn dropping_a_session_stops_its_connection() {
+fn dropped_session_stops_its_connection() {
     let bench = Bench::new();
     let Some(foreign) = bench.target(&[]) else { return };
     let mut session = session(&bench, &foreign, "");
@@ -415,7 +415,7 @@ fn dropping_a_session_stops_its_connection() {
 /// An action without the intended effect is reported as a failure, such as a fault that remains after it was
 /// acknowledged, or drives that the presence test does not find (issue 22.19).
 #[test]
-fn an_action_with_a_bad_result_fails() {
+fn action_with_bad_result_fails() {
     let bench = Bench::new();
     let act = |target: &Foreign, action: &str| {
         bench.run(&["do", "hiperdrive", action, "--yes", "--link", &target.url, "--json"])

@@ -8,7 +8,7 @@ use super::support::{Bench, Simulated};
 
 /// A turn has 65536 steps (reference 3 and 5). The drive is off after it has reached its target.
 #[test]
-fn a_drive_moves_to_a_position() {
+fn drive_moves_to_position() {
     let bench = Bench::new();
     let simulated = Simulated::start(&bench, &["hiperdrive", "--listen", "127.0.0.1:0", "--hub", "4"]);
     let link = format!("enip:{}", simulated.place);
@@ -33,7 +33,7 @@ fn a_drive_moves_to_a_position() {
 /// The command ends with status 2, which means wrong usage. It does not open a connection: there is no device at this
 /// address.
 #[test]
-fn without_consent_nothing_moves() {
+fn moves_nothing_without_consent() {
     let bench = Bench::new();
     for (arguments, words) in [
         (&["65536"][..], &["--yes", "nothing was changed"][..]),
@@ -53,7 +53,7 @@ fn without_consent_nothing_moves() {
 
 /// The command ends with status 1 and one sentence, and the drive does not move.
 #[test]
-fn invalid_moves_are_refused() {
+fn rejects_invalid_moves() {
     let bench = Bench::new();
     let limits = ["-33488896", "33488896"];
     for (link, arguments, words) in [
@@ -70,7 +70,7 @@ fn invalid_moves_are_refused() {
 
 /// The position is printed even in the format for scripts.
 #[test]
-fn an_incomplete_move_reports_the_position() {
+fn incomplete_move_reports_position() {
     let bench = Bench::new();
     let run = |link: &str, seconds: &str| {
         bench.run(&["move", "hiperdrive", "9000000", "--yes", "--json", "--timeout", seconds, "--link", link])

@@ -6,7 +6,7 @@ use super::support::Bench;
 
 /// The expected values come from sections 3, 6 and 9 of hiperdrive.md.
 #[test]
-fn golden_words_and_process_data_are_explained() {
+fn explains_example_words_and_process_data() {
     let bench = Bench::new();
     let cases: [(&[&str], &[&str]); 27] = [
         (&["0400"], &["OUT: control word, keeps it ready: bits 10 control by PLC"]),
@@ -89,7 +89,7 @@ fn golden_words_and_process_data_are_explained() {
 
 /// The expected values come from sections 7 and 9 of hiperdrive.md.
 #[test]
-fn golden_packets_are_explained() {
+fn explains_example_packets() {
     let bench = Bench::new();
     let zeros = "00 ".repeat(20);
     let register = format!("65 00 04 00 {zeros} 01 00 00 00");
@@ -172,7 +172,7 @@ fn json_has_every_reading() {
 }
 
 #[test]
-fn illegal_and_invalid_words_are_refused() {
+fn rejects_illegal_and_invalid_words() {
     let bench = Bench::new();
     let failing: [(&[&str], &[&str]); 7] = [
         (&["hiperdrive", "--direction", "out", "047F"], &["047F", "reserved bits set (1, 2)"]),

@@ -12,7 +12,7 @@ fn ask(bench: &Bench, link: &str, words: &[&str]) -> Ran {
 const HUB: &str = "sim:?hub=4&drives=1,0,1&serial=1234&requested=1";
 
 #[test]
-fn identify_lists_the_device_and_its_drives() {
+fn identify_lists_device_and_drives() {
     let bench = Bench::new();
     let told = ask(&bench, HUB, &["identify", "hiperdrive"]).json();
     for (key, value) in [
@@ -39,7 +39,7 @@ fn identify_lists_the_device_and_its_drives() {
 }
 
 #[test]
-fn a_healthy_device_reports_no_errors() {
+fn healthy_device_reports_no_errors() {
     let bench = Bench::new();
     let told = ask(&bench, "sim:", &["status", "hiperdrive"]).json();
     assert_eq!((&told["ok"], &told["errors"], &told["warnings"]), (&json!(true), &json!([]), &json!([])), "{told}");
@@ -53,7 +53,7 @@ fn a_healthy_device_reports_no_errors() {
 /// If the lower limit is above the upper one, the device rejects the value with 09 and keeps 8501 as the drive's error
 /// (reference 4).
 #[test]
-fn current_errors_are_errors_and_past_ones_are_notes() {
+fn past_errors_are_notes() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--hub", "4", "--set", "drives=0,1", "--set", "requested=1"]);
     // Parameter 258, the lower limit of drive 2, is set to 7FFFFFFFh.
@@ -98,7 +98,7 @@ fn writing_0_to_197_acknowledges_one_drive() {
 /// A device or drive of another type may have the same serial number. The message names the type, and a restore is
 /// rejected unless the user permits it explicitly (issue 22.9).
 #[test]
-fn a_profile_of_another_type_needs_a_separate_permission() {
+fn other_type_needs_permission() {
     let bench = Bench::new();
     let file = bench.file("single.ron");
     ask(&bench, "sim:?serial=77&requested=1", &["save", "hiperdrive", "-o", &file]).json();
@@ -116,7 +116,7 @@ fn a_profile_of_another_type_needs_a_separate_permission() {
 }
 
 #[test]
-fn a_check_reports_each_fact_once() {
+fn check_reports_each_fact_once() {
     let bench = Bench::new();
     let ran = bench.run(&["do", "hiperdrive", "check", "--link", "sim:?hub=4&drives=1"]);
     assert!(!ran.out.contains("HDA30A HDA30A") && !ran.out.contains(".;"), "{ran:?}");
@@ -127,7 +127,7 @@ fn a_check_reports_each_fact_once() {
 /// A speed is in tenths of rpm only at the factory scale (manual 6.2). Nominal data may be in tenths. At standstill,
 /// the speed is 0 at any scale (issue 21.10).
 #[test]
-fn units_are_those_of_the_manual() {
+fn units_match_manual() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &[]);
     let read = |number: &str| device.ask(&bench, &["read", "hiperdrive", number]).json();
@@ -142,7 +142,7 @@ fn units_are_those_of_the_manual() {
 
 /// A turn has 65536 steps: position −1 is turn −1, step 65535, and 163840 is 2.5 turns (reference 2).
 #[test]
-fn a_position_has_signed_turns() {
+fn position_has_signed_turns() {
     let bench = Bench::new();
     for (link, drive, raw, turns, steps, degrees) in [
         ("sim:?position=163840", "1", 163_840, 2, 32_768, 180.0),
@@ -167,7 +167,7 @@ fn a_position_has_signed_turns() {
 }
 
 #[test]
-fn parameters_are_read_by_number() {
+fn reads_parameters_by_number() {
     let bench = Bench::new();
     let cases: [(&[&str], &str, Value, Value); 7] = [
         (&["13"], "13", json!("HIPERDRIVE HUB-4"), Value::Null),
@@ -198,7 +198,7 @@ fn parameters_are_read_by_number() {
 }
 
 #[test]
-fn a_saved_profile_is_human_readable() {
+fn saved_profile_is_human_readable() {
     let bench = Bench::new();
     let file = bench.file("hub.ron");
     let told = ask(&bench, HUB, &["save", "hiperdrive", "-o", &file]).json();
@@ -270,7 +270,7 @@ fn reading_writes_nothing() {
 }
 
 #[test]
-fn devices_are_found_by_address() {
+fn finds_devices_by_address() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--set", "hub=8", "--set", "serial=77"]);
     let url = device.url();
@@ -283,7 +283,7 @@ fn devices_are_found_by_address() {
 
 /// A terminal shows a progress bar and a note about the network. A script receives neither.
 #[test]
-fn a_slow_device_causes_no_messages_in_a_script() {
+fn slow_device_stays_quiet_in_scripts() {
     let bench = Bench::new();
     let ran = ask(&bench, "sim:?fault=delay:200", &["status", "hiperdrive"]);
     assert!(ran.json()["ok"] == json!(true) && ran.err.is_empty(), "{ran:?}");

@@ -141,7 +141,7 @@ impl Host {
 }
 
 #[test]
-fn a_frozen_window_stops_the_drive() {
+fn frozen_window_stops_drive() {
     let mut drive = Drive::start();
     let host = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     host.jogs(&mut drive);
@@ -161,7 +161,7 @@ fn a_frozen_window_stops_the_drive() {
 
 /// Closing the window drops the session, which must stop the drive.
 #[test]
-fn closing_the_session_stops_the_drive() {
+fn closed_session_stops_drive() {
     let mut drive = Drive::start();
     let host = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     host.jogs(&mut drive);
@@ -174,7 +174,7 @@ fn closing_the_session_stops_the_drive() {
 }
 
 #[test]
-fn a_cut_parameter_connection_stops_the_drive() {
+fn cut_parameter_connection_stops_drive() {
     let mut drive = Drive::start();
     let wires = Wires::to(&drive.simulated.place);
     let host = Host::in_control(&drive.bench, &wires.place());
@@ -194,7 +194,7 @@ fn a_cut_parameter_connection_stops_the_drive() {
 }
 
 #[test]
-fn cut_packet_wires_stop_the_drive() {
+fn cut_packet_wires_stop_drive() {
     for (ways, told) in [
         (&[Transport::ToTarget, Transport::ToHost][..], false),
         (&[Transport::ToTarget], false),
@@ -227,7 +227,7 @@ fn cut_packet_wires_stop_the_drive() {
 
 /// While random bytes arrive in both directions at full speed, releasing the button still stops the drive.
 #[test]
-fn a_release_stops_the_drive_during_a_flood() {
+fn release_stops_drive_during_flood() {
     let mut drive = Drive::start();
     let wires = Wires::to(&drive.simulated.place);
     let host = Host::in_control(&drive.bench, &wires.place());
@@ -251,7 +251,7 @@ fn moving(drive: &mut Drive) -> Child {
 }
 
 #[test]
-fn a_killed_process_stops_the_drive() {
+fn killed_process_stops_drive() {
     let mut drive = Drive::start();
     let mut child = moving(&mut drive);
     signal(&child, "KILL");
@@ -261,7 +261,7 @@ fn a_killed_process_stops_the_drive() {
 }
 
 #[test]
-fn a_frozen_process_stops_the_drive() {
+fn frozen_process_stops_drive() {
     let mut drive = Drive::start();
     let child = moving(&mut drive);
     signal(&child, "STOP");
@@ -273,7 +273,7 @@ fn a_frozen_process_stops_the_drive() {
 }
 
 #[test]
-fn an_interrupt_stops_the_drive() {
+fn interrupt_stops_drive() {
     let mut drive = Drive::start();
     let child = moving(&mut drive);
     signal(&child, "INT");
@@ -287,7 +287,7 @@ fn an_interrupt_stops_the_drive() {
 /// After any signal that ends a command, even if sent twice, the drive is stopped and off, and its watchdog reports no
 /// fault (issue 21.1).
 #[test]
-fn terminating_signals_stop_the_drive() {
+fn terminating_signals_stop_drive() {
     for (name, times) in [("TERM", 1), ("HUP", 1), ("TERM", 2), ("INT", 2)] {
         let mut drive = Drive::start();
         let child = moving(&mut drive);

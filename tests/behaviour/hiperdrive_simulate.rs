@@ -22,7 +22,7 @@ fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
 /// Checks the limits of 511 turns of 65536 steps (33488896), the category, and the codes of rejected requests
 /// (reference 4 and 7).
 #[test]
-fn parameters_are_read_and_written() {
+fn reads_and_writes_parameters() {
     let bench = Bench::new();
     if python("enip_client.py").is_none() {
         return;
@@ -57,7 +57,7 @@ fn parameters_are_read_and_written() {
 /// Checks the control words and the states they lead to, a move to a target and back, and that a jog ends when the
 /// button is released (reference 3 and 9).
 #[test]
-fn a_drive_is_enabled_moved_and_jogged() {
+fn enables_moves_and_jogs_drive() {
     let bench = Bench::new();
     if python("enip_client.py").is_none() {
         return;
@@ -85,7 +85,7 @@ fn a_drive_is_enabled_moved_and_jogged() {
 
 /// Parameter 852 (Requested) enables the eighth drive of a hub. The process data contain no parameter words.
 #[test]
-fn a_drive_of_a_hub_moves_alone() {
+fn hub_drive_moves_alone() {
     let bench = Bench::new();
     if python("enip_client.py").is_none() {
         return;
@@ -104,7 +104,7 @@ fn a_drive_of_a_hub_moves_alone() {
 
 /// If the master is lost, the motion ends within the watchdog time and fault 8601 (34305) reports it (reference 7).
 #[test]
-fn a_drive_stops_when_its_master_falls_silent() {
+fn silent_master_stops_drive() {
     let bench = Bench::new();
     if python("enip_client.py").is_none() {
         return;
@@ -120,7 +120,7 @@ fn a_drive_stops_when_its_master_falls_silent() {
 
 /// Random bytes in both directions affect neither the motion nor other requests.
 #[test]
-fn garbage_is_ignored() {
+fn ignores_garbage() {
     let bench = Bench::new();
     if python("enip_client.py").is_none() {
         return;
@@ -142,7 +142,7 @@ fn garbage_is_ignored() {
 
 /// After a loss of power, the next client finds the saved values, or half of them if the save was interrupted.
 #[test]
-fn a_save_is_interrupted_where_configured() {
+fn interrupts_save_where_configured() {
     let bench = Bench::new();
     if python("enip_client.py").is_none() {
         return;
@@ -185,7 +185,7 @@ fn pycomm3_reads_and_writes() {
 }
 
 #[test]
-fn impossible_simulations_are_refused() {
+fn rejects_impossible_simulations() {
     let bench = Bench::new();
     bench.run(&["simulate", "hiperdrive", "--pty", &bench.file("drive")]).fails(2, &["--listen", "EtherNet/IP"]);
     bench.run(&["simulate", "hiperdrive", "--listen", "127.0.0.1:0", "--bridge"]).fails(2, &["--bridge", "biss"]);

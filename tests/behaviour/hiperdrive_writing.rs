@@ -9,7 +9,7 @@ use super::support::Bench;
 const SAVE: &str = "10 03 20 64 24 01 30 2F 01 00";
 
 #[test]
-fn a_parameter_is_written_and_saved_once() {
+fn writes_parameter_and_saves_once() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &[]);
     let told = device.ask(&bench, &["write", "hiperdrive", "158", "-1000000", "--yes"]).json();
@@ -36,7 +36,7 @@ fn a_parameter_is_written_and_saved_once() {
 }
 
 #[test]
-fn volatile_parameters_are_not_saved() {
+fn does_not_save_volatile_parameters() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--set", "hub=4", "--set", "drives=0,1", "--set", "requested=1"]);
     let told = device.ask(&bench, &["write", "hiperdrive", "170", "100", "--drive", "2", "--yes"]).json();
@@ -48,7 +48,7 @@ fn volatile_parameters_are_not_saved() {
 /// A spindle with a pitch of 4 mm in steps of 0.01 mm has 400 steps per turn, which is 400/256 (reference 5). At 2.5
 /// turns, the position is 1000.
 #[test]
-fn a_restore_writes_scale_then_limits_and_saves_once() {
+fn restore_writes_scale_before_limits() {
     let bench = Bench::new();
     let parameters = "24: 5, 154: 400, 156: 256, 158: 500, 160: 2000, 166: 200, 198: 640, 186: 20";
     let profile = format!("(schema: 1, device: \"hiperdrive\", parameters: {{{parameters}}})");
@@ -100,7 +100,7 @@ fn a_restore_writes_scale_then_limits_and_saves_once() {
 }
 
 #[test]
-fn a_drive_outside_its_new_limits_is_not_changed() {
+fn does_not_change_drive_outside_new_limits() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--set", "position=100"]);
     let file =
@@ -116,7 +116,7 @@ fn a_drive_outside_its_new_limits_is_not_changed() {
 }
 
 #[test]
-fn a_position_is_set_in_steps_of_64_and_saved() {
+fn sets_position_in_steps_of_64() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--set", "position=5000"]);
     let ran = device.ask(&bench, &["do", "hiperdrive", "set-position", "100", "--yes"]);
@@ -159,7 +159,7 @@ fn services_write_parameter_47() {
 }
 
 #[test]
-fn a_profile_is_restored_to_its_own_device_and_skips_empty_ports() {
+fn restore_skips_empty_ports() {
     let bench = Bench::new();
     let file = bench.file("hub.ron");
     let hub = |serial: &str, drives: &str| {
@@ -181,7 +181,7 @@ fn a_profile_is_restored_to_its_own_device_and_skips_empty_ports() {
 }
 
 #[test]
-fn effects_of_a_scale_change_on_limits_are_shown() {
+fn shows_scale_change_effect_on_limits() {
     let bench = Bench::new();
     let file = bench.write("scale.ron", r#"(schema: 1, device: "hiperdrive", parameters: {154: 400, 156: 256})"#);
     let ran = bench.run(&["restore", &file, "--dry-run", "--link", "sim:"]);
@@ -191,7 +191,7 @@ fn effects_of_a_scale_change_on_limits_are_shown() {
 }
 
 #[test]
-fn values_that_trigger_an_action_are_named() {
+fn names_values_that_trigger_actions() {
     let bench = Bench::new();
     for (code, name) in [("-1", "47 = −1"), ("-2", "47 = −2"), ("-3", "47 = −3"), ("-4", "47 = −4")] {
         let ran = bench.run(&["write", "hiperdrive", "47", code, "--yes", "--link", "sim:"]);
@@ -203,7 +203,7 @@ fn values_that_trigger_an_action_are_named() {
 }
 
 #[test]
-fn an_unknown_parameter_number_is_reported_with_its_location() {
+fn unknown_parameter_number_is_located() {
     let bench = Bench::new();
     let file = bench.write("slip.ron", r#"(schema: 1, device: "hiperdrive", parameters: {166: 200, 999: 7})"#);
     bench.run(&["restore", &file, "--yes", "--link", "sim:"]).fails(1, &["parameters.999"]);

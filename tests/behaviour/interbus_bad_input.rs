@@ -43,7 +43,7 @@ fn invalid_arguments_are_usage_errors() {
 /// The value is rejected before anything is sent, or before anything is set if a reading is needed to check it. The
 /// message states both limits.
 #[test]
-fn out_of_range_values_name_both_limits() {
+fn range_error_names_both_limits() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600"]) else { return };
     let cases: &[(&[&str], &[&str])] = &[
@@ -77,7 +77,7 @@ fn out_of_range_values_name_both_limits() {
 
 /// The encoder rejects a value with an error word (reference 2) and is then returned to its mode.
 #[test]
-fn a_refusal_is_reported_with_its_word_and_the_mode_restored() {
+fn refusal_restores_mode() {
     let bench = Bench::new();
     for (word, words) in [
         ("82000000", "within the limits"),
@@ -93,7 +93,7 @@ fn a_refusal_is_reported_with_its_word_and_the_mode_restored() {
 }
 
 #[test]
-fn gateway_exceptions_name_the_settings_to_compare() {
+fn gateway_exceptions_name_settings() {
     let bench = Bench::new();
     for (code, words) in [("1", "illegal function"), ("2", "illegal data address"), ("0xB", "failed to respond")] {
         let Some(encoder) = bench.gateway(&["--exception", code]) else { return };
@@ -104,7 +104,7 @@ fn gateway_exceptions_name_the_settings_to_compare() {
 }
 
 #[test]
-fn swapped_words_suggest_the_other_word_order() {
+fn swapped_words_suggest_other_order() {
     let bench = Bench::new();
     for order in [["--order=low-first", "order=high-first"], ["--order=high-first", "order=low-first"]] {
         for (position, found) in [
@@ -125,7 +125,7 @@ fn swapped_words_suggest_the_other_word_order() {
 }
 
 #[test]
-fn a_second_master_is_reported() {
+fn reports_second_master() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600", "--second-master", "20210000:1"]) else { return };
     let ran = ask(&bench, &encoder, &["write", "interbus", "preset", "7", "--yes"]);
@@ -134,7 +134,7 @@ fn a_second_master_is_reported() {
 }
 
 #[test]
-fn a_silent_gateway_is_reported_in_time() {
+fn silent_gateway_times_out() {
     let bench = Bench::new();
     let Some(silent) = bench.gateway(&["--silent-after=4"]) else { return };
     let ran = ask(&bench, &silent, &["identify", "interbus"]);
@@ -154,7 +154,7 @@ fn a_silent_gateway_is_reported_in_time() {
 }
 
 #[test]
-fn an_invalid_or_foreign_profile_is_refused() {
+fn rejects_invalid_and_unrelated_profiles() {
     let bench = Bench::new();
     let parameters = r#"parameters: (steps: 3600, revolutions: 1, direction: "cw", preset: 0, zero_shift: 0)"#;
     let with = |programs: &str| {
@@ -175,7 +175,7 @@ fn an_invalid_or_foreign_profile_is_refused() {
 
 /// The shipped profiles are for INTERBUS encoders and can be restored to a virtual one.
 #[test]
-fn the_ready_made_profiles_are_planned_for_an_encoder() {
+fn plans_ready_made_profiles() {
     let bench = Bench::new();
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/interbus/");
     for (name, stores) in [("packaging-machine.ron", 3), ("scaled-encoder.ron", 1)] {

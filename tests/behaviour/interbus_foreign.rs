@@ -53,7 +53,7 @@ fn log(foreign: &Foreign) -> Vec<String> {
 }
 
 #[test]
-fn any_gateway_can_read_write_and_restore_the_mode() {
+fn works_with_any_gateway() {
     let cases: [(&[&str], &str); 5] = [
         (&[], "?cycle=1"),
         (&["--busy=40", "--stale=3", "--early"], "?cycle=1"),
@@ -89,7 +89,7 @@ fn any_gateway_can_read_write_and_restore_the_mode() {
 }
 
 #[test]
-fn faults_of_the_encoder_or_another_master_are_reported() {
+fn reports_faults_and_other_master() {
     type Told = fn(&Error) -> bool;
     let cases: [(&[&str], Told); 6] = [
         (&["--error=1:82000000"], |error| matches!(error, Error::Refused { .. })),
@@ -142,7 +142,7 @@ fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Int
 /// While it is busy, the gateway may return any data, from the current or the previous word. A word that is replaced
 /// during processing is not accepted (issue 22.1).
 #[test]
-fn cam_0_is_written_through_a_busy_gateway() {
+fn writes_cam_0_through_busy_gateway() {
     let bench = Bench::new();
     let cases =
         [("--busy=12", "sent", 8), ("--busy=12", "old", 1), ("--busy=40", "sent", 1), ("--busy=130", "sent", 2)];
@@ -161,7 +161,7 @@ fn cam_0_is_written_through_a_busy_gateway() {
 /// An echo that is 0.4 to 0.8 s late, or that was never requested, must not interrupt a write. C2000100h is the example
 /// in the manual (5.3, issue 22.2).
 #[test]
-fn stale_echoes_are_skipped() {
+fn skips_stale_echoes() {
     let bench = Bench::new();
     for echo in ["400:C2000100", "800:CA000000", "600:E2000100"] {
         let Some(foreign) = bench.gateway(&["--steps=3600", "--old-echo", echo]) else { return };
@@ -175,7 +175,7 @@ fn stale_echoes_are_skipped() {
 /// The gateway delays each change of OUT. Writing a parameter takes four changes: set, store, read back and leave
 /// (issue 22.2).
 #[test]
-fn a_parameter_takes_four_times_the_lag() {
+fn parameter_takes_four_lags() {
     let bench = Bench::new();
     let Some(foreign) = bench.gateway(&["--steps=3600", "--lag=250"]) else { return };
     let mut session = session(&bench, &foreign, "");

@@ -6,7 +6,7 @@ use super::support::Bench;
 
 /// The expected values come from interbus.md 5, 6.3 and 7.
 #[test]
-fn golden_words_are_explained() {
+fn explains_example_words() {
     let bench = Bench::new();
     let cases: [(&[&str], &[&str]); 27] = [
         (&["020000FF", "--direction", "out"], &["position or parameterisation mode: set steps to 255"]),
@@ -69,7 +69,7 @@ fn json_has_every_reading() {
 }
 
 #[test]
-fn illegal_and_invalid_words_are_refused() {
+fn rejects_illegal_and_invalid_words() {
     let bench = Bench::new();
     let out = |mode, word| ["decode", "interbus", "--direction", "out", "--mode", mode, word];
     for (mode, word, words) in [

@@ -47,7 +47,7 @@ fn identify_prints_every_key() {
 }
 
 #[test]
-fn every_item_is_read_by_name() {
+fn reads_every_item_by_name() {
     let bench = Bench::new();
     let options = ["--steps=3600", "--preset=500", "--zero-shift=7", "--shift=8", "--programs", PROGRAMS];
     let Some(encoder) = bench.gateway(&[&options[..], &["--temperature=-100", "--operating-time=12"]].concat()) else {
@@ -88,7 +88,7 @@ fn encoder_mode(bench: &Bench, encoder: &Foreign) -> String {
 
 /// 12345 of the encoder's own steps are 542 steps at 360 per turn, which is turn 1 and step 182, or 182° (reference 7).
 #[test]
-fn a_position_is_within_the_programmed_turns() {
+fn position_stays_within_programmed_turns() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--position=12345", "--steps=720", "--turns=2"]) else { return };
     let ran = ask(&bench, &encoder, &["position", "interbus", "--count", "3", "--interval", "1"]);
@@ -108,7 +108,7 @@ fn a_position_is_within_the_programmed_turns() {
 /// Words with cam states, a speed or an error must not be printed as a position. In the first case, the position window
 /// shows 1000 of 3600, and cam 3 is on from 900 (reference 5).
 #[test]
-fn words_without_a_position_are_not_printed_as_one() {
+fn prints_no_position_without_one() {
     let bench = Bench::new();
     let programs = r#"{"2": {"mask": 8, "cams": {"3": [900, 1100]}}}"#;
     let position = ["--position=2276", "--steps=3600"];
@@ -132,7 +132,7 @@ fn words_without_a_position_are_not_printed_as_one() {
 }
 
 #[test]
-fn a_healthy_encoder_reports_no_errors() {
+fn healthy_encoder_reports_no_errors() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--temperature=253"]) else { return };
     let told = ask(&bench, &encoder, &["status", "interbus"]).json();
@@ -144,7 +144,7 @@ fn a_healthy_encoder_reports_no_errors() {
 }
 
 #[test]
-fn a_saved_profile_matches_the_encoder() {
+fn saved_profile_matches_encoder() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600", "--preset=500", "--mode=5", "--programs", PROGRAMS]) else {
         return;
@@ -184,7 +184,7 @@ fn a_saved_profile_matches_the_encoder() {
 
 /// The same virtual encoder is read in this process and over TCP.
 #[test]
-fn the_virtual_encoder_is_read_directly_and_over_modbus() {
+fn reads_virtual_encoder_directly_and_over_modbus() {
     use super::support::Simulated;
     let bench = Bench::new();
     let settings = ["steps=3600", "revolutions=1", "cams=demo", "position=5000", "serial=99"];
@@ -208,7 +208,7 @@ fn assert_help_warns(bench: &Bench, command: &str) {
 
 /// A report reads the cam programs, as `save` does.
 #[test]
-fn the_help_of_a_report_warns_of_reading_cam_programs() {
+fn report_help_warns_about_cam_programs() {
     assert_help_warns(&Bench::new(), "report");
 }
 

@@ -60,7 +60,7 @@ fn virtual_gateway(bench: &Bench, settings: &[&str]) -> Simulated {
 }
 
 #[test]
-fn the_worked_and_cam_examples_match_the_reference() {
+fn examples_match_reference() {
     let bench = Bench::new();
     if python("interbus_master.py").is_none() {
         return;
@@ -78,7 +78,7 @@ fn the_worked_and_cam_examples_match_the_reference() {
 
 /// Both encoders were written from the reference, independently of each other.
 #[test]
-fn the_foreign_encoder_matches_the_reference() {
+fn independent_encoder_matches_reference() {
     let bench = Bench::new();
     let Some(foreign) = bench.gateway(&["--position", "5000", "--busy", "20", "--stale", "2"]) else { return };
     assert_eq!(foreign.url, format!("modbus:{}", foreign.place));
@@ -96,7 +96,7 @@ fn the_foreign_encoder_matches_the_reference() {
 }
 
 #[test]
-fn several_masters_are_served_concurrently() {
+fn serves_concurrent_masters() {
     let bench = Bench::new();
     if python("interbus_master.py").is_none() {
         return;
@@ -111,7 +111,7 @@ fn several_masters_are_served_concurrently() {
 }
 
 #[test]
-fn registers_unit_and_order_are_configurable_and_errors_are_exceptions() {
+fn configures_registers_unit_and_word_order() {
     let bench = Bench::new();
     if python("interbus_master.py").is_none() {
         return;
@@ -133,7 +133,7 @@ fn registers_unit_and_order_are_configurable_and_errors_are_exceptions() {
 
 /// After a loss of power, the encoder restarts with the next client and without the value that it was storing.
 #[test]
-fn configured_faults_are_injected() {
+fn injects_configured_faults() {
     let bench = Bench::new();
     if python("interbus_master.py").is_none() {
         return;
@@ -155,7 +155,7 @@ fn configured_faults_are_injected() {
 }
 
 #[test]
-fn impossible_simulations_are_refused() {
+fn rejects_impossible_simulations() {
     let bench = Bench::new();
     bench.run(&["simulate", "interbus", "--pty", &bench.file("enc")]).fails(2, &["--listen", "Modbus/TCP"]);
     bench.run(&["simulate", "interbus", "--listen", "127.0.0.1:0", "--bridge"]).fails(2, &["--bridge", "biss"]);

@@ -51,7 +51,7 @@ const PARAMETERS: &str = r#"steps: 3600, revolutions: 1, direction: "cw", preset
 
 /// Restores 64 cams and 8 masks to an encoder that already has 60 of the cams.
 #[test]
-fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
+fn cams_store_once_per_program() {
     let bench = Bench::new();
     let (there, _) = cams(|_, _| None);
     let moved = |program, cam| match (program, cam) {
@@ -113,7 +113,7 @@ fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
 /// All parameters are written with a single store, in an order that keeps each intermediate value valid. The preset is
 /// stored but not triggered (reference 3).
 #[test]
-fn parameters_need_one_store_and_a_restore_triggers_no_preset() {
+fn parameters_store_once() {
     let bench = Bench::new();
     let parameters = r#"steps: 36000, revolutions: 10, direction: "ccw", preset: 20000, zero_shift: 0"#;
     let file = bench.write("gear.ron", profile("4000", parameters, ""));
@@ -126,7 +126,7 @@ fn parameters_need_one_store_and_a_restore_triggers_no_preset() {
 }
 
 #[test]
-fn each_item_is_written_by_name() {
+fn writes_each_item_by_name() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600"]) else { return };
     let cases = [
@@ -157,7 +157,7 @@ fn each_item_is_written_by_name() {
 /// Triggering a preset sends 00000000, then 40000000 until IN shows the preset, then 00000000. This happens once for
 /// each time the preset was programmed (reference 4).
 #[test]
-fn a_preset_is_programmed_and_triggered_at_standstill() {
+fn preset_triggers_at_standstill() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600", "--preset=500"]) else { return };
     let told = ask(&bench, &encoder, &["do", "interbus", "preset", "--yes"]).json();
@@ -176,7 +176,7 @@ fn a_preset_is_programmed_and_triggered_at_standstill() {
 }
 
 #[test]
-fn the_default_is_experimental() {
+fn default_is_experimental() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600"]) else { return };
     let ran = ask(&bench, &encoder, &["do", "interbus", "default", "--yes"]);
@@ -187,7 +187,7 @@ fn the_default_is_experimental() {
 
 /// The mode is not reported as restored if the encoder then sends an error word (issue 22.19).
 #[test]
-fn restoring_the_mode_fails_if_the_encoder_sends_an_error() {
+fn encoder_error_fails_mode_restore() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--lost"]) else { return };
     let ran = ask(&bench, &encoder, &["do", "interbus", "lead-back"]);
@@ -200,7 +200,7 @@ fn restoring_the_mode_fails_if_the_encoder_sends_an_error() {
 /// The profile of a multiturn encoder is rejected for an encoder that does not count turns, unless the user permits it
 /// explicitly. The message names the difference (issue 22.9).
 #[test]
-fn an_encoder_of_another_type_needs_a_separate_permission() {
+fn other_type_needs_permission() {
     let bench = Bench::new();
     let parameters = r#"steps: 3600, revolutions: 1, direction: "ccw", preset: 9, zero_shift: 3"#;
     let text = profile("4000", parameters, "").replace(r#""4000")"#, r#""4000", flags: 2)"#);
@@ -223,7 +223,7 @@ fn an_encoder_of_another_type_needs_a_separate_permission() {
 }
 
 #[test]
-fn nothing_is_written_without_consent_or_to_another_encoder() {
+fn writes_nothing_without_consent() {
     let bench = Bench::new();
     let file = bench.write(
         "p.ron",
@@ -257,7 +257,7 @@ fn nothing_is_written_without_consent_or_to_another_encoder() {
 
 /// From 150 stores, a warning is printed. Beyond 200, the program asks again. From 450, a write must be forced.
 #[test]
-fn the_stores_of_an_eeprom_are_counted() {
+fn counts_eeprom_stores() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600"]) else { return };
     let mut direction = ["ccw", "cw"].into_iter().cycle();
@@ -304,7 +304,7 @@ fn the_stores_of_an_eeprom_are_counted() {
 
 /// The message states the written values and the backup within the timeout.
 #[test]
-fn a_gateway_lost_during_a_write_is_reported_with_the_backup() {
+fn lost_gateway_names_backup() {
     let bench = Bench::new();
     let (_, wanted) = cams(|program, _| (program > 2).then_some((0, 0)));
     let file = bench.write("cams.ron", profile("4000", PARAMETERS, &wanted));

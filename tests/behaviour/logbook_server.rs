@@ -30,7 +30,7 @@ fn kinds(entries: &[Value]) -> Vec<&str> {
 }
 
 #[test]
-fn benches_see_the_entries_of_each_other_and_their_wear_adds_up() {
+fn benches_share_entries_and_wear() {
     let Some(server) = Postgres::start() else { return };
     let (one, two) = (Bench::new(), Bench::new());
     for (bench, expected) in [(&one, vec!["connected", "write"]), (&two, ["connected", "write"].repeat(2))] {
@@ -51,7 +51,7 @@ fn benches_see_the_entries_of_each_other_and_their_wear_adds_up() {
 
 /// The undo on one computer marks the write in the logbook of another.
 #[test]
-fn an_undo_names_its_entry_on_every_bench() {
+fn undo_names_its_entry_on_every_bench() {
     let Some(server) = Postgres::start() else { return };
     let (one, two) = (Bench::new(), Bench::new());
     let simulated = Simulated::start(&one, &["hiperface", "--listen", "127.0.0.1:0"]);
@@ -71,7 +71,7 @@ fn an_undo_names_its_entry_on_every_bench() {
 
 /// The setting has the same effect as the environment variable.
 #[test]
-fn the_setting_names_the_server() {
+fn setting_names_server() {
     let Some(server) = Postgres::start() else { return };
     let bench = Bench::new();
     std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
@@ -83,7 +83,7 @@ fn the_setting_names_the_server() {
 }
 
 #[test]
-fn entries_wait_while_the_server_is_away() {
+fn entries_wait_for_server() {
     let Some(mut server) = Postgres::start() else { return };
     let bench = Bench::new();
     server.kill();
@@ -106,7 +106,7 @@ fn entries_wait_while_the_server_is_away() {
 
 /// Unknown writes by other computers could wear out a memory with few write cycles, but not one with many.
 #[test]
-fn quickly_wearing_memories_need_a_permit_while_the_server_is_unreachable() {
+fn fast_wear_needs_permit_without_server() {
     let bench = Bench::new();
     let away = "postgres://bench@127.0.0.1:1/logs";
     let write = |words: &[&str]| bench.run_with_server(away, &[words, &["--yes", "--link", "sim:"]].concat());
@@ -125,7 +125,7 @@ fn quickly_wearing_memories_need_a_permit_while_the_server_is_unreachable() {
 }
 
 #[test]
-fn benches_that_hold_the_same_device_are_told_of_each_other() {
+fn benches_see_shared_device() {
     let Some(server) = Postgres::start() else { return };
     let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let [one, two] = [one.path(), two.path()].map(|root| server.store_at(root));
@@ -150,7 +150,7 @@ fn benches_that_hold_the_same_device_are_told_of_each_other() {
 }
 
 #[test]
-fn a_command_announces_its_device_and_is_told_of_other_programs() {
+fn command_announces_its_device() {
     let Some(server) = Postgres::start() else { return };
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&[]) else { return };
@@ -176,7 +176,7 @@ fn a_command_announces_its_device_and_is_told_of_other_programs() {
 
 /// A locked keyring prompts the user, who may be absent.
 #[test]
-fn the_keyring_is_asked_once_and_only_for_a_password_that_the_server_requires() {
+fn keyring_is_asked_once() {
     let Some(server) = Postgres::start() else { return };
     let bench = Bench::new();
     let bus = UnixListener::bind(bench.path("bus")).unwrap();
@@ -200,7 +200,7 @@ fn the_keyring_is_asked_once_and_only_for_a_password_that_the_server_requires() 
 
 /// The server accepts connections but does not reply. It delays a command by seconds, not forever.
 #[test]
-fn a_silent_server_delays_a_command_only_for_a_moment() {
+fn silent_server_delays_command_briefly() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let url = format!("postgres://bench@{}/logs", listener.local_addr().unwrap());
     let bench = Bench::new();
@@ -211,7 +211,7 @@ fn a_silent_server_delays_a_command_only_for_a_moment() {
 }
 
 #[test]
-fn each_problem_of_the_server_is_explained_and_work_goes_on() {
+fn explains_server_problems() {
     let Some(server) = Postgres::start() else { return };
     let bench = Bench::new();
     let port = server.port;
@@ -283,7 +283,7 @@ fn each_problem_of_the_server_is_explained_and_work_goes_on() {
 
 /// The password is neither used nor repeated in a message.
 #[test]
-fn a_password_in_the_setting_is_refused() {
+fn rejects_password_in_setting() {
     let bench = Bench::new();
     std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
     bench.write("config/encoder-studio/settings.ron", "(logbook: \"postgres://bench:0pen@127.0.0.1:1/logs\")");
@@ -294,7 +294,7 @@ fn a_password_in_the_setting_is_refused() {
 
 /// An empty server replaces the old one, as after a disk failure. All entries are sent again.
 #[test]
-fn an_empty_server_receives_all_entries_again() {
+fn empty_server_receives_all_entries() {
     let Some(server) = Postgres::start() else { return };
     let bench = Bench::new();
     bench.run_with_server(&server.url(), &WRITE);
@@ -329,7 +329,7 @@ fn an_empty_server_receives_all_entries_again() {
 }
 
 #[test]
-fn a_connection_is_encrypted_and_the_certificate_is_checked() {
+fn checks_server_certificate() {
     let Some(mut server) = Postgres::start() else { return };
     let openssl = |arguments: &[&str]| {
         let ran = Command::new("openssl").args(arguments).stderr(Stdio::null()).stdout(Stdio::null()).status();

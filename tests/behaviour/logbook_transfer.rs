@@ -67,14 +67,14 @@ fn start_writer(root: &Path, name: &str, server: &Postgres) -> Child {
 
 /// PostgreSQL is killed and restarted while two programs make 1,000 writes (issue 30).
 #[test]
-fn every_acknowledged_entry_arrives_exactly_once_and_in_order() {
+fn entries_arrive_once_and_in_order() {
     let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     check_two_writers([one.path(), two.path()]);
 }
 
 /// Both programs run on one computer and send the entries in their common file.
 #[test]
-fn two_programs_with_one_file_send_every_entry() {
+fn two_programs_share_one_file() {
     let root = tempfile::tempdir().unwrap();
     check_two_writers([root.path(); 2]);
 }
@@ -122,7 +122,7 @@ fn check_two_writers(roots: [&Path; 2]) {
 
 /// A plan is made while the window's thread is waiting for a server that has stopped replying.
 #[test]
-fn write_cycles_are_incomplete_while_another_thread_waits_for_the_server() {
+fn write_cycles_are_incomplete_during_transfer() {
     let Some(server) = Postgres::start() else { return };
     let root = tempfile::tempdir().unwrap();
     let store = server.store_at(root.path());
@@ -142,7 +142,7 @@ fn write_cycles_are_incomplete_while_another_thread_waits_for_the_server() {
 
 /// A computer that is suspended during a transfer keeps its connection open.
 #[test]
-fn a_suspended_program_does_not_keep_others_from_the_server() {
+fn suspended_program_does_not_block_others() {
     let Some(server) = Postgres::start() else { return };
     let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let store = server.store_at(two.path());
@@ -192,7 +192,7 @@ fn slow_network(server: &Postgres, bytes_per_second: usize) -> u16 {
 }
 
 #[test]
-fn a_slow_network_delays_entries_but_not_for_ever() {
+fn slow_network_delays_entries() {
     const LIMIT: Duration = Duration::from_secs(2);
     const ENTRIES: usize = 3_000;
     let Some(server) = Postgres::start() else { return };

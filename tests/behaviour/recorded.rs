@@ -84,32 +84,32 @@ fn steady_entry(key: String, value: Value) -> (String, Value) {
 }
 
 #[test]
-fn hiperface_is_as_recorded() {
+fn hiperface_output_matches_recording() {
     assert_recorded("hiperface");
 }
 
 #[test]
-fn biss_is_as_recorded() {
+fn biss_output_matches_recording() {
     assert_recorded("biss");
 }
 
 #[test]
-fn ssi_is_as_recorded() {
+fn ssi_output_matches_recording() {
     assert_recorded("ssi");
 }
 
 #[test]
-fn interbus_is_as_recorded() {
+fn interbus_output_matches_recording() {
     assert_recorded("interbus");
 }
 
 #[test]
-fn hiperdrive_is_as_recorded() {
+fn hiperdrive_output_matches_recording() {
     assert_recorded("hiperdrive");
 }
 
 #[test]
-fn common_commands_are_as_recorded() {
+fn common_output_matches_recording() {
     assert_recorded("common");
 }
 
@@ -137,7 +137,7 @@ const LINKS: [&str; 18] = [
 
 /// Recorded link parameters and virtual device settings must stay valid, because users have them in scripts.
 #[test]
-fn links_accept_the_recorded_parameters() {
+fn links_accept_recorded_parameters() {
     let (path, bench) = (fixtures().join("links.txt"), Bench::new());
     let mut text = String::new();
     for link in LINKS {

@@ -46,7 +46,7 @@ fn squeezed(text: &str) -> String {
 }
 
 #[test]
-fn each_profile_has_a_report_without_foreign_resources() {
+fn report_uses_no_external_resources() {
     let bench = Bench::new();
     for path in profiles() {
         for language in ["en", "de"] {
@@ -67,7 +67,7 @@ fn each_profile_has_a_report_without_foreign_resources() {
 
 /// The page lists everything that was done to the encoder, with times and with old and new values.
 #[test]
-fn the_page_shows_the_history_of_a_device() {
+fn page_shows_device_history() {
     let bench = Bench::new();
     let fields = r#"[{"status":"C9","bytes":"0102031122060708"}]"#;
     let Some(encoder) = bench.encoder(&["--fields", fields]) else { return };
@@ -111,7 +111,7 @@ fn the_page_shows_the_history_of_a_device() {
 
 /// The virtual encoder has the same serial number as the real one.
 #[test]
-fn write_cycles_of_virtual_devices_are_counted_separately() {
+fn counts_virtual_write_cycles_separately() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C9","bytes":"01020304"}]"#]) else { return };
     let (file, out) = (bench.file("a.ron"), bench.file("r.html"));
@@ -130,7 +130,7 @@ fn write_cycles_of_virtual_devices_are_counted_separately() {
 }
 
 #[test]
-fn everything_but_the_time_of_printing_depends_on_the_content() {
+fn only_print_time_varies() {
     let bench = Bench::new();
     bench.run(&["save", "hiperface", "--link", "sim:", "-o", &bench.file("a.ron")]);
     let report = |out: &str, more: &[&str]| {
@@ -160,7 +160,7 @@ fn everything_but_the_time_of_printing_depends_on_the_content() {
 }
 
 #[test]
-fn a_report_that_cannot_be_made_leaves_no_file() {
+fn failed_report_leaves_no_file() {
     let bench = Bench::new();
     let out = bench.file("r.html");
     bench.run(&["report", &bench.file("missing.ron"), "-o", &out]).fails(1, &["missing.ron"]);
@@ -182,7 +182,7 @@ fn a_report_that_cannot_be_made_leaves_no_file() {
 
 /// The access code is used to read the field but must not appear in the report.
 #[test]
-fn access_codes_are_in_no_report() {
+fn report_omits_access_codes() {
     let bench = Bench::new();
     let change = ["do", "hiperface", "change-code", "2", "A7", "--yes", "--link", "sim:"];
     assert_eq!(bench.run(&change).status, Some(0));
@@ -202,7 +202,7 @@ fn access_codes_are_in_no_report() {
 
 /// The PDF document contains the same text as the page.
 #[test]
-fn the_pdf_document_has_the_texts_of_the_page() {
+fn pdf_matches_page() {
     if Command::new("pdftotext").arg("-v").output().is_err() {
         return skip("pdftotext is not installed");
     }
@@ -229,7 +229,7 @@ fn the_pdf_document_has_the_texts_of_the_page() {
 
 /// The scale is 0.1°, 3600 steps per turn. The limits are half a turn in either direction.
 #[test]
-fn the_limits_of_a_drive_are_in_turns() {
+fn drive_limits_are_in_turns() {
     let bench = Bench::new();
     let profile = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperdrive/rotary-axis-in-0.1-degree.ron");
     for (language, travel) in [
@@ -246,7 +246,7 @@ fn the_limits_of_a_drive_are_in_turns() {
 
 /// The report shows the values of `analyse` next to their limits, with a verdict.
 #[test]
-fn a_capture_has_a_report_with_limits() {
+fn capture_report_has_limits() {
     let bench = Bench::new();
     let capture = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/signals/offset-gain-phase.csv");
     let capture = capture.to_str().unwrap();
@@ -274,7 +274,7 @@ fn a_capture_has_a_report_with_limits() {
 }
 
 #[test]
-fn the_settings_name_the_company() {
+fn settings_name_company() {
     let bench = Bench::new();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let logo = root.join("assets/icon/64.png");

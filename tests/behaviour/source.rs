@@ -34,7 +34,7 @@ fn near(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn the_parameters_are_recovered() {
+fn recovers_parameters() {
     let (analysis, told) = diagnosed(Settings {
         amplitude_v: 0.48,
         offset_sine_v: 0.015,
@@ -56,7 +56,7 @@ fn the_parameters_are_recovered() {
 }
 
 #[test]
-fn each_injected_fault_is_diagnosed() {
+fn diagnoses_each_injected_fault() {
     let base = Settings::default;
     type IsIt = fn(&FindingKind) -> bool;
     let cases: [(&str, Settings, IsIt); 10] = [
@@ -105,7 +105,7 @@ fn each_injected_fault_is_diagnosed() {
 /// An eccentricity of 100″ is an integral nonlinearity of 100″. An offset of 1 % causes ±0.573 electrical degrees,
 /// which are 4.03″ at 512 periods.
 #[test]
-fn eccentricity_is_integral_and_an_offset_differential_nonlinearity() {
+fn eccentricity_is_inl_and_offset_is_dnl() {
     let settings = Settings { eccentricity_arcsec: 100.0, offset_sine_v: 0.005, noise_v: 0.0, ..Settings::default() };
     let (_, wires) = recorded(settings);
     let unwrapped = |angles: Vec<f64>, whole: f64| {

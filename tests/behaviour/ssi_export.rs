@@ -98,7 +98,7 @@ fn expected_line(layout: &Layout, reading: FrameReading) -> String {
 }
 
 #[test]
-fn the_exported_c_code_decodes_like_the_program() {
+fn exported_c_code_matches_program() {
     let compiler = ["cc", "gcc", "clang"].into_iter().find(|name| {
         Command::new(name)
             .arg("--version")
@@ -135,7 +135,7 @@ fn the_exported_c_code_decodes_like_the_program() {
 
 /// With `EXPECT=write`, the test updates the file, which must be reviewed before it is committed.
 #[test]
-fn the_exported_structured_text_matches_the_reviewed_file() {
+fn exported_structured_text_matches_reviewed_file() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vectors/ssi_ahs36.st");
     let text = structured_text(&family("ahs36,st=12,code=gray"), "AHS36, 12 bits, Gray");
     if std::env::var_os("EXPECT").is_some_and(|it| it == "write") {
@@ -185,7 +185,7 @@ fn run_32(text: &str, frames: &[u64]) -> Option<Vec<String>> {
 }
 
 #[test]
-fn decoders_of_32_bits_read_the_frames_of_the_reference() {
+fn decoders_32_bit_read_reference_frames() {
     for (spec, frame, meant) in REFERENCE {
         for (name, text) in decoders_of_32_bits(&family(spec)) {
             let Some(lines) = run_32(&text.unwrap(), &[frame]) else { return };
@@ -195,7 +195,7 @@ fn decoders_of_32_bits_read_the_frames_of_the_reference() {
 }
 
 #[test]
-fn decoders_of_32_bits_decode_as_the_program_does() {
+fn decoders_32_bit_match_program() {
     for (title, layout) in layouts() {
         for (name, text) in decoders_of_32_bits(&layout) {
             let text = text.unwrap_or_else(|error| panic!("{title}: {error}"));
@@ -212,7 +212,7 @@ fn decoders_of_32_bits_decode_as_the_program_does() {
 }
 
 #[test]
-fn layouts_too_wide_for_32_bits_are_refused() {
+fn rejects_layouts_wider_than_32_bits() {
     let wide = Layout::new(FrameDescriptor::binary(12, 22)).unwrap();
     let axis = family("atm60,steps=8000000,revolutions=4095/4");
     for (layout, error) in [(wide, TooWideError::Position { bits: 34 }), (axis, TooWideError::RoundAxis)] {
@@ -224,7 +224,7 @@ fn layouts_too_wide_for_32_bits_are_refused() {
 
 /// In an external source, TIA Portal requires a quoted name, a version, local variables with `#`, and named parameters.
 #[test]
-fn scl_has_the_form_of_an_external_source() {
+fn scl_is_valid_external_source() {
     let text = scl_source(&family("afm60,code=gray"), "Zuführung\n(* 2 *)").unwrap();
     assert!(
         text.starts_with(

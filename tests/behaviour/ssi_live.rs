@@ -23,7 +23,7 @@ fn lines(ran: &Ran) -> Vec<Value> {
 
 /// The shaft is at turn 1234h and 270°. For the ATM60, this is turn 234h of 4096 and step 1800h of 8192.
 #[test]
-fn the_position_has_turns_steps_and_degrees() {
+fn position_has_turns_steps_and_degrees() {
     let bench = Bench::new();
     let arguments = ["--capabilities", "1", "--ssi", "12,13,gray,0"];
     let encoders = [bench.adapter(&arguments), bench.adapter_on_terminal(&arguments)];
@@ -49,7 +49,7 @@ fn the_position_has_turns_steps_and_degrees() {
 
 /// A KH53 counts tenths of a millimetre. The position is three quarters of 2^24.
 #[test]
-fn a_linear_encoder_reports_millimetres() {
+fn linear_encoder_reports_millimetres() {
     let bench = Bench::new();
     let Some(encoder) = adapter(&bench, "0,24,binary,0", &[]) else { return };
     let told = &lines(&position(&bench, "kh53", &encoder.url, &["--json"]))[0];
@@ -61,7 +61,7 @@ fn a_linear_encoder_reports_millimetres() {
 
 /// The AFS60 has ERRDIG, ERRSI and ERRSYNC on clocks 19 to 21. A transfer clears ERRSYNC.
 #[test]
-fn error_bits_are_reported_on_appearance_and_counted() {
+fn reports_and_counts_error_bits() {
     let bench = Bench::new();
     let Some(encoder) = adapter(&bench, "0,18,binary,3", &["--ssi-error", "3"]) else { return };
     let ran = position(&bench, "afs60", &encoder.url, &["--json", "--count", "7", "--interval", "10"]);
@@ -85,7 +85,7 @@ fn error_bits_are_reported_on_appearance_and_counted() {
 /// All ones mean a fault of a safety encoder, or a broken wire with other encoders. All zeros mean that the line is
 /// stuck (reference 6.7).
 #[test]
-fn a_stuck_line_is_reported() {
+fn reports_stuck_line() {
     let bench = Bench::new();
     let told = |line: &str, layout: &str| {
         let encoder = adapter(&bench, "12,13,gray,0", &["--line", line])?;
@@ -108,7 +108,7 @@ fn a_stuck_line_is_reported() {
 /// Clock and pause come from the link, else from the profile, else from slow defaults. They are checked against the
 /// limits of the encoder.
 #[test]
-fn clock_and_pause_are_those_of_the_link_or_the_profile() {
+fn link_or_profile_sets_clock_and_pause() {
     let bench = Bench::new();
     let Some(encoder) = adapter(&bench, "12,13,gray,0", &[]) else { return };
     let link = format!("{}?clock=3000000&pause=15", encoder.url);
@@ -123,7 +123,7 @@ fn clock_and_pause_are_those_of_the_link_or_the_profile() {
 }
 
 #[test]
-fn an_unsuitable_adapter_is_reported() {
+fn reports_unsuitable_adapter() {
     let bench = Bench::new();
     let Some(other) = bench.adapter(&[]) else { return };
     position(&bench, "atm60", &other.url, &[]).fails(1, &["bench adapter", "SSI"]);
@@ -139,7 +139,7 @@ fn an_unsuitable_adapter_is_reported() {
 
 /// The counts so far are printed if the cable is unplugged or the user cancels during the measurement.
 #[test]
-fn an_interrupted_stream_reports_its_counts() {
+fn interrupted_stream_reports_counts() {
     let bench = Bench::new();
     let format = ["--capabilities", "1", "--ssi", "0,18,binary,3", "--ssi-error", "2"];
     let encoders = [bench.adapter(&format), bench.adapter_on_terminal(&format), bench.adapter(&format)];

@@ -16,7 +16,7 @@ const LAYOUT: &str = r#"(
 )"#;
 
 #[test]
-fn a_layout_is_saved_and_used_like_its_family() {
+fn saved_layout_works_like_family() {
     let bench = Bench::new();
     let file = bench.file("line.ron");
     let spec = "ahm36,code=gray,st=12,direction=ccw,preset=5";
@@ -47,7 +47,7 @@ fn a_layout_is_saved_and_used_like_its_family() {
 
 /// The Gray code 1011 0110 1101 is binary 110110110110, which is turn 13, step 182 of 256.
 #[test]
-fn a_layout_written_by_hand_is_used_from_anywhere() {
+fn accepts_handwritten_layout_from_any_folder() {
     let bench = Bench::new();
     let file = bench.write("feeder.ron", LAYOUT);
     bench.write("no-ending", LAYOUT);
@@ -79,7 +79,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
 
 /// Each layout entry listed in the help can be used in a file.
 #[test]
-fn the_help_names_valid_entries() {
+fn help_names_valid_entries() {
     let bench = Bench::new();
     let help = bench.run(&["ssi", "export", "--help"]).out;
     let entry = |name: &str| {
@@ -102,7 +102,7 @@ fn the_help_names_valid_entries() {
 }
 
 #[test]
-fn two_layouts_are_compared() {
+fn compares_layouts() {
     let bench = Bench::new();
     let (one, other) = (bench.file("one.ron"), bench.file("other.ron"));
     bench.run(&["save", "ssi", "--layout", "atm60", "-o", &one]);
@@ -123,7 +123,7 @@ fn two_layouts_are_compared() {
 }
 
 #[test]
-fn ready_made_profiles_have_the_factory_settings_of_their_families() {
+fn ready_made_profiles_match_factory_settings() {
     let bench = Bench::new();
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/ssi");
     for key in "ahs36 ahm36 afs60 afm60 afs60s afm60s atm60 atm90 ars60 ttk70 kh53".split(' ') {
@@ -139,7 +139,7 @@ fn ready_made_profiles_have_the_factory_settings_of_their_families() {
 }
 
 #[test]
-fn user_families_are_loaded_and_broken_ones_reported() {
+fn loads_user_families_and_reports_broken_ones() {
     let bench = Bench::new();
     let folder = bench.path("config/encoder-studio/devices/ssi");
     fs::create_dir_all(&folder).unwrap();
@@ -179,7 +179,7 @@ fn duplicate_positions_must_agree() {
 }
 
 #[test]
-fn invalid_layouts_are_refused_with_entry_and_reason() {
+fn invalid_layout_names_entry_and_reason() {
     let bench = Bench::new();
     let file = bench.file("wrong.ron");
     let cases = [
@@ -210,7 +210,7 @@ fn invalid_layouts_are_refused_with_entry_and_reason() {
 }
 
 #[test]
-fn unsupported_ssi_commands_name_the_alternative() {
+fn unsupported_command_names_alternative() {
     let bench = Bench::new();
     let file = bench.write("feeder.ron", LAYOUT);
     let out = bench.file("out.ron");

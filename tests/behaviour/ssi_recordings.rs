@@ -43,7 +43,7 @@ fn fed(bench: &Bench, arguments: &[&str], text: &str) -> Ran {
 const LAYOUT: [&str; 5] = ["ssi", "decode", "--json", "--layout", "ahm36,code=gray"];
 
 #[test]
-fn edges_of_a_logic_analyser_are_decoded_and_searched() {
+fn decodes_logic_analyser_edges() {
     let rows = recording();
     // The positions that Python intended. A damaged frame has none.
     let meant: Vec<Option<u64>> = rows.iter().map(|(_, meant)| *meant).collect();
@@ -69,7 +69,7 @@ fn edges_of_a_logic_analyser_are_decoded_and_searched() {
 }
 
 #[test]
-fn the_table_of_positions_is_read_again() {
+fn reloads_position_table() {
     let bench = Bench::new();
     let link = "--link=sim:?ssi=ahm36,code=gray&rpm=60";
     let asked = ["position", "ssi", "--layout", "ahm36,code=gray", link, "--count", "20", "--interval", "0", "--csv"];
@@ -95,7 +95,7 @@ fn the_table_of_positions_is_read_again() {
 }
 
 #[test]
-fn invalid_recordings_are_refused_with_line_and_remedy() {
+fn invalid_recording_names_line_and_remedy() {
     let bench = Bench::new();
     let refused = |text: &str, told: &[&str]| {
         let path = bench.write("bad.csv", text);
@@ -121,7 +121,7 @@ fn invalid_recordings_are_refused_with_line_and_remedy() {
 
 /// Exports are passed on to other people, so they contain the file name of a profile without its folder.
 #[test]
-fn exports_have_no_path_of_this_computer() {
+fn exports_omit_local_paths() {
     let bench = Bench::new();
     let path = bench.file("feeder.ron");
     bench.run(&["save", "ssi", "--layout", "atm60,code=gray", "-o", &path]);

@@ -25,7 +25,7 @@ fn examine(path: &str) {
 }
 
 #[test]
-fn words_are_served_on_a_pseudoterminal_and_a_tcp_port() {
+fn serves_pseudoterminal_and_tcp_port() {
     let bench = Bench::new();
     if python("bridge_host.py").is_none() {
         return;
@@ -44,7 +44,7 @@ fn words_are_served_on_a_pseudoterminal_and_a_tcp_port() {
 /// Each word has its time and the position of a shaft that turns ten times per second: 81 920 steps per second are
 /// 4.096 steps per word.
 #[test]
-fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
+fn streams_20k_words_per_second_without_gaps() {
     let bench = Bench::new();
     if python("bridge_host.py").is_none() {
         return;
@@ -69,7 +69,7 @@ fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
 
 /// Another encoder family with its error bits, and a layout from a profile.
 #[test]
-fn the_encoder_follows_its_layout() {
+fn encoder_follows_layout() {
     let bench = Bench::new();
     if python("bridge_host.py").is_none() {
         return;
@@ -101,7 +101,7 @@ fn the_encoder_follows_its_layout() {
 
 /// The program's own host reads the encoder over both transports.
 #[test]
-fn the_programs_own_host_reads_the_encoder() {
+fn own_host_reads_encoder() {
     let bench = Bench::new();
     let port = Simulated::start(&bench, &["ssi", "--listen", "127.0.0.1:0", "--layout", "ahm36"]);
     let terminal = Simulated::start(&bench, &["ssi", "--pty", &bench.file("adapter"), "--layout", "ahm36"]);
@@ -117,7 +117,7 @@ fn the_programs_own_host_reads_the_encoder() {
 }
 
 #[test]
-fn impossible_simulations_are_refused() {
+fn rejects_impossible_simulations() {
     let bench = Bench::new();
     bench.run(&["simulate", "ssi"]).fails(2, &["--listen"]);
     let cases: [(&[&str], i32, &[&str]); 8] = [

@@ -103,7 +103,7 @@ fn moving(packets: &[Packet]) -> Vec<&Packet> {
 
 /// The drive receives no motion command after the report that shows the defect (issue 21.4).
 #[test]
-fn a_hub_drive_ignoring_its_limits_is_stopped() {
+fn stops_hub_drive_ignoring_limits() {
     let bench = Bench::new();
     let Some(mut hub) = Hub::with(&bench, &["limits -65536 65536", "unlimited on"]) else { return };
     let act = hub.host.motion.request_motion(third(), JOG);
@@ -119,7 +119,7 @@ fn a_hub_drive_ignoring_its_limits_is_stopped() {
 }
 
 #[test]
-fn a_hub_drive_turning_the_wrong_way_is_stopped() {
+fn stops_hub_drive_turning_wrong_way() {
     for wish in [JOG, MotionRequest::Move { target: 3 * TURN, effort: FAST }] {
         let bench = Bench::new();
         let Some(mut hub) = Hub::with(&bench, &["reverse on"]) else { return };
@@ -133,7 +133,7 @@ fn a_hub_drive_turning_the_wrong_way_is_stopped() {
 }
 
 #[test]
-fn a_hub_drive_passing_its_target_is_stopped() {
+fn stops_hub_drive_passing_target() {
     let bench = Bench::new();
     let Some(mut hub) = Hub::with(&bench, &["overrun on"]) else { return };
     let act = hub.host.motion.request_motion(third(), MotionRequest::Move { target: TURN, effort: FAST });
@@ -147,7 +147,7 @@ fn a_hub_drive_passing_its_target_is_stopped() {
 
 /// The drive is stopped when it has moved for longer than it needs to brake (issue 21.4).
 #[test]
-fn a_hub_drive_ignoring_a_pause_is_stopped() {
+fn stops_hub_drive_ignoring_pause() {
     let bench = Bench::new();
     let Some(mut hub) = Hub::with(&bench, &["pauseless on"]) else { return };
     hub.host.motion.request_motion(third(), MotionRequest::Move { target: 20 * TURN, effort: FAST });
