@@ -31,7 +31,7 @@ fn session(settings: &[(&str, &str)]) -> (Session<Hiperface>, Arc<VirtualClock>,
 /// At one revolution per second, the shaft turns 4096 steps per second. The adapter timestamps the first start bit of a
 /// reply, so the delay over USB does not affect the time of a position.
 #[test]
-fn a_position_has_the_time_that_the_adapter_measures() {
+fn position_uses_adapter_time() {
     let (mut session, clock, _folder) = session(&[("uart", "hiperface"), ("rpm", "60")]);
     let mut position = || {
         let HiperfaceOutput::Position(reading) = session.run_inline(HiperfaceJob::Position(None)).unwrap() else {
@@ -48,7 +48,7 @@ fn a_position_has_the_time_that_the_adapter_measures() {
 }
 
 #[test]
-fn an_adapter_without_a_serial_line_is_refused() {
+fn rejects_adapter_without_serial_line() {
     let (mut session, _clock, _folder) = session(&[]);
     let error = session.run_inline(HiperfaceJob::Position(None)).unwrap_err().to_string();
     assert!(error.contains("virtual adapter has no serial line"), "{error}");

@@ -14,7 +14,7 @@ fn desk(echoes: bool, setting: Echo, more: &str) -> Desk {
 }
 
 #[test]
-fn echo_is_detected_and_stripped() {
+fn detects_and_strips_echo() {
     for echoes in [true, false] {
         let told = if echoes { Echo::On } else { Echo::Off };
         for setting in [Echo::Unknown, told] {
@@ -33,7 +33,7 @@ fn echo_is_detected_and_stripped() {
 
 /// With the wrong echo setting, every reply is rejected, and none of its bytes is shown as a value.
 #[test]
-fn a_wrong_echo_setting_yields_errors_and_no_values() {
+fn wrong_echo_setting_yields_errors() {
     for (echoes, setting) in [(true, Echo::Off), (false, Echo::On)] {
         let mut desk = desk(echoes, setting, "");
         let (memory, worn) = (desk.memory(), desk.wear());
@@ -57,7 +57,7 @@ fn a_wrong_echo_setting_yields_errors_and_no_values() {
 
 /// The replies to 47h and 67h equal their requests, so they do not prove that there is an echo.
 #[test]
-fn echo_is_not_detected_from_a_reply_equal_to_its_request() {
+fn reply_equal_to_request_is_no_echo() {
     for echoes in [true, false] {
         let mut desk = desk(echoes, Echo::Unknown, "");
         desk.run(HiperfaceJob::ConfigureForNow(LineSettings::FACTORY)).unwrap();
@@ -73,7 +73,7 @@ fn echo_is_not_detected_from_a_reply_equal_to_its_request() {
 
 /// The reply to a read request equals the request if the byte has the value of the access code.
 #[test]
-fn a_byte_equal_to_its_access_code_is_read() {
+fn reads_byte_equal_to_access_code() {
     for echoes in [true, false] {
         let mut desk = desk(echoes, Echo::Unknown, "");
         desk.change(Change::Store(vec![(FieldRange::new(0, 7, 1), vec![0x55])])).unwrap();

@@ -28,7 +28,7 @@ fn searched(desk: &mut Desk, options: FindOptions) -> Vec<FoundEncoder> {
 }
 
 #[test]
-fn one_encoder_with_unusual_settings_is_found() {
+fn finds_encoder_with_unusual_settings() {
     // 600 to 38400 baud, each parity, both time-outs, the standard address and a bus address.
     for (byte, address) in
         [(0xE0, 0x5F), (0xC1, 0x41), (0xF2, 0x50), (0x63, 0x40), (0x84, 0x4A), (0xB5, 0x5E), (0xA6, 0x40)]
@@ -45,7 +45,7 @@ fn one_encoder_with_unusual_settings_is_found() {
 }
 
 #[test]
-fn eight_encoders_on_a_bus_are_found() {
+fn finds_eight_encoders_on_bus() {
     for settings in [0x64, 0x65] {
         let mut desk = Desk::new(&format!("encoders=8&address=0x52&settings={settings}"));
         let found = searched(&mut desk, FindOptions::default());
@@ -55,7 +55,7 @@ fn eight_encoders_on_a_bus_are_found() {
 }
 
 #[test]
-fn on_a_line_in_use_nothing_is_sent() {
+fn sends_nothing_on_busy_line() {
     for traffic in [vec![0x40], vec![0x40, 0x42, 0x02, 0x00, 0xFF]] {
         let mut desk = Desk::new("");
         desk.tap().foreign = traffic.clone().into();
@@ -67,7 +67,7 @@ fn on_a_line_in_use_nothing_is_sent() {
 }
 
 #[test]
-fn broadcast_is_the_last_resort_and_needs_consent() {
+fn broadcast_comes_last_and_needs_consent() {
     let mut desk = Desk::new("address=0x47");
     let found = searched(&mut desk, FindOptions { one_encoder: true, power_cycle: None });
     assert_eq!(found.iter().map(|found| found.address).collect::<Vec<_>>(), [0x47]);
@@ -76,7 +76,7 @@ fn broadcast_is_the_last_resort_and_needs_consent() {
 }
 
 #[test]
-fn no_encoder_is_found_on_an_empty_line() {
+fn finds_nothing_on_empty_line() {
     let mut desk = Desk::new("fault=silent-after:0");
     assert_eq!(searched(&mut desk, FindOptions::default()), []);
     assert_eq!(desk.tap().sent.len(), 7 * 3 * 32);
@@ -84,7 +84,7 @@ fn no_encoder_is_found_on_an_empty_line() {
 
 /// The encoder is switched on during the search and found while it still uses its factory settings.
 #[test]
-fn a_power_cycle_opens_the_factory_settings_window() {
+fn power_cycle_opens_factory_settings_window() {
     for (settings, one_encoder) in [(0xB5, true), (0x80, true), (0xE6, false)] {
         let mut desk = Desk::new(&format!("settings={settings}&fault=silent-after:0"));
         let bus = desk.bus.clone();
@@ -109,7 +109,7 @@ fn a_power_cycle_opens_the_factory_settings_window() {
 /// The program cannot change the fixed speed of a device server. Trying other speeds would find the same encoder 21
 /// times.
 #[test]
-fn through_a_device_server_each_encoder_is_found_once() {
+fn finds_each_encoder_once_through_server() {
     let mut desk = Desk::new("address=0x43&encoders=2");
     desk.tap().formatless = true;
     let found = searched(&mut desk, FindOptions::default());
@@ -119,7 +119,7 @@ fn through_a_device_server_each_encoder_is_found_once() {
 
 /// A cancelled search returns the encoders found so far and restores the serial settings of the port.
 #[test]
-fn an_interrupted_search_reports_its_findings() {
+fn interrupted_search_reports_findings() {
     // The search begins at the encoders' own settings, where address 40h is requested first.
     let mut desk = Desk::new("encoders=2&address=0x4A");
     for (questions, expected) in [(0, vec![]), (10, vec![]), (11, vec![0x4A]), (12, vec![0x4A, 0x4B])] {
@@ -138,7 +138,7 @@ fn an_interrupted_search_reports_its_findings() {
 
 /// Each encoder is reported as soon as it answers, before the search ends.
 #[test]
-fn encoders_are_reported_as_they_answer() {
+fn reports_encoders_as_they_answer() {
     let mut desk = Desk::new("encoders=3&address=0x52");
     let mut told = Vec::new();
     let mut progress = 0;

@@ -38,7 +38,7 @@ fn words(bench: &mut Bench) -> String {
 /// A move sends the words 0000, 0400, 0401, 0409, 0439 and 0479, and the next move 0439. At rest, bits 4 and 5 are
 /// clear (reference 3).
 #[test]
-fn the_published_words_move_to_a_target() {
+fn published_words_move_to_target() {
     let mut bench = Bench::new();
     bench.run(50);
     assert_eq!(words(&mut bench), "0000");
@@ -59,7 +59,7 @@ fn the_published_words_move_to_a_target() {
 /// A clockwise jog sends 1459 and 1419, and a counterclockwise one 1449 and 1409. Speed mode ends with 0400 (reference
 /// 3).
 #[test]
-fn a_jog_runs_while_it_is_held() {
+fn jog_runs_while_held() {
     let mut bench = Bench::new();
     bench.act(MotionRequest::Lead(TargetState::Enabled));
     assert_eq!(bench.until_over(), ActionEnd::Done);
@@ -95,7 +95,7 @@ fn a_jog_runs_while_it_is_held() {
 
 /// The button is pressed and released in quick succession. A jog must not turn into a move.
 #[test]
-fn repeated_jogs_never_start_a_job() {
+fn repeated_jogs_start_no_job() {
     let mut bench = Bench::new();
     for times in 1..60 {
         bench.act(jog(if times % 3 == 0 { Direction::Clockwise } else { Direction::Counterclockwise }));
@@ -113,7 +113,7 @@ fn repeated_jogs_never_start_a_job() {
 }
 
 #[test]
-fn a_job_can_be_paused_and_resumed() {
+fn pauses_and_resumes_job() {
     let mut bench = Bench::new();
     let job = bench.act(to(3 * TURN));
     bench.run(1000);
@@ -152,7 +152,7 @@ fn a_job_can_be_paused_and_resumed() {
 
 /// A request rejected by the dead-man control never reaches the drive.
 #[test]
-fn invalid_requests_are_refused() {
+fn rejects_invalid_requests() {
     let none = SpeedTorque { speed: Percent::NONE, ..FULL };
     let permit = |limits, locks: &[MotionLock]| Permit { limits, locks: locks.to_vec(), ..Permit::for_range(0, 0) };
     let free = || permit(Some((-TURN, TURN)), &[]);
@@ -200,7 +200,7 @@ fn invalid_requests_are_refused() {
 
 /// Nothing moves until the user has acknowledged the fault, and the acknowledgement does not move anything either.
 #[test]
-fn a_fault_is_acknowledged_before_anything_moves() {
+fn acknowledges_fault_before_motion() {
     let mut bench = Bench::new();
     bench.act(to(5 * TURN));
     bench.run(1000);
@@ -225,7 +225,7 @@ fn a_fault_is_acknowledged_before_anything_moves() {
 }
 
 #[test]
-fn a_blocked_drive_ends_the_motion() {
+fn blocked_drive_ends_motion() {
     let mut bench = Bench::new();
     bench.load(SpindleLoad { wall_above: Some(f64::from(TURN)), ..SpindleLoad::default() });
     bench.act(to(2 * TURN));
@@ -235,7 +235,7 @@ fn a_blocked_drive_ends_the_motion() {
 
 /// The action ends with the run.
 #[test]
-fn a_run_ends_at_the_end_of_the_range() {
+fn run_stops_at_end_of_range() {
     let mut bench = Bench::new();
     bench.write(160, TURN.into());
     bench.act(MotionRequest::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
@@ -249,7 +249,7 @@ fn a_run_ends_at_the_end_of_the_range() {
 
 /// While switch S3 selects a drive, bus commands have no effect.
 #[test]
-fn an_unresponsive_drive_is_reported() {
+fn reports_unresponsive_drive() {
     let mut bench = Bench::new();
     bench.station.set_drive_select_switch(bench.now, 1);
     bench.act(to(TURN));
@@ -262,7 +262,7 @@ fn an_unresponsive_drive_is_reported() {
 
 /// A drive that briefly loses its supply restarts while the earlier words are still being sent.
 #[test]
-fn a_restarted_drive_does_not_resume_its_job() {
+fn restarted_drive_does_not_resume_job() {
     for after in [100, 110, 500, 1500] {
         let mut bench = Bench::new();
         bench.act(to(5 * TURN));

@@ -67,7 +67,7 @@ fn fields_of(profile: &HiperfaceProfile) -> Fields {
 }
 
 #[test]
-fn the_plan_is_the_shortest_possible() {
+fn plan_is_shortest_possible() {
     let (mut desk, wanted) = scene();
     let prepared = desk.prepare(restore_of(&wanted)).unwrap();
     let items: Vec<String> = prepared.plan.ops.iter().map(|op| op.plan_item().to_string()).collect();
@@ -195,7 +195,7 @@ fn disturbed(
 }
 
 #[test]
-fn cancelling_at_any_transaction_ends_cleanly() {
+fn cancelling_ends_cleanly() {
     let scene = scene();
     let mut steps = 0;
     while !disturbed(
@@ -211,7 +211,7 @@ fn cancelling_at_any_transaction_ends_cleanly() {
 
 /// A reply to a write announces a waiting status code, but the write was executed nevertheless.
 #[test]
-fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
+fn cancelling_with_warnings_ends_cleanly() {
     let scene = scene();
     for code in [StatusCode::TEMPERATURE, StatusCode::COUNTER_OVERFLOW] {
         for steps in 0.. {
@@ -231,7 +231,7 @@ fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
 
 /// The user cancels right after the reply that announces a warning. The write still counts as executed.
 #[test]
-fn a_warning_during_a_write_hides_no_operation() {
+fn warning_hides_no_operation() {
     let (original, wanted) = scene();
     for store in 1..=7 {
         for steps in 0..40 {
@@ -260,7 +260,7 @@ fn a_warning_during_a_write_hides_no_operation() {
 }
 
 #[test]
-fn a_cut_at_any_transaction_is_reported() {
+fn reports_cut_at_any_transaction() {
     let scene = scene();
     type Cut = fn(&mut Desk, usize);
     let cuts: [(&str, Cut); 4] = [
@@ -301,7 +301,7 @@ fn frames_so_far(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
 }
 
 #[test]
-fn power_lost_in_any_store_is_reported() {
+fn reports_power_loss_in_any_store() {
     let (original, wanted) = scene();
     // Field 0 takes three stores, field 1 three, field 2 one and field 4 one.
     for store in 1..=8 {

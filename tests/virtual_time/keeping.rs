@@ -15,7 +15,7 @@ fn store_byte(value: u8) -> Change {
 }
 
 #[test]
-fn without_a_backup_nothing_is_written() {
+fn writes_nothing_without_backup() {
     for in_the_way in ["data", "data/backups", "data/backups/hiperface", "data/backups/hiperface/GB0450179"] {
         let mut desk = Desk::new("");
         let path = desk.folder.path().join(in_the_way);
@@ -36,7 +36,7 @@ fn without_a_backup_nothing_is_written() {
 /// Without the logbook, the previous write cycles are unknown. A write must be forced, and the missing records are
 /// reported (issue 22.4).
 #[test]
-fn a_broken_logbook_stops_an_unforced_write() {
+fn broken_logbook_stops_unforced_write() {
     for garbage in [true, false] {
         let mut desk = Desk::new("");
         let path = Store::at_root(desk.folder.path()).logbook_path();
@@ -63,7 +63,7 @@ fn a_broken_logbook_stops_an_unforced_write() {
 }
 
 #[test]
-fn a_backup_is_a_profile_of_the_previous_state() {
+fn backup_is_profile_of_previous_state() {
     let mut desk = Desk::new("");
     let before = desk.memory();
     let done = desk.change(store_byte(0xEE)).unwrap();
@@ -76,7 +76,7 @@ fn a_backup_is_a_profile_of_the_previous_state() {
 
 /// The codes used here do not appear in any file in any form.
 #[test]
-fn no_access_code_is_stored() {
+fn stores_no_access_code() {
     let mut desk = Desk::new("codes=0:9D,2:66");
     desk.remember_code(0, 0x9D);
     desk.remember_code(2, 0x66);

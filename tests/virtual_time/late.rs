@@ -56,7 +56,7 @@ impl ByteLink for Slow {
 }
 
 #[test]
-fn a_late_reply_is_never_mistaken_for_the_next() {
+fn late_reply_is_not_next_reply() {
     for delay in [0, 60, 110, 150, 300, 700] {
         // At one turn per second, the position of the previous request lies outside the range through which the shaft
         // has turned since.

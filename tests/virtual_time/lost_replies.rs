@@ -40,7 +40,7 @@ fn robbed(query: &str, change: &Change, setup: impl Fn(&mut Desk), judge: impl F
 }
 
 #[test]
-fn the_counter_increases_by_exactly_one() {
+fn counter_increases_by_one() {
     for from in [0, 41, 0x00FF_FFFE] {
         let setup = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().set_counter(from);
         robbed("", &Change::IncrementCounter, setup, |desk, context| {
@@ -50,7 +50,7 @@ fn the_counter_increases_by_exactly_one() {
 }
 
 #[test]
-fn the_counter_is_cleared_despite_lost_replies() {
+fn clears_counter_despite_lost_replies() {
     let setup = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().set_counter(77);
     robbed("", &Change::ClearCounter, setup, |desk, context| {
         assert_eq!(desk.bus().encoders()[0].counter(), 0, "{context}");
@@ -58,7 +58,7 @@ fn the_counter_is_cleared_despite_lost_replies() {
 }
 
 #[test]
-fn a_changed_access_code_is_used_afterwards() {
+fn uses_changed_access_code() {
     let zero = AccessCodeNumber::ZERO;
     let change = Change::ChangeCode { number: zero, new: AccessCode::new(0xC3) };
     robbed(
@@ -74,7 +74,7 @@ fn a_changed_access_code_is_used_afterwards() {
 }
 
 #[test]
-fn a_changed_address_is_followed() {
+fn follows_changed_address() {
     let change = Change::SetAddress(DeviceAddress::new(0x4B).unwrap());
     robbed(
         "",
@@ -89,7 +89,7 @@ fn a_changed_address_is_followed() {
 }
 
 #[test]
-fn the_position_is_set_despite_lost_replies() {
+fn sets_position_despite_lost_replies() {
     let change = Change::SetPosition { wanted: 4096, exact: true, synchronise: false, kit: false };
     robbed(
         "",
@@ -104,7 +104,7 @@ fn the_position_is_set_despite_lost_replies() {
 /// A position that equals the previous one does not prove that the tracks were aligned, so the alignment must not be
 /// reported.
 #[test]
-fn synchronising_in_place_is_not_assumed_done() {
+fn does_not_assume_synchronisation() {
     let mut desk = Desk::new("model=sel37");
     let wanted = desk.bus().encoders()[0].position(desk.clock.now());
     let prepared = desk.prepare(Change::SetPosition { wanted, exact: true, synchronise: true, kit: true }).unwrap();
@@ -120,7 +120,7 @@ fn synchronising_in_place_is_not_assumed_done() {
 
 /// After a failed job, the next one again has five tries.
 #[test]
-fn each_job_has_its_full_number_of_tries() {
+fn each_job_gets_all_tries() {
     let mut desk = Desk::new("");
     desk.tap().deaf_from = Some(0);
     desk.run(HiperfaceJob::Identify).unwrap_err();
@@ -133,7 +133,7 @@ fn each_job_has_its_full_number_of_tries() {
 }
 
 #[test]
-fn a_silent_encoder_times_out_within_ten_seconds() {
+fn silent_encoder_times_out() {
     for settings in ["E4", "E0", "E6"] {
         let format = encoder_studio::devices::hiperface::protocol::LineSettings::from_byte(
             u8::from_str_radix(settings, 16).unwrap(),
@@ -152,7 +152,7 @@ fn a_silent_encoder_times_out_within_ten_seconds() {
 /// Request 50h removes a code from the encoder. Whichever reply is lost, each code is returned or counted as possibly
 /// lost (issue 22.10).
 #[test]
-fn lost_status_codes_are_reported() {
+fn reports_lost_status_codes() {
     let queue = [StatusCode::TEMPERATURE, StatusCode::TOO_FAST, StatusCode::COUNTER_OVERFLOW];
     let mut counted = 0;
     for lost in 0..8 {
@@ -179,7 +179,7 @@ fn lost_status_codes_are_reported() {
 
 /// A code can only have been lost if 50h was sent (issue 22.10).
 #[test]
-fn unrequested_codes_are_not_reported_as_lost() {
+fn unrequested_codes_are_not_lost() {
     let mut desk = Desk::new("fault=silent-after:0");
     let mut told = Vec::new();
     let end = desk.session.run(JobId::default(), HiperfaceJob::Status, &mut |event| told.push(format!("{event:?}")));

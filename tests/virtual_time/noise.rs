@@ -36,7 +36,7 @@ fn is_position_reply(reply: &[u8], position: u32) -> bool {
 }
 
 #[test]
-fn a_position_is_correct_or_an_error_or_its_frame_was_valid() {
+fn position_is_correct_or_fails() {
     let (mut read, mut failed, mut wrong) = (0, 0, 0);
     for noise in NOISE {
         for seed in 0..8 {
@@ -80,7 +80,7 @@ fn byte_of_reply(reply: &[u8], field: u8, at: usize) -> Option<u8> {
 }
 
 #[test]
-fn a_field_is_correct_or_an_error_or_its_frames_were_valid() {
+fn field_is_correct_or_fails() {
     let (mut read, mut failed, mut wrong) = (0, 0, 0);
     for noise in NOISE {
         for seed in 10..18 {
@@ -131,7 +131,7 @@ fn assert_same(got: &HiperfaceProfile, truth: &HiperfaceProfile, context: &str) 
 }
 
 #[test]
-fn a_save_is_correct_or_an_error() {
+fn save_is_correct_or_fails() {
     let (mut saved, mut failed) = (0, 0);
     // A low level of noise is harder to handle, because the first damage may be one that cannot be detected.
     for noise in ["drop:0.02", "flip:0.02", "drop:0.02,flip:0.02", "garbage:0.02", "flip:0.005", "drop:0.005"] {
@@ -156,7 +156,7 @@ fn a_save_is_correct_or_an_error() {
 }
 
 #[test]
-fn an_interrupted_restore_is_described_and_completed_by_another() {
+fn second_restore_completes_interrupted_one() {
     let (mut at_once, mut described, mut before_any) = (0, 0, 0);
     for noise in NOISE {
         for seed in 0..12 {

@@ -14,7 +14,7 @@ fn store(field: u8, start: usize, bytes: Vec<u8>) -> Change {
 }
 
 #[test]
-fn a_changed_base_is_not_overwritten() {
+fn does_not_overwrite_changed_base() {
     let create = Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xC8) };
     let set = Change::SetPosition { wanted: 0, exact: true, synchronise: false, kit: false };
     let cases: [(Change, Change, &str); 7] = [
@@ -46,7 +46,7 @@ fn a_changed_base_is_not_overwritten() {
 
 /// Two new encoders have the same memory and differ only in their serial numbers.
 #[test]
-fn a_plan_applies_to_one_encoder() {
+fn plan_applies_to_one_encoder() {
     let mut desk = Desk::new("serial=A1");
     let prepared = desk.prepare(store(0, 0, vec![1, 2])).unwrap();
     *desk.bus() = crate::support::bus("serial=B2");
@@ -58,7 +58,7 @@ fn a_plan_applies_to_one_encoder() {
 }
 
 #[test]
-fn a_consent_to_another_plan_writes_nothing() {
+fn consent_to_other_plan_writes_nothing() {
     let mut desk = Desk::new("");
     let shown = desk.prepare(store(0, 0, vec![1])).unwrap();
     let other = desk.prepare(store(0, 0, vec![2])).unwrap();
@@ -70,7 +70,7 @@ fn a_consent_to_another_plan_writes_nothing() {
 }
 
 #[test]
-fn an_empty_plan_sends_nothing() {
+fn empty_plan_sends_nothing() {
     let mut desk = Desk::new("");
     let profile = desk.save().unwrap();
     let name_plate = desk.memory()[0].1.clone();
@@ -96,7 +96,7 @@ fn an_empty_plan_sends_nothing() {
 
 /// Every byte written by request 4Bh differs from the byte it replaces, and only planned addresses are written.
 #[test]
-fn only_differences_are_written_and_every_write_is_counted() {
+fn writes_and_counts_only_differences() {
     for seed in 0..20_u8 {
         let mut desk = Desk::new("");
         desk.change(Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xCF) }).unwrap();
@@ -135,7 +135,7 @@ fn only_differences_are_written_and_every_write_is_counted() {
 }
 
 #[test]
-fn another_encoders_profile_is_refused_before_its_fields_are_read() {
+fn rejects_other_encoder_before_reading_fields() {
     let mut other = Desk::new("serial=ZZ1");
     let profile = other.save().unwrap();
     let mut desk = Desk::new("");
@@ -145,7 +145,7 @@ fn another_encoders_profile_is_refused_before_its_fields_are_read() {
 }
 
 #[test]
-fn writes_to_protected_or_out_of_range_fields_are_refused() {
+fn rejects_protected_and_out_of_range_writes() {
     let mut desk = Desk::new("");
     desk.change(Change::LockField { number: 0, lock: true }).unwrap();
     let size = encoder_studio::devices::hiperface::protocol::FieldSize::from_bytes(16).unwrap();
@@ -172,7 +172,7 @@ fn writes_to_protected_or_out_of_range_fields_are_refused() {
 /// Edits to several fields result in one plan and one backup. Each field is read once, and only differing bytes are
 /// sent.
 #[test]
-fn several_edits_are_written_in_one_plan() {
+fn one_plan_writes_several_edits() {
     let mut desk = Desk::new("");
     desk.change(Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xE8) }).unwrap();
     let before = desk.memory();

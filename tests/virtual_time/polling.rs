@@ -49,7 +49,7 @@ fn position(sample: &PolledSample) -> Option<Option<u64>> {
 }
 
 #[test]
-fn samples_arrive_without_a_job_and_jobs_run_in_between() {
+fn jobs_run_between_samples() {
     let mut bench = in_virtual_time("");
     assert_eq!(bench.worker.polling_interval(), None);
     bench.worker.poll(BACK_TO_BACK);
@@ -69,7 +69,7 @@ fn samples_arrive_without_a_job_and_jobs_run_in_between() {
 }
 
 #[test]
-fn a_new_interval_applies_immediately() {
+fn new_interval_applies_immediately() {
     let bench = in_virtual_time("");
     bench.worker.poll(SELDOM);
     samples(&bench.worker, 1);
@@ -86,7 +86,7 @@ fn a_new_interval_applies_immediately() {
 }
 
 #[test]
-fn a_stop_ends_polling() {
+fn stop_ends_polling() {
     let bench = in_virtual_time("");
     for stop in [Worker::stop, |worker: &Worker<Hiperface>| worker.stop_handle().stop()] {
         bench.worker.poll(BACK_TO_BACK);
@@ -100,7 +100,7 @@ fn a_stop_ends_polling() {
 }
 
 #[test]
-fn failed_polling_ends_and_is_reported_once() {
+fn failed_polling_reports_once() {
     let mut bench = in_virtual_time("fault=silent-after:5");
     bench.worker.poll(BACK_TO_BACK);
     let told = bench.worker.events().recv_timeout(LONG).unwrap();
@@ -117,7 +117,7 @@ fn failed_polling_ends_and_is_reported_once() {
 
 /// A job does not have to wait for all five tries of a sample. Polling continues after the job.
 #[test]
-fn a_job_interrupts_the_retries_of_a_sample() {
+fn job_interrupts_sample_retries() {
     let mut bench = in_real_time("fault=silent-after:0");
     bench.worker.poll(SELDOM);
     let started = Instant::now();
@@ -135,7 +135,7 @@ fn a_job_interrupts_the_retries_of_a_sample() {
 
 /// A reply without a position also counts as a sample. Any other rejection does not.
 #[test]
-fn polling_continues_without_a_position() {
+fn polling_continues_without_position() {
     let mut desk = Desk::new("rpm=9000");
     for _ in 0..3 {
         let PolledSample::NoPosition { codes, .. } = desk.session.take_sample().unwrap() else { panic!("too fast") };

@@ -13,7 +13,7 @@ fn set(wanted: u32, exact: bool) -> Change {
 }
 
 #[test]
-fn a_moving_shaft_is_refused_when_planning_and_when_writing() {
+fn rejects_moving_shaft() {
     for rpm in ["5", "-0.5", "3000"] {
         let error = Desk::new(&format!("rpm={rpm}")).prepare(set(0, true)).unwrap_err();
         assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error:?}");
@@ -28,7 +28,7 @@ fn a_moving_shaft_is_refused_when_planning_and_when_writing() {
 }
 
 #[test]
-fn the_five_lowest_bits_are_kept_by_default() {
+fn keeps_five_lowest_bits_by_default() {
     // The SKM36 has 128 · 32 · 4096 positions and is at 000E0531h, which is phase 17.
     for (wanted, expected) in [(0, 17), (1, 17), (32, 17), (34, 49), (0x1234, 0x1231), (0x00FF_FFFF, 0x00FF_FFF1)] {
         let mut desk = Desk::new("");
@@ -42,7 +42,7 @@ fn the_five_lowest_bits_are_kept_by_default() {
 }
 
 #[test]
-fn the_previous_position_is_recorded() {
+fn records_previous_position() {
     let mut desk = Desk::new("");
     let done = desk.change(set(0, true)).unwrap();
     assert_eq!(backup(&done.backup.unwrap()).recorded.position, Some(0x000E_0531));
@@ -75,7 +75,7 @@ fn setting_zero_may_dither() {
 }
 
 #[test]
-fn only_a_kit_encoder_is_synchronised() {
+fn synchronises_only_kit_encoders() {
     let synchronise = |kit| Change::SetPosition { wanted: 0x40, exact: true, synchronise: true, kit };
     for kit in [false, true] {
         let error = Desk::new("").prepare(synchronise(kit)).unwrap_err();
@@ -91,7 +91,7 @@ fn only_a_kit_encoder_is_synchronised() {
 
 /// A position has the time at which the encoder sampled it.
 #[test]
-fn a_position_has_its_sampling_time() {
+fn position_has_sampling_time() {
     for query in ["rpm=3000", "rpm=-1200&fault=delay:60", "rpm=500&fault=delay:33&echo=on", "rpm=3000&pace=worst"] {
         let mut desk = Desk::new(query);
         for _ in 0..50 {
@@ -109,7 +109,7 @@ fn a_position_has_its_sampling_time() {
 
 /// A full cycle consists of request, timeout, processing, reply and dead time. The goal is 95 % of the resulting rate.
 #[test]
-fn polling_is_as_fast_as_the_protocol_allows() {
+fn polls_at_full_protocol_speed() {
     for byte in [0xE0, 0xE4, 0xE5, 0xE6, 0xA6] {
         let settings = LineSettings::from_byte(byte);
         let mut station = Station::new(MARGIN);
@@ -133,7 +133,7 @@ fn polling_is_as_fast_as_the_protocol_allows() {
 
 /// Stray bytes between requests are not part of the next reply. They do not count as a try or lower the line quality.
 #[test]
-fn bytes_received_in_a_pause_are_not_part_of_a_reply() {
+fn reply_excludes_bytes_received_in_pause() {
     let mut desk = Desk::new("");
     desk.run(HiperfaceJob::Position(None)).unwrap();
     let now = desk.clock.now();

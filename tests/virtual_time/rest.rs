@@ -16,7 +16,7 @@ fn rest(desk: &mut Desk) -> Result<RestPosition, JobError> {
 
 /// At three quarters of a period, the counts are 409 and 511. On the scale, 511.5 is 0 V and 1023 is 5 V.
 #[test]
-fn both_channels_are_read_between_two_position_readings() {
+fn reads_channels_between_positions() {
     let mut desk = Desk::new("position=3224");
     let RestPosition { raw, valid, signals } = rest(&mut desk).unwrap();
     assert_eq!((raw, valid), (3224, true));
@@ -28,7 +28,7 @@ fn both_channels_are_read_between_two_position_readings() {
 }
 
 #[test]
-fn a_moving_shaft_or_a_missing_position_is_refused() {
+fn rejects_moving_shaft_and_missing_position() {
     for rpm in ["60", "-0.5"] {
         let error = rest(&mut Desk::new(&format!("rpm={rpm}"))).unwrap_err();
         assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error:?}");
@@ -39,7 +39,7 @@ fn a_moving_shaft_or_a_missing_position_is_refused() {
 
 /// The shaft turns so slowly that it appears to be at rest for 0.2 s, but not for the whole reading.
 #[test]
-fn a_creeping_shaft_is_detected_at_the_end() {
+fn detects_creeping_shaft_at_end() {
     let mut desk = Desk::new("position=100");
     let now = desk.clock.now();
     // At 6.7 steps of 1/4096 turn per second, the shaft moves by one step while it is watched, and by two more until

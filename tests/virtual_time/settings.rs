@@ -26,7 +26,7 @@ fn station_for(settings: LineSettings) -> Station {
 }
 
 #[test]
-fn a_restart_with_any_stored_settings_is_followed() {
+fn follows_restart_with_any_stored_settings() {
     for byte in [0xE4, 0xE0, 0xE6, 0xC4, 0xF5, 0xA4, 0x85, 0x64] {
         let settings = LineSettings::from_byte(byte);
         let mut desk = Desk::with_station(&format!("settings={byte}"), station_for(settings));
@@ -43,7 +43,7 @@ fn a_restart_with_any_stored_settings_is_followed() {
 }
 
 #[test]
-fn stored_settings_apply_after_the_restart_and_not_before() {
+fn stored_settings_apply_after_restart() {
     for byte in [0xE5, 0xC6, 0xB2] {
         let settings = LineSettings::from_byte(byte);
         let mut desk = Desk::new("");
@@ -58,7 +58,7 @@ fn stored_settings_apply_after_the_restart_and_not_before() {
 }
 
 #[test]
-fn temporary_settings_apply_immediately_until_the_restart() {
+fn temporary_settings_apply_until_restart() {
     for byte in [0xE6, 0xC0, 0xF5, 0xA6] {
         let settings = LineSettings::from_byte(byte);
         let mut desk = Desk::new("");
@@ -74,7 +74,7 @@ fn temporary_settings_apply_immediately_until_the_restart() {
 
 /// The replies to 55h and 67h announce a waiting status code. The encoder has accepted the new settings nevertheless.
 #[test]
-fn an_encoder_that_warns_while_changing_settings_is_followed() {
+fn follows_encoder_warning_during_change() {
     let warn = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().queue_code(StatusCode::TEMPERATURE);
     for at in 0..12 {
         let mut desk = Desk::new("");
@@ -109,7 +109,7 @@ fn warn_at(desk: &mut Desk, frame: usize) {
 }
 
 #[test]
-fn all_codes_of_the_start_are_read() {
+fn reads_all_startup_codes() {
     let mut desk = Desk::new("temperature=130");
     // One from before the restart and one from the restart itself. Neither is lost.
     assert_eq!(reset(&mut desk), [StatusCode::TEMPERATURE; 2]);
@@ -124,7 +124,7 @@ fn all_codes_of_the_start_are_read() {
 
 /// Two encoders with the same address could no longer be addressed separately.
 #[test]
-fn an_address_in_use_is_refused() {
+fn rejects_address_in_use() {
     let mut desk = Desk::new("encoders=3");
     let refused = desk.prepare(Change::SetAddress(DeviceAddress::new(0x42).unwrap()));
     assert!(refused.is_err(), "{refused:?}");

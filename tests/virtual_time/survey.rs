@@ -19,7 +19,7 @@ fn survey(desk: &mut Desk) -> Survey {
 }
 
 #[test]
-fn a_survey_is_complete_and_reads_each_byte_once() {
+fn survey_reads_each_byte_once() {
     let mut desk = Desk::new("");
     let seen = survey(&mut desk);
     assert_eq!(seen.identity.serial.serial_number, "GB0450179");
@@ -38,7 +38,7 @@ fn a_survey_is_complete_and_reads_each_byte_once() {
 }
 
 #[test]
-fn a_temporarily_unavailable_value_is_no_error() {
+fn temporarily_unavailable_value_is_no_error() {
     let mut desk = Desk::new("rpm=9000");
     let seen = survey(&mut desk);
     assert!(
@@ -48,7 +48,7 @@ fn a_temporarily_unavailable_value_is_no_error() {
 }
 
 #[test]
-fn a_noted_access_code_is_neither_sent_nor_printed() {
+fn noted_access_code_stays_secret() {
     let mut desk = Desk::new("codes=0:66");
     let number = AccessCodeNumber::ZERO;
     let locked = survey(&mut desk);
@@ -79,7 +79,7 @@ fn check(desk: &mut Desk) -> Vec<HiperfaceStepResult> {
 
 /// The other fields are still read, and line errors are counted (issue 22.11).
 #[test]
-fn one_unreadable_field_leaves_the_rest_usable() {
+fn unreadable_field_leaves_others_usable() {
     // The reply to 4Ah on data field 0 is damaged or missing each time. In the third case it is the reply to 4Ch, so
     // that not even the field's status is known.
     let troubles: [(&str, bool, &[u8]); 3] =
@@ -118,7 +118,7 @@ fn one_unreadable_field_leaves_the_rest_usable() {
 
 /// An encoder that no longer answers must not be reported as a field that cannot be read.
 #[test]
-fn a_silent_encoder_ends_the_survey() {
+fn silent_encoder_ends_survey() {
     let mut desk = two_fields();
     let sent = desk.tap().sent.len();
     survey(&mut desk);
@@ -152,7 +152,7 @@ fn noted(desk: &Desk) -> Vec<String> {
 /// Request 50h removes a code from the encoder. The logbook must therefore contain it before it is shown, whichever
 /// command reads it, and even if that job fails (issue 22.10).
 #[test]
-fn a_status_code_that_was_read_is_logged() {
+fn logs_read_status_codes() {
     let mut desk = Desk::new("");
     let report = |desk: &Desk, codes: &[StatusCode]| {
         codes.iter().for_each(|code| desk.bus().encoder_mut(0).unwrap().queue_code(*code))

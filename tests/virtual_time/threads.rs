@@ -77,7 +77,7 @@ pub(crate) fn identify() -> HiperfaceJob {
 }
 
 #[test]
-fn a_second_job_is_refused_and_a_stop_ends_a_search_immediately() {
+fn rejects_second_job_during_search() {
     let mut bench = in_real_time("settings=0xE0&address=0x5F");
     let id = bench.worker.submit(search()).unwrap();
     assert!(bench.worker.is_busy());
@@ -97,7 +97,7 @@ fn a_second_job_is_refused_and_a_stop_ends_a_search_immediately() {
 }
 
 #[test]
-fn each_job_starts_once_and_ends_once() {
+fn job_starts_and_ends_once() {
     let mut bench = in_virtual_time("");
     for round in 0..50 {
         let id = bench.worker.submit(if round % 5 == 4 { search() } else { identify() }).unwrap();
@@ -112,7 +112,7 @@ fn each_job_starts_once_and_ends_once() {
 
 /// The job reports 672 steps of progress, which are never read. It still ends, and its result can be read afterwards.
 #[test]
-fn a_job_ends_without_a_reader() {
+fn job_ends_without_reader() {
     let mut bench = in_virtual_time("settings=0xE0");
     let id = bench.worker.submit(search()).unwrap();
     let started = Instant::now();
@@ -138,7 +138,7 @@ fn a_job_ends_without_a_reader() {
 }
 
 #[test]
-fn a_dropped_worker_ends_its_thread_even_during_a_job() {
+fn dropped_worker_ends_thread_during_job() {
     for busy in [true, false] {
         let mut bench = in_real_time("settings=0xE0");
         if busy {
@@ -158,7 +158,7 @@ fn a_dropped_worker_ends_its_thread_even_during_a_job() {
 }
 
 #[test]
-fn a_closed_worker_has_ended_even_during_a_job() {
+fn closed_worker_has_ended_during_job() {
     for busy in [true, false] {
         let mut bench = in_real_time("settings=0xE0");
         if busy {
@@ -171,7 +171,7 @@ fn a_closed_worker_has_ended_even_during_a_job() {
 }
 
 #[test]
-fn an_ending_worker_still_reports_the_end_of_its_job() {
+fn ending_worker_reports_end_of_job() {
     let mut bench = in_real_time("settings=0xE0");
     let id = bench.worker.submit(search()).unwrap();
     let ending = bench.worker.end();
@@ -182,7 +182,7 @@ fn an_ending_worker_still_reports_the_end_of_its_job() {
 
 /// A stop from any thread ends the running job, but no job that is submitted later.
 #[test]
-fn a_stop_applies_to_one_job() {
+fn stop_applies_to_one_job() {
     let mut bench = in_virtual_time("");
     let stop_handle = bench.worker.stop_handle();
     stop_handle.stop();
@@ -199,7 +199,7 @@ fn a_stop_applies_to_one_job() {
 
 /// No job is accepted while there are unread events.
 #[test]
-fn unread_events_prevent_a_new_job() {
+fn unread_events_prevent_new_job() {
     let mut bench = in_virtual_time("");
     let mut jobs = 0;
     let refused = loop {
@@ -222,7 +222,7 @@ fn unread_events_prevent_a_new_job() {
 }
 
 #[test]
-fn a_link_lost_while_idle_is_reported_once() {
+fn reports_idle_link_loss_once() {
     let mut bench = in_virtual_time("");
     bench.worker.submit(identify()).unwrap();
     until_end(&bench.worker);

@@ -72,7 +72,7 @@ fn watched_values_alternate_with_positions() {
 }
 
 #[test]
-fn nothing_is_watched_without_polling() {
+fn watches_nothing_without_polling() {
     let bench = in_virtual_time("");
     bench.worker.watch_values(vec![(TEMPERATURE, ALWAYS)]);
     nothing_comes(&bench);
@@ -89,7 +89,7 @@ fn nothing_is_watched_without_polling() {
 }
 
 #[test]
-fn a_missing_channel_is_reported_once_and_polling_continues() {
+fn missing_channel_does_not_stop_polling() {
     let bench = in_virtual_time("");
     let temperature = Some((TEMPERATURE, Some(42)));
     assert_eq!(
@@ -108,7 +108,7 @@ fn a_missing_channel_is_reported_once_and_polling_continues() {
 }
 
 #[test]
-fn a_watched_reading_includes_its_status_codes() {
+fn watched_reading_includes_status_codes() {
     let mut desk = Desk::new("");
     let WatchReply::Refused(PolledSample::Watched(refusal)) = desk.session.watch_value(&MISSING).unwrap() else {
         panic!()
@@ -148,7 +148,7 @@ fn watching_continues_around_jobs() {
 }
 
 #[test]
-fn a_lost_line_ends_polling_and_is_reported_once() {
+fn lost_line_ends_polling() {
     // The encoder sends five replies: type label, position, temperature, position, temperature.
     let bench = in_virtual_time("fault=silent-after:5");
     bench.worker.watch_values(vec![(TEMPERATURE, ALWAYS)]);
@@ -171,7 +171,7 @@ fn a_lost_line_ends_polling_and_is_reported_once() {
 }
 
 #[test]
-fn rarely_watched_values_do_not_delay_others() {
+fn rarely_watched_values_delay_no_others() {
     let bench = in_virtual_time("");
     bench.worker.poll(BACK_TO_BACK);
     bench.worker.watch_values(vec![(TEMPERATURE, Duration::from_secs(3600))]);

@@ -13,7 +13,7 @@ use super::support::{Bus, at};
 
 /// At 1234h turns and 18000h steps, the frame is 024698000CF (BiSS reference 2).
 #[test]
-fn registers_and_position_are_read() {
+fn reads_registers_and_position() {
     let mut bus = Bus::new("temperature=25");
     assert_eq!(bus.master().read(at("0x66")), Ok(75));
     assert_eq!(bus.master().read_consecutive(at("0x7E"), 2), Ok(b"Fr".to_vec()));
@@ -32,7 +32,7 @@ fn registers_and_position_are_read() {
 
 /// The clock is divided from 60 MHz: 60/9 MHz is the highest available clock below the requested one.
 #[test]
-fn the_clock_is_the_nearest_the_adapter_can_divide() {
+fn clock_is_nearest_divider() {
     let mut bus = Bus::new("");
     bus.station.clock_hz = 7_000_000;
     bus.master().position().unwrap();
@@ -40,7 +40,7 @@ fn the_clock_is_the_nearest_the_adapter_can_divide() {
 }
 
 #[test]
-fn error_and_warning_are_read_with_the_position() {
+fn position_has_error_and_warning() {
     let mut bus = Bus::new("errors=0x10&temperature=130");
     let reading = bus.master().position().unwrap();
     assert_eq!((reading.error, reading.warning, reading.is_valid()), (Some(true), Some(true), false));
@@ -48,7 +48,7 @@ fn error_and_warning_are_read_with_the_position() {
 
 /// The shaft turns half a revolution, or 65536 steps, per second.
 #[test]
-fn a_position_has_the_time_of_its_sampling() {
+fn position_has_sampling_time() {
     let mut bus = Bus::new("rpm=30&position=0");
     for _ in 0..20 {
         let reading = bus.master().position().unwrap();
@@ -59,7 +59,7 @@ fn a_position_has_the_time_of_its_sampling() {
 }
 
 #[test]
-fn a_bank_is_selected_again_only_if_it_may_have_changed() {
+fn reselects_bank_only_after_possible_change() {
     let mut bus = Bus::new("");
     let mut master = bus.master();
     assert_eq!(
@@ -82,7 +82,7 @@ fn a_bank_is_selected_again_only_if_it_may_have_changed() {
 
 /// A short loss of power resets the selected bank to 0.
 #[test]
-fn a_restart_is_detected_by_its_silence() {
+fn silence_reveals_restart() {
     let mut bus = Bus::new("");
     assert_eq!(bus.master().read(at("0x03:0x0A")), Ok(16));
     let (now, device) = (Moment::from_elapsed(bus.now()), bus.device.clone());
@@ -95,7 +95,7 @@ fn a_restart_is_detected_by_its_silence() {
 }
 
 #[test]
-fn writes_are_verified_by_readback() {
+fn verifies_writes_by_readback() {
     let mut bus = Bus::new("");
     let error = bus.master().write(at("0x6A"), 7).unwrap_err();
     assert_eq!(error, Error::Refused { address: at("0x6A"), value: 7, reads: Some(0) });
@@ -108,7 +108,7 @@ fn writes_are_verified_by_readback() {
 }
 
 #[test]
-fn a_write_with_a_lost_reply_is_read_back_and_a_command_is_unclear() {
+fn lost_reply_makes_command_unclear() {
     let mut bus = Bus::new("rpm=1000");
     for (place, value) in [("0x6B", 0x2A), ("0x6A", 0x02)] {
         let next = bus.tap().sent.len();
@@ -125,13 +125,13 @@ fn a_write_with_a_lost_reply_is_read_back_and_a_command_is_unclear() {
 }
 
 #[test]
-fn a_missing_register_is_distinguished_from_a_missing_encoder() {
+fn distinguishes_missing_register_from_missing_encoder() {
     let mut bus = Bus::new("");
     assert_eq!(bus.master().read(at("0x44:0x00")), Err(Error::NoSuchRegister { address: at("0x44:0x00") }));
 }
 
 #[test]
-fn each_stuck_wire_has_its_own_error() {
+fn each_stuck_wire_has_own_error() {
     let cases = [
         ("line=open", "no encoder acknowledges on the bus (attempts: 5)"),
         ("line=low", "the data line stays low (attempts: 5)"),
@@ -148,7 +148,7 @@ fn each_stuck_wire_has_its_own_error() {
 }
 
 #[test]
-fn frames_with_wrong_checksums_are_counted_and_retried() {
+fn counts_and_retries_corrupt_frames() {
     let mut bus = Bus::new("noise=0.15&seed=3");
     let (mut right, mut wrong) = (0, 0);
     for _ in 0..200 {
@@ -163,7 +163,7 @@ fn frames_with_wrong_checksums_are_counted_and_retried() {
 }
 
 #[test]
-fn wrong_widths_are_reported() {
+fn reports_wrong_widths() {
     let narrow = Layout::new(12, 13, true, true, Crc::new(Crc::POSITION, 0, true).ok()).unwrap();
     let mut bus = Bus::new("rpm=60");
     bus.station.layout = Some(narrow);
@@ -180,7 +180,7 @@ fn wrong_widths_are_reported() {
 }
 
 #[test]
-fn another_version_is_refused_naming_both() {
+fn version_error_names_both_versions() {
     let mut bus = Bus::new("version=2");
     let error = bus.master().read(at("0x66")).unwrap_err();
     assert_eq!(error.to_string(), "the adapter uses version 2 of the bridge protocol, but this program uses version 1");
@@ -188,7 +188,7 @@ fn another_version_is_refused_naming_both() {
 }
 
 #[test]
-fn a_silent_adapter_is_asked_twice() {
+fn silent_adapter_is_asked_twice() {
     let mut bus = Bus::new("fault=silent-after:0");
     let error = bus.master().position().unwrap_err();
     assert_eq!(error, Error::Adapter(AdapterError::Silent));
@@ -200,7 +200,7 @@ fn a_silent_adapter_is_asked_twice() {
 }
 
 #[test]
-fn the_supply_is_switched_on_if_requested() {
+fn switches_supply_on_if_requested() {
     let mut bus = Bus::new("supply=switched");
     let error = bus.master().position().unwrap_err();
     assert_eq!(error, Error::NoAcknowledge { tries: 5, supply_off: true });
@@ -217,7 +217,7 @@ fn the_supply_is_switched_on_if_requested() {
 
 /// The noise is between host and adapter, where packets have a 16-bit CRC, not between adapter and encoder.
 #[test]
-fn a_noisy_wire_to_the_adapter_yields_correct_values_or_errors() {
+fn noisy_adapter_wire_yields_no_wrong_values() {
     let (mut right, mut failed) = (0, 0);
     for noise in ["drop:0.01", "flip:0.01", "garbage:0.01"] {
         for seed in 0..10 {

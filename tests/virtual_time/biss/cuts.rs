@@ -176,33 +176,33 @@ fn assert_all_steps(prepared: &Prepared, hit: &[ProcedureStep], name: &str, cont
 }
 
 #[test]
-fn a_data_write_cut_at_any_exchange_can_return_to_operation() {
+fn interrupted_data_write_returns_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[0], *way));
 }
 
 #[test]
-fn a_filter_change_cut_at_any_exchange_can_return_to_operation() {
+fn interrupted_filter_change_returns_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[1], *way));
 }
 
 #[test]
-fn a_preset_cut_at_any_exchange_can_return_to_operation() {
+fn interrupted_preset_returns_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[2], *way));
 }
 
 #[test]
-fn a_calibration_cut_at_any_exchange_can_return_to_operation() {
+fn interrupted_calibration_returns_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[3], *way));
 }
 
 #[test]
-fn a_wiegand_test_cut_at_any_exchange_can_return_to_operation() {
+fn interrupted_wiegand_test_returns_to_operation() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[4], *way));
 }
 
 /// The encoder restarts in operation, and nothing is partially stored.
 #[test]
-fn power_lost_before_any_exchange_leaves_operation_mode() {
+fn power_loss_leaves_operation_mode() {
     for scene in &SCENES {
         let mut original = Bench::new(Transport::ConfigPin, "");
         let prepared = original.prepare((scene.change)()).unwrap();
@@ -245,7 +245,7 @@ fn power_lost_before_any_exchange_leaves_operation_mode() {
 
 /// The encoder loses its power while writing to its flash.
 #[test]
-fn power_lost_in_any_store_is_reported_and_recovered() {
+fn recovers_from_power_loss_during_store() {
     for scene in &SCENES {
         let mut original = Bench::new(Transport::ConfigPin, "");
         let prepared = original.prepare((scene.change)()).unwrap();
@@ -266,7 +266,7 @@ fn power_lost_in_any_store_is_reported_and_recovered() {
 
 /// The encoder is in operation afterwards, and the report lists the values that were written.
 #[test]
-fn cancelling_at_any_exchange_returns_to_operation() {
+fn cancelling_returns_to_operation() {
     for scene in &SCENES {
         let mut original = Bench::new(Transport::ConfigPin, "");
         let prepared = original.prepare((scene.change)()).unwrap();
@@ -299,7 +299,7 @@ fn cancelling_at_any_exchange_returns_to_operation() {
 /// The mounting run is interrupted at some exchanges of each operation. Operations completed before that are reported
 /// as done.
 #[test]
-fn an_interrupted_mounting_reports_the_finished_operations() {
+fn interrupted_mounting_reports_finished_operations() {
     let mut original = Bench::new(Transport::ConfigPin, "");
     let prepared = original.prepare(mounting()).unwrap();
     assert_eq!(prepared.plan.write_cycles(), 5);

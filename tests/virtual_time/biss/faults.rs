@@ -35,7 +35,7 @@ fn timeless(survey: Survey) -> Survey {
 }
 
 #[test]
-fn a_survey_over_a_bad_line_is_correct_or_an_error() {
+fn bad_line_survey_is_correct_or_fails() {
     let (mut right, mut failed) = (0, 0);
     for way in WAYS {
         let truth = timeless(survey(&mut Bench::new(way, "")).unwrap());
@@ -68,7 +68,7 @@ fn a_survey_over_a_bad_line_is_correct_or_an_error() {
 }
 
 #[test]
-fn echo_and_byte_order_do_not_change_read_values() {
+fn echo_and_byte_order_keep_values() {
     let truth = timeless(survey(&mut Bench::new(Transport::ConfigPin, "")).unwrap());
     for query in ["echo=on", "order=high-first", "echo=on&order=high-first"] {
         let mut bench = Bench::new(Transport::ConfigPin, query);
@@ -84,7 +84,7 @@ fn echo_and_byte_order_do_not_change_read_values() {
 
 /// The line is cut at every hundredth exchange. Within ten seconds, the job reports that the encoder does not answer.
 #[test]
-fn silence_ends_a_survey_within_ten_seconds() {
+fn silence_ends_survey_in_ten_seconds() {
     for way in WAYS {
         for frames in (0..170).step_by(17) {
             let mut bench = Bench::new(way, "");
@@ -98,7 +98,7 @@ fn silence_ends_a_survey_within_ten_seconds() {
 }
 
 #[test]
-fn a_lost_link_ends_everything_immediately() {
+fn lost_link_ends_everything() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         bench.tap().lost_from = Some(40);
@@ -108,7 +108,7 @@ fn a_lost_link_ends_everything_immediately() {
 }
 
 #[test]
-fn cancelling_takes_effect_between_two_exchanges() {
+fn cancels_between_exchanges() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         bench.session.set_cancel(CancelToken::after_transactions(60));
@@ -119,7 +119,7 @@ fn cancelling_takes_effect_between_two_exchanges() {
 
 /// A replayed recording gives the same replies as the encoder did.
 #[test]
-fn a_recording_of_either_interface_can_be_replayed() {
+fn replays_recordings_of_both_interfaces() {
     for way in WAYS {
         let entries = Arc::<Mutex<Vec<TraceEntry>>>::default();
         let mut bench = Bench::new(way, "serial=4711");

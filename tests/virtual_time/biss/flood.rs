@@ -48,7 +48,7 @@ impl ByteLink for Flood {
 
 /// The trace keeps a limited number of noise bytes, and the job ends even if the noise does not (issue 22.11).
 #[test]
-fn a_flood_of_noise_takes_bounded_memory_and_time() {
+fn noise_flood_takes_bounded_memory_and_time() {
     for (way, noise) in [
         (Transport::ConfigPin, 0x55),
         (Transport::ConfigPin, 0x80),

@@ -58,7 +58,7 @@ const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
 /// The expected values are from appendix 9.1 of the manual. The serial number is that of the virtual encoder.
 #[test]
-fn a_survey_over_both_interfaces_is_complete() {
+fn survey_is_complete_over_both_interfaces() {
     for way in WAYS {
         let mut bench = Bench::new(way, "serial=1234567&temperature=25&errors=0x12&filter=dynamic");
         let survey = survey(&mut bench);
@@ -107,7 +107,7 @@ fn a_survey_over_both_interfaces_is_complete() {
 
 /// Errors and warnings exist since firmware 1.6.0, the filter since 1.1.0, the preset since 1.2.0 (manual).
 #[test]
-fn features_missing_in_older_firmware_are_absent() {
+fn older_firmware_lacks_features() {
     let mut bench = Bench::new(Transport::Adapter, "firmware=1.0.9&errors=0x10");
     let survey = survey(&mut bench);
     assert_eq!((&survey.status.errors, &survey.status.warnings, survey.status.filter), (&None, &None, None));
@@ -119,7 +119,7 @@ fn features_missing_in_older_firmware_are_absent() {
 }
 
 #[test]
-fn status_and_position_identify_the_encoder_themselves() {
+fn status_and_position_identify_encoder() {
     for way in WAYS {
         let mut bench = Bench::new(way, "temperature=130&position=0x20001");
         let status = status(&mut bench);
@@ -140,7 +140,7 @@ fn status_and_position_identify_the_encoder_themselves() {
 }
 
 #[test]
-fn registers_and_banks_are_read() {
+fn reads_registers_and_banks() {
     for way in WAYS {
         let mut bench = Bench::new(way, "temperature=25");
         let mut read = |job| match bench.run(job) {
@@ -159,7 +159,7 @@ fn registers_and_banks_are_read() {
 
 /// Data must not be accessed while the motor runs (manual 6.5).
 #[test]
-fn data_is_not_read_while_the_shaft_turns() {
+fn does_not_read_data_while_turning() {
     for way in WAYS {
         let mut bench = Bench::new(way, "rpm=60");
         for job in [BissJob::Save, BissJob::ReadBank(0x24), BissJob::Read("0x04:0x00".parse().unwrap())] {
@@ -174,7 +174,7 @@ fn data_is_not_read_while_the_shaft_turns() {
 }
 
 #[test]
-fn everything_restorable_is_saved_over_both_interfaces() {
+fn saves_everything_restorable() {
     for way in WAYS {
         let mut bench = Bench::new(way, "serial=77&filter=dynamic");
         let profile = save(&mut bench).unwrap();
@@ -199,7 +199,7 @@ fn everything_restorable_is_saved_over_both_interfaces() {
 /// In mode 04, the data registers contain values that were written but not saved (reference 5.3). They are reported,
 /// marked and not compared. Reading must not return the encoder to operation, which would discard them (issue 22.15).
 #[test]
-fn unsaved_registers_are_marked_and_not_compared() {
+fn unsaved_registers_are_not_compared() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         let held = bench.encoder_reads(at("0x24:0x10")).unwrap();
@@ -225,7 +225,7 @@ fn unsaved_registers_are_marked_and_not_compared() {
 }
 
 #[test]
-fn a_save_reports_progress_and_can_be_cancelled() {
+fn save_reports_progress_and_can_be_cancelled() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let mut told = Vec::new();
     let end = bench.session.run(JobId::default(), BissJob::Save, &mut |event| {
@@ -246,7 +246,7 @@ fn a_save_reports_progress_and_can_be_cancelled() {
 
 /// Whatever the fault of the line, a saved profile is correct or there is an error.
 #[test]
-fn a_save_over_a_noisy_line_is_correct_or_an_error() {
+fn save_over_noise_is_correct_or_fails() {
     let (mut saved, mut failed) = (0, 0);
     let truth = save(&mut Bench::new(Transport::ConfigPin, "")).unwrap();
     for noise in ["drop:0.002", "flip:0.002", "garbage:0.002", "flip:0.0003"] {
@@ -268,7 +268,7 @@ fn a_save_over_a_noisy_line_is_correct_or_an_error() {
 
 /// The device ID of another device by the same manufacturer is reported. The data common to all encoders are shown.
 #[test]
-fn a_device_id_without_a_description_is_reported() {
+fn reports_device_id_without_description() {
     let [(_, kit), (_, unknown)] = Descriptions::BUILT_IN;
     let other = kit.replace("device_id: (0x01, 0x01, 0x68, 0x11, 0x00, 0x01)", "device_id: (1, 1, 0x68, 0x11, 0, 2)");
     let (types, errors) = Descriptions::read([("other.ron", other.as_str()), ("unknown.ron", unknown)]);
@@ -294,7 +294,7 @@ fn a_device_id_without_a_description_is_reported() {
 }
 
 #[test]
-fn samples_and_watched_registers_are_read_one_by_one() {
+fn reads_samples_and_watched_registers_singly() {
     for way in WAYS {
         let mut bench = Bench::new(way, "temperature=25&rpm=60");
         let Ok(PolledSample::Position(first)) = bench.session.take_sample() else { panic!("no position") };
@@ -320,7 +320,7 @@ fn samples_and_watched_registers_are_read_one_by_one() {
 /// A word from the configuration pin has no error and warning bits, so each of their registers is read once per second
 /// (UBICOM reference 4). A frame contains both bits. Every position includes them.
 #[test]
-fn an_error_during_polling_marks_the_positions() {
+fn polling_error_marks_positions() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         let sample = |bench: &mut Bench| match bench.session.take_sample() {
@@ -353,7 +353,7 @@ fn an_error_during_polling_marks_the_positions() {
 
 /// Some frames are valid. Damaged frames are counted in the sample of the next valid one or form their own sample.
 #[test]
-fn polling_survives_damaged_frames() {
+fn polling_survives_corrupt_frames() {
     let mut bench = Bench::new(Transport::Adapter, "noise=0.6&seed=2");
     let (mut right, mut wrong) = (0, 0);
     for _ in 0..100 {
@@ -370,7 +370,7 @@ fn polling_survives_damaged_frames() {
 }
 
 #[test]
-fn links_open_the_interface_they_name() {
+fn link_opens_named_interface() {
     let root = tempfile::tempdir().unwrap();
     let open = |text: &str| open(&text.parse::<LinkUrl>().unwrap(), Store::at_root(root.path()));
     for (text, line) in
@@ -404,7 +404,7 @@ fn links_open_the_interface_they_name() {
 }
 
 #[test]
-fn broken_descriptions_are_reported_once_with_the_first_job() {
+fn reports_broken_descriptions_once() {
     let root = tempfile::tempdir().unwrap();
     let store = Store::at_root(root.path());
     fs::create_dir_all(store.device_folder("biss")).unwrap();

@@ -11,7 +11,7 @@ use super::support::{Pin, at};
 
 /// Temperature 75 is 25 °C. The position is 1234h turns and 18000h steps (UBICOM reference 6).
 #[test]
-fn registers_and_position_are_read_with_the_published_frames() {
+fn reads_with_published_frames() {
     let mut pin = Pin::new("temperature=25");
     assert_eq!(pin.master().read(at("0x66")), Ok(75));
     let reading = pin.master().position().unwrap();
@@ -32,7 +32,7 @@ fn registers_and_position_are_read_with_the_published_frames() {
 /// The shaft turns half a revolution per second. A position is sampled when the encoder begins to answer, one
 /// millisecond after the seven bytes of the request.
 #[test]
-fn a_position_has_the_time_of_its_first_bit() {
+fn position_has_time_of_first_bit() {
     let mut pin = Pin::new("rpm=30&position=0");
     let reading = pin.master().position().unwrap();
     let seconds = reading.at.since_start().as_secs_f64();
@@ -41,7 +41,7 @@ fn a_position_has_the_time_of_its_first_bit() {
 }
 
 #[test]
-fn the_byte_order_is_probed_once_or_given() {
+fn probes_byte_order_once() {
     for (word, order) in [("low-first", ByteOrder::LowFirst), ("high-first", ByteOrder::HighFirst)] {
         for given in [None, Some(order)] {
             let mut pin = Pin::new(&format!("order={word}&temperature=30"));
@@ -56,7 +56,7 @@ fn the_byte_order_is_probed_once_or_given() {
 }
 
 #[test]
-fn echo_is_detected_and_removed_with_any_setting() {
+fn removes_echo_with_any_setting() {
     for (echoes, told) in [("on", Echo::On), ("off", Echo::Off)] {
         for setting in [Echo::Unknown, told] {
             let mut pin = Pin::new(&format!("echo={echoes}"));
@@ -75,7 +75,7 @@ fn echo_is_detected_and_removed_with_any_setting() {
 }
 
 #[test]
-fn silence_is_reported_after_five_tries_in_time() {
+fn reports_silence_after_five_tries() {
     let mut pin = Pin::new("fault=silent-after:0");
     pin.station.order = Some(ByteOrder::LowFirst);
     let error = pin.master().read(at("0x66")).unwrap_err();
@@ -91,7 +91,7 @@ fn silence_is_reported_after_five_tries_in_time() {
 /// An encoder does not answer a request for a missing register, but answers other requests. The kit encoder has no bank
 /// 44h.
 #[test]
-fn a_missing_register_is_distinguished_from_a_missing_encoder() {
+fn distinguishes_missing_register_from_missing_encoder() {
     let mut pin = Pin::new("");
     let error = pin.master().read(at("0x44:0x00")).unwrap_err();
     assert_eq!(error.to_string(), "the encoder has no register 0x44:0x00");
@@ -103,7 +103,7 @@ fn a_missing_register_is_distinguished_from_a_missing_encoder() {
 }
 
 #[test]
-fn a_refused_write_is_reported_and_not_retried() {
+fn rejected_write_is_not_retried() {
     let mut pin = Pin::new("");
     let error = pin.master().write(at("0x6A"), 7).unwrap_err();
     assert_eq!(error, Error::Refused { address: at("0x6A"), value: 7, reads: None });
@@ -115,7 +115,7 @@ fn a_refused_write_is_reported_and_not_retried() {
 
 /// The request or its reply is lost. A stored value is read back, and written again only if necessary.
 #[test]
-fn a_write_with_a_lost_reply_is_read_back() {
+fn write_with_lost_reply_is_read_back() {
     for request_lost in [false, true] {
         let mut pin = Pin::new("");
         pin.station.order = Some(ByteOrder::LowFirst);
@@ -131,7 +131,7 @@ fn a_write_with_a_lost_reply_is_read_back() {
 /// The command starts a Wiegand test. The encoder cannot report whether it received the command, so it must not be
 /// repeated.
 #[test]
-fn a_command_with_a_lost_reply_is_unclear_and_never_repeated() {
+fn command_with_lost_reply_is_not_retried() {
     for request_lost in [false, true] {
         let mut pin = Pin::new("rpm=1000");
         pin.master().write(at("0x6B"), 0x2A).unwrap();
@@ -147,7 +147,7 @@ fn a_command_with_a_lost_reply_is_unclear_and_never_repeated() {
 
 /// If the connection is lost during a write, the result is unknown.
 #[test]
-fn a_write_that_lost_its_wire_is_unclear() {
+fn write_is_unclear_after_wire_loss() {
     let mut pin = Pin::new("");
     pin.station.order = Some(ByteOrder::LowFirst);
     pin.tap().lost_from = Some(0);
@@ -157,7 +157,7 @@ fn a_write_that_lost_its_wire_is_unclear() {
 }
 
 #[test]
-fn a_write_that_cannot_be_read_back_is_unclear() {
+fn write_is_unclear_without_readback() {
     let mut pin = Pin::new("");
     pin.station.order = Some(ByteOrder::LowFirst);
     pin.tap().mute_from = Some(0);
@@ -168,7 +168,7 @@ fn a_write_that_cannot_be_read_back_is_unclear() {
 }
 
 #[test]
-fn cancelling_takes_effect_between_exchanges_and_not_in_a_shield() {
+fn cancels_between_exchanges_outside_shield() {
     let mut pin = Pin::new("");
     pin.cancel = CancelToken::after_transactions(3);
     assert_eq!(pin.master().read_consecutive(at("0x02:0x00"), 64), Err(Error::Cancelled));
@@ -182,7 +182,7 @@ fn cancelling_takes_effect_between_exchanges_and_not_in_a_shield() {
 /// The encoder is silent for five seconds during calibration. A normal request returns an error, and one with a longer
 /// time limit returns the status.
 #[test]
-fn a_long_silence_is_tolerated_with_patience() {
+fn patience_tolerates_long_silence() {
     let mut pin = Pin::new("rpm=-500&calibration=7");
     for (place, value) in [("0x6B", 0x2A), ("0x6A", 0x01), ("0x00:0x00", 0x01)] {
         pin.master().write(at(place), value).unwrap();
@@ -203,7 +203,7 @@ fn a_long_silence_is_tolerated_with_patience() {
 /// Two damaged frames with matching checksums would give a wrong value. Because values are confirmed, none is wrong in
 /// these runs.
 #[test]
-fn a_noisy_line_yields_correct_values_or_errors() {
+fn noisy_line_yields_no_wrong_values() {
     let (mut right, mut failed) = (0, 0);
     for noise in ["drop:0.02", "flip:0.02", "garbage:0.02", "drop:0.01,flip:0.01,garbage:0.01"] {
         for seed in 0..12 {
@@ -227,7 +227,7 @@ fn a_noisy_line_yields_correct_values_or_errors() {
 }
 
 #[test]
-fn writes_over_a_noisy_line_report_their_true_result() {
+fn noisy_writes_report_true_result() {
     for noise in ["drop:0.03", "flip:0.03", "garbage:0.03"] {
         for seed in 0..20 {
             let mut pin = Pin::new(&format!("seed={seed}&fault={noise}"));
@@ -246,7 +246,7 @@ fn writes_over_a_noisy_line_report_their_true_result() {
 /// Noise that looks like the start of a frame hides the following bytes until that frame ends. Both sides end it after
 /// 20 ms of silence.
 #[test]
-fn replies_are_read_again_after_garbage() {
+fn reads_replies_again_after_garbage() {
     let mut pin = Pin::new("temperature=25");
     pin.tap().foreign.extend([0x80, 0x01, 0x01, 0x3F, 0x00]);
     assert_eq!(pin.master().read(at("0x66")), Ok(75));
@@ -258,7 +258,7 @@ fn replies_are_read_again_after_garbage() {
 
 /// Damaged replies are counted, and the trace contains their bytes (issue 22.11).
 #[test]
-fn damaged_replies_are_counted_and_reported() {
+fn counts_and_reports_corrupt_replies() {
     let mut pin = Pin::new("");
     // Over the pin, the temperature is 0026h (UBICOM reference 6).
     pin.tap().broken_to = Some(vec![0x80, 1, 1, 2, 0, 0x26]);

@@ -41,7 +41,7 @@ fn assert_steps(bench: &mut Bench, change: Change) -> TestOperator {
 
 /// The counterclockwise run comes first. Each run takes about 5 s, and the result is saved automatically (manual 6.4).
 #[test]
-fn a_calibration_runs_both_ways_and_costs_one_flash_cycle() {
+fn calibration_costs_one_flash_cycle() {
     for way in WAYS {
         for silent in ["on", "off"] {
             let mut bench = Bench::new(way, &format!("calibration-silent={silent}&temperature=30"));
@@ -75,7 +75,7 @@ fn a_calibration_runs_both_ways_and_costs_one_flash_cycle() {
 
 /// The test takes 515 revolutions, which is 30.9 s at 1000 rpm (manual 6.3).
 #[test]
-fn a_wiegand_test_returns_results_and_saves_them_on_request() {
+fn wiegand_test_saves_results_on_request() {
     for way in WAYS {
         for save in [false, true] {
             let mut bench = Bench::new(way, "pulses=6.3,5.8");
@@ -108,7 +108,7 @@ fn a_wiegand_test_returns_results_and_saves_them_on_request() {
 
 /// Data are written register by register and saved once (manual 6.5).
 #[test]
-fn data_is_written_register_by_register_and_saved_once() {
+fn writes_data_by_register_and_saves_once() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         let before = bench.flash_cycles();
@@ -127,7 +127,7 @@ fn data_is_written_register_by_register_and_saved_once() {
 
 /// Selecting a filter restarts the encoder (manual 6.6).
 #[test]
-fn a_filter_is_selected_with_a_restart() {
+fn selects_filter_with_restart() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         let (before, from) = (bench.flash_cycles(), bench.now());
@@ -143,7 +143,7 @@ fn a_filter_is_selected_with_a_restart() {
 
 /// 270° is 18000h, which the registers store as 00 80 01 (manual 6.7).
 #[test]
-fn a_preset_is_stored_and_executed_with_two_restarts() {
+fn preset_takes_two_restarts() {
     for way in WAYS {
         let mut bench = Bench::new(way, "position=0x20007");
         let before = bench.flash_cycles();
@@ -171,7 +171,7 @@ fn a_preset_is_stored_and_executed_with_two_restarts() {
 
 /// The run covers temperature, calibration, Wiegand test, preset and OEM data. The motor turns and stops in between.
 #[test]
-fn a_mounting_is_one_run_with_a_report() {
+fn mounting_is_one_run_with_report() {
     let mut bench = Bench::new(Transport::ConfigPin, "temperature=33");
     let mut wanted = bench.save();
     let listed = encoder_studio::devices::biss::profile::Bank { number: 0x24, bytes: [7; 64] };
@@ -215,7 +215,7 @@ fn a_mounting_is_one_run_with_a_report() {
 }
 
 #[test]
-fn a_part_of_a_run_can_be_skipped() {
+fn can_skip_part_of_run() {
     let first = MotorRun::CalibrationCounterclockwise;
     for (task, after) in [(first, None), (MotorRun::CalibrationClockwise, Some(first))] {
         let task = OperatorTask::Turn(task);
@@ -236,7 +236,7 @@ fn a_part_of_a_run_can_be_skipped() {
 }
 
 #[test]
-fn cancelling_at_the_motor_leaves_the_encoder_in_operation() {
+fn cancelling_at_motor_leaves_encoder_in_operation() {
     for (change, task) in [
         (calibration(), OperatorTask::Turn(MotorRun::CalibrationCounterclockwise)),
         (calibration(), OperatorTask::Turn(MotorRun::CalibrationClockwise)),
@@ -260,7 +260,7 @@ fn cancelling_at_the_motor_leaves_the_encoder_in_operation() {
 
 /// After the waiting time, the program reports the values that are still unsuitable and starts nothing.
 #[test]
-fn an_unattended_start_happens_when_ready_or_not_at_all() {
+fn unattended_run_starts_only_when_ready() {
     let cases = [
         ("rpm=0", calibration(), StartBlocker::NotTurning),
         ("rpm=500", calibration(), StartBlocker::WrongDirection),
@@ -304,7 +304,7 @@ fn an_unattended_start_happens_when_ready_or_not_at_all() {
 
 /// These are the possible errors in the calibration status (manual 6.4). An error in the second run loses the table.
 #[test]
-fn a_failed_calibration_reports_the_reason() {
+fn failed_calibration_reports_reason() {
     // Speed and direction change after the start of the run. Variation and temperature are set from the beginning.
     let cases = [
         (MotorRun::CalibrationCounterclockwise, "waver=5", None, CalibrationStatus::Failed),
@@ -352,7 +352,7 @@ fn a_failed_calibration_reports_the_reason() {
 
 /// The encoder detects these errors itself, although the measured values were suitable just before.
 #[test]
-fn the_encoder_decides_on_direction_speed_and_temperature() {
+fn encoder_checks_direction_speed_and_temperature() {
     type Spoil = fn(&mut encoder_studio::devices::biss::sim::Encoder, encoder_studio::units::Moment);
     let cases: [(Spoil, CalibrationStatus); 3] = [
         (|encoder, now| encoder.set_rpm(now, 500.0), CalibrationStatus::WrongDirection),
@@ -403,7 +403,7 @@ fn the_encoder_decides_on_direction_speed_and_temperature() {
 }
 
 #[test]
-fn a_run_that_never_ends_times_out() {
+fn endless_run_times_out() {
     // The motor stops, so the number of revolutions is never reached.
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(wiegand_test(false)).unwrap();
@@ -424,7 +424,7 @@ fn a_run_that_never_ends_times_out() {
 
 /// Obstacles known in advance are reported before anything is written.
 #[test]
-fn impossible_procedures_are_refused_beforehand() {
+fn rejects_impossible_procedures_beforehand() {
     let run = |calibrate, wiegand| MountingSteps { calibrate, wiegand, ..MountingSteps::default() };
     for run in [run(true, None), run(false, Some(true))] {
         let change = Change::Guided { run, motor: MotorSource::ThisEncoder };
@@ -453,7 +453,7 @@ fn impossible_procedures_are_refused_beforehand() {
 
 /// With old firmware, the filter register has no meaning because there is only one filter. Calibration still works.
 #[test]
-fn an_encoder_without_a_choice_of_filter_is_calibrated() {
+fn calibrates_encoder_without_filter_choice() {
     let mut bench = Bench::new(Transport::ConfigPin, "firmware=1.0.0");
     let written = bench.change(calibration()).unwrap().written;
     assert!(matches!(written.outcomes.as_slice(), [Outcome::Calibrated(_)]));
@@ -461,7 +461,7 @@ fn an_encoder_without_a_choice_of_filter_is_calibrated() {
 
 /// Another host has left the encoder in a device mode with the password set.
 #[test]
-fn an_encoder_left_in_a_mode_is_first_returned_to_operation() {
+fn returns_to_operation_first() {
     for mode in [1, 2, 4, 5, 7] {
         for way in WAYS {
             let mut bench = Bench::new(way, "");
@@ -487,7 +487,7 @@ fn an_encoder_left_in_a_mode_is_first_returned_to_operation() {
 
 /// Another host has started a clockwise calibration run. Ending it would lose the table, so it may finish.
 #[test]
-fn the_return_to_operation_waits_for_a_calibration() {
+fn return_to_operation_waits_for_calibration() {
     for silent in ["on", "off"] {
         let mut bench = Bench::new(Transport::ConfigPin, &format!("rpm=-500&calibration-silent={silent}"));
         let start =
@@ -508,7 +508,7 @@ fn the_return_to_operation_waits_for_a_calibration() {
 
 /// The second confirmation of the motor data does not start the OEM data.
 #[test]
-fn a_duplicated_answer_does_not_start_the_next_operation() {
+fn duplicate_answer_starts_nothing() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let edit = |place: &str| (place.parse().unwrap(), vec![0x5A]);
     let prepared = bench.prepare(Change::Write(vec![edit("0x04:0x10"), edit("0x24:0x10")])).unwrap();
@@ -540,7 +540,7 @@ fn a_duplicated_answer_does_not_start_the_next_operation() {
 
 /// An old status must not be mistaken for the end or failure of the current run.
 #[test]
-fn the_status_of_an_earlier_run_is_ignored() {
+fn ignores_status_of_earlier_run() {
     for silent in ["on", "off"] {
         let mut bench =
             Bench::new(Transport::ConfigPin, &format!("calibration-silent={silent}&calibration-status=kept"));

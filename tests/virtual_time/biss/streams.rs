@@ -110,7 +110,7 @@ fn check(runs: &[ConsecutiveFrames]) {
 }
 
 #[test]
-fn short_polling_intervals_are_streamed() {
+fn streams_short_polling_intervals() {
     let mut stand = stand("rpm=3000&position=0");
     stand.session.set_sample_interval(Some(FAST));
     let runs = stand.runs(Duration::from_secs(3));
@@ -126,7 +126,7 @@ fn short_polling_intervals_are_streamed() {
 }
 
 #[test]
-fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
+fn job_interrupts_stream() {
     let mut stand = stand("rpm=3000&position=0");
     stand.session.set_sample_interval(Some(FAST));
     let mut last = None;
@@ -150,7 +150,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
 }
 
 #[test]
-fn damaged_and_missing_frames_are_reported() {
+fn reports_corrupt_and_missing_frames() {
     let mut noisy = stand("noise=0.05&seed=2");
     noisy.session.set_sample_interval(Some(FAST));
     let runs = noisy.runs(Duration::from_secs(1));
@@ -164,7 +164,7 @@ fn damaged_and_missing_frames_are_reported() {
 }
 
 #[test]
-fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
+fn restored_wire_starts_new_stream() {
     let mut stand = stand("rpm=60");
     stand.session.set_sample_interval(Some(FAST));
     stand.run();
@@ -183,7 +183,7 @@ fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
 
 /// At 1 MHz, 43 bits, 7 µs for the acknowledgement and 20 µs for the timeout add up to 70 µs.
 #[test]
-fn a_clock_too_slow_for_the_interval_is_reported() {
+fn reports_clock_too_slow_for_interval() {
     for (clock_hz, period_ns, is_limited) in [(1_000_000, 70_000, true), (2_000_000, 50_000, false)] {
         let mut stand = stand_at("rpm=60", None, clock_hz);
         stand.session.set_sample_interval(Some(FAST));
@@ -194,7 +194,7 @@ fn a_clock_too_slow_for_the_interval_is_reported() {
 
 /// A reset stops the stream and clears supply and clock. The next job or sample detects this and continues.
 #[test]
-fn an_adapter_reset_while_streaming_is_configured_again() {
+fn reconfigures_adapter_after_reset() {
     let query = "supply=switched&rpm=60";
     let supply = Supply { millivolt: 5_000, measured: None };
     for by_job in [true, false] {
@@ -219,7 +219,7 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
 /// An adapter that falls silent may have been reset, which switches the supply off. The supply is switched on again,
 /// and the encoder is given time to start.
 #[test]
-fn a_supplied_encoder_is_powered_again_after_a_reset() {
+fn repowers_encoder_after_reset() {
     let supply = Supply { millivolt: 5_000, measured: None };
     let mut stand = stand_with("supply=switched&rpm=60", Some(supply));
     stand.session.set_sample_interval(Some(FAST));

@@ -14,7 +14,7 @@ fn has_power(bench: &Bench) -> bool {
 }
 
 #[test]
-fn the_supply_is_switched_off_unless_found_on_or_kept() {
+fn switches_off_own_supply() {
     let mut bench = Bench::supplied(AsFound);
     // The supply before a session, the setting for its end, and whether the supply is on afterwards.
     for (found, after, left) in
@@ -31,7 +31,7 @@ fn the_supply_is_switched_off_unless_found_on_or_kept() {
 
 /// A supply that streaming has switched on is switched off again. One that was already on stays on (issue 22.16).
 #[test]
-fn streaming_signals_restores_the_supply() {
+fn streaming_signals_restores_supply() {
     let volts = SupplyVoltage { least: 4_750, given: 5_000, greatest: 12_500 };
     let mut bench = Bench::supplied(On);
     assert!(bench.stream_signals(Some(volts)) && !has_power(&bench));
@@ -45,7 +45,7 @@ fn streaming_signals_restores_the_supply() {
 
 /// A session that sends no requests, or whose link does not control the supply, leaves the supply unchanged.
 #[test]
-fn a_session_switches_off_only_its_own_supply() {
+fn session_switches_off_only_its_supply() {
     let mut bench = Bench::supplied(On);
     bench.run(BissJob::Status).unwrap();
     bench.session.restore_state();
@@ -59,7 +59,7 @@ fn a_session_switches_off_only_its_own_supply() {
 /// Power is switched off only when a store is complete. An encoder that another host has put into a mode keeps its
 /// power.
 #[test]
-fn power_is_not_cut_during_a_store_or_a_mode() {
+fn keeps_power_during_store_and_mode() {
     let mut bench = Bench::supplied(AsFound);
     bench.change(data()).unwrap();
     let before = bench.now();
@@ -77,7 +77,7 @@ fn power_is_not_cut_during_a_store_or_a_mode() {
 /// An encoder that never answers keeps its power, because it may still be calibrating for an earlier session (issue
 /// 22.16).
 #[test]
-fn an_encoder_that_never_answers_keeps_its_power() {
+fn silent_encoder_keeps_power() {
     let mut bench = Bench::supplied_at("line=open", AsFound);
     bench.run(BissJob::Status).unwrap_err();
     bench.session.restore_state();
@@ -91,7 +91,7 @@ fn an_encoder_that_never_answers_keeps_its_power() {
 /// If an interrupted write leaves the encoder unable to return to operation, it keeps its power until the return
 /// succeeds.
 #[test]
-fn an_encoder_that_could_not_be_returned_to_operation_keeps_its_power() {
+fn encoder_outside_operation_keeps_power() {
     let mut whole = Bench::supplied(AsFound);
     let prepared = whole.prepare(data()).unwrap();
     let begins = whole.tap().sent.len();

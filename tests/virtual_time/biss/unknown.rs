@@ -96,7 +96,7 @@ impl ByteDevice for Stranger {
 }
 
 #[test]
-fn the_frame_of_a_turning_shaft_is_found() {
+fn finds_frame_while_turning() {
     let mut rig = Rig::with(Stranger::new(5), Transport::Adapter);
     let identity = device::identify(&mut rig.master(), &Descriptions::built_in()).unwrap();
     assert_eq!(identity.description.name(), "BiSS C encoder");
@@ -118,7 +118,7 @@ fn the_frame_of_a_turning_shaft_is_found() {
 }
 
 #[test]
-fn at_rest_no_frame_is_found_and_the_survey_still_works() {
+fn survey_works_without_frame_at_rest() {
     let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
     let survey = device::read_all_registers(&mut rig.master(), &Descriptions::built_in(), &mut |_, _, _| {}).unwrap();
     assert_eq!((survey.identity.source, survey.status.position), (FrameSource::Assumed, None));
@@ -130,7 +130,7 @@ fn at_rest_no_frame_is_found_and_the_survey_still_works() {
 /// The user enters the numbers of turns and steps, even for a shaft at rest. 14 bits are 16384 steps per turn (issue
 /// 22.20).
 #[test]
-fn a_given_frame_converts_positions_to_angles() {
+fn given_frame_converts_positions_to_angles() {
     let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
     rig.station = Station::from_query(&"mt=0&st=14".parse().unwrap(), Transport::Adapter, MARGIN).unwrap();
     let identity = device::identify(&mut rig.master(), &Descriptions::built_in()).unwrap();

@@ -52,7 +52,7 @@ fn writes_to(bench: &Bench, banks: std::ops::RangeInclusive<u8>) -> Vec<(u16, u8
 
 /// Three bytes in one bank take three register writes and one save, in the plan and in the logbook.
 #[test]
-fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
+fn three_bytes_take_one_save() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let saved = bench.save();
     let wanted = with_bytes(&saved, 0x24, &[(0x10, 1), (0x11, 2), (0x30, 3)]);
@@ -92,7 +92,7 @@ fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
 }
 
 #[test]
-fn only_differences_are_restored() {
+fn restores_only_differences() {
     for way in WAYS {
         let mut bench = Bench::new(way, "position=0x20007");
         let saved = bench.save();
@@ -118,7 +118,7 @@ fn only_differences_are_restored() {
 }
 
 #[test]
-fn another_encoder_is_refused_and_keeps_its_mounting() {
+fn other_encoder_keeps_its_mounting() {
     let mut from = Bench::new(Transport::ConfigPin, "serial=1");
     from.change(preset(0x8000, 1)).unwrap();
     let profile = with_bytes(&from.save(), 0x24, &[(0, 1)]);
@@ -137,7 +137,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
 
 /// The values on which the plan is based change before it is executed. Nothing is written.
 #[test]
-fn a_plan_with_a_changed_base_is_not_executed() {
+fn changed_base_stops_plan() {
     type Case = (fn() -> Change, fn(&mut Bench), &'static str);
     let cases: [Case; 4] = [
         (data, |bench| drop(bench.change(Change::Write(vec![("0x24:0x00".parse().unwrap(), vec![9])]))), "bank 0x24"),
@@ -163,7 +163,7 @@ fn a_plan_with_a_changed_base_is_not_executed() {
 }
 
 #[test]
-fn a_consent_covers_only_its_plan() {
+fn consent_covers_only_its_plan() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let shown = bench.prepare(filter()).unwrap();
     let prepared = bench.prepare(data()).unwrap();
@@ -177,7 +177,7 @@ fn a_consent_covers_only_its_plan() {
 
 /// An unknown number of write cycles must not count as 0 (issue 22.4).
 #[test]
-fn an_encoder_with_unknown_wear_is_written_only_by_force() {
+fn unknown_wear_needs_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     // A connection may already be recorded.
     let _ = std::fs::remove_file(bench.store().logbook_path());
@@ -204,7 +204,7 @@ fn an_encoder_with_unknown_wear_is_written_only_by_force() {
 /// The manual allows 1000 write cycles (6.1), which are counted in the logbook. A plan beyond this limit must be
 /// forced.
 #[test]
-fn a_worn_encoder_is_written_only_by_force() {
+fn worn_encoder_needs_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(preset(1, 1)).unwrap();
     assert_eq!(
@@ -243,7 +243,7 @@ fn a_worn_encoder_is_written_only_by_force() {
 /// At each exchange in turn, a reply or request is lost. A write is never repeated if that would use a write cycle, and
 /// the report describes the actual result.
 #[test]
-fn one_lost_request_or_reply_at_any_exchange_is_tolerated() {
+fn tolerates_single_losses() {
     type Scene = (&'static str, fn() -> Change, u32);
     let scenes: [Scene; 3] = [("data", data, 1), ("filter", filter, 1), ("preset", || preset(7, 7), 2)];
     for (name, change, cost) in scenes {
@@ -286,7 +286,7 @@ fn one_lost_request_or_reply_at_any_exchange_is_tolerated() {
 
 /// A Wiegand result cannot be read back, so it is reported as unclear if it may not have been saved.
 #[test]
-fn unverifiable_results_are_reported_as_unclear() {
+fn reports_unverifiable_results_as_unclear() {
     let mut original = Bench::new(Transport::ConfigPin, "");
     let prepared = original.prepare(wiegand_test(true)).unwrap();
     for lost in ["answer", "request"] {
@@ -314,7 +314,7 @@ fn unverifiable_results_are_reported_as_unclear() {
 }
 
 #[test]
-fn writes_over_a_noisy_line_are_correct_or_fail() {
+fn noisy_writes_are_correct_or_fail() {
     let (mut right, mut told) = (0, 0);
     for noise in ["drop:0.005", "flip:0.005", "garbage:0.005"] {
         for seed in 0..6 {
@@ -344,7 +344,7 @@ fn writes_over_a_noisy_line_are_correct_or_fail() {
 
 /// Registers that no procedure uses are written one by one, at the cost given in the register description.
 #[test]
-fn a_single_register_is_written_and_read_back() {
+fn writes_and_reads_back_single_register() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let write = |place: &str, byte| Change::Write(vec![(place.parse().unwrap(), vec![byte])]);
     let prepared = bench.prepare(write("0x40", 5)).unwrap();

@@ -41,7 +41,7 @@ fn requests() -> usize {
 }
 
 #[test]
-fn a_single_loss_is_retried_and_nothing_is_set_twice() {
+fn retries_single_loss_without_setting_twice() {
     for (cut, most) in [(REQUEST, 2), (REPLY, 1)] {
         for at in 0..requests() {
             let mut stand = Stand::new("");
@@ -73,7 +73,7 @@ fn a_single_loss_is_retried_and_nothing_is_set_twice() {
 }
 
 #[test]
-fn an_interrupted_write_ends_in_time_and_reports_progress() {
+fn interrupted_write_reports_progress_in_time() {
     for (label, cut) in [("lost", LOST), ("mute", MUTE), ("deaf", DEAF)] {
         for at in 0..requests() {
             let mut stand = Stand::new("");
@@ -133,7 +133,7 @@ fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &
 }
 
 #[test]
-fn cancelling_takes_effect_between_two_operations() {
+fn cancels_between_operations() {
     let mut seen = BTreeSet::new();
     cancel_at_each_request(write, |stand, label, interrupted| {
         let taken = [(24, 7), (166, 200), (186, 30)].iter().filter(|(own, new)| stand.value(*own) == *new).count();
@@ -147,7 +147,7 @@ fn cancelling_takes_effect_between_two_operations() {
 /// The change sets 400 steps per turn instead of 65536 (reference 5) and limits of ten turns. Writing only the scale or
 /// only the limits would move the limits. The maximum speed is written between them.
 #[test]
-fn cancelling_never_separates_a_scale_from_its_limits() {
+fn cancelling_keeps_scale_and_limits_together() {
     const PLACE: [(u16, i64); 4] = [(154, 400), (156, 256), (158, -4_000), (160, 4_000)];
     let change = || Change::Write(image(&[&[(24, 7), (166, 200)], &PLACE[..], &[(186, 30)]].concat()));
     let mut seen = BTreeSet::new();
@@ -160,7 +160,7 @@ fn cancelling_never_separates_a_scale_from_its_limits() {
 }
 
 #[test]
-fn a_lost_device_times_out_in_time() {
+fn lost_device_times_out() {
     let mut stand = Stand::new("");
     stand.tap().deaf_from = Some(0);
     let begun = stand.elapsed();

@@ -40,7 +40,7 @@ fn reading_writes_nothing() {
 }
 
 #[test]
-fn a_hub_is_surveyed_with_its_connected_drives() {
+fn surveys_hub_with_connected_drives() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&variant=13&serial=99&switch=17&name=LINE 3");
     let survey = stand.survey();
     let identity = &survey.identity;
@@ -63,7 +63,7 @@ fn a_hub_is_surveyed_with_its_connected_drives() {
 }
 
 #[test]
-fn texts_are_read_plain_or_counted() {
+fn reads_plain_and_counted_strings() {
     for query in ["text=plain", "text=counted"] {
         let mut stand = Stand::new(query);
         let HiperdriveOutput::Value(own, value) = stand.run(HiperdriveJob::Read(number(13))).unwrap() else { panic!() };
@@ -72,7 +72,7 @@ fn texts_are_read_plain_or_counted() {
 }
 
 #[test]
-fn missing_ports_and_drives_are_named() {
+fn names_missing_ports_and_drives() {
     let mut stand = Stand::new("hub=4&drives=1,0,1");
     stand.run(HiperdriveJob::Hello).unwrap();
     let mut refused = |job| match stand.run(job) {
@@ -87,7 +87,7 @@ fn missing_ports_and_drives_are_named() {
 }
 
 #[test]
-fn status_reports_states_errors_and_temperatures_of_all_drives() {
+fn status_covers_all_drives() {
     let mut stand = Stand::new("hub=4&drives=1,1&requested=1&supply=23.4");
     let now = stand.clock.now();
     stand.target.with_station(|station| station.drive(drive(2)).unwrap().inject_error(now, ErrorCode::OVER_CURRENT));
@@ -101,7 +101,7 @@ fn status_reports_states_errors_and_temperatures_of_all_drives() {
 
 /// The jobs also run on a recording, even if sessions and requests are numbered differently.
 #[test]
-fn a_recorded_trace_replays_the_devices_replies() {
+fn replays_recorded_trace() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&serial=4711");
     let entries = Arc::<Mutex<Vec<TraceEntry>>>::default();
     let told = entries.clone();
@@ -128,7 +128,7 @@ fn a_recorded_trace_replays_the_devices_replies() {
 }
 
 #[test]
-fn positions_of_the_watched_drive_are_read() {
+fn reads_positions_of_watched_drive() {
     let mut stand = Stand::new("hub=4&drives=1,1&position=65536");
     let position = |stand: &mut Stand| match stand.session.take_sample().unwrap() {
         PolledSample::Position(reading) => reading,
@@ -142,7 +142,7 @@ fn positions_of_the_watched_drive_are_read() {
 
 /// Parameters 11 and 119 (reference 4) take one request each. A missing drive has no temperature.
 #[test]
-fn temperatures_are_watched_by_one_request_each() {
+fn watches_temperatures_by_single_requests() {
     let mut stand = Stand::new("hub=4&drives=1,1");
     stand.session.take_sample().unwrap();
     let before = stand.requests().len();
@@ -162,7 +162,7 @@ fn temperatures_are_watched_by_one_request_each() {
 }
 
 #[test]
-fn the_check_has_a_line_for_each_possible_fault() {
+fn check_has_line_per_fault() {
     let mut stand = Stand::new("hub=4&drives=1&requested=0&supply=18&switch=98&position=65536");
     stand.target.with_station(|station| {
         for (own, value) in [(186, 255), (158, 0)] {
@@ -195,7 +195,7 @@ fn the_check_has_a_line_for_each_possible_fault() {
 /// With slow replies, reading the parameters one by one takes seconds, so each request counts as progress. Empty slots
 /// count as done.
 #[test]
-fn progress_is_reported_for_each_request() {
+fn reports_progress_per_request() {
     let mut stand = Stand::new("hub=4&drives=1,0,1");
     for (job, total, asked) in [(HiperdriveJob::Identify, 29, 1 + 29 - 2 * 5), (HiperdriveJob::Status, 66, 66 - 2 * 15)]
     {
@@ -214,7 +214,7 @@ fn progress_is_reported_for_each_request() {
 }
 
 #[test]
-fn replies_are_timed_and_late_ones_distinguished_from_missing_ones() {
+fn distinguishes_late_and_missing_replies() {
     let mut slow = Stand::new("fault=delay:300");
     let replies = slow.session.station().replies();
     slow.run(HiperdriveJob::Read(number(158))).unwrap();

@@ -156,7 +156,7 @@ fn without_context(frame: &[u8]) -> Vec<u8> {
 const AT_163840: &str = "8E 00 00 00 00 80 02 00";
 
 #[test]
-fn a_session_begins_once_and_requests_match_the_reference() {
+fn requests_match_reference() {
     let mut desk = Desk::with([Act::Reply(AT_163840), Act::Reply("8E 00 00 00 01 00")]);
     assert_eq!(desk.read(107).unwrap(), Value::Number(163_840));
     assert_eq!(desk.read(47).unwrap(), Value::Number(1));
@@ -173,7 +173,7 @@ fn a_session_begins_once_and_requests_match_the_reference() {
 }
 
 #[test]
-fn replies_to_other_requests_are_skipped_and_counted() {
+fn skips_and_counts_unrelated_replies() {
     let mut desk = Desk::with([Act::Stale("8E 00 00 00 FF FF FF FF"), Act::Silence, Act::Reply(AT_163840)]);
     assert_eq!(desk.read(107).unwrap(), Value::Number(163_840));
     assert_eq!(
@@ -184,7 +184,7 @@ fn replies_to_other_requests_are_skipped_and_counted() {
 }
 
 #[test]
-fn a_forgotten_session_is_opened_again() {
+fn reopens_forgotten_session() {
     let mut desk = Desk::with([Act::Reply(AT_163840), Act::Status(0x64), Act::Reply("8E 00 00 00 05 00")]);
     desk.read(107).unwrap();
     assert_eq!(desk.read(105).unwrap(), Value::Number(5));
@@ -192,7 +192,7 @@ fn a_forgotten_session_is_opened_again() {
 }
 
 #[test]
-fn other_frame_refusals_are_reported() {
+fn reports_other_frame_errors() {
     let mut desk = Desk::with([Act::Status(0x02)]);
     let refused =
         Error::Encapsulation { requested: RequestedItem::Parameter(number(107)), status: EncapsulationStatus::new(2) };
@@ -200,7 +200,7 @@ fn other_frame_refusals_are_reported() {
 }
 
 #[test]
-fn values_have_their_type_and_sign() {
+fn values_have_type_and_sign() {
     for (own, cip, value) in [
         (119, "8E 00 00 00 1F", Value::Number(31)),
         (119, "8E 00 00 00 F6", Value::Number(-10)),
@@ -221,7 +221,7 @@ fn values_have_their_type_and_sign() {
 
 /// The value is rejected in every reply, and the message states both lengths (issue 21.9).
 #[test]
-fn a_number_of_another_length_is_refused_with_both_lengths() {
+fn wrong_length_error_names_both_lengths() {
     const REPLIES: [&str; 5] =
         ["8E 00 00 00", "8E 00 00 00 01", "8E 00 00 00 01 00", "8E 00 00 00 01 00 00", "8E 00 00 00 01 00 00 00"];
     // The numbers of bits are those of the manual's table (6.2).
@@ -257,7 +257,7 @@ fn a_number_of_another_length_is_refused_with_both_lengths() {
 }
 
 #[test]
-fn a_refusal_is_reported_with_its_parameter_name() {
+fn refusal_names_parameter() {
     let mut desk = Desk::with([Act::Reply("8E 00 05 00")]);
     let error = desk.read(13).unwrap_err();
     let refusal = error.as_refusal().unwrap();
@@ -276,7 +276,7 @@ fn a_refusal_is_reported_with_its_parameter_name() {
 }
 
 #[test]
-fn unknown_and_write_only_parameters_are_not_read() {
+fn skips_unknown_and_write_only_parameters() {
     let mut desk = Desk::with([]);
     assert_eq!(desk.read(155), Err(Error::Unknown(number(155))));
     assert_eq!(desk.read(199), Err(Error::WriteOnly { number: number(199), name: "reset drive" }));
@@ -284,7 +284,7 @@ fn unknown_and_write_only_parameters_are_not_read() {
 }
 
 #[test]
-fn damaged_frames_are_retried_and_silence_times_out() {
+fn retries_corrupt_frames() {
     for broken in [
         // A length that no frame can have, a truncated frame, and an invalid message.
         "6F 00 FF FF 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",
@@ -304,7 +304,7 @@ fn damaged_frames_are_retried_and_silence_times_out() {
 
 /// Repeated requests to a device that does not answer must not delay other work.
 #[test]
-fn reading_the_limits_of_a_drive_can_be_cancelled() {
+fn can_cancel_reading_limits() {
     let mut desk = Desk::with([]);
     let cancel = CancelToken::default();
     cancel.request();
@@ -336,7 +336,7 @@ fn flat(pattern: &str) -> String {
 }
 
 #[test]
-fn a_cyclic_connection_is_opened_as_in_the_reference() {
+fn opens_cyclic_connection_as_in_reference() {
     let mut desk = Desk::with([Act::Reply(OPENED), Act::Reply("CE 00 00 00 01 00 34 12 CD AB 00 00 00 00")]);
     let opened = desk.ask(|master| master.forward_open(Topology::Adapter, 0x1234)).unwrap();
     let (own, beside) = cip(&desk.sent()[1], OPEN);
@@ -352,7 +352,7 @@ fn a_cyclic_connection_is_opened_as_in_the_reference() {
 }
 
 #[test]
-fn a_refused_connection_is_requested_with_other_parameters() {
+fn rejected_connection_tries_other_parameters() {
     let words = |desk: &Desk| {
         let word = |frame: &Vec<u8>, at: usize| u16::from_le_bytes([frame[40 + at], frame[41 + at]]);
         let sent = desk.sent();
@@ -384,7 +384,7 @@ fn a_refused_connection_is_requested_with_other_parameters() {
 }
 
 #[test]
-fn another_master_is_reported_and_nothing_is_retried() {
+fn other_master_stops_retries() {
     for (extended, reply) in
         [(0x0106, "D4 00 01 01 06 01"), (0x0100, "D4 00 01 01 00 01 01 00 34 12 CD AB 00 00 00 00")]
     {
@@ -406,7 +406,7 @@ fn another_master_is_reported_and_nothing_is_retried() {
 }
 
 #[test]
-fn a_connection_with_a_slow_interval_is_closed() {
+fn closes_connection_with_slow_interval() {
     // The device uses 50 ms (C350h) in each direction although 10 ms were requested.
     let slow = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 50 C3 00 00 10 27 00 00 00 00";
     let mut desk = Desk::with([Act::Reply(slow), Act::Reply("CE 00 00 00 01 00 34 12 CD AB 00 00 00 00")]);

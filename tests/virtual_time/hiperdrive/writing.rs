@@ -22,7 +22,7 @@ fn device_error<T: std::fmt::Debug>(ended: Result<T, JobError>) -> Error {
 }
 
 #[test]
-fn differences_are_written_read_back_and_saved_once() {
+fn writes_differences_and_saves_once() {
     let mut stand = Stand::new("serial=42");
     let done = stand.change(Change::Write(image(&[(24, 7), (166, 200), (188, 1)]))).unwrap();
     assert_eq!((done.written.ops, done.written.written, done.written.verified), (3, 2, 2));
@@ -48,7 +48,7 @@ fn differences_are_written_read_back_and_saved_once() {
 
 /// The number of saves has no known limit but is counted. If it cannot be counted, a write must be forced (issue 22.4).
 #[test]
-fn a_device_with_uncountable_saves_is_written_only_by_force() {
+fn uncountable_saves_need_force() {
     let mut stand = Stand::new("serial=42");
     stand.block_logbook();
     let prepared = stand.prepare(Change::Write(image(&[(24, 7)]))).unwrap();
@@ -60,7 +60,7 @@ fn a_device_with_uncountable_saves_is_written_only_by_force() {
 }
 
 #[test]
-fn trial_values_are_not_saved() {
+fn does_not_save_trial_values() {
     let mut stand = Stand::new("");
     let done = stand.change(Change::Try(image(&[(166, 100), (170, 640)]))).unwrap();
     assert_eq!((done.written.write_cycles, stand.value(166), stand.value(170)), (0, 100, 640));
@@ -73,7 +73,7 @@ fn trial_values_are_not_saved() {
 }
 
 #[test]
-fn limits_are_written_in_the_order_the_drive_accepts() {
+fn writes_limits_in_accepted_order() {
     // The limits move from ±511 turns to a range far above, and then back below, where the other limit must be written
     // first.
     let mut stand = Stand::new("position=655360");
@@ -88,7 +88,7 @@ fn limits_are_written_in_the_order_the_drive_accepts() {
 }
 
 #[test]
-fn a_profile_is_restored_after_a_factory_reset() {
+fn restores_profile_after_factory_reset() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&requested=1&serial=42");
     stand.change(Change::Write(image(&[(24, 99), (154, 400), (156, 256), (358, -131_072), (360, 131_072)]))).unwrap();
     let profile: Box<HiperdriveProfile> = match stand.run(HiperdriveJob::Save).unwrap() {
@@ -111,7 +111,7 @@ fn a_profile_is_restored_after_a_factory_reset() {
 }
 
 #[test]
-fn a_changed_device_or_value_stops_the_write() {
+fn changed_device_or_value_stops_write() {
     let mut stand = Stand::new("serial=42");
     let prepared = stand.prepare(Change::Write(image(&[(166, 100)]))).unwrap();
     let now = stand.clock.now();
@@ -125,7 +125,7 @@ fn a_changed_device_or_value_stops_the_write() {
 }
 
 #[test]
-fn out_of_range_values_name_both_limits_of_host_and_device() {
+fn range_error_names_host_and_device_limits() {
     let mut stand = Stand::new("position=65536");
     let refused = stand.prepare(Change::Write(image(&[(166, 400)]))).unwrap_err();
     assert_eq!(refused.to_string(), "parameter 166 (maximum speed) cannot be 400 (allowed: 5 to 350)");
@@ -141,7 +141,7 @@ fn out_of_range_values_name_both_limits_of_host_and_device() {
 }
 
 #[test]
-fn read_only_and_motion_parameters_are_refused_without_a_request() {
+fn rejects_read_only_and_motion_parameters_unsent() {
     let mut stand = Stand::new("");
     for (own, why) in [
         (107, "parameter 107 (actual position) is read-only"),
@@ -155,7 +155,7 @@ fn read_only_and_motion_parameters_are_refused_without_a_request() {
 }
 
 #[test]
-fn a_position_is_set_to_the_nearest_possible_value() {
+fn sets_nearest_possible_position() {
     let mut stand = Stand::new("position=655360");
     let done = stand.change(Change::SetPosition { drive: drive(1), position: 1000, save: true }).unwrap();
     // 64 · 16 = 1024 is closer than 64 · 15 = 960.
@@ -180,7 +180,7 @@ fn services_wait_for_completion() {
 /// program waits that long, sends the request once, and does not use this time to estimate the speed of the network
 /// (issue 21.8).
 #[test]
-fn a_presence_test_may_take_the_time_of_the_manual() {
+fn presence_test_may_take_documented_time() {
     for (query, ms) in [("reset=2000", 2000), ("hub=4&reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
         let mut stand = Stand::new(query);
         let begun = stand.elapsed();
@@ -196,7 +196,7 @@ fn a_presence_test_may_take_the_time_of_the_manual() {
 /// If the reply takes longer than the manual allows or the connection falls silent, the job ends within 10 s (CLI.md).
 /// The request is sent once, and the report states that the result is unknown (issue 21.8).
 #[test]
-fn an_unanswered_presence_test_times_out() {
+fn unanswered_presence_test_times_out() {
     // The number of frames that are sent before the request.
     let mut whole = Stand::new("hub=8");
     whole.change(Change::Do(Service::Reset)).unwrap();
@@ -222,7 +222,7 @@ fn an_unanswered_presence_test_times_out() {
 }
 
 #[test]
-fn a_fault_is_acknowledged_with_a_reset_only_if_needed() {
+fn acknowledges_fault_with_reset_if_needed() {
     for (codes, reset) in [
         (&[ErrorCode::RS485][..], false),
         (&[ErrorCode::OVER_CURRENT, ErrorCode::RS485], true),
@@ -242,7 +242,7 @@ fn a_fault_is_acknowledged_with_a_reset_only_if_needed() {
 }
 
 #[test]
-fn without_a_fault_nothing_is_acknowledged() {
+fn acknowledges_nothing_without_fault() {
     for query in ["", "hub=4&drives=1,1&requested=1", "requested=0"] {
         let mut stand = Stand::new(query);
         let prepared = stand.prepare(Change::Do(Service::Acknowledge(drive(1)))).unwrap();
@@ -253,7 +253,7 @@ fn without_a_fault_nothing_is_acknowledged() {
 }
 
 #[test]
-fn motion_limits_are_known_after_every_write() {
+fn knows_motion_limits_after_every_write() {
     let mut stand = Stand::new("requested=1");
     stand.survey();
     let motion = stand.session.motion();

@@ -77,7 +77,7 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
 /// The test bench and the model check each control word. This test checks that, after the last motion request, the
 /// drive stops within the time for stronger stop words and braking, and does not move again (issue 21.14).
 #[test]
-fn any_session_ends_at_a_standstill() {
+fn any_session_ends_at_standstill() {
     let mut moved = 0u64;
     for seed in 0..SESSIONS {
         let mut dice = fastrand::Rng::with_seed(seed);

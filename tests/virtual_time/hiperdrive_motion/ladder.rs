@@ -53,7 +53,7 @@ const CAUSES: [(&str, Cause, ActionEnd); 7] = [
 ];
 
 #[test]
-fn each_cause_stops_in_the_same_way() {
+fn all_causes_stop_alike() {
     for wish in [to(9 * TURN), jog(Direction::Clockwise), jog(Direction::Counterclockwise)] {
         for (label, cause, ended) in CAUSES {
             // The event occurs at various times after the first word of the motion.
@@ -75,7 +75,7 @@ fn each_cause_stops_in_the_same_way() {
 
 /// The request is not refreshed for 250 ms plus one interval. The drive stays stopped when refreshes resume.
 #[test]
-fn a_stale_intent_stops_the_drive() {
+fn stale_intent_stops_drive() {
     for wish in [to(9 * TURN), jog(Direction::Clockwise)] {
         let mut bench = Bench::new();
         bench.act(wish);
@@ -109,7 +109,7 @@ fn a_stale_intent_stops_the_drive() {
 
 /// While the drive still reports motion, the next stronger stop word follows every 200 ms.
 #[test]
-fn a_drive_that_does_not_stop_escalates_the_stop() {
+fn escalates_stop_while_moving() {
     for (wish, stop) in [(to(9 * TURN), "0469"), (jog(Direction::Clockwise), "1419")] {
         let mut bench = Bench::new();
         bench.act(wish);
@@ -139,7 +139,7 @@ fn a_drive_that_does_not_stop_escalates_the_stop() {
 
 /// Without further reports, the drive is assumed to be moving.
 #[test]
-fn a_drive_without_reports_is_stopped() {
+fn stops_drive_without_reports() {
     let mut bench = Bench::new();
     bench.act(to(9 * TURN));
     bench.run(1000);
@@ -153,7 +153,7 @@ fn a_drive_without_reports_is_stopped() {
 
 /// A drive that turns when it should be at rest is disabled and then switched off.
 #[test]
-fn an_uncommanded_motion_is_stopped() {
+fn stops_uncommanded_motion() {
     let mut bench = Bench::new();
     bench.act(MotionRequest::Lead(TargetState::Enabled));
     bench.until_over();
@@ -170,7 +170,7 @@ fn an_uncommanded_motion_is_stopped() {
 
 /// Earlier requests have no effect on a new connection.
 #[test]
-fn a_new_connection_moves_nothing() {
+fn new_connection_moves_nothing() {
     let mut bench = Bench::new();
     bench.act(to(9 * TURN));
     bench.run(1000);
@@ -192,7 +192,7 @@ proptest! {
 
     /// A late report must never turn a stop into a start.
     #[test]
-    fn late_reports_do_not_start_motion(late in 0usize..6, before in 1u64..40, gap in 1u64..30, runs: bool) {
+    fn late_reports_start_no_motion(late in 0usize..6, before in 1u64..40, gap in 1u64..30, runs: bool) {
         let mut bench = Bench::new();
         bench.late = late;
         bench.act(if runs { jog(Direction::Counterclockwise) } else { to(9 * TURN) });

@@ -158,7 +158,7 @@ fn is_arriving(commands: Commands, live: &Live, heard: ActualValues) -> bool {
 }
 
 #[test]
-fn words_command_as_in_the_reference() {
+fn words_match_reference() {
     let run = |clockwise, endless| Commands::Run { clockwise, endless };
     for (word, acknowledged, job, expected) in [
         (0x0439, false, false, Commands::Nothing),

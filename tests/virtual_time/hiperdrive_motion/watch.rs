@@ -71,7 +71,7 @@ fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
 /// The report shows a position beyond a limit. The next packet commands no motion, even though the drive continues
 /// (issue 21.4).
 #[test]
-fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
+fn next_packet_stops_drive_ignoring_limits() {
     for effort in [SpeedTorque::DEFAULT_JOG, FULL] {
         for (direction, limit) in [(Direction::Clockwise, TURN), (Direction::Counterclockwise, -TURN)] {
             for wish in [jog(direction, effort, false), MotionRequest::Run { direction, end: RunEnd::RangeEnd, effort }]
@@ -95,7 +95,7 @@ fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
 
 /// Status bit 15 also ends a run, even if the position is within the limits known to the program (issue 21.4).
 #[test]
-fn bit_15_ends_a_run() {
+fn bit_15_ends_run() {
     let mut bench = bench(Some(DriveDefect::RunsOn));
     bench.permit = Permit::for_range(-9 * TURN, 9 * TURN);
     bench.act(jog(Direction::Clockwise, FULL, false));
@@ -105,7 +105,7 @@ fn bit_15_ends_a_run() {
 
 /// A run that ignores the limits is not checked against them (issue 21.4, case *endless run*).
 #[test]
-fn an_endless_run_is_not_monitored() {
+fn endless_run_is_not_monitored() {
     let mut bench = bench(None);
     bench.permit.endless = true;
     bench.act(run(Direction::Clockwise, RunEnd::Endless));
@@ -115,7 +115,7 @@ fn an_endless_run_is_not_monitored() {
 
 /// The next packet stops the motion (issue 21.4, case *unread limits*).
 #[test]
-fn a_run_ends_when_its_limits_become_unknown() {
+fn unknown_limits_end_run() {
     let mut bench = bench(None);
     bench.act(jog(Direction::Clockwise, FULL, false));
     bench.run(1000);
@@ -126,7 +126,7 @@ fn a_run_ends_when_its_limits_become_unknown() {
 
 /// A request to move further outward is rejected before anything is sent (issue 21.4, case *already outside*).
 #[test]
-fn from_outside_only_inward_motion_is_allowed() {
+fn allows_only_inward_motion_from_outside() {
     for (beyond, inward, outward) in [
         (5000, Direction::Counterclockwise, Direction::Clockwise),
         (-5000, Direction::Clockwise, Direction::Counterclockwise),
@@ -162,7 +162,7 @@ fn from_outside_only_inward_motion_is_allowed() {
 /// Status bit 15 reports a drive as outside its limits although its position is well inside, so the way back is
 /// unknown. Nothing moves unless the user permits it for one press of the button (issue 21.4).
 #[test]
-fn outside_by_bit_15_alone_only_permitted_motion_starts() {
+fn bit_15_alone_needs_permission_to_move() {
     let ways = [Direction::Clockwise, Direction::Counterclockwise];
     let jogs = ways.map(|way| jog(way, FULL, false));
     let runs = ways.map(|way| run(way, RunEnd::RangeEnd));
@@ -201,7 +201,7 @@ fn outside_by_bit_15_alone_only_permitted_motion_starts() {
 
 /// Permitted outward motion is slow and weak, whatever is requested, and ends with that press (issue 21.4).
 #[test]
-fn outward_motion_can_be_permitted_for_one_press() {
+fn permits_outward_motion_for_one_press() {
     let mut bench = bench_outside(5000, None);
     // The drive's own limit is further outside than the permitted one.
     bench.write(160, (2 * TURN).into());
@@ -222,7 +222,7 @@ fn outward_motion_can_be_permitted_for_one_press() {
 
 /// The drive counts in the opposite direction, so it moves outward. It is stopped within a degree (issue 21.4).
 #[test]
-fn inward_motion_that_leads_outward_is_stopped() {
+fn stops_inward_motion_turning_outward() {
     let mut bench = bench_outside(5000, Some(DriveDefect::Reversed));
     bench.write(160, (2 * TURN).into());
     let stood = bench.position();
@@ -239,7 +239,7 @@ fn inward_motion_that_leads_outward_is_stopped() {
 /// The drive passes a limit while it brakes. The stop continues and keeps its reason (issue 21.4, case *overrun while
 /// braking*).
 #[test]
-fn an_overrun_while_braking_keeps_the_stop_reason() {
+fn braking_overrun_keeps_stop_reason() {
     let mut bench = bench(Some(DriveDefect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, false));
     // At 35 rpm, it brakes within 0.1 s and moves on by 1911 steps.
@@ -256,7 +256,7 @@ fn an_overrun_while_braking_keeps_the_stop_reason() {
 
 /// The drive is stopped at the first report that shows more than one degree in the wrong direction (issue 21.5).
 #[test]
-fn a_move_in_the_wrong_direction_is_stopped_immediately() {
+fn stops_move_in_wrong_direction() {
     for target in [TURN / 2, -TURN / 2] {
         let mut bench = bench(Some(DriveDefect::Reversed));
         bench.act(to(target));
@@ -269,7 +269,7 @@ fn a_move_in_the_wrong_direction_is_stopped_immediately() {
 
 /// The drive is stopped at the first report that shows more than one degree in the wrong direction (issue 21.5).
 #[test]
-fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
+fn stops_jog_in_wrong_direction() {
     for (direction, sign) in [(Direction::Clockwise, 1), (Direction::Counterclockwise, -1)] {
         for wish in [jog(direction, FULL, false), run(direction, RunEnd::RangeEnd)] {
             let mut bench = bench(Some(DriveDefect::Reversed));
@@ -282,7 +282,7 @@ fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
 
 /// The drive is stopped at its target, or beyond the limit if the target is a limit (issue 21.5).
 #[test]
-fn a_move_that_passes_its_target_is_stopped() {
+fn stops_move_passing_target() {
     for target in [TURN / 2, TURN, -TURN] {
         let mut bench = bench(Some(DriveDefect::RunsOn));
         bench.act(to(target));
@@ -301,7 +301,7 @@ fn a_move_that_passes_its_target_is_stopped() {
 
 /// A drive without a defect is never stopped, even at its limits or with late reports.
 #[test]
-fn a_healthy_drive_reaches_every_target() {
+fn healthy_drive_reaches_every_target() {
     let mut dice = fastrand::Rng::with_seed(21);
     let mut bench = bench(None);
     for _ in 0..60 {

@@ -53,7 +53,7 @@ fn write(stand: &mut Stand) -> InterbusJob {
 }
 
 #[test]
-fn a_single_loss_is_retried_transparently() {
+fn retries_single_loss_transparently() {
     for cut in [REQUEST, REPLY] {
         for at in (0..requests(|_| InterbusJob::Identify)).step_by(2) {
             let mut stand = Stand::new(QUERY);
@@ -81,7 +81,7 @@ fn a_single_loss_is_retried_transparently() {
 }
 
 #[test]
-fn an_interrupted_read_ends_in_time_and_reports_out() {
+fn interrupted_read_reports_out_word() {
     for (cut, hears) in [(LOST, false), (MUTE, true), (DEAF, false)] {
         for at in (0..requests(|_| InterbusJob::Identify)).step_by(2) {
             let mut stand = Stand::new(QUERY);
@@ -102,7 +102,7 @@ fn an_interrupted_read_ends_in_time_and_reports_out() {
 }
 
 #[test]
-fn an_interrupted_write_ends_in_time_and_reports_the_possible_state() {
+fn interrupted_write_reports_possible_state() {
     let count = requests(write);
     for cut in [LOST, MUTE, DEAF] {
         for at in (0..count).step_by(31) {
@@ -149,7 +149,7 @@ const CONFIRMED: Duration = Duration::from_secs(8);
 
 /// The simulated faults of the gateway do not affect the results.
 #[test]
-fn a_faulty_gateway_is_tolerated() {
+fn tolerates_faulty_gateway() {
     for fault in ["drop:0.05", "garbage:0.03", "delay:40"] {
         for seed in 0..4 {
             let mut stand = Stand::new(&format!("{QUERY}&seed={seed}&fault={fault}"));
@@ -166,7 +166,7 @@ fn a_faulty_gateway_is_tolerated() {
 /// The connection is cut while a cam program is selected. The next run restores the mode from before the reading
 /// instead of keeping this program (issue 22.6).
 #[test]
-fn the_next_run_restores_the_mode_after_an_interrupted_cam_read() {
+fn next_run_restores_mode_after_interrupted_read() {
     let save = || InterbusJob::Save { programs: true };
     for (query, found) in [
         ("steps=3600&revolutions=1&serial=77&cams=demo", StartupMode::K3),
@@ -204,7 +204,7 @@ fn the_next_run_restores_the_mode_after_an_interrupted_cam_read() {
 
 /// A mode that this program has not set was chosen by another master and is kept (issue 22.6).
 #[test]
-fn a_mode_chosen_by_another_master_is_kept() {
+fn keeps_mode_of_another_master() {
     let query = "steps=3600&revolutions=1&serial=77&cams=demo";
     let mut whole = Stand::new(query);
     whole.run(InterbusJob::Save { programs: false }).unwrap();

@@ -34,7 +34,7 @@ fn worked_example() -> Vec<Op> {
 
 /// In the worked example of reference 4, old echoes arrive first. Each word waits for its own echo.
 #[test]
-fn the_worked_example_is_sent_word_by_word() {
+fn sends_worked_example_word_by_word() {
     let script = Script::new()
         .on(0x0200_00FF, &[POSITION, POSITION, 0xC200_00FF])
         .on(0x0400_0001, &[0xC200_00FF, 0xC200_00FF, 0xC400_0001])
@@ -50,7 +50,7 @@ fn the_worked_example_is_sent_word_by_word() {
 
 /// The first replies are echoes with other data, busy words, and an echo that disappears in the next cycle.
 #[test]
-fn only_a_stable_exact_echo_counts() {
+fn only_stable_exact_echo_counts() {
     let cases: [(&str, &[u32]); 6] = [
         ("busy", &[0xC000_0000, 0xC000_0000, 0xC000_0000, 0xC200_00FF]),
         ("busy with data", &[0xC000_00FF, 0xC000_00FF, 0xC000_00FF, 0xC200_00FF]),
@@ -73,7 +73,7 @@ fn only_a_stable_exact_echo_counts() {
 /// Each error word of reference 2 is returned at each word of the worked example. The program then sends `80000000` and
 /// `00000000`.
 #[test]
-fn an_error_at_any_step_is_reported_and_the_mode_restored() {
+fn error_at_any_step_restores_mode() {
     let words = [0x0200_00FF, 0x0400_0001, 0x0600_0003, 0x0800_0000, RUN];
     let errors = [
         (0x8200_0000, "wrong parameter data"),
@@ -99,7 +99,7 @@ fn an_error_at_any_step_is_reported_and_the_mode_restored() {
 }
 
 #[test]
-fn an_edge_beyond_the_range_is_refused_by_the_encoder() {
+fn encoder_rejects_edge_beyond_range() {
     let script = Script::new().on(0x4E00_0015, &[0x9800_0004]);
     let (ended, _, sent) = carry_out(script, cams(7, 0x15, 0x20, 0x80));
     let interrupted = ended.unwrap_err();
@@ -110,7 +110,7 @@ fn an_edge_beyond_the_range_is_refused_by_the_encoder() {
 
 /// If cam 0 starts at 0, its echo equals the busy word and must be stable for longer (reference 5).
 #[test]
-fn an_echo_equal_to_the_busy_word_must_last_longer() {
+fn echo_equal_to_busy_must_last_longer() {
     let (ended, steps, sent) = carry_out(Script::new(), cams(0, 0, 0, 1));
     // The script returns 0 for every read-out, so the mask counts as not accepted.
     let interrupted = ended.unwrap_err();
@@ -129,7 +129,7 @@ fn an_echo_equal_to_the_busy_word_must_last_longer() {
 
 /// A gateway returns the same word until its next bus cycle. Reading it more often does not prove that it is stable.
 #[test]
-fn a_word_is_stable_by_time_and_not_by_read_count() {
+fn stability_depends_on_time_not_count() {
     let pace = Duration::from_millis(1);
     let cases: [(&str, u32, usize); 2] = [("an error", 0x8200_0000, 7), ("an echo of other data", 0xC200_0100, 60)];
     for (label, word, reads) in cases {
@@ -143,7 +143,7 @@ fn a_word_is_stable_by_time_and_not_by_read_count() {
 /// An old confirmation may be for an earlier word, contain other data, have the manufacturer's bit set, and arrive late
 /// (manual 5.3, "Encoder sends old confirmation"). It does not prove that there is another master (issue 22.2).
 #[test]
-fn a_stale_echo_is_skipped() {
+fn skips_stale_echo() {
     // The old confirmation lasts 0.4 to 0.8 s at 5 ms per reading. The program never sent C2000100, the word of the
     // manual's example.
     for (stale, looks) in [(0xC200_0100, 80), (0xC200_0100, 160), (0xE200_00FF, 160), (0xC600_0004, 120)] {
@@ -160,7 +160,7 @@ fn a_stale_echo_is_skipped() {
 
 /// The message shows the echo but does not claim that another master sent it (issue 22.2).
 #[test]
-fn a_persistent_echo_is_named_after_the_timeout() {
+fn timeout_names_persistent_echo() {
     let (ended, ..) = carry_out(Script::new().on(STEPS, &[0xC600_0004]), worked_example());
     let cause = ended.unwrap_err().cause;
     let expected = "no acknowledgement within 2000 ms after OUT 020000FF; IN is C6000004, the acknowledgement of another \
@@ -171,7 +171,7 @@ fn a_persistent_echo_is_named_after_the_timeout() {
 /// The busy word may contain the sent data (manual 10.4, X; reference 6.11a). An encoder that is busy for `busy`
 /// milliseconds and then rejects the word has never accepted it (issue 22.1).
 #[test]
-fn a_processing_word_with_the_data_sent_is_no_echo_of_cam_0() {
+fn processing_word_is_no_cam_0_echo() {
     for (word, echo) in
         [(0x4000_0015, 0xC000_0015), (0x6000_0020, 0xE000_0020), (0x2040_0001, 0xE040_0001), (0x2010_0008, 0xE010_0008)]
     {
@@ -202,7 +202,7 @@ fn reading_cams(script: Script) -> Script {
 /// A word that was acknowledged but not accepted is sent again before `80000000` stores the program, and is observed
 /// for longer each time. If it is never accepted, no operation is reported as done (issue 22.1).
 #[test]
-fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
+fn reads_cam_0_before_leaving_program() {
     let script = reading_cams(
         Script::new().on(0x2020_0010, &[0xA000_0000]).on(0x2020_0010, &[0xA000_0000]).on(0x2020_0000, &[0xA000_0001]),
     );
@@ -232,7 +232,7 @@ fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
 /// Exception codes 01 to 03 mean that nothing was written. With any other code, the gateway may have forwarded the word
 /// (Modbus application protocol 1.1b3, chapter 7).
 #[test]
-fn the_mode_is_restored_after_a_word_that_may_have_been_written() {
+fn restores_mode_after_uncertain_write() {
     for (code, wrote) in [(0x02, false), (0x04, true), (0x06, true), (0x0B, true), (0x0B, false)] {
         let script = Script { refuses: Some((STEPS, code, wrote)), ..Script::new() };
         let (ended, _, sent) = carry_out(script, worked_example());
@@ -252,7 +252,7 @@ fn the_mode_is_restored_after_a_word_that_may_have_been_written() {
 
 /// RUN is already on OUT, so 0 must be sent first.
 #[test]
-fn restoring_the_mode_creates_a_run_edge() {
+fn restoring_mode_creates_run_edge() {
     let script = Script { out: RUN, input: 0xC200_00FF, ..Script::new() };
     let (sent, mut station) = (script.sent.clone(), station(""));
     assert_eq!(Master::for_job(script, &mut station).end_foreign_operation(), Ok(StartupMode::K3));
@@ -261,7 +261,7 @@ fn restoring_the_mode_creates_a_run_edge() {
 
 /// The shaft is two steps from the preset. The preset counts as applied only when the position equals it.
 #[test]
-fn a_preset_is_triggered_until_the_position_matches() {
+fn triggers_preset_until_position_matches() {
     let fire = || vec![Op::FirePreset { value: POSITION + 2 }];
     let near: Vec<u32> = std::iter::repeat_n(POSITION, 6).chain([POSITION + 2]).collect();
     let (ended, steps, sent) = carry_out(Script::new().on(0x4000_0000, &near), fire());
@@ -277,7 +277,7 @@ fn a_preset_is_triggered_until_the_position_matches() {
 
 /// Cam words have another meaning in position mode, so the program must be selected and confirmed first.
 #[test]
-fn cam_words_are_sent_only_in_a_confirmed_mode() {
+fn sends_cam_words_only_in_confirmed_mode() {
     let (_, _, sent) = carry_out(Script::new(), cams(3, 15, 213, 8));
     let first = sent.iter().position(|word| *word == 0x4600_000F).unwrap();
     assert_eq!(sent[first - 5..first], [0x2080_0001, RUN, 0, 0x2021_0009, 0], "{sent:08X?}");
@@ -291,7 +291,7 @@ fn cam_words_are_sent_only_in_a_confirmed_mode() {
 }
 
 #[test]
-fn another_master_is_detected_by_the_out_word() {
+fn out_word_reveals_another_master() {
     let script = Script { output: Some(0x2040_0001), ..Script::new() }.on(STEPS, &[POSITION]);
     let interrupted = carry_out(script, worked_example()).0.unwrap_err();
     assert_eq!(interrupted.cause, Error::OtherMaster { sent: STEPS, output: 0x2040_0001 });
@@ -302,7 +302,7 @@ fn another_master_is_detected_by_the_out_word() {
 }
 
 #[test]
-fn a_missing_echo_position_or_value_is_reported_with_its_words() {
+fn missing_reply_error_names_words() {
     for (word, awaited) in [(STEPS, ExpectedWord::Echo), (RUN, ExpectedWord::Run)] {
         let script = Script::new().on(word, &[0xC000_0000]).on(word, &[POSITION]);
         let (ended, _, sent) = carry_out(script, parameters(&[(Parameter::Steps, 255)]));
@@ -324,7 +324,7 @@ fn a_missing_echo_position_or_value_is_reported_with_its_words() {
 }
 
 #[test]
-fn swapped_words_are_suspected() {
+fn suspects_swapped_words() {
     let mut station = station("");
     // 1234h in the first register, 0 in the second.
     let script = Script::new().on(0x2021_0009, &[0x1234_0000]);
@@ -335,7 +335,7 @@ fn swapped_words_are_suspected() {
 /// The manual does not define what ends a mode. If `00000000` would end it, the word that selects the mode is left on
 /// OUT.
 #[test]
-fn an_encoder_that_would_leave_its_mode_is_kept_in_it() {
+fn keeps_encoder_in_mode() {
     for (mode, holds) in [(5, RUN), (2, 0x2040_0001)] {
         let script = Script { normal_ends_modes: true, ..Script::in_mode(mode) };
         let sent = script.sent.clone();
@@ -359,7 +359,7 @@ fn an_encoder_that_would_leave_its_mode_is_kept_in_it() {
 
 /// A requested cam value may remain after `00000000`. The request does not contain bit 16 either.
 #[test]
-fn cam_read_outs_are_ended_with_run_if_needed() {
+fn ends_cam_readout_with_run() {
     let script = Script { normal_keeps_values: true, ..Script::new() }
         .on(0x2020_0013, &[0xA000_0015])
         .on(0x2020_0023, &[0xA000_0015, 0xA000_0015, 0xA000_0213]);
@@ -375,7 +375,7 @@ fn cam_read_outs_are_ended_with_run_if_needed() {
 
 /// Until the encoder has reported its mode, only the mode is requested.
 #[test]
-fn words_with_another_meaning_in_the_current_mode_are_not_sent() {
+fn sends_no_word_ambiguous_in_mode() {
     let script = Script::in_mode(0x55);
     let sent = script.sent.clone();
     let mut station = station("");

@@ -17,7 +17,7 @@ const K3: StartupMode = StartupMode::K3;
 const QUARTER: &str = "steps=4096&revolutions=1&position=2048&serial=123456";
 
 #[test]
-fn reading_the_in_word_writes_nothing() {
+fn reading_in_word_writes_nothing() {
     let mut stand = Stand::new(QUARTER);
     for job in [InterbusJob::Hello, InterbusJob::Position] {
         let reading = match stand.run(job).unwrap() {
@@ -31,7 +31,7 @@ fn reading_the_in_word_writes_nothing() {
 }
 
 #[test]
-fn identify_reads_out_and_returns_to_the_position() {
+fn identify_returns_to_position() {
     let mut stand = Stand::new(QUARTER);
     let stores = stand.stores();
     let identity = match stand.run(InterbusJob::Identify).unwrap() {
@@ -52,7 +52,7 @@ fn identify_reads_out_and_returns_to_the_position() {
 }
 
 #[test]
-fn a_survey_reads_every_read_out() {
+fn survey_covers_every_readout() {
     let mut stand =
         Stand::new("steps=360000&revolutions=100&preset=77&zero-shift=5&temperature=-10&operating-time=1000");
     let survey = match stand.run(InterbusJob::Survey).unwrap() {
@@ -83,7 +83,7 @@ fn a_survey_reads_every_read_out() {
 
 /// The previous value must disappear before a new one counts, however long that takes.
 #[test]
-fn stale_values_and_busy_words_are_ignored() {
+fn ignores_stale_values_and_busy_words() {
     for query in ["stale=3", "stale=30", "busy=200&stale=5", "stale=3&busy=900"] {
         let mut stand = Stand::new(&format!("steps=4000&revolutions=10&serial=99&{query}"));
         let survey = match stand.run(InterbusJob::Survey).unwrap() {
@@ -96,7 +96,7 @@ fn stale_values_and_busy_words_are_ignored() {
 }
 
 #[test]
-fn cam_programs_are_selected_read_and_deselected() {
+fn selects_and_deselects_cam_programs() {
     for (query, found) in [
         ("cams=demo", StartupMode::K3),
         ("cams=demo&selection=output", StartupMode::K3),
@@ -119,7 +119,7 @@ fn cam_programs_are_selected_read_and_deselected() {
 }
 
 #[test]
-fn a_selected_mode_is_kept() {
+fn keeps_selected_mode() {
     let mut stand = Stand::new("cams=demo&rpm=60");
     for mode in [
         StartupMode::Velocity,
@@ -149,7 +149,7 @@ fn a_selected_mode_is_kept() {
 }
 
 #[test]
-fn each_handshake_step_is_reported_with_its_words() {
+fn handshake_steps_report_words() {
     let mut stand = Stand::new("busy=30&serial=7");
     let (ended, steps) = stand.follow(InterbusJob::ReadOut(ReadOutNumber::SERIAL_NUMBER));
     assert!(ended.is_ok());
@@ -161,7 +161,7 @@ fn each_handshake_step_is_reported_with_its_words() {
 }
 
 #[test]
-fn a_saved_profile_matches_the_encoder() {
+fn saved_profile_matches_encoder() {
     let mut stand = Stand::new("steps=36000&revolutions=10&preset=5&cams=demo&serial=31");
     let stores = stand.stores();
     for programs in [false, true] {
@@ -178,7 +178,7 @@ fn a_saved_profile_matches_the_encoder() {
 }
 
 #[test]
-fn several_encoders_on_one_gateway_are_selected_by_registers() {
+fn registers_select_encoder_on_gateway() {
     let gateway = gateway("encoders=3&unit=5&input=100&output=200&order=low-first&serial=40");
     for (query, serial) in
         [("unit=5&input=100&output=200&order=low-first", "40"), ("unit=5&input=104&output=204&order=low-first", "42")]
@@ -192,7 +192,7 @@ fn several_encoders_on_one_gateway_are_selected_by_registers() {
 }
 
 #[test]
-fn an_encoder_left_in_parameterisation_returns_to_operation_on_request() {
+fn returns_from_parameterisation_on_request() {
     let mut stand = Stand::new("steps=4096&revolutions=1");
     stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x0200_00FF));
     let error = stand.run(InterbusJob::Identify).unwrap_err();
@@ -204,7 +204,7 @@ fn an_encoder_left_in_parameterisation_returns_to_operation_on_request() {
 }
 
 #[test]
-fn a_cam_is_read_as_an_item() {
+fn reads_cam_as_item() {
     let mut stand = Stand::new("cams=demo&steps=3600&revolutions=1");
     let stores = stand.stores();
     let held = stand.gateway.with_encoder(|encoder| *encoder.memory().program(program(2)));
@@ -232,7 +232,7 @@ fn verdict(lines: &[InterbusStepResult], step: CheckStep) -> Option<Verdict> {
 }
 
 #[test]
-fn the_device_check_has_a_verdict_per_line_and_sets_nothing() {
+fn device_check_sets_nothing() {
     let mut stand = Stand::new("steps=3600&revolutions=1&serial=8&temperature=41&program=2&cams=demo");
     let stores = stand.stores();
     let lines = checked(&mut stand);
@@ -250,7 +250,7 @@ fn the_device_check_has_a_verdict_per_line_and_sets_nothing() {
 }
 
 #[test]
-fn the_device_check_reports_faults() {
+fn device_check_reports_faults() {
     // The halves of the word are swapped. One step below 3 000 000 is 2DC6BFh, which then looks like an echo, although
     // OUT requests nothing.
     let far = gateway("steps=33554431&revolutions=4096&position=3000000&order=low-first");
@@ -289,7 +289,7 @@ fn the_device_check_reports_faults() {
 
 /// The jobs also run on a recording, even if requests are numbered differently.
 #[test]
-fn a_recorded_trace_replays_the_encoders_replies() {
+fn replays_recorded_trace() {
     let mut stand = Stand::new("steps=3600&revolutions=1&serial=4711");
     stand.run(InterbusJob::Identify).unwrap();
     let mut file = Vec::new();

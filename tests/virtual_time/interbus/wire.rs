@@ -94,7 +94,7 @@ fn read(query: &str, answer: impl FnMut(usize, &[u8]) -> Answer + Send + 'static
 }
 
 #[test]
-fn an_in_word_is_two_input_registers() {
+fn in_word_is_two_input_registers() {
     let cases = [
         ("", vec![0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 2], 0x0012_3456),
         ("order=low-first", vec![0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 2], 0x3456_0012),
@@ -108,7 +108,7 @@ fn an_in_word_is_two_input_registers() {
 }
 
 #[test]
-fn an_out_word_is_two_holding_registers_written_together() {
+fn out_word_is_one_register_pair_write() {
     let answer = |_: usize, request: &[u8]| match request[7] {
         3 => vec![(1, registers(request, 0x2021_0009))],
         4 => vec![(1, registers(request, 0))],
@@ -129,7 +129,7 @@ fn an_out_word_is_two_holding_registers_written_together() {
 
 /// A reply to an earlier request is ignored, even if it is the only reply.
 #[test]
-fn a_late_reply_is_not_mistaken_for_the_next() {
+fn late_reply_is_not_next_reply() {
     let answer = |number: usize, request: &[u8]| match number {
         0 => vec![(1025, registers(request, 1))],
         _ => vec![(10, registers(request, 2))],
@@ -150,7 +150,7 @@ fn a_late_reply_is_not_mistaken_for_the_next() {
 }
 
 #[test]
-fn a_reply_may_arrive_byte_by_byte() {
+fn accepts_reply_byte_by_byte() {
     let answer = |_: usize, request: &[u8]| {
         let whole = registers(request, 0x0102_0304);
         whole.iter().zip(1..).map(|(byte, at)| (at * 20, vec![*byte])).collect()
@@ -159,7 +159,7 @@ fn a_reply_may_arrive_byte_by_byte() {
 }
 
 #[test]
-fn a_refusal_is_reported_with_its_cause() {
+fn refusal_names_cause() {
     let cases = [
         (1, 1, "illegal function", "holding registers"),
         (2, 1, "illegal data address", "input= and output="),
@@ -189,7 +189,7 @@ fn a_refusal_is_reported_with_its_cause() {
 }
 
 #[test]
-fn invalid_replies_are_retried() {
+fn retries_invalid_replies() {
     let wrong: [(&str, Vec<u8>, ReplyDamage); 6] = [
         ("text", b"HTTP/1.1 400 Bad Request\r\n\r\n".to_vec(), ReplyDamage::NoFrame { bytes: 28 }),
         ("another unit", vec![2, 4, 4, 0, 0, 0, 1], ReplyDamage::Unit { requested: 1, got: 2 }),
@@ -215,7 +215,7 @@ fn invalid_replies_are_retried() {
 }
 
 #[test]
-fn a_silent_or_endless_gateway_times_out() {
+fn silent_or_endless_gateway_times_out() {
     let (ended, requests, took) = read("", |_, _| vec![]);
     assert_eq!(ended.unwrap_err(), Error::NoReply { requested: RequestedItem::Input { register: 0 }, tries: 3 });
     assert_eq!(requests.len(), 3);
@@ -237,7 +237,7 @@ fn a_silent_or_endless_gateway_times_out() {
 }
 
 #[test]
-fn a_recording_answers_any_transaction_number() {
+fn recording_answers_any_transaction_number() {
     let mut station = station("");
     station.recorded = true;
     let answer = |_: usize, request: &[u8]| {

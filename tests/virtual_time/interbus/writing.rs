@@ -48,7 +48,7 @@ fn setting(stand: &Stand) -> Vec<u32> {
 }
 
 #[test]
-fn parameters_are_set_in_one_parameterisation_with_one_store() {
+fn parameters_take_one_store() {
     for faults in ["", "&busy=80&stale=6"] {
         let mut stand = Stand::new(&format!("{SCALED}{faults}"));
         let before = stand.stores();
@@ -79,7 +79,7 @@ fn parameters_are_set_in_one_parameterisation_with_one_store() {
 
 /// Four of 64 cams differ, in two programs. The issue specifies the number of words.
 #[test]
-fn only_changed_edges_are_sent_and_a_program_needs_one_store() {
+fn sends_only_changed_edges() {
     let all: Vec<u8> = (1..=8).collect();
     for faults in ["", "&busy=40&stale=3", "&selection=output", "&program=5"] {
         let mut stand = Stand::new(&format!("{SCALED}{faults}"));
@@ -109,7 +109,7 @@ fn only_changed_edges_are_sent_and_a_program_needs_one_store() {
 }
 
 #[test]
-fn the_shift_is_set_with_a_program_or_alone() {
+fn sets_shift_with_program_or_alone() {
     for (programs, edges, stores) in [(&[3][..], 1, 1), (&[], 0, 1)] {
         let mut stand = Stand::new(SCALED);
         let before = stand.stores();
@@ -128,7 +128,7 @@ fn the_shift_is_set_with_a_program_or_alone() {
 }
 
 #[test]
-fn a_preset_is_stored_and_fired_once_at_standstill() {
+fn preset_fires_once_at_standstill() {
     for found in ["", "&program=2"] {
         let mut stand = Stand::new(&format!("{SCALED}{found}"));
         let before = stand.left();
@@ -144,7 +144,7 @@ fn a_preset_is_stored_and_fired_once_at_standstill() {
 }
 
 #[test]
-fn a_preset_is_refused_while_the_shaft_turns() {
+fn rejects_preset_while_turning() {
     let mut stand = Stand::new(SCALED);
     let prepared = stand.prepare(Change::Preset { value: 0 });
     stand.session.motor().unwrap().set_rpm(5.0);
@@ -155,7 +155,7 @@ fn a_preset_is_refused_while_the_shaft_turns() {
 }
 
 #[test]
-fn the_default_is_set_and_then_read_back() {
+fn sets_default_and_reads_back() {
     let mut stand = Stand::new(SCALED);
     let before = stand.stores();
     let prepared = stand.prepare(Change::Default);
@@ -167,7 +167,7 @@ fn the_default_is_set_and_then_read_back() {
 }
 
 #[test]
-fn a_restore_writes_differences_and_keeps_another_encoders_mounting() {
+fn restore_keeps_mounting_of_other_encoder() {
     let mut first = Stand::new("steps=3600&revolutions=1&preset=99&serial=1&cams=demo");
     let profile = match first.run(InterbusJob::Save { programs: true }).unwrap() {
         InterbusOutput::Saved(profile) => profile,
@@ -195,7 +195,7 @@ fn a_restore_writes_differences_and_keeps_another_encoders_mounting() {
 }
 
 #[test]
-fn a_change_since_the_plan_stops_the_write() {
+fn change_since_plan_stops_write() {
     let moment = |stand: &Stand| stand.clock.now();
     // Another master sets the preset with 08000001 and returns to normal operation.
     let mut stand = Stand::new(SCALED);
@@ -219,7 +219,7 @@ fn a_change_since_the_plan_stops_the_write() {
 }
 
 #[test]
-fn a_consent_covers_only_its_plan() {
+fn consent_covers_only_its_plan() {
     let mut stand = Stand::new(SCALED);
     let prepared = stand.prepare(Change::Preset { value: 1 });
     let consent = Consent::to(stand.prepare(Change::Preset { value: 2 }).plan.id());
@@ -229,7 +229,7 @@ fn a_consent_covers_only_its_plan() {
 }
 
 #[test]
-fn a_worn_eeprom_is_written_only_by_force() {
+fn worn_eeprom_needs_force() {
     let mut stand = Stand::new(SCALED);
     let mut prepared = stand.prepare(Change::Default);
     for (seen, refused) in [(Some(WEAR_LIMIT - 2), false), (Some(WEAR_LIMIT - 1), true), (None, true)] {
@@ -256,7 +256,7 @@ fn a_worn_eeprom_is_written_only_by_force() {
 }
 
 #[test]
-fn the_logbook_counts_stores_by_serial_number() {
+fn logbook_counts_stores_by_serial_number() {
     let mut stand = Stand::new(SCALED);
     for value in [1, 2, 3] {
         let prepared = stand.prepare(Change::Preset { value });
@@ -312,7 +312,7 @@ fn reading_programs_counts_as_stores() {
 
 /// This encoder stores the number of steps minus one: 3599 means 3600 steps.
 #[test]
-fn steps_less_one_are_read_and_written_unchanged() {
+fn steps_less_one_pass_unchanged() {
     let mut stand = Stand::new("steps=3600&revolutions=1&steps-minus-one=on");
     let identity = match stand.run(InterbusJob::Identify).unwrap() {
         InterbusOutput::Identity(identity) => *identity,
@@ -329,7 +329,7 @@ fn steps_less_one_are_read_and_written_unchanged() {
 
 /// A cancellation takes effect between two words. The encoder then runs in its original mode again.
 #[test]
-fn cancelling_leaves_a_running_encoder() {
+fn cancelling_leaves_encoder_running() {
     let wanted = |stand: &mut Stand| {
         edited(stand, &[6], |wanted| {
             wanted.parameters.zero_shift = 3;
@@ -370,7 +370,7 @@ fn cancelling_leaves_a_running_encoder() {
 }
 
 #[test]
-fn an_operation_reports_its_changes() {
+fn operation_reports_changes() {
     let mut stand = Stand::new(SCALED);
     let prepared = stand.prepare(Change::Preset { value: 7 });
     assert!(matches!(prepared.plan.ops.as_slice(), [Op::Parameterise(_), Op::FirePreset { value: 7 }]));
@@ -388,7 +388,7 @@ fn an_operation_reports_its_changes() {
 
 /// The position is already close to the preset. The encoder first returns old words, then the preset.
 #[test]
-fn a_preset_near_the_shafts_position_is_set_to_the_step() {
+fn sets_nearby_preset_exactly() {
     for (preset, faults) in [(102, "stale=6"), (98, "stale=6&busy=60"), (101, "stale=6"), (102, "stale=0")] {
         let mut stand = Stand::new(&format!("steps=8192&revolutions=1&serial=77&position=100&{faults}"));
         assert_eq!(stand.session.take_sample().unwrap().position(), Some(100));
@@ -401,7 +401,7 @@ fn a_preset_near_the_shafts_position_is_set_to_the_step() {
 
 /// After the content is lost, IN is always 86000000. The remedy in the message has to work.
 #[test]
-fn an_encoder_with_lost_parameters_can_be_recovered_and_restored() {
+fn recovers_encoder_with_lost_parameters() {
     let mut stand = Stand::new("steps=360&revolutions=1&cams=demo&serial=5&fault=die-in-store:1");
     let profile = match stand.run(InterbusJob::Save { programs: true }).unwrap() {
         InterbusOutput::Saved(profile) => profile,

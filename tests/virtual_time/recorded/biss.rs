@@ -46,7 +46,7 @@ fn recorded(name: &str, change: fn(&mut Bench) -> Change, every: usize) {
 }
 
 #[test]
-fn writes_of_registers_are_as_recorded() {
+fn register_writes_match_recording() {
     recorded("data", |_| data(), 2);
     recorded("filter", |_| filter(), 2);
     recorded("preset", |_| preset(0x18000, 2), 2);
@@ -55,7 +55,7 @@ fn writes_of_registers_are_as_recorded() {
 }
 
 #[test]
-fn a_restore_is_as_recorded() {
+fn restore_matches_recording() {
     let restore = |bench: &mut Bench| {
         let mut profile = bench.save();
         for area in &mut profile.data {
@@ -69,7 +69,7 @@ fn a_restore_is_as_recorded() {
 }
 
 #[test]
-fn guided_procedures_are_as_recorded() {
+fn guided_procedures_match_recording() {
     recorded("calibration", |_| calibration(), 7);
     recorded("wiegand-test", |_| wiegand_test(false), 7);
     recorded("wiegand-test-saved", |_| wiegand_test(true), 7);

@@ -34,7 +34,7 @@ fn recorded(name: &str, query: &str, change: fn(&mut Stand) -> Change) {
 }
 
 #[test]
-fn writes_of_parameters_are_as_recorded() {
+fn parameter_writes_match_recording() {
     recorded("write", "", |_| Change::Write(image(&[(24, 7), (166, 200), (186, 30)])));
     recorded("try", "", |_| Change::Try(image(&[(166, 100), (170, 640)])));
     let scale = |_: &mut Stand| Change::Write(image(&[(154, 400), (156, 256), (158, -4_000), (160, 4_000)]));
@@ -45,7 +45,7 @@ fn writes_of_parameters_are_as_recorded() {
 }
 
 #[test]
-fn services_are_as_recorded() {
+fn services_match_recording() {
     recorded("save", "", |_| Change::Do(Service::Save));
     recorded("recall", "", |_| Change::Do(Service::Recall));
     recorded("factory", "", |_| Change::Do(Service::Factory));
@@ -55,7 +55,7 @@ fn services_are_as_recorded() {
 }
 
 #[test]
-fn a_restore_is_as_recorded() {
+fn restore_matches_recording() {
     let restore = |stand: &mut Stand| {
         let mut profile = match stand.run(HiperdriveJob::Save).unwrap() {
             HiperdriveOutput::Saved(profile) => profile,

@@ -68,13 +68,13 @@ fn recorded_on(name: &str, original: Desk, change: Change) {
 }
 
 #[test]
-fn a_restore_is_as_recorded() {
+fn restore_matches_recording() {
     let wanted = wanted(&mut scene());
     recorded("restore", restore_of(&wanted));
 }
 
 #[test]
-fn writes_of_data_fields_are_as_recorded() {
+fn data_field_writes_match_recording() {
     recorded(
         "store",
         Change::Store(vec![(FieldRange::new(2, 30, 2), vec![1, 2]), (FieldRange::new(3, 0, 1), vec![3])]),
@@ -88,7 +88,7 @@ fn writes_of_data_fields_are_as_recorded() {
 }
 
 #[test]
-fn other_writes_are_as_recorded() {
+fn other_writes_match_recording() {
     let number = AccessCodeNumber::new(2).unwrap();
     recorded("change-code", Change::ChangeCode { number, new: AccessCode::new(0x77) });
     recorded("set-position", Change::SetPosition { wanted: 77, exact: false, synchronise: false, kit: false });

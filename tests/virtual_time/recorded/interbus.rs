@@ -49,7 +49,7 @@ fn image(stand: &mut Stand) -> Image {
 }
 
 #[test]
-fn writes_of_parameters_and_cams_are_as_recorded() {
+fn parameter_and_cam_writes_match_recording() {
     let parameters = |stand: &mut Stand| {
         let mut wanted = image(stand);
         (wanted.parameters.preset, wanted.parameters.zero_shift) = (17, 3);
@@ -69,13 +69,13 @@ fn writes_of_parameters_and_cams_are_as_recorded() {
 }
 
 #[test]
-fn a_preset_and_the_default_are_as_recorded() {
+fn preset_and_default_match_recording() {
     recorded("preset", |_| Change::Preset { value: 1800 }, 3);
     recorded("default", |_| Change::Default, 3);
 }
 
 #[test]
-fn a_restore_is_as_recorded() {
+fn restore_matches_recording() {
     let restore = |stand: &mut Stand| {
         let mut profile = match stand.run(InterbusJob::Save { programs: true }).unwrap() {
             InterbusOutput::Saved(profile) => *profile,

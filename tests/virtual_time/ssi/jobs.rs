@@ -22,7 +22,7 @@ fn set(stand: &mut Stand, asking: ClockSettings) -> Result<Identity, Error> {
 }
 
 #[test]
-fn hello_reports_the_adapter_and_the_word_settings() {
+fn hello_reports_adapter_and_word_settings() {
     let mut stand = Stand::new("voltage=24&clock=700000", "supply=switched");
     let error = stand.session.run_inline(SsiJob::Hello).unwrap_err();
     assert!(matches!(error, Error::Adapter(AdapterError::Refused { operation: Operation::Supply, .. })), "{error}");
@@ -45,7 +45,7 @@ fn hello_reports_the_adapter_and_the_word_settings() {
 }
 
 #[test]
-fn the_supply_stays_off_unless_requested() {
+fn supply_stays_off_unless_requested() {
     let mut stand = Stand::new("", "supply=switched");
     assert_eq!((hello(&mut stand).supply, stand.count(Operation::Supply)), (None, 0));
 }
@@ -53,7 +53,7 @@ fn the_supply_stays_off_unless_requested() {
 /// An ATM60 with factory settings has 12 bits of turns and 13 bits of steps in Gray code. The shaft is at turn 1234h
 /// and 270°, which is turn 234h of 4096 and step 1800h of 8192. The Gray code of this word is 0x469800 ^ 0x234C00.
 #[test]
-fn a_word_is_read_with_the_requested_clocks() {
+fn reads_word_with_requested_clocks() {
     let mut stand = Stand::new("", "ssi=atm60,code=gray&position=0x24698000");
     let words = stand.read();
     assert_eq!((words.words.as_slice(), words.clocks, words.first, words.lost), (&[0x65_D400][..], 25, 0, 0));
@@ -70,7 +70,7 @@ fn a_word_is_read_with_the_requested_clocks() {
 
 /// The adapter rejects a setting.
 #[test]
-fn a_refused_setting_keeps_the_previous_one() {
+fn rejected_setting_keeps_previous_one() {
     let mut stand = Stand::quick("rpm=60");
     assert_eq!(stand.read().clocks, 25);
     for asking in [
@@ -89,7 +89,7 @@ fn a_refused_setting_keeps_the_previous_one() {
 }
 
 #[test]
-fn an_adapter_of_another_version_is_refused_naming_both() {
+fn version_error_names_both_versions() {
     let mut stand = Stand::new("", "version=2");
     let error = stand.session.run_inline(SsiJob::Hello).unwrap_err();
     assert_eq!(error, Error::Adapter(AdapterError::Version { expected: 1, got: 2 }));
@@ -97,7 +97,7 @@ fn an_adapter_of_another_version_is_refused_naming_both() {
 
 /// The request is repeated once, as in the reference.
 #[test]
-fn a_silent_adapter_is_reported_after_two_tries() {
+fn reports_silent_adapter_after_two_tries() {
     let mut stand = Stand::new("", "fault=silent-after:0");
     let error = stand.session.run_inline(SsiJob::Hello).unwrap_err();
     assert_eq!((error, stand.count(Operation::Hello)), (Error::Adapter(AdapterError::Silent), 2));
@@ -105,7 +105,7 @@ fn a_silent_adapter_is_reported_after_two_tries() {
 
 /// One byte in a hundred is lost, so a quarter of all exchanges fail. The values read are still correct.
 #[test]
-fn words_are_requested_again_on_a_lossy_line() {
+fn rerequests_words_on_lossy_line() {
     for seed in 0..20 {
         let mut stand = Stand::new("", &format!("position=0x24698000&seed={seed}&fault=drop:0.01"));
         for _ in 0..50 {

@@ -53,7 +53,7 @@ fn slow_polling_reads_word_by_word() {
 }
 
 #[test]
-fn short_polling_intervals_are_streamed() {
+fn streams_short_polling_intervals() {
     let mut stand = Stand::quick(TURNING);
     stand.session.set_sample_interval(Some(FAST));
     let runs = stand.samples(Duration::from_secs(3));
@@ -69,7 +69,7 @@ fn short_polling_intervals_are_streamed() {
 }
 
 #[test]
-fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
+fn job_interrupts_stream() {
     let mut stand = Stand::quick(TURNING);
     stand.session.set_sample_interval(Some(FAST));
     let mut last = None;
@@ -93,7 +93,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
 
 /// When the settings change, the stream continues and has the new width from its first word on.
 #[test]
-fn changed_settings_apply_to_a_running_stream() {
+fn changed_settings_apply_to_running_stream() {
     let mut stand = Stand::quick(TURNING);
     stand.session.set_sample_interval(Some(FAST));
     check(&stand.samples(Duration::from_millis(100)));
@@ -110,7 +110,7 @@ fn changed_settings_apply_to_a_running_stream() {
 
 /// 25 clocks at 500 kHz take 50 µs, and the pause takes 200 µs.
 #[test]
-fn a_clock_or_pause_too_slow_for_the_interval_is_reported() {
+fn reports_clock_or_pause_too_slow() {
     let mut slow = Stand::new("clock=500000&pause=200", TURNING);
     slow.session.set_sample_interval(Some(FAST));
     let run = slow.sample();
@@ -121,7 +121,7 @@ fn a_clock_or_pause_too_slow_for_the_interval_is_reported() {
 }
 
 #[test]
-fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
+fn restored_wire_starts_new_stream() {
     let mut stand = Stand::quick(TURNING);
     stand.session.set_sample_interval(Some(FAST));
     stand.sample();
@@ -138,7 +138,7 @@ fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
 
 /// A reset stops the stream and clears supply and clock. The next job or sample detects this and continues.
 #[test]
-fn an_adapter_reset_while_streaming_is_configured_again() {
+fn reconfigures_adapter_reset_while_streaming() {
     let query = "supply=switched&rpm=60";
     for by_job in [true, false] {
         let mut stand = Stand::new("clock=1500000&pause=30&voltage=5", query);
@@ -159,7 +159,7 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
 
 /// Without a stream, the next request detects the reset.
 #[test]
-fn an_adapter_reset_between_two_words_is_configured_again() {
+fn reconfigures_adapter_reset_between_words() {
     let query = "supply=switched&rpm=60";
     let mut stand = Stand::new("voltage=5", query);
     stand.session.set_sample_interval(Some(Duration::from_millis(100)));
@@ -172,7 +172,7 @@ fn an_adapter_reset_between_two_words_is_configured_again() {
 
 /// Damaged packets are counted as missing before the next word, and no word is wrong.
 #[test]
-fn packets_lost_in_transit_are_reported() {
+fn reports_lost_packets() {
     let mut stand = Stand::quick(&format!("{TURNING}&seed=3&fault=drop:0.001"));
     stand.session.set_sample_interval(Some(FAST));
     let runs = stand.samples(Duration::from_secs(2));
