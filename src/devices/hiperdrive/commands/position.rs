@@ -120,7 +120,7 @@ mod tests {
     /// At 65536 steps per turn, −1 is step 65535 in turn −1, and 163840 is 2.5 turns. At 400 steps of 0.01 mm, 1000 is
     /// 2.5 turns. At 256 · 10 / 3 = 853.33 steps, −1 is step 852.33 in turn −1.
     #[test]
-    fn a_position_is_split_into_turns_and_steps() {
+    fn splits_position_into_turns_and_steps() {
         let place = |position, numerator, denominator| {
             let TurnPosition { turns, steps, degrees } =
                 TurnPosition::split(position, PositionScale::new(numerator, denominator).unwrap());

@@ -247,7 +247,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_interval_needs_a_fine_timer() {
+    fn rejects_interval_finer_than_timer() {
         let check =
             |step_us, interval_ms| check_timer(Duration::from_micros(step_us), Duration::from_millis(interval_ms));
         assert_eq!(check(1_100, 5), Ok(()));

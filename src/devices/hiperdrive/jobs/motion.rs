@@ -342,7 +342,7 @@ mod tests {
     /// If the window and the connection thread were both suspended, and the window resumes first, it does not revive a
     /// stale request.
     #[test]
-    fn stale_intents_are_not_repeated() {
+    fn does_not_repeat_stale_intents() {
         let clock = Arc::new(VirtualClock::default());
         let motion = Motion::new(clock.clone());
         let is_stale = || motion.with_motion_intent(|intent, _| intent.is_stale(clock.now()));

@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn links_open_a_device_or_report_the_reason() {
+    fn opens_link_or_reports_reason() {
         for text in [
             "sim:",
             "sim:?hub=4&drives=1,0,1&order=big&rpi=5&timeout=500",

@@ -140,7 +140,7 @@ mod tests {
 
     /// While a drive moves, a group becomes due at least every 60 ms (issue 21.13).
     #[test]
-    fn a_group_is_due_every_60_ms_during_motion() {
+    fn reads_group_every_60_ms_in_motion() {
         let mut read = [at(0); GROUPS];
         let mut last = 0;
         for now in (0..4000).step_by(20) {
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn every_group_is_read_once_a_second_at_any_polling_rate() {
+    fn reads_every_group_once_per_second() {
         for (step, first) in
             [10, 100, 200, 249, 250, 300, 500, 2000].into_iter().flat_map(|step| [(step, 0), (step, 777)])
         {

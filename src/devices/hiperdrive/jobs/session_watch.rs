@@ -153,7 +153,7 @@ mod tests {
 
     /// The limit of 130 ms without a reply counts from the first unanswered request (issue 21.13).
     #[test]
-    fn silence_counts_from_the_first_unanswered_request() {
+    fn silence_starts_at_first_unanswered_request() {
         let mut watch = ReplyMonitor::default();
         assert!(!watch.is_silent(at(10_000)), "nothing was asked");
         watch.record_request(at(100));
@@ -196,7 +196,7 @@ mod tests {
     /// An unanswered request or bytes that do not form a frame lock motion until a reply arrives. The reply to
     /// RegisterSession (reference, section 9) arrives in two parts (issue 21.13).
     #[test]
-    fn a_silent_session_locks_motion() {
+    fn silent_session_locks_motion() {
         let mut reply = vec![0x65, 0, 4, 0, 0x78, 0x56, 0x34, 0x12];
         reply.extend([0; 16]);
         reply.extend([1, 0, 0, 0]);
@@ -237,7 +237,7 @@ mod tests {
     /// A device that takes 300 ms for each reply is allowed 600 ms. The allowed time shrinks again when the device
     /// becomes faster.
     #[test]
-    fn a_slow_device_gets_a_longer_timeout() {
+    fn slow_device_extends_timeout() {
         let mut watch = ReplyMonitor::default();
         watch.record_request(at(0));
         watch.record_reply(at(300));

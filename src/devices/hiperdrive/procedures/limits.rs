@@ -260,7 +260,7 @@ mod tests {
     /// parameter 160 above parameter 158, and parameter 186 from 1 to 100, or 255 for no time-out (reference, section
     /// 4; issue 21.3).
     #[test]
-    fn invalid_parameter_values_permit_no_motion() {
+    fn invalid_parameters_prevent_motion() {
         type Case<'c> = (&'c [(u16, Option<i64>)], MotionLock);
         let cases: [Case<'_>; 8] = [
             (&[(154, Some(0))], MotionLock::Unread),
@@ -287,7 +287,7 @@ mod tests {
 
     /// If the limits are invalidated twice, the later time applies, in whichever order the calls arrive (issue 21.3).
     #[test]
-    fn an_earlier_doubt_does_not_replace_a_later_one() {
+    fn latest_limit_invalidation_wins() {
         let mut limits = DriveLimits::from_rules(rules(&[]), HDA30A, at(0));
         limits.invalidate(at(100));
         limits.invalidate(at(50));
@@ -299,7 +299,7 @@ mod tests {
 
     /// Each reading has a time stamp, which the dead-man control checks (issue 21.3).
     #[test]
-    fn a_reading_is_valid_for_four_seconds() {
+    fn reading_expires_after_four_seconds() {
         let mut limits = DriveLimits::from_rules(rules(&[]), HDA30A, at(0));
         limits.update(rules(&[]), HDA30A, [at(1000), at(500), at(1000), at(1000)]);
         for (ms, locks) in [(4500, vec![]), (4501, vec![MotionLock::Outdated])] {
@@ -326,7 +326,7 @@ mod tests {
     /// A confirmation applies to the limits and the scale that were shown. It becomes void when the scale changes
     /// (issue 21.3).
     #[test]
-    fn limits_are_confirmed_as_they_were_shown() {
+    fn confirms_only_displayed_limits() {
         let scaled = rules(&[(154, Some(400)), (156, Some(256)), (158, Some(-1000)), (160, Some(1000))]);
         let mut limits = DriveLimits::from_rules(rules(&[]), HDA30A, at(0));
         assert!(!limits.is_unconfirmed(), "as it was found");

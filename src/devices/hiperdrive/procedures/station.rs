@@ -155,14 +155,14 @@ mod tests {
     }
 
     #[test]
-    fn connection_settings_are_parsed_from_parameters() {
+    fn parses_connection_settings() {
         let station = station("rpi=5&order=big&udp=3333&timeout=250", Some(50123)).unwrap();
         assert_eq!(station.to_string(), "every 5 ms, big endian, UDP port 3333");
         assert_eq!(station.link.timeout, Duration::from_millis(250));
     }
 
     #[test]
-    fn a_rejected_value_names_the_allowed_ones() {
+    fn rejection_lists_allowed_values() {
         let cases = [
             ("rpi=4", "rpi=4 is not valid (allowed: a time in milliseconds from 5 to 100)"),
             ("rpi=101", "rpi=101 is not valid (allowed: a time in milliseconds from 5 to 100)"),

@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_names_are_reported() {
+    fn rejects_invalid_names() {
         for (text, why) in [
             ("limit", "\"limit\" is not a parameter"),
             ("-158", "\"-158\" is not a parameter"),

@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn addresses_are_written_to_stored_settings() {
+    fn writes_addresses_to_stored_settings() {
         let now = settings(AddressSource::Dhcp, [10, 0, 0, 7]);
         let wanted = settings(AddressSource::Stored, [10, 0, 0, 8]);
         let plan = plan_network(&now, Some(0), &wanted).unwrap();
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_addresses_are_refused_and_unused_ones_reported() {
+    fn rejects_invalid_and_reports_unused_addresses() {
         let now = settings(AddressSource::Dhcp, [10, 0, 0, 7]);
         let refused = |wanted| plan_network(&now, None, &wanted).unwrap_err();
         let broadcast = AddressError::Broadcast([10, 0, 0, 255].into());

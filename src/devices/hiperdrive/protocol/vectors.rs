@@ -63,7 +63,7 @@ fn published_control_words_match() {
 
 /// Reserved bits (1, 2, 11, 13 to 15) are rejected, for example in PROFIdrive's 047F (reference, section 9).
 #[test]
-fn reserved_bits_are_refused() {
+fn rejects_reserved_bits() {
     for bit in [1, 2, 11, 13, 14, 15] {
         let wrong = 0x0409 | 1 << bit;
         assert_eq!(ControlWord::parse(wrong), Err(ReservedBitsError { word: wrong }), "bit {bit}");
@@ -76,7 +76,7 @@ fn reserved_bits_are_refused() {
 
 /// The stop word also clears the jog bits, because a stop does not end a jog step.
 #[test]
-fn the_stop_word_depends_on_the_mode() {
+fn stop_word_depends_on_mode() {
     for (before, stopped) in [
         (0x0479, 0x0469),
         (0x0439, 0x0429),
@@ -98,7 +98,7 @@ fn the_stop_word_depends_on_the_mode() {
 
 /// A job starts on a level of bit 6, a run on an edge, if all conditions are met (reference, sections 3 and 8.10).
 #[test]
-fn words_start_a_job_or_a_run() {
+fn control_word_starts_job_or_run() {
     let cases = [
         ("job", 0x0439, 0x0479, 0x2A37, Some(MotionStart::Job)),
         ("next job", 0x0479, 0x0439, 0x3E37, Some(MotionStart::Job)),
@@ -158,7 +158,7 @@ fn published_status_words_match() {
 
 /// The transitions match section 3 of the reference.
 #[test]
-fn the_state_machine_matches_the_reference() {
+fn state_machine_matches_reference() {
     use State::{Enabled, Fault, Locked, Moving, NotReady, Operational, Ready};
     let cases = [
         (NotReady, 0x0000, 0x0400, Ready),
@@ -238,7 +238,7 @@ fn status_word_for(state: State) -> StatusWord {
 
 /// The control words match section 3 of the reference. No step is complete before its word has been sent.
 #[test]
-fn recipes_reach_their_target_state() {
+fn recipes_reach_target_state() {
     let walk = |steps: &[Step], mut before: ControlWord, mut state: State| {
         let mut words = Vec::new();
         for step in steps {
@@ -265,7 +265,7 @@ fn recipes_reach_their_target_state() {
 /// The data match section 9 of the reference: 2.5 turns (163840) at 100 % in both byte orders, and −1 turn (−65536) at
 /// 50 % and 75 %.
 #[test]
-fn published_process_data_to_a_drive_match() {
+fn published_output_data_matches() {
     let setpoint = |control: u16, speed, torque, target| Setpoint {
         control: control_word(control),
         speed: Percent::new(speed).unwrap(),
@@ -309,7 +309,7 @@ fn published_process_data_to_a_drive_match() {
 
 /// Data from a drive match section 9 of the reference.
 #[test]
-fn published_process_data_from_a_drive_match() {
+fn published_input_data_matches() {
     let cases = [
         ("37 1A 20 03 A0 86 01 00", 0x1A37, 800, 100_000),
         ("37 3E 00 00 00 80 02 00", 0x3E37, 0, 163_840),
@@ -362,7 +362,7 @@ fn published_lengths_match() {
 
 proptest! {
     #[test]
-    fn the_host_never_sets_a_reserved_or_jog_bit(says: u16, clockwise: bool, endless: bool, from: u16) {
+    fn never_sets_reserved_or_jog_bits(says: u16, clockwise: bool, endless: bool, from: u16) {
         let says = status(says);
         let direction = if clockwise { Direction::Clockwise } else { Direction::Counterclockwise };
         let end = if endless { RunEnd::Endless } else { RunEnd::RangeEnd };
@@ -383,7 +383,7 @@ proptest! {
     }
 
     #[test]
-    fn every_image_round_trips(data: Vec<u8>, big: bool) {
+    fn images_round_trip(data: Vec<u8>, big: bool) {
         let order = if big { ByteOrder::Big } else { ByteOrder::Little };
         for layout in Topology::ALL.into_iter().flat_map(|topology| [true, false].map(|pkw| Layout { topology, pkw, order })) {
             let data: Vec<u8> = data.iter().copied().chain(std::iter::repeat(0xA5)).take(layout.byte_length()).collect();

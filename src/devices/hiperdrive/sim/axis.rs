@@ -157,7 +157,7 @@ mod tests {
     /// At 35 rpm, 0.1 s of acceleration and 0.1 s of braking together cover 1/60 · 35 · 0.1 = 0.0583 turns. A full turn
     /// takes 0.2 + (1 − 0.0583) / 0.5833 s.
     #[test]
-    fn a_turn_takes_the_expected_time() {
+    fn turn_takes_expected_time() {
         let mut axis = Axis::default();
         let speed = 35.0 / 60.0 * TURN;
         let (ticks, came) = ticks_until(&mut axis, AxisSetpoint::Place { at: TURN, speed }, &SpindleLoad::default());
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn the_axis_stops_in_a_tenth_of_a_second() {
+    fn axis_stops_within_100_ms() {
         let mut axis = Axis::default();
         let load = SpindleLoad::default();
         for _ in 0..500 {
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_blocks_the_axis_and_it_can_reverse() {
+    fn blocked_axis_can_reverse() {
         let load = SpindleLoad { wall_above: Some(1000.0), ..SpindleLoad::default() };
         let mut axis = Axis::default();
         let to = |at| AxisSetpoint::Place { at, speed: TURN };

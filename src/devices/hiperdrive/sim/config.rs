@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_is_parsed() {
+    fn parses_every_key() {
         let query = "drives=1,0,1&hub=4&variant=HDA70&requested=1&position=-100&speed=200&load=60&blocked=on&defect=reversed&\
                      temperature=-12.5&s3=2&switch=17&supply=23.5&reset=8000&serial=0x10&name=Feeder&order=big&text=counted&seed=9&\
                      fault=drop:0.25";
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_values_are_reported() {
+    fn reports_invalid_values() {
         let keys = Config::KEYS.join(", ");
         let cases = [
             ("sed=1", format!("a virtual HIPERDRIVE has no setting `sed`; valid settings are {keys}")),
@@ -211,9 +211,8 @@ mod tests {
         }
     }
 
-    /// A station created with settings returns their values.
     #[test]
-    fn a_station_has_its_configured_settings() {
+    fn station_applies_config() {
         let query = "hub=4&drives=0,1&variant=HDA70&requested=1&position=-100&speed=200&switch=17&supply=23.5&serial=16&name=Feeder";
         let mut station = Station::from_config(&read(query).unwrap());
         let mut value = |number| station.read(Moment::START, ParameterNumber::new(number).unwrap()).ok();
@@ -249,7 +248,7 @@ mod tests {
     /// The status words are those of sections 3 and 9 of the reference: 3E37 at the target (compared without bit 12)
     /// and 2AB8 for a fault.
     #[test]
-    fn drives_show_their_configured_faults() {
+    fn drives_show_configured_faults() {
         for (query, status, error) in [
             ("", 0x2E37, None),
             ("load=90", 0x2E37, None),
@@ -266,7 +265,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_value_panics(key in 0..Config::KEYS.len(), value in ".*|[0-9]{1,9}|0x[0-9A-F]{1,7}|[01](,[01]){0,9}") {
+        fn arbitrary_values_never_panic(key in 0..Config::KEYS.len(), value in ".*|[0-9]{1,9}|0x[0-9A-F]{1,7}|[01](,[01]){0,9}") {
             let _ = Config::from_pairs(&[(Config::KEYS[key].to_owned(), value)]).map(|config| Target::new(&config));
         }
     }

@@ -167,7 +167,7 @@ mod tests {
     use crate::app::connect::parameters::tests::assert_round_trip;
 
     #[test]
-    fn links_round_trip_through_the_form() {
+    fn links_round_trip_through_form() {
         let links = [
             "sim:",
             "sim:?hub=4",
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_entries_are_refused_by_name() {
+    fn names_invalid_entries() {
         let refused = |change: fn(&mut HiperdriveForm)| {
             let mut form = HiperdriveForm::default();
             change(&mut form);
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn switching_the_interface_keeps_only_its_settings() {
+    fn switching_interface_drops_other_settings() {
         let mut form = HiperdriveForm::from_url(&"sim:?hub=4&seed=5&rpi=20".parse().unwrap());
         (form.kind, form.host) = (HiperdriveLinkKind::Network, "192.168.1.5".to_owned());
         assert_eq!(form.url().unwrap().to_string(), "enip:192.168.1.5:44818?rpi=20");

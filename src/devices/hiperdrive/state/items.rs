@@ -54,7 +54,7 @@ mod tests {
     use crate::app::Language::{English, German};
 
     #[test]
-    fn parameters_have_names_in_both_languages() {
+    fn translates_parameter_names() {
         for (item, english, german) in [
             ("158", "158 Lower limit", "158 Untere Grenze"),
             ("158 drive 2", "158 Lower limit, drive 2", "158 Untere Grenze, Antrieb 2"),

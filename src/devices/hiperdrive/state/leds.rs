@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn led_texts_match_the_protocol_tables() {
+    fn led_texts_match_protocol_tables() {
         for (hub, s3) in [(false, 0), (true, 0), (true, 3)] {
             let mut leds = Leds { hub, s3, ..Leds::default() };
             for row in leds.led_subject().rows() {
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn clicking_cycles_through_all_states_of_an_led() {
+    fn click_cycles_through_led_states() {
         for (hub, s3, lights) in [(false, 0, 7), (true, 0, 7), (true, 8, 4)] {
             let mut leds = Leds { hub, s3, ..Leds::default() };
             let mut seen = Vec::new();
@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn a_state_missing_on_another_led_becomes_off() {
+    fn unsupported_led_state_becomes_off() {
         let mut leds = Leds { drives: DriveLedState::Alternating, ..Leds::for_topology(Topology::Hub8) };
         leds.set_device(true, 9);
         assert_eq!((leds.s3, leds.led_subject(), leds.drives), (8, LedSubject::Drive, DriveLedState::Off));

@@ -235,7 +235,7 @@ mod tests {
 
     /// The switches select one of five address sources (manual, section 5).
     #[test]
-    fn the_switches_select_the_address_source() {
+    fn switches_select_address_source() {
         let stored = Ipv4Addr::new(10, 0, 0, 7);
         let sources = [AddressSource::Stored, AddressSource::Bootp, AddressSource::Dhcp, AddressSource::Unknown(7)];
         let with = |digits: u8| {
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn typed_settings_are_checked_before_planning() {
+    fn checks_settings_before_planning() {
         let now = settings(AddressSource::Dhcp, "10.0.0.7");
         let form = |address: &str, mask: &str, gateway: &str| {
             let form = Form { source: AddressSource::Stored, ..Form::from_settings(&now) };
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn consequences_are_shown_before_writing() {
+    fn shows_consequences_before_writing() {
         let now = settings(AddressSource::Dhcp, "10.0.0.7");
         let host = Some(Ipv4Addr::new(10, 0, 0, 7));
         let ids = |digits: u8, wanted: &NetworkSettings| {
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn the_switch_table_marks_the_current_position() {
+    fn switch_table_marks_current_position() {
         let now = |digits: u8| {
             let rows = switch_positions(AddressSwitch::parse(digits));
             rows.into_iter().filter(|row| row.is_now).map(|row| row.digits).collect::<Vec<_>>()

@@ -4,6 +4,6 @@ use crate::app::recorded::assert_recorded;
 use crate::devices::hiperdrive::jobs::Hiperdrive;
 
 #[test]
-fn a_draft_matches_the_recorded_text() {
+fn draft_matches_recorded_text() {
     assert_recorded::<Hiperdrive>("hiperdrive", "[(166,Some(200)),(358,Some(-4000)),(24,None)]");
 }

@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_convert_to_every_unit() {
+    fn converts_steps_to_every_unit() {
         let of = |ruler: Ruler, steps, measure| ruler.from_steps(steps, measure).unwrap();
         assert_eq!(of(SPINDLE, 163_840, PositionUnit::Turns), 2.5);
         assert_eq!(of(SPINDLE, -16_384, PositionUnit::Degrees), -90.0);
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn typed_values_become_the_nearest_step() {
+    fn rounds_typed_value_to_nearest_step() {
         assert_eq!(hundredths().to_steps(12.344, PositionUnit::Millimetres), Ok(1234));
         assert_eq!(hundredths().to_steps(-0.005, PositionUnit::Millimetres), Ok(-1));
         assert_eq!(SPINDLE.to_steps(90.0, PositionUnit::Degrees), Ok(16_384));
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn a_position_is_rescaled_to_another_scale() {
+    fn rescales_position() {
         let to = PositionScale::new(400, 256).unwrap();
         // 511 turns are 33 488 896 steps at 65536 per turn, and 204 400 steps at 400 per turn.
         assert_eq!(SPINDLE.rescale_position(33_488_896, to), 204_400);

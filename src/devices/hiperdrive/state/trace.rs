@@ -149,7 +149,7 @@ mod tests {
 
     /// Rejections and damaged explicit messages are explained and marked (reference, section 7; issue 22.11).
     #[test]
-    fn damaged_replies_are_explained_and_marked() {
+    fn explains_and_marks_corrupt_replies() {
         let cases = [
             ("done", format!("{HEAD} 90 00 00 00"), None),
             ("a value that is refused", format!("{HEAD} 90 00 09 00"), Some(TraceFault::Reported)),
@@ -192,7 +192,7 @@ mod tests {
     /// The messages are from section 9 of the reference: a read of parameter 107, a write of 158, and a reply to the
     /// last request but one.
     #[test]
-    fn a_reply_shows_the_value_of_its_own_request() {
+    fn reply_shows_value_of_its_request() {
         let mut decoder = FrameDecoder::default();
         let mut frame = |direction, context, message: &str| {
             let told = decoder.explain(&entry(direction, &around(context, message)));

@@ -110,7 +110,7 @@ mod tests {
 
     /// Overwritten saved values are remembered until the next save, even after a restart of the program (issue 21.6 h).
     #[test]
-    fn saved_values_are_remembered_until_the_next_save() {
+    fn remembers_saved_values_until_next_save() {
         let three = DriveNumber::new(3).unwrap();
         let (factory, mut now) = (image(&[(24, 0), (366, 350)]), image(&[(24, 0), (366, 350)]));
         let mut own = UnsavedChanges::default();

@@ -164,7 +164,7 @@ mod tests {
     use crate::ui::wiring::assert_notes;
 
     #[test]
-    fn a_pin_stays_on_the_line_of_its_signal() {
+    fn pin_and_signal_stay_on_one_line() {
         let kept = with_pins_unbroken("Each drive: 1 RS-485 + white, 2 RS-485 − green, 6 GND blue.");
         assert_eq!(kept.replace('\u{a0}', "_"), "Each drive: 1_RS-485_+_white, 2_RS-485_−_green, 6_GND_blue.");
     }
@@ -172,7 +172,7 @@ mod tests {
     /// The wiring card matches sections 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and 4.2 (bus adapter) of the
     /// HIPERDRIVE manual (issue 22.23).
     #[test]
-    fn the_wiring_card_matches_the_manual() {
+    fn wiring_card_matches_manual() {
         assert_notes(&TEXTS, &WIRING, &["4-pin, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);
         assert_notes(&TEXTS, &WIRING, &["3 TD− green", "4 RD− orange", "four-wire cables only"]);
         assert_notes(&TEXTS, &WIRING, &["1 GND drive", "2 +24 V drive", "3 GND adapter", "4 +24 V adapter", "J1"]);

@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn only_reachable_states_can_be_requested() {
+    fn offers_only_reachable_states() {
         let mut harness = states(Some(State::Operational));
         for state in State::ALL {
             let node = harness.get_by_label(state.name());

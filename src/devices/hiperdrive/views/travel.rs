@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bar_reaches_from_limit_to_limit() {
+    fn bar_spans_limits() {
         let scale = Scale::new((-50, 50), Some(0), bar());
         assert_eq!([-50, 0, 50].map(|steps| scale.x(steps)), [8.0, 58.0, 108.0]);
         let unknown = Scale::new((-50, 50), None, bar());
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn a_position_outside_is_on_the_bar_with_room_beyond_it() {
+    fn bar_extends_beyond_outside_position() {
         for (position, is_above) in [(150, true), (-150, false)] {
             let scale = Scale::new((-50, 50), Some(position), bar());
             let [low, high, at] = [-50, 50, position].map(|steps| scale.x(steps));
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn the_widest_range_fits() {
+    fn widest_range_fits() {
         let scale = Scale::new((i32::MIN, i32::MAX), Some(0), bar());
         assert!((scale.x(0) - 58.0).abs() < 0.01);
         assert_eq!((scale.x(i32::MIN), scale.x(i32::MAX)), (8.0, 108.0));

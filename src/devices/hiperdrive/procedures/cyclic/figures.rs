@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn intervals_are_counted_in_buckets() {
+    fn counts_intervals_per_bucket() {
         let mut histogram = Histogram::default();
         assert_eq!((histogram.total(), histogram.deviation_range_us()), (0, None));
         let wanted = Duration::from_millis(10);

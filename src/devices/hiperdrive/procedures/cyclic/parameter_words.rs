@@ -160,7 +160,7 @@ mod tests {
     const IS_350: &str = "A6 10 00 00 5E 01 00 00";
 
     #[test]
-    fn a_parameter_is_requested_until_its_reply_and_again_after_clearing() {
+    fn requests_parameter_until_reply() {
         let mut own = ParameterWords::default();
         assert_eq!(own.request(at(0)), words(CLEAR), "nothing is watched");
         own.set_watched(&[number(166)]);
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn replies_to_other_requests_do_not_count() {
+    fn ignores_replies_to_other_requests() {
         let mut own = ParameterWords::default();
         own.set_watched(&[number(166)]);
         own.request(at(0));
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_have_the_size_and_sign_of_their_parameter() {
+    fn number_size_and_sign_match_parameter() {
         // Parameter 11 is I16, 119 is I8, and 107 is I32. Each reply contains −5, with arbitrary bits above the number.
         let cases =
             [(11, "0B 10 00 00 FB FF 00 00"), (119, "77 10 00 00 FB 00 00 00"), (107, "6B 20 00 00 FB FF FF FF")];
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_device_that_does_not_reply_is_reported_and_asked_again() {
+    fn reports_and_retries_missing_reply() {
         let mut own = ParameterWords::default();
         own.set_watched(&[number(11), number(119)]);
         let mut ms = 0;

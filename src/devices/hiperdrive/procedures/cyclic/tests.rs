@@ -56,7 +56,7 @@ fn report(sequence: u32, status: u16, position: i32) -> Vec<u8> {
 }
 
 #[test]
-fn packets_match_the_reference() {
+fn packets_match_reference() {
     let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(0));
     let out = OutputData { control: 0x0439, speed: 100, torque: 100, target: 163_840 };
     let image = OutputImage { drives: vec![out], pkw: None };
@@ -77,7 +77,7 @@ fn packets_match_the_reference() {
 /// Process data have 8 bytes per drive, followed by 8 bytes of parameter words if the connection includes them
 /// (reference, section 2). A packet contains 14 to 78 bytes of data.
 #[test]
-fn the_connection_determines_the_image_layout() {
+fn connection_determines_image_layout() {
     for (topology, pkw, data) in [
         (Topology::Adapter, false, 8),
         (Topology::Adapter, true, 16),
@@ -182,7 +182,7 @@ impl Bench {
 /// Three intervals without a packet are a loss (reference, issue and manual). The stop word is still sent, since only
 /// the return path may be interrupted. Afterwards, the drives are switched off, and nothing more is sent.
 #[test]
-fn a_lost_connection_stops_and_stays_lost() {
+fn lost_connection_stops_and_stays_lost() {
     let mut bench = Bench::jogs();
     bench.answers = false;
     assert_eq!(bench.cycles(3).join(" "), "1459");
@@ -201,7 +201,7 @@ fn a_lost_connection_stops_and_stays_lost() {
 /// A computer that was busy for 70 ms may still have packets in its queue, so the connection is not lost yet. Once the
 /// target's time-out (80 ms in this test) has passed, the drives have stopped by themselves.
 #[test]
-fn a_delayed_thread_reads_pending_packets_before_giving_up() {
+fn delayed_thread_reads_pending_packets_first() {
     for (away, lost) in [(70, false), (100, true)] {
         let mut bench = Bench::jogs();
         // When the thread wakes up, the packets received in the meantime are queued.
@@ -227,7 +227,7 @@ fn a_delayed_thread_reads_pending_packets_before_giving_up() {
 
 /// At rest, a lack of packets is tolerated until the target's own time-out of 80 ms (issue 21.13).
 #[test]
-fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
+fn tolerates_silence_at_rest_until_timeout() {
     let mut bench = Bench::new();
     bench.act(MotionRequest::Lead(TargetState::Enabled));
     bench.cycles(20);
@@ -250,7 +250,7 @@ fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
 
 /// Closing the connection sends stop words until standstill, then three packets that switch the drives off.
 #[test]
-fn ending_the_connection_stops_and_switches_off() {
+fn closing_connection_stops_and_switches_off() {
     let mut bench = Bench::jogs();
     bench.drives.close(at(bench.ms));
     let begun = bench.ms;
@@ -263,7 +263,7 @@ fn ending_the_connection_stops_and_switches_off() {
 
 /// If a drive does not stop, the connection ends after the last level of the stop sequence.
 #[test]
-fn a_drive_that_does_not_stop_ends_the_connection() {
+fn unstoppable_drive_ends_connection() {
     let mut bench = Bench::jogs();
     bench.act(MotionRequest::Stop);
     let mut words = Vec::new();
@@ -276,9 +276,9 @@ fn a_drive_that_does_not_stop_ends_the_connection() {
     assert_eq!(bench.drives.connection_loss(), Some(&ConnectionLoss::DoesNotStand(DriveNumber::FIRST)));
 }
 
-/// Only one drive moves at a time. An action for another drive stops the first one.
+/// An action for another drive stops the first one.
 #[test]
-fn only_one_drive_moves_at_a_time() {
+fn moves_only_one_drive_at_once() {
     let second = DriveNumber::new(2).unwrap();
     let mut drives =
         Drives::new(&opened(Topology::Hub4, false, ByteOrder::Little), &[DriveNumber::FIRST, second], 0, at(0));
@@ -324,7 +324,7 @@ fn only_one_drive_moves_at_a_time() {
 proptest! {
     /// Every packet is counted. A malformed packet neither moves a drive nor keeps the connection alive.
     #[test]
-    fn arbitrary_packets_move_no_drive(packets in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..80), 1..40)) {
+    fn arbitrary_packets_never_move_drives(packets in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..80), 1..40)) {
         let mut bench = Bench::new();
         bench.cycles(5);
         bench.answers = false;
@@ -344,7 +344,7 @@ proptest! {
 
     /// A truncated, damaged, repeated or late report causes no panic and is counted at most once.
     #[test]
-    fn damaged_reports_count_at_most_once(
+    fn counts_corrupt_reports_at_most_once(
         reports in prop::collection::vec((0u32..40, 0usize..37, 0usize..400, 0u8..4), 1..60)
     ) {
         let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(0));

@@ -86,7 +86,7 @@ fn heard(said: Option<(u16, i32)>) -> Option<ActualValues> {
 
 /// A control word for standstill starts no motion, for any relevant status and previous control word.
 #[test]
-fn a_standstill_word_starts_no_motion() {
+fn standstill_word_starts_no_motion() {
     let befores: Vec<ControlWord> =
         (0..=u16::MAX).step_by(0x40).filter_map(|word| ControlWord::parse(word | 0x0439).ok()).collect();
     let mut standing = 0;
@@ -137,7 +137,7 @@ fn leaving_speed_mode_passes_through_ready() {
 /// While the thread was suspended between two calls, a stop may have been requested and then replaced by another
 /// request.
 #[test]
-fn an_unseen_stop_still_ends_the_job() {
+fn missed_stop_still_ends_job() {
     let permit = Permit::for_range(-1000, 1000);
     for (waits, next) in [(true, MotionRequest::Resume), (false, MotionRequest::Pause)] {
         let mut man = DeadMan::new(DriveNumber::FIRST, 0);
@@ -201,7 +201,7 @@ const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Cloc
 /// If another master may have changed the limits while a drive is being enabled, the limits are read before the drive
 /// moves. A running motion continues, and a paused one does not resume (issue 21.3).
 #[test]
-fn doubted_limits_delay_the_start_of_a_motion() {
+fn outdated_limits_prevent_motion_start() {
     let doubted = ActionEnd::Refused(MotionRefusal::Locked(MotionLock::Outdated));
     for wish in [CLOCKWISE, MotionRequest::Move { target: 500, effort: FULL }] {
         let mut looks = DeadManBench::new();
@@ -231,7 +231,7 @@ fn doubted_limits_delay_the_start_of_a_motion() {
 
 /// A job may end just before the user pauses or resumes it. The user is then told why it ended.
 #[test]
-fn a_late_pause_or_resume_reports_how_the_job_ended() {
+fn late_pause_or_resume_reports_job_end() {
     for waits in [false, true] {
         let mut looks = DeadManBench::new();
         looks.act(MotionRequest::Move { target: 500, effort: FULL });
@@ -269,7 +269,7 @@ fn a_late_pause_or_resume_reports_how_the_job_ended() {
 /// Another master may change the limits, or the shaft may be pushed, just before a motion starts. A drive that is
 /// outside its limits as a result must not move further out (issue 21.4).
 #[test]
-fn a_drive_outside_its_limits_before_moving_does_not_start() {
+fn drive_outside_limits_does_not_start() {
     for (wish, direction) in [
         (CLOCKWISE, Direction::Clockwise),
         (
@@ -297,7 +297,7 @@ fn a_drive_outside_its_limits_before_moving_does_not_start() {
 /// If both limits are within a degree of the position, status bit 15 does not tell which limit the drive has passed
 /// (issue 21.4).
 #[test]
-fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
+fn bit_15_is_ambiguous_near_both_limits() {
     let at = |position| Permit::for_range(-150, 150).outside_limits(heard(Some((0xAA37, position))).unwrap());
     assert_eq!(
         (at(-20), at(0), at(20)),
@@ -316,7 +316,7 @@ fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
 /// The first packets of a connection contain no valid position, because a hub first queries all its drives. A step
 /// therefore waits until positions have arrived for 250 ms (issue 21.6b).
 #[test]
-fn a_step_is_not_counted_from_the_first_packets() {
+fn step_waits_for_valid_positions() {
     let mut looks = DeadManBench::new();
     looks.permit = Permit::for_range(-100_000, 100_000);
     looks.act(MotionRequest::Step { by: 100, effort: FULL });
@@ -331,7 +331,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
 
     #[test]
-    fn the_dead_man_holds_its_invariants_for_any_events(ticks in prop::collection::vec(tick(), 1..120)) {
+    fn dead_man_invariants_hold(ticks in prop::collection::vec(tick(), 1..120)) {
         let mut man = DeadMan::new(DriveNumber::FIRST, 5);
         let mut now = Moment::START;
         let mut intent = MotionIntent::idle(DriveNumber::FIRST, 5, now);

@@ -38,14 +38,14 @@ fn plan(wanted: &[(u16, i64)], position: i32) -> Result<HiperdrivePlan, PlanErro
 }
 
 #[test]
-fn without_differences_nothing_is_written() {
+fn writes_nothing_without_differences() {
     let device = image(&[1, 3]);
     let plan = plan_edits(&device, &device, &at(1, 0)).unwrap();
     assert_eq!((plan.is_empty(), plan.write_cycles(), plan.base), (true, 0, Base::default()));
 }
 
 #[test]
-fn differences_are_written_and_saved_once() {
+fn writes_and_saves_differences_once() {
     let plan = plan(&[(24, 5), (26, 7), (166, 200), (366, 100)], 0).unwrap();
     assert_eq!(steps(&plan), [(24, 5), (166, 200), (366, 100), (47, 1)]);
     assert_eq!(plan.write_cycles(), 1);
@@ -62,7 +62,7 @@ fn volatile_parameters_need_no_save() {
 }
 
 #[test]
-fn the_scale_is_written_first_and_the_limits_after_the_speed() {
+fn writes_scale_before_speed_and_limits() {
     let wanted = [(152, 1), (154, 400), (156, 256), (158, -1000), (160, 1000), (162, 1), (166, 200), (186, 10)];
     let plan = plan(&wanted, 0).unwrap();
     let expected = [(156, 256), (154, 400), (162, 1), (166, 200), (158, -1000), (160, 1000), (186, 10), (47, 1)];
@@ -70,7 +70,7 @@ fn the_scale_is_written_first_and_the_limits_after_the_speed() {
 }
 
 #[test]
-fn a_drive_is_requested_first_and_released_last() {
+fn requests_drive_first_and_releases_last() {
     let device = image(&[1, 3]).overlaid_with(&image_with_values(&[(152, 0)]));
     let wanted = image_with_values(&[(24, 1), (152, 1), (166, 200), (352, 0), (366, 200)]);
     let plan = plan_edits(&device, &wanted, &Positions::new()).unwrap();
@@ -81,7 +81,7 @@ fn a_drive_is_requested_first_and_released_last() {
 /// The cases list the old limits, the position, the new limits, and the order of writes that the drive accepts. After
 /// each write, parameter 160 must be above 158, with the position between them (reference, section 4).
 #[test]
-fn limits_are_written_in_the_order_the_drive_accepts() {
+fn writes_limits_in_accepted_order() {
     let cases = [
         ("closer", (-1000, 1000), 0, (-100, 100), [158, 160]),
         ("wider", (-100, 100), 0, (-1000, 1000), [158, 160]),
@@ -114,7 +114,7 @@ fn limits_are_written_in_the_order_the_drive_accepts() {
 proptest::proptest! {
     /// For any limits and any position, each write leaves the limits in order and the position between them.
     #[test]
-    fn any_limits_are_written_in_an_accepted_order(
+    fn arbitrary_limits_have_accepted_order(
         old in (-100i64..100, 1i64..100),
         new in (-100i64..100, 1i64..100),
         position in -110i32..110,
@@ -138,7 +138,7 @@ proptest::proptest! {
 }
 
 #[test]
-fn a_drive_outside_its_new_limits_is_not_changed() {
+fn rejects_limits_that_exclude_position() {
     let refused = |wanted: &[(u16, i64)], position| plan(wanted, position).unwrap_err();
     let outside = |position, lower, upper| PlanError::PositionOutside { drive: drive(1), position, lower, upper };
     assert_eq!(refused(&[(158, 0), (160, 1000)], -1), outside(-1, 0, 1000));
@@ -153,14 +153,14 @@ fn a_drive_outside_its_new_limits_is_not_changed() {
 }
 
 #[test]
-fn a_position_too_large_for_the_new_scale_is_refused() {
+fn rejects_position_beyond_new_scale() {
     // 500 turns of 65536 steps, times 255.996: 500 · 256 · 65535 = 8388480000.
     let error = plan(&[(154, 65_535)], 32_768_000).unwrap_err();
     assert_eq!(error, PlanError::PositionTooLarge { drive: drive(1), position: 8_388_480_000 });
 }
 
 #[test]
-fn crossed_limits_are_refused() {
+fn rejects_crossed_limits() {
     for (lower, upper) in [(100, 100), (101, 100)] {
         let error = plan(&[(158, lower), (160, upper)], 100).unwrap_err();
         assert_eq!(error, PlanError::LimitsCrossed { drive: drive(1), lower, upper });
@@ -169,7 +169,7 @@ fn crossed_limits_are_refused() {
 }
 
 #[test]
-fn unwritable_parameters_are_refused_with_a_reason() {
+fn rejects_unwritable_parameters() {
     let device =
         image(&[1]).overlaid_with(&image_with_values(&[(101, 0), (104, 0), (105, 0), (107, 0), (47, 0), (199, 0)]));
     let refused = |own, value| plan_edits(&device, &image_with_values(&[(own, value)]), &Positions::new()).unwrap_err();
@@ -191,7 +191,7 @@ fn unwritable_parameters_are_refused_with_a_reason() {
 /// The ±512 turns of an HDA30 are 33554432 steps at 65536 steps per turn, or 204800 at 400 steps per turn. A jog step
 /// of the keys on the drive can be up to the whole travel of 1024 turns (issue 21.10).
 #[test]
-fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
+fn plans_no_limit_beyond_travel() {
     let jogs = |image: Image| image.overlaid_with(&image_with_values(&[(170, 4096), (176, -4096)]));
     let scaled = image(&[1, 3]).overlaid_with(&image_with_values(&[(154, 400), (156, 256), (158, -1000), (160, 1000)]));
     let factory = image(&[1, 3]);
@@ -242,7 +242,7 @@ fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
 }
 
 #[test]
-fn a_scale_that_moves_limits_is_warned_about() {
+fn warns_when_scale_moves_limits() {
     let warned = |wanted: &[(u16, i64)]| plan_warnings(&plan(wanted, 0).unwrap());
     // 511 turns of 65536 steps are 33488896 steps, which are 83722.24 turns of 400 steps.
     let moved = warned(&[(154, 400), (156, 256)]);
@@ -257,7 +257,7 @@ fn a_scale_that_moves_limits_is_warned_about() {
 }
 
 #[test]
-fn side_effects_of_a_plan_are_warned_about() {
+fn warns_about_plan_side_effects() {
     let warned = |wanted: &[(u16, i64)]| plan_warnings(&plan(wanted, 0).unwrap());
     assert_eq!(warned(&[(186, 255)]), [Warning::NoTimeout(drive(1))]);
     assert_eq!(warned(&[(390, 9600)]), [Warning::AfterReset(Item(parameter(390)))]);
@@ -266,7 +266,7 @@ fn side_effects_of_a_plan_are_warned_about() {
 
 /// Positions are rounded to 64 steps (reference, section 5): 31 → 0, 33 → 64, 100 → 128, −33 → −64.
 #[test]
-fn a_position_is_set_to_the_next_multiple_of_64() {
+fn rounds_position_to_multiple_of_64() {
     for (position, becomes) in [(31, 0), (33, 64), (100, 128), (-33, -64), (163_840, 163_840)] {
         let plan = plan_set_position(&image(&[1, 3]), drive(3), position).unwrap();
         assert_eq!(steps(&plan), [(398, becomes), (47, 1)], "{position}");
@@ -275,7 +275,7 @@ fn a_position_is_set_to_the_next_multiple_of_64() {
 }
 
 #[test]
-fn a_position_beyond_the_limits_is_not_set() {
+fn rejects_set_position_beyond_limits() {
     let device = image(&[1]).overlaid_with(&image_with_values(&[(158, 0), (160, 100)]));
     let refused = |position| plan_set_position(&device, drive(1), position).map(|plan| steps(&plan)).unwrap_err();
     let outside =
@@ -289,7 +289,7 @@ fn a_position_beyond_the_limits_is_not_set() {
 }
 
 #[test]
-fn services_depend_on_every_value_they_may_change() {
+fn service_plans_check_affected_values() {
     let device = image(&[1]);
     for (service, code, cost) in
         [(Service::Save, 1, 1), (Service::Factory, -1, 0), (Service::FactoryAll, -3, 1), (Service::Recall, -2, 0)]

@@ -28,7 +28,7 @@ fn written(restore: &Restore) -> Vec<u16> {
 }
 
 #[test]
-fn only_differences_are_written() {
+fn writes_only_differences() {
     let mut device = device();
     device.image = device.image.overlaid_with(&image_with_values(&[(166, 100), (398, 64)]));
     let restore = plan_restore(&profile(), &device, NONE).unwrap();
@@ -42,7 +42,7 @@ fn only_differences_are_written() {
 }
 
 #[test]
-fn ports_without_a_drive_are_skipped_and_named() {
+fn skips_and_names_empty_ports() {
     let mut device = device();
     device.image = image(&[1]).overlaid_with(&image_with_values(&[(166, 100)]));
     device.identity = identity("100", &[(1, "4711")]);
@@ -52,7 +52,7 @@ fn ports_without_a_drive_are_skipped_and_named() {
 }
 
 #[test]
-fn another_device_or_drive_is_refused() {
+fn rejects_other_device_or_drive() {
     let mut device = device();
     device.identity = identity("101", &[(1, "4711"), (3, "4712")]);
     let error = plan_restore(&profile(), &device, NONE).unwrap_err();
@@ -70,7 +70,7 @@ fn another_device_or_drive_is_refused() {
 
 /// All of these have the same serial number, so that only the permission for another type is needed (issue 22.9).
 #[test]
-fn another_type_of_device_or_drive_is_refused() {
+fn rejects_other_device_or_drive_type() {
     let mut device = device();
     device.identity.topology = Some(Topology::Adapter);
     device.image = image(&[1]).overlaid_with(&image_with_values(&[(166, 100)]));
@@ -97,7 +97,7 @@ fn another_type_of_device_or_drive_is_refused() {
 }
 
 #[test]
-fn marked_parameters_stay_on_their_own_drive() {
+fn marked_parameters_stay_on_own_drive() {
     let mut marked = profile();
     let mark = |own| MountingMark { item: Item(parameter(own)), meaning: String::new(), unknown: Default::default() };
     marked.mounting.extend([mark(160), mark(360)]);
@@ -113,7 +113,7 @@ fn marked_parameters_stay_on_their_own_drive() {
 }
 
 #[test]
-fn differences_are_named_by_drive() {
+fn names_differences_by_drive() {
     let mut right = profile();
     right.image = image(&[1, 3, 4]).overlaid_with(&image_with_values(&[(24, 1), (166, 100), (366, 200)]));
     right.image.values.remove(&parameter(190));
@@ -131,7 +131,7 @@ fn differences_are_named_by_drive() {
 /// steps of 0.1 mm at a pitch of 2 mm, or 3600 steps of 0.1°. 511 turns are 204400 and 10220 steps. Half a turn is 1800
 /// steps.
 #[test]
-fn ready_made_profiles_plan_the_expected_writes() {
+fn supplied_profiles_plan_expected_writes() {
     let read = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperdrive").join(name);
         let text = std::fs::read_to_string(path).unwrap();

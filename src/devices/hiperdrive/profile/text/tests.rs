@@ -37,7 +37,7 @@ fn replaced(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn emitted_profiles_parse_back() {
+fn emitted_profile_parses_back() {
     let text = document(profile()).emit();
     assert_eq!(ProfileDocument::parse(&text, HiperdriveProfile::FORMATS).unwrap(), document(profile()));
     for line in [
@@ -56,7 +56,7 @@ fn emitted_profiles_parse_back() {
 }
 
 #[test]
-fn a_handwritten_profile_has_no_identity() {
+fn handwritten_profile_has_no_identity() {
     let profile = parse(SHORT).unwrap();
     assert!(profile.identity.is_device_unknown());
     assert_eq!(profile.image, image_with_values(&[(24, 16), (254, 400), (256, 256), (258, -1000), (260, 204_400)]));
@@ -69,13 +69,13 @@ fn a_handwritten_profile_has_no_identity() {
 }
 
 #[test]
-fn drive_parameters_may_be_listed_with_device_parameters() {
+fn accepts_drive_parameters_at_top_level() {
     let text = r#"(schema: 1, device: "hiperdrive", parameters: {166: 200, 366: 100})"#;
     assert_eq!(parse(text).unwrap().image, image_with_values(&[(166, 200), (366, 100)]));
 }
 
 #[test]
-fn unknown_fields_are_kept() {
+fn keeps_unknown_fields() {
     let text = SHORT
         .replace("24: 0x10", "24: 0x10, \"owner\": (name: \"CK\")")
         .replace("number: 2,", "number: 2, axis: \"feed\",")
@@ -138,7 +138,7 @@ fn profile_errors_name_their_location() {
 }
 
 #[test]
-fn the_identity_round_trips() {
+fn identity_round_trips() {
     let profile = HiperdriveProfile::from_image(identity("7", &[(8, "1")]), image_with_values(&[(898, 64)]));
     assert_eq!(parse(&document(profile.clone()).emit()), Ok(profile));
 }
@@ -148,14 +148,14 @@ const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests
 
 /// Changing a value changes the text in only one place (issue 22.26).
 #[test]
-fn a_change_edits_only_its_value() {
+fn change_edits_only_its_value() {
     let edit = |own: &mut HiperdriveProfile| assert_eq!(own.image.values.insert(parameter(166), 40), Some(50));
     assert_edit_in_place(COMMENTED, edit, "166: 50", "166: 40");
 }
 
 /// Adding or removing an entry changes only the line of this entry (issue 22.26).
 #[test]
-fn adding_or_removing_an_entry_changes_only_its_line() {
+fn entry_change_edits_only_its_line() {
     let (_, carried) = edit_profile(COMMENTED, |_, own: &mut HiperdriveProfile| {
         own.image.values.remove(&parameter(158));
         own.image.values.insert(parameter(24), 1);

@@ -58,7 +58,7 @@ fn published_parameter_words_match() {
 
 /// A reply for another parameter or task is not accepted as the answer.
 #[test]
-fn a_reply_matches_only_its_own_request() {
+fn reply_matches_only_its_request() {
     let read = Pkw::request(Task::Read, 166, 0, 0);
     let reply = |code: u16, number: u16| Pkw { pke: code << 12 | number, ind: 0, pwe: 5 };
     assert_eq!(reply(1, 158).answer_to(read), None, "another parameter");
@@ -106,7 +106,7 @@ fn parameters_map_to_cip_attributes() {
 
 /// The number of parameters and their factory values match section 4 of the reference.
 #[test]
-fn the_parameter_table_matches_the_reference() {
+fn parameter_table_matches_reference() {
     assert!(PARAMETERS.is_sorted_by(|one, other| one.number < other.number));
     let numbers: Vec<u16> = PARAMETERS.iter().map(|row| row.number).collect();
     // The device has 9 read-only parameters, 10 registers, and parameter 47. A drive has 101 to 129, and 22 from 152 to
@@ -137,7 +137,7 @@ fn the_parameter_table_matches_the_reference() {
 
 /// Values within the limits are accepted, and values beyond them are rejected (reference, section 4).
 #[test]
-fn parameter_ranges_are_checked() {
+fn checks_parameter_ranges() {
     for (own, good, bad) in [
         (102, &[1, 100][..], &[0, 101][..]),
         (152, &[0, 1], &[2, -1]),
@@ -175,7 +175,7 @@ fn parameter_ranges_are_checked() {
 /// Numbers have 1, 2 or 4 bytes, low byte first. The first byte of a string may be its length (reference, sections 7
 /// and 9).
 #[test]
-fn values_have_the_length_of_their_type() {
+fn value_length_matches_type() {
     for (kind, text, value) in [
         (Kind::I32, "00 80 02 00", 163_840),
         (Kind::I32, "00 00 01 FE", -33_488_896),
@@ -203,7 +203,7 @@ fn values_have_the_length_of_their_type() {
 /// The nominal data in parameters 126 to 129 are strings. A value with the prefix "A" is in tenths and always has one
 /// decimal (manual 6.2).
 #[test]
-fn nominal_data_may_be_tenths() {
+fn parses_nominal_data_in_tenths() {
     for (text, number) in [
         ("24", Some((24.0, 0))),
         ("A25", Some((2.5, 1))),
@@ -219,7 +219,7 @@ fn nominal_data_may_be_tenths() {
 
 /// The conversions match the table in section 5 of the reference and the examples in the manual.
 #[test]
-fn steps_convert_to_turns_and_millimetres() {
+fn converts_steps_to_turns_and_millimetres() {
     for (numerator, denominator, steps) in [(256, 1, 65_536), (400, 256, 400), (100, 256, 100), (20, 256, 20)] {
         let scale = PositionScale::new(numerator, denominator).unwrap();
         assert_eq!(scale.steps_of_turns(1), Some(steps));
@@ -262,7 +262,7 @@ fn steps_convert_to_turns_and_millimetres() {
 
 /// The conversions match sections 2 and 5 of the reference.
 #[test]
-fn turns_reference_torque_and_speed_convert() {
+fn converts_turns_torque_and_speed() {
     for (position, expected) in [(-1, (-1, 65_535)), (0, (0, 0)), (163_840, (2, 32_768)), (i32::MIN, (-32_768, 0))] {
         assert_eq!(to_turns_and_steps(position), expected);
     }
@@ -282,7 +282,7 @@ fn turns_reference_torque_and_speed_convert() {
 
 /// The tables match sections 1 and 4 of the reference.
 #[test]
-fn error_variant_led_and_switch_tables_match_the_reference() {
+fn code_tables_match_reference() {
     assert!(ERROR_CODES.is_sorted_by(|one, other| one.code.code() < other.code.code()));
     assert_eq!(ErrorCode::FOLLOWING_ERROR.to_string(), "8203 following error");
     assert_eq!(ErrorCode::new(0x8999).to_string(), "8999 unknown error");
@@ -319,7 +319,7 @@ fn error_variant_led_and_switch_tables_match_the_reference() {
 
 proptest! {
     #[test]
-    fn every_parameter_word_round_trips(bytes: [u8; 8], request: [u8; 8]) {
+    fn parameter_words_round_trip(bytes: [u8; 8], request: [u8; 8]) {
         for order in [ByteOrder::Little, ByteOrder::Big] {
             let reply = Pkw::parse(bytes, order);
             prop_assert_eq!(reply.emit(order), bytes);
@@ -328,13 +328,13 @@ proptest! {
     }
 
     #[test]
-    fn every_parameter_has_one_address(own in 1u16..900) {
+    fn parameter_addresses_round_trip(own in 1u16..900) {
         let parameter = parameter(own);
         prop_assert_eq!(ParameterNumber::from_attribute(parameter.class(), parameter.attribute()), Some(parameter));
     }
 
     #[test]
-    fn a_scale_has_exactly_the_requested_step(pitch in 1u64..20_000_000, step in 1u64..1_000_000) {
+    fn scale_matches_requested_step(pitch in 1u64..20_000_000, step in 1u64..1_000_000) {
         let (pitch, step) = (Length { nanometres: pitch }, Length { nanometres: step });
         if let Ok(scale) = PositionScale::for_spindle(pitch, step) {
             // 256 · numerator / denominator = pitch / step.
@@ -344,7 +344,7 @@ proptest! {
     }
 
     #[test]
-    fn every_number_of_a_type_round_trips(number: i64) {
+    fn numbers_of_each_type_round_trip(number: i64) {
         for kind in [Kind::U8, Kind::I8, Kind::U16, Kind::I16, Kind::U32, Kind::I32] {
             match kind.emit(&Value::Number(number)) {
                 Ok(data) => prop_assert_eq!(kind.parse(&data), Ok(Value::Number(number))),

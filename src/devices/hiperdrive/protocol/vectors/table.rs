@@ -128,7 +128,7 @@ fn probe_values(typed: &TranscribedRow<'_>) -> (Vec<i64>, Vec<i64>) {
 /// Every row matches in type, access, unit, saving, factory value and allowed values. No row is missing, and none is
 /// superfluous (issue 21.10).
 #[test]
-fn every_row_matches_the_manual() {
+fn parameter_rows_match_manual() {
     let typed = transcribed_rows();
     let own: Vec<u16> = PARAMETERS.iter().map(|row| row.number).collect();
     assert_eq!(own, typed.iter().map(|row| row.number).collect::<Vec<_>>());
@@ -176,7 +176,7 @@ fn every_row_matches_the_manual() {
 
 /// Only the values listed in the manual have a long reply time (issue 21.8).
 #[test]
-fn every_row_is_answered_within_the_manuals_time() {
+fn reply_times_match_manual() {
     for typed in transcribed_rows() {
         let row = ParameterNumber::new(typed.number).unwrap().row().unwrap();
         let mut expected = BTreeMap::new();
@@ -202,7 +202,7 @@ fn every_row_is_answered_within_the_manuals_time() {
 /// For each family and scale, the limits are within turns · 256 · numerator / denominator steps in either direction,
 /// rounded towards 0, and within 32 bits (issue 21.10).
 #[test]
-fn limit_ranges_match_the_turns_of_the_family() {
+fn limit_ranges_match_family_turns() {
     let names = [("HDA 30, HDA 45", Family::Short), ("HDA 70", Family::Long), ("PSE441", Family::Pse441)];
     let mut families = families();
     assert_eq!(families.len(), names.len());

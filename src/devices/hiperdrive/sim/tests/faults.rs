@@ -18,7 +18,7 @@ fn acknowledge(bench: &mut Bench) {
 }
 
 #[test]
-fn a_blocked_drive_faults_and_recovers() {
+fn blocked_drive_faults_and_recovers() {
     for (target, wall, code) in [
         (655_360, SpindleLoad { wall_above: Some(30_000.0), ..SpindleLoad::default() }, ErrorCode::BLOCK_FORWARD),
         (-655_360, SpindleLoad { wall_below: Some(-30_000.0), ..SpindleLoad::default() }, ErrorCode::BLOCK_REVERSE),
@@ -43,7 +43,7 @@ fn a_blocked_drive_faults_and_recovers() {
 
 /// A torque of 26 % is rounded up to 50 %, which is too low for a load of 60 %.
 #[test]
-fn insufficient_torque_causes_a_following_error() {
+fn insufficient_torque_causes_following_error() {
     let mut bench = Bench::single();
     bench.load(SpindleLoad { percent: 60, ..SpindleLoad::default() });
     bench.out[FIRST].torque = 26;
@@ -61,7 +61,7 @@ fn insufficient_torque_causes_a_following_error() {
 /// At an ambient temperature of 50 °C and with 40 K of self-heating at full torque, the drive exceeds 80 °C after 60 s
 /// · ln 4 = 83 s of motion.
 #[test]
-fn a_hot_drive_faults() {
+fn hot_drive_faults() {
     let hot = SpindleLoad { ambient: 50.0, ..SpindleLoad::default() };
     let mut bench =
         Bench::new(StationConfig { drives: vec![Some((Variant::new(13), hot))], ..StationConfig::default() });
@@ -77,7 +77,7 @@ fn a_hot_drive_faults() {
 
 /// A target beyond the limits causes a fault, whose error becomes the newest one (reference, section 9).
 #[test]
-fn a_target_beyond_the_limits_is_a_fault() {
+fn target_beyond_limits_faults() {
     let mut bench = Bench::single();
     bench.enable();
     // A target of 512 turns, where the limit is 511.
@@ -99,7 +99,7 @@ fn a_target_beyond_the_limits_is_a_fault() {
 
 /// Below the operational state, an error causes only a warning, which 197 = 0 clears.
 #[test]
-fn a_drive_that_is_switched_off_warns() {
+fn switched_off_drive_warns() {
     let mut bench = Bench::single();
     let now = bench.now;
     bench.drive().inject_error(now, ErrorCode::RS485);
@@ -111,7 +111,7 @@ fn a_drive_that_is_switched_off_warns() {
 /// If bit 0 was cleared before the acknowledgement, releasing the lock takes another falling edge (reference, section
 /// 3).
 #[test]
-fn releasing_the_lock_needs_an_edge() {
+fn lock_release_needs_edge() {
     let mut bench = Bench::single();
     bench.enable();
     let now = bench.now;
@@ -124,7 +124,7 @@ fn releasing_the_lock_needs_an_edge() {
 /// The master is considered lost after 40 ms without a packet. Braking takes 100 ms, no matter how often the state is
 /// read (reference, sections 3 and 7).
 #[test]
-fn a_lost_master_stops_all_drives() {
+fn lost_master_stops_all_drives() {
     for looks in [&[][..], &[10, 39, 40, 41, 200]] {
         let mut bench = Bench::single();
         bench.start(655_360);
@@ -154,7 +154,7 @@ fn a_lost_master_stops_all_drives() {
 
 /// An idle master stops the drive but is not considered lost. A master that closes the connection is.
 #[test]
-fn an_idle_master_stops_the_drive_and_a_closed_one_is_lost() {
+fn idle_master_stops_drive_without_fault() {
     let mut bench = Bench::single();
     bench.start(655_360);
     bench.run(500);

@@ -33,7 +33,7 @@ fn published_start_sequence_works() {
 /// While the word stays the same, the drive passes through one state after another. A word with reserved bits has no
 /// effect.
 #[test]
-fn a_control_word_advances_as_far_as_possible() {
+fn control_word_advances_as_far_as_possible() {
     let mut bench = Bench::single();
     assert_eq!(bench.word(0x0409), 0x2A37);
     assert_eq!(bench.word(0x2000), 0x2A37);
@@ -42,7 +42,7 @@ fn a_control_word_advances_as_far_as_possible() {
 
 /// A stop discards a job within a tenth of a second, whereas a pause keeps it. The drive moves at the requested speed.
 #[test]
-fn jobs_are_stopped_and_paused() {
+fn stops_and_pauses_jobs() {
     let mut bench = Bench::single();
     bench.out[FIRST].speed = 50;
     bench.start(655_360);
@@ -69,7 +69,7 @@ fn jobs_are_stopped_and_paused() {
 
 /// Any control word that disables operation ends the motion (reference, section 3).
 #[test]
-fn disabling_operation_ends_the_motion() {
+fn disabling_operation_ends_motion() {
     for control in [0x0401, 0x0400, 0x0000, 0x0008] {
         let mut bench = Bench::single();
         bench.start(655_360);
@@ -86,7 +86,7 @@ fn disabling_operation_ends_the_motion() {
 
 /// A motion starts only with a nonzero speed and torque (reference, sections 3 and 9).
 #[test]
-fn a_start_needs_speed_and_torque() {
+fn start_needs_speed_and_torque() {
     for (speed, torque) in [(0, 100), (100, 0)] {
         let mut bench = Bench::single();
         bench.enable();
@@ -99,7 +99,7 @@ fn a_start_needs_speed_and_torque() {
 /// A run ends at the end of the range unless it is endless. Clearing bit 12 afterwards would start a job to a stale
 /// target, which the word 0400 prevents (reference, section 3).
 #[test]
-fn leaving_speed_mode_directly_starts_a_stale_job() {
+fn leaving_speed_mode_starts_stale_job() {
     let mut bench = Bench::single();
     assert_eq!((bench.write(160, 65_536), bench.write(158, -65_536)), (Ok(()), Ok(())));
     bench.enable();
@@ -132,7 +132,7 @@ fn leaving_speed_mode_directly_starts_a_stale_job() {
 
 /// Bit 4 does not stop a jog step of 4096 steps, which is 1/16 turn (reference, sections 3 and 5).
 #[test]
-fn a_jog_step_runs_to_completion() {
+fn jog_step_runs_to_completion() {
     let mut bench = Bench::single();
     bench.enable();
     bench.word(0x0509);
@@ -151,7 +151,7 @@ fn a_jog_step_runs_to_completion() {
 
 /// The drives of a hub are not requested initially. Only a requested drive can move (reference, section 4).
 #[test]
-fn a_hub_moves_only_requested_drives() {
+fn hub_moves_only_requested_drives() {
     let mut bench = Bench::hub();
     bench.out[1].target = 65_536;
     let both = |bench: &mut Bench, control| {
@@ -175,9 +175,8 @@ fn a_hub_moves_only_requested_drives() {
     assert_eq!(bench.actual(1).position, 65_536);
 }
 
-/// How often the state is read has no effect on the motion.
 #[test]
-fn motion_is_independent_of_the_polling_interval() {
+fn motion_is_independent_of_polling_interval() {
     let run = |portions: &[u64]| {
         let mut drive = Drive::new(Variant::new(7), Topology::Adapter, SpindleLoad::default());
         let at = |ms| Moment::START + Duration::from_millis(ms);

@@ -11,7 +11,7 @@ fn value(number: i64) -> Value {
 
 /// Every parameter in the table can be read, and its value has the correct type.
 #[test]
-fn every_parameter_can_be_read() {
+fn reads_every_parameter() {
     let mut bench = Bench::hub();
     for row in PARAMETERS {
         for own in if row.number < 100 { vec![row.number] } else { vec![row.number, row.number + 100] } {
@@ -29,7 +29,7 @@ fn every_parameter_can_be_read() {
 }
 
 #[test]
-fn refusals_have_the_matching_status() {
+fn rejections_have_matching_status() {
     let mut bench = Bench::single();
     let text = Value::Text("x".to_owned());
     for (own, refused, status) in [
@@ -48,7 +48,7 @@ fn refusals_have_the_matching_status() {
 
 /// The upper limit (160) must be above the lower limit (158), with the position between them (reference, section 4).
 #[test]
-fn limits_must_contain_the_position() {
+fn limits_must_contain_position() {
     let mut bench = Bench::single();
     assert_eq!(bench.write(158, 1), Err(ParameterError::Value), "the position is 0");
     assert_eq!(bench.write(160, -1), Err(ParameterError::Value));
@@ -59,7 +59,7 @@ fn limits_must_contain_the_position() {
 /// Limits must be within ±512 turns of an HDA30 or ±16000 turns of an HDA70, in scaled steps. A jog step of the keys on
 /// the drive must not exceed the travel (issue 21.10).
 #[test]
-fn limits_beyond_the_turns_of_the_drive_are_refused() {
+fn rejects_limits_beyond_travel() {
     let mut bench = Bench::single();
     for (own, good, bad) in [
         (158, -33_554_432, -33_554_433),
@@ -80,7 +80,7 @@ fn limits_beyond_the_turns_of_the_drive_are_refused() {
 /// A set position is rounded to the nearest multiple of 64. It must be within the limits and can be set only at
 /// standstill (reference, section 5).
 #[test]
-fn the_position_can_be_set() {
+fn sets_position() {
     let mut bench = Bench::single();
     for (given, becomes) in [(100, 128), (31, 0), (-33, -64), (163_840, 163_840)] {
         assert_eq!(bench.write(198, given), Ok(()));
@@ -97,7 +97,7 @@ fn the_position_can_be_set() {
 
 /// A scale of 400 steps per turn changes the position but not the numeric limits (reference, sections 3 and 5).
 #[test]
-fn scaling_keeps_the_numeric_limits() {
+fn scaling_keeps_numeric_limits() {
     let mut bench = Bench::single();
     assert_eq!((bench.write(154, 400), bench.write(156, 256)), (Ok(()), Ok(())));
     assert_eq!(bench.read(160), value(33_488_896));
@@ -116,7 +116,7 @@ fn scaling_keeps_the_numeric_limits() {
 
 /// Parameter 47 saves, recalls and resets. Values that are never saved are lost at power-off (reference, section 4).
 #[test]
-fn saved_parameters_survive_a_power_cycle() {
+fn saved_parameters_survive_power_cycle() {
     let mut bench = Bench::single();
     let set = [(24, 7), (166, 200), (170, 64)];
     let write_all =
@@ -145,7 +145,7 @@ fn saved_parameters_survive_a_power_cycle() {
 /// registers and, for each drive, the request (152) and the baud rate (190). Scale, limits and reference of a drive
 /// stay unchanged (issue 21.6 d).
 #[test]
-fn the_device_recalls_only_its_own_parameters() {
+fn device_recalls_only_own_parameters() {
     let own = [24, 152, 190];
     let of_the_drive = [154, 156, 158, 160, 166, 198];
     let mut bench = Bench::single();
@@ -171,7 +171,7 @@ fn the_device_recalls_only_its_own_parameters() {
 /// A reset does not affect the set position, saved or not. The factory settings restore the position of the shaft,
 /// which is between 0 and 1 turn (manual, 198; issue 21.6 d).
 #[test]
-fn a_set_position_survives_a_reset() {
+fn position_survives_reset() {
     let mut bench = Bench::single();
     bench.start(81_920);
     bench.until(0x3E37);
@@ -191,7 +191,7 @@ fn a_set_position_survives_a_reset() {
 
 /// After 47 = −4, the drives restart within 2 s, with their positions unchanged.
 #[test]
-fn drives_can_be_reset() {
+fn resets_drives() {
     let mut bench = Bench::single();
     bench.start(65_536);
     bench.until(0x3E37);
@@ -206,7 +206,7 @@ fn drives_can_be_reset() {
 /// A request is repeated until its answer arrives, and the answer stays for as long as the request (reference, sections
 /// 6 and 9).
 #[test]
-fn parameter_words_are_answered() {
+fn answers_parameter_words() {
     let mut bench = Bench::hub();
     let mut ask = |request: Pkw| {
         bench.pkw = Some(request);

@@ -111,7 +111,7 @@ fn confirm_spindle(axis: &mut Axis, seen: &mut DriveFacts) {
 }
 
 #[test]
-fn a_step_is_shown_for_a_minimum_time() {
+fn shows_step_for_minimum_time() {
     let ms = Duration::from_millis;
     assert_eq!([0, 599, 600].map(|age| Axis::check_step_settled(ms(age))), [Err(ms(600)), Err(ms(1)), Ok(())]);
     let (mut axis, mut seen) = at_jog_step();
@@ -125,7 +125,7 @@ fn a_step_is_shown_for_a_minimum_time() {
 
 /// A proposed value has the decimal separator of the language, but both separators are accepted.
 #[test]
-fn proposed_values_use_the_decimal_sign_of_the_language() {
+fn proposed_values_use_local_decimal_sign() {
     for (language, step) in [(Language::English, "0.01"), (Language::German, "0,01")] {
         let shown = run().entries().localized(language);
         assert_eq!(shown.resolution, step);
@@ -136,7 +136,7 @@ fn proposed_values_use_the_decimal_sign_of_the_language() {
 
 /// A parameter that was written twice is reported once, with its last value.
 #[test]
-fn rewritten_parameters_are_reported_once() {
+fn reports_rewritten_parameters_once() {
     let mut axis = run();
     axis.changes =
         vec![AxisChange::Parameter(158, 9), AxisChange::Parameter(160, 10_050), AxisChange::Parameter(160, 250)];
@@ -224,7 +224,7 @@ fn at_power_cycle_step() -> (Axis, DriveFacts) {
 }
 
 #[test]
-fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
+fn new_drive_setup_survives_power_cycle() {
     let (mut axis, mut seen) = at_power_cycle_step();
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_power");
     // A reading without a power cycle proves nothing.
@@ -255,7 +255,7 @@ fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
 }
 
 #[test]
-fn values_lost_in_a_power_cycle_are_reported() {
+fn reports_values_lost_in_power_cycle() {
     let survive = |change: fn(&mut DriveFacts)| {
         let (mut axis, mut seen) = at_power_cycle_step();
         press(&mut axis, &mut seen, AxisButton::Do);
@@ -274,7 +274,7 @@ fn values_lost_in_a_power_cycle_are_reported() {
 }
 
 #[test]
-fn impossible_steps_are_refused_with_a_reason() {
+fn rejects_impossible_steps() {
     let why = |axis: &Axis, seen: &DriveFacts, button| axis.request(button, seen).unwrap_err().id();
     let (axis, seen) = at_jog_step();
     for (label, changed, id) in [
@@ -306,7 +306,7 @@ fn impossible_steps_are_refused_with_a_reason() {
 }
 
 #[test]
-fn limits_must_enclose_the_axis_position() {
+fn limits_must_enclose_axis_position() {
     let (mut axis, mut seen) = at_test_step();
     axis.go_back(&seen);
     let typed = |lower: &str, upper: &str, axis: &Axis| LengthEntries {
@@ -331,7 +331,7 @@ fn limits_must_enclose_the_axis_position() {
 }
 
 #[test]
-fn a_test_that_misses_its_target_does_not_count() {
+fn missed_target_fails_test() {
     let (mut axis, mut seen) = at_test_step();
     // 1° at 400 steps per turn is 1.1 steps, rounded up to two.
     go(&mut axis, &mut seen, TestTarget::Middle, 503);
@@ -353,7 +353,7 @@ fn a_test_that_misses_its_target_does_not_count() {
 }
 
 #[test]
-fn cancelling_reports_written_and_unsaved_values() {
+fn cancel_reports_written_and_unsaved_values() {
     let (mut axis, mut seen) = at_test_step();
     axis.cancel(&seen, "");
     assert_eq!((axis.setup_end(), axis.is_saved()), (Some(SetupEnd::Cancelled), false));
@@ -379,7 +379,7 @@ fn cancelling_reports_written_and_unsaved_values() {
 }
 
 #[test]
-fn a_correct_position_is_not_written() {
+fn does_not_write_correct_position() {
     let (mut axis, mut seen) = at_jog_step();
     axis.skip_step(&seen, "");
     assert_eq!(axis.step(), AxisStep::Jog, "this one cannot be left out");
@@ -395,7 +395,7 @@ fn a_correct_position_is_not_written() {
 }
 
 #[test]
-fn pitch_and_step_are_previewed_before_writing() {
+fn previews_pitch_and_step() {
     let preview = |pitch: &str, resolution: &str, family| {
         let entries =
             LengthEntries { pitch: pitch.to_owned(), resolution: resolution.to_owned(), ..LengthEntries::default() };
@@ -422,7 +422,7 @@ fn pitch_and_step_are_previewed_before_writing() {
 }
 
 #[test]
-fn every_step_has_instructions_and_a_result() {
+fn steps_have_instructions_and_result() {
     let (axis, seen) = at_power_cycle_step();
     for step in AxisStep::ALL {
         let texts = [labels::title(step), labels::step_instructions(step, &seen), labels::button_label(step)];

@@ -121,7 +121,7 @@ mod tests {
     use crate::devices::hiperdrive::protocol::PARAMETERS;
 
     #[test]
-    fn each_parameter_has_a_name_and_each_name_a_parameter() {
+    fn parameters_and_names_match() {
         let other = |number| parameter_name_text(number).id() == "hd_parameter.other";
         for row in PARAMETERS {
             assert!(!other(ParameterNumber::new(row.number).unwrap()), "{}", row.number);

@@ -15,7 +15,7 @@ use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[HiperdriveDevice::KIND], &[]);
 
 #[test]
-fn link_errors_are_explained_in_both_languages() {
+fn explains_link_errors() {
     for text in ["rpi=1", "timeout=1", "order=middle", "udp=0"] {
         let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, None, Duration::ZERO).unwrap_err();
@@ -24,7 +24,7 @@ fn link_errors_are_explained_in_both_languages() {
 }
 
 #[test]
-fn virtual_drive_setting_errors_are_explained_in_both_languages() {
+fn explains_virtual_drive_errors() {
     for text in ["sed=1", "s3=10", "switch=100", "hub=2", "variant=x", "drives=1,1", "speed=1", "load=x", "name=ä"] {
         let query: UrlQuery = text.parse().unwrap();
         let error = Config::from_pairs(query.pairs()).unwrap_err();
@@ -33,7 +33,7 @@ fn virtual_drive_setting_errors_are_explained_in_both_languages() {
 }
 
 #[test]
-fn profile_errors_are_explained_in_both_languages() {
+fn explains_profile_errors() {
     let good = r#"(schema: 1, device: "hiperdrive", identity: (category: "HIPERDRIVE HUB-4"),
         drives: [(number: 1, parameters: {158: 5}), (number: 2)], mounting: [(item: "198")])"#;
     assert!(ProfileDocument::parse(good, HiperdriveProfile::FORMATS).is_ok());

@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn every_status_is_named_in_both_languages() {
+    fn names_every_status() {
         for code in (0..=255).chain([0x1_0000]) {
             let status = EncapsulationStatus::new(code);
             assert_in_both_languages(&encapsulation_status_text(status), &status);
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_is_explained_in_both_languages() {
+    fn explains_corrupt_replies() {
         let packets = [
             PacketError::Short { what: Structure::ForwardOpen, got: 3 },
             PacketError::Long { what: Structure::ForwardOpen, left: 2 },

@@ -31,7 +31,7 @@ fn assert_complete(text: &Text, sentences: usize) {
 }
 
 #[test]
-fn invalid_input_names_cause_and_remedy() {
+fn invalid_input_shows_cause_and_remedy() {
     let english = |text: &Text| text.to_string_in(Language::English);
     let out =
         OutOfRange { number: number(166), name: "maximum speed", value: 351, range: ParameterRange::Within(5, 350) };
@@ -63,7 +63,7 @@ fn invalid_input_names_cause_and_remedy() {
 }
 
 #[test]
-fn errors_name_cause_and_remedy() {
+fn errors_show_cause_and_remedy() {
     let requested = RequestedItem::Set(number(158));
     let refusal =
         |status: u8| Refused { service: Service::SET, status: GeneralStatus::new(status), extended: Vec::new() };
@@ -128,7 +128,7 @@ fn errors_name_cause_and_remedy() {
 }
 
 #[test]
-fn plan_errors_and_ended_motions_name_a_remedy() {
+fn plan_errors_and_motion_ends_show_remedy() {
     let item = Item(number(258));
     let (profile, here) = (|| "17".to_owned(), || "18".to_owned());
     let plans = [

@@ -27,7 +27,7 @@ fn staged() -> StagedEdits {
 }
 
 #[test]
-fn an_edit_is_separate_from_the_device_and_can_be_undone() {
+fn undoes_edit() {
     let mut staged = staged();
     assert!(!staged.is_dirty() && !staged.can_undo());
     assert_eq!(staged.apply_edit(&Edit::Set(number(166), 200)), Ok(true));
@@ -44,7 +44,7 @@ fn an_edit_is_separate_from_the_device_and_can_be_undone() {
 }
 
 #[test]
-fn invalid_edits_are_refused_with_a_reason() {
+fn rejects_invalid_edits() {
     let mut staged = staged();
     let out = |staged: &mut StagedEdits, own, value| match staged.apply_edit(&Edit::Set(number(own), value)) {
         Err(EditError::OutOfRange(error)) => (error.value, error.range),
@@ -75,7 +75,7 @@ fn invalid_edits_are_refused_with_a_reason() {
 /// A value beyond the travel is rejected when entered. If it results from a scale or a profile, it is marked. The ±512
 /// turns of an HDA30 are 33554432 steps at 65536 steps per turn, and 204800 at 400 (issue 21.10).
 #[test]
-fn limits_beyond_the_turns_of_the_drive_are_refused() {
+fn rejects_limits_beyond_travel() {
     let mut staged = staged();
     staged.set_families([(ONE, Family::Short)].into());
     let out = |staged: &mut StagedEdits, edit: Edit| match staged.apply_edit(&edit) {
@@ -102,7 +102,7 @@ fn limits_beyond_the_turns_of_the_drive_are_refused() {
 }
 
 #[test]
-fn edits_survive_a_reading_and_other_values_are_updated() {
+fn edits_survive_rereading() {
     let mut staged = staged();
     staged.apply_edit(&Edit::Set(number(166), 200)).unwrap();
     staged.apply_edit(&Edit::Set(number(24), 7)).unwrap();
@@ -122,7 +122,7 @@ fn edits_survive_a_reading_and_other_values_are_updated() {
 }
 
 #[test]
-fn a_draft_waits_until_its_parameters_are_read() {
+fn draft_waits_for_its_parameters() {
     let mut first = staged();
     first.apply_edit(&Edit::Set(number(166), 200)).unwrap();
     let kept = first.saved_edits();
@@ -144,7 +144,7 @@ fn a_draft_waits_until_its_parameters_are_read() {
 }
 
 #[test]
-fn a_new_scale_converts_or_moves_the_limits() {
+fn new_scale_converts_or_moves_limits() {
     let hundredths = PositionScale::new(400, 256).unwrap();
     let mut along = staged();
     along.apply_edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::InPlace }).unwrap();
@@ -165,7 +165,7 @@ fn a_new_scale_converts_or_moves_the_limits() {
 }
 
 #[test]
-fn questionable_values_are_marked() {
+fn marks_questionable_values() {
     let mut profile = StagedEdits::for_profile(image(&[(158, 10), (160, 10), (166, 999), (186, 255)]));
     let marks = profile.findings(|_| None);
     assert!(matches!(marks[0], EditFinding::OutOfRange(error) if error.number == number(166)));

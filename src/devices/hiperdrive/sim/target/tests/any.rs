@@ -34,7 +34,7 @@ fn corrupt_frame() -> impl Strategy<Value = Vec<u8>> {
 
 proptest! {
     #[test]
-    fn the_target_survives_any_stream(stream: Vec<Vec<u8>>) {
+    fn target_survives_any_stream(stream: Vec<Vec<u8>>) {
         let mut host = Host::new("");
         for bytes in &stream {
             host.bytes(bytes);
@@ -43,7 +43,7 @@ proptest! {
     }
 
     #[test]
-    fn the_target_survives_any_frame(frames in proptest::collection::vec(corrupt_frame(), 1..20), topology in 0..3_u8) {
+    fn target_survives_any_frame(frames in proptest::collection::vec(corrupt_frame(), 1..20), topology in 0..3_u8) {
         let mut host = Host::new(["", "hub=4", "hub=8"][usize::from(topology)]);
         for mut frame in frames {
             frame[4..8].copy_from_slice(&host.session.to_le_bytes());
@@ -55,7 +55,7 @@ proptest! {
 
     /// Any datagram is counted exactly once.
     #[test]
-    fn the_target_survives_any_datagram(
+    fn target_survives_any_datagram(
         packets in proptest::collection::vec(
             prop_oneof![
                 any::<Vec<u8>>().prop_map(|bytes| (None, bytes)),

@@ -50,7 +50,7 @@ fn open_with(changes: &[(&str, &str)]) -> String {
 }
 
 #[test]
-fn unsupported_connections_are_refused_with_a_status() {
+fn rejects_unsupported_connections() {
     let refused = |extended: &str| format!("D4 00 01 01 {extended} 01 00 34 12 CD AB 00 00 00 00");
     let assemblies = "04 20 04 24 68 2C 64 2C 65";
     for (label, changes, extended) in [
@@ -84,7 +84,7 @@ fn unsupported_connections_are_refused_with_a_status() {
 }
 
 #[test]
-fn supported_connections_are_accepted() {
+fn accepts_supported_connections() {
     for (label, query, changes) in [
         ("5 ms", "", &[("10 27 00 00 16 48", "88 13 00 00 16 48")][..]),
         ("100 ms", "", &[("10 27 00 00 16 48", "A0 86 01 00 16 48"), ("10 27 00 00 12 48", "A0 86 01 00 12 48")]),
@@ -105,7 +105,7 @@ fn supported_connections_are_accepted() {
 }
 
 #[test]
-fn a_second_master_is_refused() {
+fn rejects_second_master() {
     let mut host = Host::opened("");
     assert_eq!(host.open(OPEN), "D4 00 01 01 00 01 01 00 34 12 CD AB 00 00 00 00");
     let other = OPEN.replace("34 12 CD AB", "34 12 CE AB");
@@ -118,9 +118,8 @@ fn a_second_master_is_refused() {
     assert_eq!(second.open(&other), OPENED.replace("34 12 CD AB", "34 12 CE AB").replace("01 00 02 00", "02 00 02 00"));
 }
 
-/// Packets are sent to the address that the originator has requested.
 #[test]
-fn cyclic_data_go_to_the_requested_address() {
+fn sends_cyclic_data_to_requested_address() {
     for (socket, expected) in [
         ("01 80 10 00 00 02 9C 41 00 00 00 00 00 00 00 00 00 00 00 00", SocketAddrV4::new(PEER, 40001)),
         ("01 80 10 00 00 02 9C 41 0A 00 00 63 00 00 00 00 00 00 00 00", "10.0.0.99:40001".parse().unwrap()),
@@ -137,7 +136,7 @@ fn cyclic_data_go_to_the_requested_address() {
 }
 
 #[test]
-fn only_packets_in_sequence_count() {
+fn ignores_packets_out_of_sequence() {
     let mut host = Host::opened("");
     let next = host.words(1, &[0x0400]);
     assert_eq!(host.status(), Some(0x2A31));
@@ -168,7 +167,7 @@ fn only_packets_in_sequence_count() {
 
 /// Packets with an idle header have the same effect as control words of 0.
 #[test]
-fn idle_data_act_as_zero_control_words() {
+fn idle_data_acts_as_zero_control_word() {
     let mut host = Host::opened("");
     let next = host.words(1, &[0x0400, 0x0401]);
     assert_eq!(host.status(), Some(0x2A33));
@@ -180,7 +179,7 @@ fn idle_data_act_as_zero_control_words() {
 /// The master is considered lost after 4 · 2 intervals (reference, section 7). The drive stops with a fault, which is
 /// still present in the next connection.
 #[test]
-fn a_silent_master_is_lost_after_its_timeout() {
+fn silent_master_times_out() {
     let mut host = Host::opened("");
     host.words(1, &[0x0400, 0x0401, 0x0409, 0x0439, 0x0479]);
     host.wait(60);
@@ -202,7 +201,7 @@ fn a_silent_master_is_lost_after_its_timeout() {
 
 /// Closing a TCP connection ends its session. The cyclic connection continues until its own time-out.
 #[test]
-fn a_cyclic_connection_outlives_its_tcp_connection() {
+fn cyclic_connection_outlives_tcp() {
     let mut host = Host::opened("");
     let other = host.target.connect_from(PEER);
     let session = host.session;
@@ -217,7 +216,7 @@ fn a_cyclic_connection_outlives_its_tcp_connection() {
 
 /// A position of 2.5 turns is transmitted with the high byte first (reference, section 2).
 #[test]
-fn the_byte_order_is_the_requested_one() {
+fn uses_requested_byte_order() {
     let mut host = Host::opened("order=big&position=163840");
     host.packet(1, 1, &bytes("04 00 64 64 00 02 80 00 00 00 00 00 00 00 00 00"));
     host.wait(10);
@@ -227,7 +226,7 @@ fn the_byte_order_is_the_requested_one() {
 
 /// A read of parameter 166 matches section 9 of the reference.
 #[test]
-fn parameter_words_are_answered_with_process_data() {
+fn answers_parameter_words_in_process_data() {
     let mut host = Host::opened("");
     host.packet(1, 1, &bytes("00 00 64 64 00 00 00 00 A6 10 00 00 00 00 00 00"));
     host.wait(10);

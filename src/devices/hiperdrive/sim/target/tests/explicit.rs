@@ -52,7 +52,7 @@ fn published_requests_match() {
 /// According to the manual, the reply to a reset of the drives is sent when the reset is complete. Meanwhile, other
 /// requests are answered without delay (issue 21.8).
 #[test]
-fn a_reset_is_answered_on_completion() {
+fn reset_replies_on_completion() {
     for (query, ms) in [("", 1000), ("reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
         let mut host = Host::new(query);
         let reset = frame(0x6F, host.session, &unconnected(&bytes("10 03 20 64 24 01 30 2F FC FF")));
@@ -77,7 +77,7 @@ fn a_reset_is_answered_on_completion() {
 }
 
 #[test]
-fn impossible_requests_are_refused_with_a_status() {
+fn rejects_impossible_requests_with_status() {
     let mut host = Host::new("");
     for (label, request, reply) in [
         ("166 = 200", "10 03 20 65 24 01 30 A6 C8 00", "90 00 00 00"),
@@ -107,7 +107,7 @@ fn impossible_requests_are_refused_with_a_status() {
 
 /// The class of drive n is n higher than the class of the device (reference, section 7).
 #[test]
-fn drives_of_a_hub_have_consecutive_classes() {
+fn hub_drives_have_consecutive_classes() {
     let mut host = Host::new("hub=8&drives=1,0,1,1,1,1,1,1&position=65536&variant=HDA70&requested=1");
     host.is_asking("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 00 01 00");
     host.is_asking("0E 03 20 66 24 01 30 6B", "8E 00 0C 00");
@@ -132,7 +132,7 @@ const IDENTITY: &str =
     "F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 11 48 49 50 45 52 44 52 49 56 45 20 53 49 4E 47 4C 45";
 
 #[test]
-fn identity_is_reported_over_tcp_udp_and_cip() {
+fn reports_identity_over_tcp_udp_and_cip() {
     let mut host = Host::new("");
     host.target.set_address(SocketAddrV4::new(Ipv4Addr::new(192, 168, 1, 17), 44818));
     host.is_asking("01 02 20 01 24 01", &format!("81 00 00 00 {IDENTITY}"));
@@ -154,7 +154,7 @@ fn identity_is_reported_over_tcp_udp_and_cip() {
 }
 
 #[test]
-fn other_commands_get_a_status_or_no_reply() {
+fn answers_or_ignores_other_commands() {
     let mut host = Host::new("");
     // The reply to ListServices: item 0100h, version 1, capability 0120h.
     let services = "01 00 00 01 14 00 01 00 20 01 43 6F 6D 6D 75 6E 69 63 61 74 69 6F 6E 73 00 00";
@@ -187,7 +187,7 @@ fn other_commands_get_a_status_or_no_reply() {
 
 /// According to ODVA, attribute 5 can be set only while attribute 3 selects the stored address.
 #[test]
-fn network_settings_can_be_written() {
+fn writes_network_settings() {
     let mut host = Host::new("switch=17");
     host.is_asking("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
     // 192.168.1.17 and 255.255.255.0 with the low byte first, no further addresses, and an empty name.
@@ -210,7 +210,7 @@ fn network_settings_can_be_written() {
 
 /// Controllers use Unconnected_Send and class 3 connections, so these are supported.
 #[test]
-fn wrapped_and_connected_messages_are_answered() {
+fn answers_wrapped_and_connected_messages() {
     let mut host = Host::new("position=163840");
     host.is_asking("52 02 20 06 24 01 0A 05 08 00 0E 03 20 65 24 01 30 6B 00 00", "8E 00 00 00 00 80 02 00");
     host.is_asking("52 02 20 06 24 01 0A 05 09 00 10 03 20 65 24 01 30 98 01 00 01 00 01 00", "90 00 00 00");

@@ -10,7 +10,7 @@ fn get(host: &mut Host) -> Option<(u32, Vec<u8>)> {
 }
 
 #[test]
-fn saved_values_are_kept_and_unsaved_ones_lost() {
+fn power_cycle_keeps_only_saved_values() {
     let mut host = Host::new("");
     let (get, set) = ("0E 03 20 65 24 01 30 A6", "10 03 20 65 24 01 30 A6 C8 00");
     host.is_asking(set, "90 00 00 00");
@@ -42,7 +42,7 @@ fn saved_values_are_kept_and_unsaved_ones_lost() {
 /// If the supply fails during a save, only the first half of the values is saved, in the order of their numbers: 152,
 /// but not 186.
 #[test]
-fn power_can_fail_during_a_save() {
+fn power_fails_during_save() {
     let mut host = Host::new("fault=die-in-store:2");
     host.is_asking(SAVE, "90 00 00 00");
     host.wait(200);
@@ -72,7 +72,7 @@ fn power_can_fail_during_a_save() {
 /// After the given number of frames and packets, the target no longer receives or replies, and its drives lose their
 /// master.
 #[test]
-fn a_silent_target_also_ignores_requests() {
+fn silent_target_ignores_requests() {
     // RegisterSession, ForwardOpen and the fifteen packets that start the motion.
     let mut host = Host::opened("fault=silent-after:17");
     host.words(1, &[0x0400, 0x0401, 0x0409, 0x0439, 0x0479]);
@@ -91,7 +91,7 @@ fn a_silent_target_also_ignores_requests() {
 }
 
 #[test]
-fn replies_and_packets_can_be_lost_or_damaged() {
+fn drops_or_corrupts_replies_and_packets() {
     let mut late = Host::bare("fault=delay:7");
     assert_eq!(late.bytes(&bytes(REGISTER)), [0; 0]);
     late.wait(3);
@@ -115,7 +115,7 @@ fn replies_and_packets_can_be_lost_or_damaged() {
 
 /// A connection survives the loss of a fifth of all packets, because it ends only after eight lost packets in a row.
 #[test]
-fn a_lossy_line_does_not_lose_the_master() {
+fn lossy_line_keeps_master() {
     let mut host = Host::opened("seed=3");
     host.target.set_faults(&"drop:0.2".parse().unwrap());
     host.words(1, &[0x0400; 100]);

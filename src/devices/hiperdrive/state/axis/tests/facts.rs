@@ -18,7 +18,7 @@ fn go_back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
 }
 
 #[test]
-fn limits_are_confirmed_with_the_scale_of_the_drive() {
+fn confirms_limits_in_drive_scale() {
     let (mut axis, mut seen) = at_jog_step();
     press(&mut axis, &mut seen, AxisButton::Take);
     assert_eq!(axis.may_move(&seen), Ok(()));
@@ -38,7 +38,7 @@ fn limits_are_confirmed_with_the_scale_of_the_drive() {
 
 /// If an earlier result becomes void, the page stays the same until the user goes back (issue 21.6 i).
 #[test]
-fn setup_returns_to_the_first_step_with_lost_values() {
+fn setup_returns_to_first_lost_step() {
     let (mut axis, mut seen) = at_test_step();
     // Discard all drive data.
     seen = DriveFacts { controlled: true, pitch: seen.pitch, ..fresh() };
@@ -55,7 +55,7 @@ fn setup_returns_to_the_first_step_with_lost_values() {
 /// If the pitch, the reference or a limit changes, all later results become void, including taught limits (issue 21.6
 /// c).
 #[test]
-fn steps_after_a_changed_value_are_undone() {
+fn changed_value_undoes_later_steps() {
     let tested = || {
         let (mut axis, mut seen) = at_test_step();
         go(&mut axis, &mut seen, TestTarget::Middle, 500);
@@ -114,7 +114,7 @@ fn steps_after_a_changed_value_are_undone() {
 
 /// Motion counts as a jog only while a button is held, and a jump of the position never does (issue 21.6 b).
 #[test]
-fn only_motion_while_the_pad_is_held_is_a_jog() {
+fn counts_only_held_motion_as_jog() {
     let (mut axis, mut seen) = at_jog_step();
     press(&mut axis, &mut seen, AxisButton::Take);
     for position in [0, 5000, -5000, 0] {
@@ -146,7 +146,7 @@ fn only_motion_while_the_pad_is_held_is_a_jog() {
 
 /// Losing and regaining the connection does not prove that the supply was off (issue 21.6 e).
 #[test]
-fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
+fn power_cycle_is_detected_or_confirmed() {
     let found = |axis: &Axis, seen: &DriveFacts| {
         labels::finding_text(axis, AxisStep::PowerCycle, seen).unwrap().to_string_in(Language::English)
     };
@@ -192,7 +192,7 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
 
 /// A fault is shown with its code and blocks all motion. It can be acknowledged within the set-up (issue 21.6 g).
 #[test]
-fn a_fault_is_shown_and_can_be_acknowledged() {
+fn shows_and_acknowledges_fault() {
     let (axis, mut seen) = at_test_step();
     assert_eq!(axis.request(AxisButton::Acknowledge, &seen).unwrap_err().id(), "hd_axis.no_fault");
     // Status word 2AB8h is a fault and 2A70h the lock. Error 8300h is a block in reverse (reference 9).
@@ -211,7 +211,7 @@ fn a_fault_is_shown_and_can_be_acknowledged() {
 /// Differences from the saved values are reported and written back. The position is not written back, but left to the
 /// user (issue 21.6 d and h).
 #[test]
-fn differences_from_saved_values_are_shown_and_restored() {
+fn shows_and_restores_differences() {
     let (mut axis, mut seen) = (run(), fresh());
     assert_eq!(axis.request(AxisButton::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
     seen.values.extend([(154, 400), (156, 256), (158, -1000), (198, 128)]);
@@ -258,7 +258,7 @@ fn differences_from_saved_values_are_shown_and_restored() {
 
 /// Without a confirmed pitch, positions are shown in steps, with 65536 per turn (issue 21.6 f).
 #[test]
-fn millimetres_need_a_confirmed_pitch() {
+fn millimetres_need_confirmed_pitch() {
     let (mut axis, mut seen) = (run(), fresh());
     let position = |seen: &DriveFacts| labels::millimetres_text(seen.ruler(), 400).to_string_in(Language::English);
     press(&mut axis, &mut seen, AxisButton::Do);
@@ -278,7 +278,7 @@ fn millimetres_need_a_confirmed_pitch() {
 
 /// A completed set-up has a report in millimetres, whose lines fit a page (issue 21.6 j).
 #[test]
-fn a_run_ends_with_a_report() {
+fn run_ends_with_report() {
     let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };
     let (mut axis, mut seen) = at_power_cycle_step();
     assert_eq!(AxisReport::new(&axis, &seen, &device), None, "it goes on");

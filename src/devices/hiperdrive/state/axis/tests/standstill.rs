@@ -30,7 +30,7 @@ fn at_standstill() -> (Axis, DriveFacts) {
 /// jumps. At up to 35 rpm (parameter 166), a shaft turns 210° per second. It readjusts by up to 5°, and its reports are
 /// up to 0.1 s late (issue 21.6 c).
 #[test]
-fn a_position_jump_at_standstill_means_a_changed_reference() {
+fn jump_at_standstill_means_changed_reference() {
     let case = |ms: u64, position: i32, word: u16| {
         let (mut axis, mut seen) = at_standstill();
         read(&mut seen, 10_000 + ms, position, word);
@@ -64,7 +64,7 @@ fn a_position_jump_at_standstill_means_a_changed_reference() {
 
 /// A position change that has a known cause is not a jump (issue 21.6 c).
 #[test]
-fn a_known_position_change_is_not_a_jump() {
+fn known_position_change_is_no_jump() {
     type Case<'c> = (&'c str, fn(&mut DriveFacts));
     let cases: [Case<'_>; 3] = [
         ("moved by a person, between two looks", |seen| seen.ended = Some((9, ActionEnd::Arrived))),
@@ -94,7 +94,7 @@ fn a_known_position_change_is_not_a_jump() {
 /// After the connection was lost, a motion and a new reference look the same. The set-up and its report mention this
 /// until the user sets the reference again (issue 21.6 c).
 #[test]
-fn an_unobserved_position_change_is_reported_as_unexplained() {
+fn reports_unobserved_change_as_unexplained() {
     let again = |position: i32| {
         let (mut axis, mut seen) = at_standstill();
         axis.handle_connection_loss();
