@@ -20,7 +20,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn broken_descriptions_are_reported_with_file_and_line() {
+    fn reports_file_and_line_of_description_error() {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at_root(root.path());
         assert_eq!(load_descriptions(&store), (Descriptions::built_in(), Vec::new()));

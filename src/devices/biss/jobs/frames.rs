@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn twenty_thousand_frames_per_second_arrive_without_a_gap() {
+    fn streams_20_000_frames_without_gap() {
         let mut bench = bench(biss(), virtual_adapter("rpm=3000&position=0"));
         let batches = bench.take(Duration::from_secs(5));
         let (frames, lost) = count(&batches);
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_with_a_wrong_crc_has_no_reading() {
+    fn wrong_crc_yields_no_reading() {
         let mut bench = bench(biss(), virtual_adapter("noise=0.01&seed=4"));
         let batches = bench.take(Duration::from_secs(2));
         let (frames, lost) = count(&batches);

@@ -93,7 +93,7 @@ mod tests {
     /// The frames are taken from section 2 of the BiSS reference: a valid frame, the same frame with the error bit, and
     /// the same frame with a flipped bit.
     #[test]
-    fn a_frame_yields_a_reading_or_an_error() {
+    fn frame_yields_reading_or_error() {
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };
         let cases = [
             (BissStatus::OK, 0x024_6980_00CF, Ok(reading)),

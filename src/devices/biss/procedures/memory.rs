@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn distances_take_the_shorter_direction() {
+    fn takes_shorter_distance() {
         assert_eq!(shortest_distance(0, (1 << 33) - 1, Some(1 << 33)), 1);
         assert_eq!(shortest_distance(5, 3, Some(1 << 33)), 2);
         assert_eq!(shortest_distance(0, u64::MAX, None), u64::MAX);

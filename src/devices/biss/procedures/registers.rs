@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_found_by_address_and_by_role() {
+    fn finds_values_by_address_and_role() {
         let kit = Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").cloned().unwrap();
         let mut registers = Registers::default();
         registers.store_bytes(at("0x44"), &[0x00, 0x12, 0xD6, 0x87]);
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn registers_missing_in_the_firmware_are_not_read() {
+    fn skips_registers_missing_in_firmware() {
         let kit = Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").cloned().unwrap();
         let errors = kit.register_with_role(Role::Errors).unwrap();
         assert!(is_readable(errors, Some(Firmware::new(1, 6, 0))));

@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn omitted_parameters_are_probed_or_default() {
+    fn omitted_parameters_are_probed_or_defaulted() {
         let station = station("").unwrap();
         assert_eq!(station.to_string(), "UBICOM at 115200 8N1");
         assert_eq!((station.order, station.line.echo), (None, Echo::Unknown));
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn line_settings_are_parsed_from_parameters() {
+    fn parses_line_settings() {
         let station =
             station("baud=9600&parity=even&order=high-first&echo=on&timeout=250&margin=5&clock=80000&voltage=4.75")
                 .unwrap();
@@ -340,7 +340,7 @@ mod tests {
     /// The frame consists of 12 multiturn bits, 19 singleturn bits, two flags, and CRC6 43h unless specified otherwise
     /// (issue 22.20).
     #[test]
-    fn a_frame_format_can_be_given_in_the_link() {
+    fn parses_frame_format_from_link() {
         let given = |query: &str| station(query).unwrap().given.map(|own| (own.data_bits(), own.crc_bits()));
         assert_eq!(given(""), None);
         assert_eq!(given("mt=12&st=19"), Some((33, 6)));
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rejected_value_names_the_allowed_ones() {
+    fn rejection_lists_allowed_values() {
         let cases = [
             ("baud=0", "baud=0 is not valid (allowed: a bit rate from 300 to 4000000 bit/s, usually 115200)"),
             ("parity=mark", "parity=mark is not valid (allowed: none, even or odd)"),
@@ -383,7 +383,7 @@ mod tests {
     /// Only the bank selection, mode, password and data area registers can be read back after a write, according to
     /// appendix 9.1 of the manual. All other registers are commands, are read-only, or are not described.
     #[test]
-    fn readback_applies_to_registers_that_keep_their_value() {
+    fn reads_back_only_retained_registers() {
         let mut station = Station::new(Transport::ConfigPin, Duration::ZERO);
         let tells = |station: &Station, text: &str| station.is_readback_conclusive(text.parse().unwrap());
         assert!(tells(&station, "0x40") && !tells(&station, "0x6B"), "nothing is known of the encoder yet");

@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn only_differences_are_listed() {
+    fn lists_only_differences() {
         let left = profile("1");
         let mut right = profile("2");
         set_bank_bytes(&mut right, 0x24, &[(0x10, 0xA1), (0x11, 0xA2), (0x13, 0xA3)]);
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn values_absent_on_one_side_are_listed() {
+    fn lists_values_missing_on_one_side() {
         let mut left = profile("1");
         let mut right = profile("1");
         left.data[1].empty = None;

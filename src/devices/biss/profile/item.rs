@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_items_are_reported() {
+    fn rejects_invalid_items() {
         for text in
             ["", "+", "0x24:0x10+", "0x24:0x10+0", "0x24:0x3F+2", "0x7F+2", "0x24:0x10++1", "0x24:0x10+256", "0x66+x"]
         {
@@ -134,7 +134,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_text_panics(text in ".*") {
+        fn arbitrary_text_never_panics(text in ".*") {
             let _ = text.parse::<RegisterRange>();
         }
     }

@@ -70,7 +70,7 @@ mod tests {
     use crate::devices::biss::protocol::{Area, Descriptions, RegisterAddress};
 
     #[test]
-    fn every_operation_describes_its_change() {
+    fn operations_describe_their_changes() {
         let kit = Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").unwrap().clone();
         let area: Area = kit.areas().iter().find(|area| area.first == 0x24).unwrap().clone();
         let change = |at: u8, new| {

@@ -53,7 +53,7 @@ mod tests {
 
     /// Register 0x66 is in no bank, so no backup contains it.
     #[test]
-    fn a_register_outside_the_banks_is_never_undone_by_its_backup() {
+    fn backup_does_not_undo_direct_register() {
         let backup = test_profiles::profile("12345678");
         let changed = |old: Option<&str>| ChangedItem::new("0x66", old.map(str::to_owned), Some("50".to_owned()));
         assert_eq!(backup.redo_item(&changed(Some("14"))), Some(Redo::Write("14".to_owned())));

@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_register_addresses_are_refused() {
+    fn rejects_invalid_register_addresses() {
         for text in ["", "0x3F", "0x80", "0x00:0x40", "256:0", "1:", ":1", "0x+5:0", "+66", "-1", "0x24:0x10:0", "x"] {
             assert_eq!(text.parse::<RegisterAddress>(), Err(AddressError(text.to_owned())));
         }
@@ -169,7 +169,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_address_has_one_number(global in 0u16..0x4040) {
+        fn address_numbers_round_trip(global in 0u16..0x4040) {
             let address = RegisterAddress::from_global(global).unwrap();
             prop_assert_eq!(address.global_number(), global);
             prop_assert_eq!(address.to_string().parse(), Ok(address));
@@ -181,7 +181,7 @@ mod tests {
         }
 
         #[test]
-        fn no_text_panics(text in ".*") {
+        fn arbitrary_text_never_panics(text in ".*") {
             let _ = text.parse::<RegisterAddress>();
         }
     }

@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn every_control_header_crc_is_its_remainder() {
+    fn control_header_crc_is_remainder() {
         let crc = Crc::new(Crc::CONTROL, 0, true).unwrap();
         for header in 0..1 << 11 {
             let sum = remainder_by_division(0x13, 0, header.into(), 11) as u8 ^ 0xF;
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_crc_parameters_are_refused() {
+    fn rejects_invalid_crc_parameters() {
         assert_eq!(Crc::new(0, 0, true), Err(CrcError::Degree(0)));
         assert_eq!(Crc::new(1, 0, true), Err(CrcError::Degree(1)));
         assert_eq!(Crc::new(1 << 33 | 1, 0, true), Err(CrcError::Degree(1 << 33 | 1)));
@@ -254,7 +254,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_crc_is_the_polynomial_remainder(
+        fn crc_is_polynomial_remainder(
             degree in 1u32..=32, terms: u32, start: u32, inverted: bool, data: u64, bits in 0u8..=64,
         ) {
             let low = u64::from(terms) & ((1 << degree) - 1);

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn every_truncation_is_detected() {
+    fn detects_every_truncation() {
         let whole = samples(SAMPLES);
         let layout = Layout::default();
         for cut in 0..whole.len() - 1 {
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_without_encoder_is_reported() {
+    fn detects_line_without_encoder() {
         let layout = Layout::default();
         assert_eq!(BissCycle::parse(&[true; 64], &layout), Err(CycleError::NoAcknowledge));
         assert_eq!(BissCycle::parse(&[false; 64], &layout), Err(CycleError::NotReady));
@@ -136,7 +136,7 @@ mod tests {
         }
 
         #[test]
-        fn no_samples_panic(samples: Vec<bool>) {
+        fn arbitrary_samples_never_panic(samples: Vec<bool>) {
             let _ = BissCycle::parse(&samples, &Layout::default());
         }
     }

@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_too_wide_for_the_encoder_is_refused() {
+    fn rejects_word_wider_than_position() {
         let word = PositionWord::parse([0, 0, 0, 0, 2]);
         assert_eq!(Layout::default().decode_position(word), None);
         let wide = Layout::new(32, 17, true, true, None).unwrap();
@@ -59,7 +59,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_word_panics(bytes: [u8; 5]) {
+        fn arbitrary_words_never_panic(bytes: [u8; 5]) {
             let _ = Layout::default().decode_position(PositionWord::parse(bytes));
         }
     }

@@ -348,14 +348,14 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_voltage_is_in_tenths_of_a_volt() {
+    fn pulse_voltage_is_in_tenths() {
         assert_eq!(PulseVoltage::LIMIT.byte(), 0x35);
         assert_eq!(PulseVoltage::LIMIT.volts(), 5.3);
     }
 
     /// Manual 6.3 recommends more than 5.3 V in both directions.
     #[test]
-    fn a_wiegand_result_is_compared_with_the_limit() {
+    fn compares_wiegand_result_with_limit() {
         for (bytes, passes) in [
             ([60, 54, 60, 54], true),
             ([60, 53, 60, 54], false),
@@ -371,7 +371,7 @@ mod tests {
 
     /// Covers all codes in the manual's tables, and codes that are not in the manual.
     #[test]
-    fn codes_match_the_manual_and_unknown_ones_are_kept() {
+    fn codes_match_manual() {
         assert_eq!(
             [0, 1, 3, 4, 6, 7, 0x30].map(|code| WiegandStatus::from_byte(code).to_string()),
             [

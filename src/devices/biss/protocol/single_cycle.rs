@@ -262,7 +262,7 @@ mod tests {
 
     /// Flips each bit of the frame 024698000CF from section 7 of the reference.
     #[test]
-    fn every_flipped_bit_is_detected() {
+    fn detects_every_flipped_bit() {
         let layout = Layout::default();
         for bit in 0..41 {
             let damaged = 0x024_6980_00CF ^ 1 << bit;
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stuck_line_is_distinguished_from_a_wrong_crc() {
+    fn distinguishes_stuck_line_from_wrong_crc() {
         let layout = Layout::default();
         assert_eq!(layout.parse(0), Err(FrameError::StuckLow));
         assert_eq!(layout.parse((1 << 41) - 1), Err(FrameError::StuckHigh));
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn an_angle_is_a_fraction_of_a_turn() {
+    fn angle_is_fraction_of_turn() {
         let layout = Layout::default();
         for (singleturn, degrees) in [(0, 0.0), (0x8000, 90.0), (0x10000, 180.0), (0x18000, 270.0)] {
             assert_eq!(layout.degrees_of(&reading(7, singleturn, false, false)), degrees);
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_widths_are_refused() {
+    fn rejects_wrong_widths() {
         let crc = || Crc::new(Crc::POSITION, 0, true).ok();
         assert_eq!(Layout::new(33, 1, true, true, crc()), Err(LayoutError::Field { field: "multiturn", bits: 33 }));
         assert_eq!(Layout::new(1, 255, true, true, crc()), Err(LayoutError::Field { field: "singleturn", bits: 255 }));
@@ -312,7 +312,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_layout_round_trips(
+        fn layouts_round_trip(
             multiturn_bits in 0u8..=32, singleturn_bits in 0u8..=32, error_bit: bool, warning_bit: bool,
             start in 0u32..64, inverted: bool, multiturn: u32, singleturn: u32, error: bool, warning: bool, bit in 0u32..64,
         ) {
@@ -333,7 +333,7 @@ mod tests {
         }
 
         #[test]
-        fn no_bits_panic(raw: u64) {
+        fn arbitrary_bits_never_panic(raw: u64) {
             if let Ok(reading) = Layout::default().parse(raw) {
                 prop_assert_eq!(Layout::default().emit(&reading), raw);
             }

@@ -268,7 +268,7 @@ mod tests {
     /// According to section 7 of the reference, error 12h means multiturn and field too low, and warning 01h means
     /// temperature.
     #[test]
-    fn error_and_warning_bits_are_named() {
+    fn names_error_and_warning_bits() {
         let errors: Vec<_> = ErrorRegister::new(0x12).set_bits().collect();
         assert_eq!(errors, [(1, "multiturn synchronisation error"), (4, "magnetic field too low")]);
         assert_eq!(0x12, ErrorRegister::MULTITURN.byte() | ErrorRegister::FIELD_TOO_LOW.byte());
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_modes_filters_and_profiles_are_kept() {
+    fn keeps_unknown_modes_filters_and_profiles() {
         let known: Vec<u8> = (0..=255).filter(|byte| DeviceMode::new(*byte).is_known()).collect();
         assert_eq!(known, [0, 1, 2, 4, 5, 7]);
         assert_eq!(DeviceMode::new(0x09).to_string(), "0x09 unknown mode");
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn firmware_versions_are_ordered() {
+    fn orders_firmware_versions() {
         assert!(Firmware::new(1, 10, 0) > Firmware::new(1, 6, 0));
         assert!(Firmware::new(1, 6, 0) > Firmware::new(1, 2, 9));
         assert_eq!(Firmware::new(1, 6, 0).to_string(), "1.6.0");

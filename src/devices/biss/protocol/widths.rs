@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn eight_distinct_frames_determine_the_width() {
+    fn eight_distinct_frames_determine_width() {
         let kit = Layout::default();
         let frames = turning(&kit, 7, 8);
         assert_eq!(detect_data_bits(&frames, 64, &crc()), Some(35));
@@ -82,7 +82,7 @@ mod tests {
     proptest! {
         /// Frames whose upper bits are constant must not be mistaken for shorter frames.
         #[test]
-        fn any_frame_length_is_found(multiturn in 0u8..=16, singleturn in 9u8..=30, step in 1u32..40) {
+        fn finds_any_frame_length(multiturn in 0u8..=16, singleturn in 9u8..=30, step in 1u32..40) {
             let layout = Layout::new(multiturn, singleturn, true, true, Some(crc())).unwrap();
             let expected = layout.data_bits();
             prop_assume!(expected <= 48);
@@ -90,7 +90,7 @@ mod tests {
         }
 
         #[test]
-        fn no_frames_panic(frames: Vec<u64>, clocked: u8) {
+        fn arbitrary_frames_never_panic(frames: Vec<u64>, clocked: u8) {
             let _ = detect_data_bits(&frames, clocked, &crc());
         }
     }

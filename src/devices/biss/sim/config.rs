@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_is_parsed() {
+    fn parses_every_key() {
         let config = read(
             "seed=7&fault=drop:0.5&firmware=1.2.3&serial=0x10&rpm=-500&motor=reverse&waver=3&position=0x20000&temperature=-10&\
              errors=0x12&filter=dynamic&cycles=801&pulses=6.1,5.2&calibration=0.5&calibration-silent=off&calibration-status=kept&echo=on&\
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_values_are_reported() {
+    fn reports_invalid_values() {
         let cases = [
             (
                 "sed=1",
@@ -153,7 +153,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_value_panics(key in 0..Config::KEYS.len(), value in ".*") {
+        fn arbitrary_values_never_panic(key in 0..Config::KEYS.len(), value in ".*") {
             let _ = Config::from_pairs(&[(Config::KEYS[key].to_owned(), value)]).map(|config| super::super::Encoder::new(&config));
         }
     }

@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turning_shaft_has_the_expected_position() {
+    fn turning_shaft_has_expected_position() {
         let mut shaft = Shaft::new(Layout::default(), 0, 60.0);
         let place = |shaft: &Shaft, ms| (shaft.position_at(at(ms)).multiturn, shaft.position_at(at(ms)).singleturn);
         assert_eq!(place(&shaft, 0), (0, 0));
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn fine_positions_include_fractions_of_a_step() {
+    fn fine_positions_include_step_fractions() {
         // At 60 rpm, the shaft moves by 2¹⁷ steps per second, or 131.072 steps per millisecond. 0.072 steps are 18.4 of
         // 256 parts.
         let shaft = Shaft::new(Layout::default(), 5, 60.0);
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_preset_shifts_singleturn_or_multiturn() {
+    fn preset_shifts_singleturn_or_multiturn() {
         let mut shaft = Shaft::new(Layout::default(), 5 << 17 | 0x100, 0.0);
         let place = |shaft: &Shaft| (shaft.position_at(at(9)).multiturn, shaft.position_at(at(9)).singleturn);
         shaft.preset(at(0), Some(0x18000), None);

@@ -246,7 +246,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn links_round_trip_through_the_form() {
+    fn links_round_trip_through_form() {
         for link in [
             "sim:",
             "sim:?bridge=on",
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn switching_the_interface_keeps_only_its_settings() {
+    fn switching_interface_drops_other_settings() {
         let other = |link: &str, change: fn(&mut BissForm)| {
             let mut form = BissForm::from_url(&link.parse().unwrap());
             change(&mut form);
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_entries_are_refused_by_name() {
+    fn names_invalid_entries() {
         let refused = |change: fn(&mut BissForm)| {
             let mut form = BissForm::default();
             change(&mut form);

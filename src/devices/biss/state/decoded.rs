@@ -109,7 +109,7 @@ mod tests {
 
     /// Covers every register in section 4 of the reference whose raw number is not self-explanatory.
     #[test]
-    fn every_reference_register_is_decoded() {
+    fn decodes_every_reference_register() {
         let mut encoder =
             Encoder::from_session(Session::for_link(SessionId::default(), "sim:".parse().unwrap(), KindRegistry::NONE));
         let kit = Descriptions::built_in().find_by_name("POSITAL IXARC kit encoder").unwrap().clone();

@@ -234,7 +234,7 @@ mod tests {
     use crate::link::LinkErrorKind;
 
     #[test]
-    fn errors_name_cause_and_remedy() {
+    fn errors_show_cause_and_remedy() {
         let address: RegisterAddress = "0x24:0x10".parse().unwrap();
         let requested = RequestedItem::Read(address);
         let kind = Identity { profile: ProfileId::new(0x6129), manufacturer: *b"Fr", device_id: [1, 2, 3, 4, 5, 6] };
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_lost_wire_counts_as_a_lost_connection() {
+    fn only_link_loss_is_connection_loss() {
         let gone = Error::Link(LinkError::new("COM3", LinkErrorKind::Lost));
         let address = RegisterAddress::BANK_SELECT;
         let unclear = Error::Unclear { address, value: 1, cause: Box::new(gone.clone()) };

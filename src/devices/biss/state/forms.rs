@@ -65,7 +65,7 @@ mod tests {
 
     /// Expected steps at 17 bits from section 5.5 of the reference.
     #[test]
-    fn degrees_convert_to_the_published_steps() {
+    fn converts_degrees_to_published_steps() {
         let layout = Layout::default();
         for (degrees, singleturn) in [("270", 98_304), ("0", 0), ("180", 65_536), ("90", 32_768), ("1", 364)] {
             assert_eq!(form(degrees, "7").value(&layout).unwrap(), PresetValue::new(singleturn, 7).unwrap());
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn impossible_values_are_reported() {
+    fn reports_impossible_values() {
         let refused = |degrees, turns| form(degrees, turns).value(&Layout::default()).unwrap_err().id();
         for degrees in ["360", "-1", "NaN", "inf", "east"] {
             assert_eq!(refused(degrees, "0"), "entry.number", "{degrees}");

@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn skipped_steps_are_not_marked_done() {
+    fn does_not_mark_skipped_steps_done() {
         use StepStatus::{Ahead, Done, Runs, Skipped};
         let (first, second) = (MotorRun::CalibrationCounterclockwise, MotorRun::CalibrationClockwise);
         let states = |guide: &ProcedureRun| guide.steps().iter().map(|own| own.reached).collect::<Vec<_>>();
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interrupted_procedure_shows_failed_and_remaining_steps() {
+    fn interrupted_procedure_shows_failed_step() {
         use StepStatus::{Ahead, Done, Failed};
         let first = MotorRun::CalibrationCounterclockwise;
         let (turn, run) = (ProcedureStep::Await(OperatorTask::Turn(first)), ProcedureStep::Run(first));
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cancelled_procedure_has_not_failed() {
+    fn cancelled_procedure_has_not_failed() {
         let mut guide = ProcedureRun::new(vec![Op::Calibrate]);
         guide.set_progress(ProcedureProgress { op: 0, step: ProcedureStep::Conditions, detail: StepDetail::Begins });
         guide.cut = Some(ProcedureStep::Conditions);

@@ -77,7 +77,7 @@ mod tests {
     use crate::app::Language::{English, German};
 
     #[test]
-    fn items_have_names_in_both_languages() {
+    fn translates_item_names() {
         for (item, manual_name, english, german) in [
             ("0x6E", Some("filter"), "Filter", "Filter"),
             ("0x01:0x02+6", None, "Preset value", "Preset-Wert"),

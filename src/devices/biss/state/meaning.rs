@@ -135,7 +135,7 @@ mod tests {
     /// Damaged frames on the configuration pin (section 6 of the UBICOM reference) are explained and marked even if the
     /// reply follows (issue 22.11).
     #[test]
-    fn damaged_replies_are_explained_and_marked() {
+    fn explains_and_marks_corrupt_replies() {
         let request = "80 01 01 02 00 26 00 55";
         let cases = [
             ("good", "80 01 01 01 00 4B 31", None, "0x4B"),

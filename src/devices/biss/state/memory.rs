@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edit_is_a_difference_from_the_read_value() {
+    fn edit_differs_from_read_value() {
         let mut memory = Memory::default();
         assert_eq!(memory.edit_bytes(&kit(), at("0x24:0x10"), &[1]), Err(MemoryError::NotRead(at("0x24:0x10"))));
         memory.store_bytes(at("0x24:0x00"), &[0xFF; 64]);
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn only_plain_data_is_edited() {
+    fn edits_only_plain_data() {
         let mut memory = Memory::default();
         memory.store_bytes(at("0x40"), &[0; 64]);
         memory.store_bytes(at("0x02:0x00"), &[0; 64]);
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn the_longest_part_read_of_an_area_is_shown() {
+    fn shows_longest_readable_part() {
         let mut memory = Memory::default();
         let kit = kit();
         let area = kit.area_at(at("0x24:0x00")).unwrap();
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn changes_since_the_previous_reading_are_marked() {
+    fn marks_changes_since_previous_reading() {
         let mut memory = Memory::default();
         memory.store_bytes(at("0x66"), &[0x4B]);
         assert!(!memory.has_changed(at("0x66")), "nothing to compare with");

@@ -289,7 +289,7 @@ mod tests {
 
     /// Turn 1234h at 270° is the position word 024698000, according to section 2 of the reference.
     #[test]
-    fn raw_values_are_position_words_also_in_a_stream() {
+    fn streamed_raw_values_are_position_words() {
         let mut record = Record::default();
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: true };
         record.add_samples(
@@ -315,7 +315,7 @@ mod tests {
 
     /// A position cannot be split into turns and degrees if the number of steps per turn is unknown (issue 22.20).
     #[test]
-    fn positions_with_unknown_split_are_recorded_in_steps() {
+    fn records_steps_if_split_is_unknown() {
         let mut record = Record::default();
         let units = |record: &Record| -> Vec<String> {
             let lines = record.recorder().series();
@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn a_register_without_a_value_reports_the_reason() {
+    fn missing_register_value_has_reason() {
         let descriptions = Descriptions::built_in();
         let kit = descriptions.find_by_name("POSITAL IXARC kit encoder").unwrap();
         let register = kit.register_with_role(Role::Temperature).unwrap().clone();
@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_frames_are_counted_at_every_stage() {
+    fn counts_missing_frames_at_every_stage() {
         let mut record = Record::default();
         let add = |record: &mut Record, run: ConsecutiveFrames, dropped| {
             record.add_samples(vec![PolledSample::Frames(run)], dropped)

@@ -4,6 +4,6 @@ use crate::app::recorded::assert_recorded;
 use crate::devices::biss::jobs::Biss;
 
 #[test]
-fn a_draft_matches_the_recorded_text() {
+fn draft_matches_recorded_text() {
     assert_recorded::<Biss>("biss", "[(2304,7),(2367,255)]");
 }

@@ -166,7 +166,7 @@ mod tests {
 
     /// There are 68 banks with 64 registers each, and 64 direct registers, according to appendix 9.1 of the manual.
     #[test]
-    fn every_register_is_listed_once() {
+    fn lists_every_register_once() {
         let table = kit();
         assert_eq!(table.groups().len(), 1 + 68);
         for group in table.groups() {
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_shows_its_edit_and_whether_it_was_read() {
+    fn row_shows_edit_and_read_state() {
         let (table, mut memory) = (kit(), Memory::default());
         let direct = &table.groups()[0];
         let serial = direct.rows().iter().position(|row| row.register.name.english() == "serial number").unwrap();
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn an_encoder_without_a_description_has_its_banks() {
+    fn undescribed_encoder_has_banks() {
         let all = Descriptions::built_in();
         let unknown = all.iter().find(|own| own.identity().is_none()).unwrap();
         assert_eq!(Table::from_description(unknown, None).groups().len(), 69);

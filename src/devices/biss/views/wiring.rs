@@ -57,7 +57,7 @@ mod tests {
     /// Compares the card with the kit encoder's manual: tables 1 (pins), 2 (supply) and 14 (preset), and sections 2.1
     /// (connector) and 2.3 (point to point, RS-422). UBICOM uses 115200 baud (issue 22.23).
     #[test]
-    fn the_wiring_card_matches_the_manual() {
+    fn wiring_card_matches_manual() {
         assert_wires(
             &TEXTS,
             &PINS,

@@ -97,7 +97,7 @@ mod tests {
     use crate::link::{LinkError, LinkErrorKind};
 
     #[test]
-    fn an_unanswered_write_leaves_two_possible_states() {
+    fn unanswered_write_leaves_two_states() {
         let lost = || Err(Error::Link(LinkError::new("x", LinkErrorKind::Lost)));
         let mut mode = PossibleValues::new(0);
         mode.update_after_write(1, &Ok(()));
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn a_possible_restart_leaves_operation_mode_possible() {
+    fn possible_restart_allows_operation_mode() {
         let mut standing = LeftState::in_operation(false);
         assert!(standing.is_in_operation());
         standing.mode = PossibleValues::new(DeviceMode::PRESET);

@@ -300,7 +300,7 @@ mod tests {
 
     /// Checks the limits in manual 6.3 and 6.4.
     #[test]
-    fn a_start_requires_direction_speed_and_stability() {
+    fn start_requires_direction_speed_and_stability() {
         let (first, second) = (MotorRun::CalibrationCounterclockwise, MotorRun::CalibrationClockwise);
         let allowed = SpeedRange { least: 300.0, greatest: 700.0 };
         let cases = [
@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn temperature_and_missing_positions_block_a_start() {
+    fn temperature_or_missing_position_blocks_start() {
         let task = OperatorTask::Turn(MotorRun::CalibrationCounterclockwise);
         for (celsius, fits) in [(24, false), (25, true), (40, true), (41, false)] {
             let measured = ShaftReading { celsius: Some(celsius), ..turning(-500.0, 0.0) };
@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn advice_does_not_block_a_start() {
+    fn advice_does_not_block_start() {
         let advice = |run, rpm, spread| operator_prompt(OperatorTask::Turn(run), turning(rpm, spread)).advice;
         let speed = OperatorAdvice::Speed { recommended: SpeedRange { least: 498.0, greatest: 502.0 } };
         assert_eq!(advice(MotorRun::CalibrationCounterclockwise, -500.0, 1.9), []);
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turning_shaft_blocks_a_standstill_step() {
+    fn turning_shaft_blocks_standstill_step() {
         for task in [OperatorTask::HoldStill, OperatorTask::HoldAtPresetAngle] {
             assert_eq!(operator_prompt(task, turning(3.0, 0.0)).blockers, [StartBlocker::Turning { rpm: 3.0 }]);
             assert!(operator_prompt(task, turning(0.0, 0.0)).is_ready());
@@ -374,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unattended_run_starts_when_ready_and_times_out() {
+    fn unattended_run_starts_or_times_out() {
         let mut operator = UnattendedOperator { patience: Duration::from_secs(10) };
         let task = OperatorTask::Turn(MotorRun::WiegandClockwise);
         let mut ask =
@@ -393,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_applies_only_to_its_question() {
+    fn answer_applies_only_to_its_question() {
         let seat = OperatorChannel::default();
         let mut operator = seat.clone();
         let (first, second) =

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_preset_sets_its_parts() {
+    fn preset_sets_selected_parts() {
         let value = PresetValue::new(0x18000, 3).unwrap();
         let from = reading(0x1234, 0x00FF);
         assert_eq!(preset(&from, PresetParts::Both, value), 3 << 17 | 0x18000);
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn distance_takes_the_shorter_direction() {
+    fn takes_shorter_direction() {
         assert_eq!(shortest_distance(0, &reading(0xFFFF, 0x1FFFF)), 1);
         assert_eq!(shortest_distance(1, &reading(0, 0)), 1);
         assert_eq!(shortest_distance(1 << 32, &reading(0, 0)), 1 << 32);

@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_steady_shaft_yields_speed_and_direction() {
+    fn steady_shaft_yields_speed_and_direction() {
         // The shaft crosses the end of the range, or the encoder does not count turns. 500 rpm is 25/3 revolutions per
         // second.
         for (bits, rpm) in [(16, 500.0), (16, -500.0), (16, 2000.0), (0, 700.0), (0, -300.0)] {
@@ -155,7 +155,7 @@ mod tests {
     /// The speed rises from 490 to 510 rpm within one second, so that the mean speeds in the quarters are 492.5, 497.5,
     /// 502.5 and 507.5 rpm.
     #[test]
-    fn an_accelerating_shaft_is_unsteady() {
+    fn accelerating_shaft_is_unsteady() {
         let motion = measured(16, |seconds| {
             let from = seconds - 0.2;
             from * 490.0 / 60.0 + from * from * 20.0 / 120.0
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shaft_at_rest_may_jitter() {
+    fn tolerates_jitter_at_rest() {
         let tremble = |steps: f64| {
             measured(16, move |seconds| 0.5 + if (seconds * 50.0) as i64 % 2 == 0 { steps / REVOLUTION } else { 0.0 })
         };
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_restarts_the_measurement() {
+    fn gap_restarts_measurement() {
         let mut gauge = SpeedMonitor::with_window(Duration::from_secs(1));
         for at in (0..=1000).step_by(20) {
             gauge.next(&reading(at, 0.0, 0));

@@ -33,7 +33,7 @@ fn items(plan: &BissPlan) -> Vec<(String, u64)> {
 }
 
 #[test]
-fn edits_of_an_area_need_one_save_and_skip_equal_bytes() {
+fn area_edits_need_one_save() {
     let mut before = Bank::filled_with(0x24, 0);
     before.bytes[1] = 7;
     let banks = [before, Bank::filled_with(0x25, 0), Bank::filled_with(0x04, 0)];
@@ -49,7 +49,7 @@ fn edits_of_an_area_need_one_save_and_skip_equal_bytes() {
 
 /// The registers in appendix 9.1 of the manual: commands, lock registers, read-only registers, and writable registers.
 #[test]
-fn registers_owned_by_a_procedure_are_not_written_directly() {
+fn does_not_write_procedure_registers_directly() {
     let kit = kit();
     for text in
         ["0x6A", "0x6B", "0x00:0x00", "0x00:0x06", "0x00:0x1A", "0x00:0x24", "0x01:0x00", "0x01:0x02", "0x01:0x07"]
@@ -77,7 +77,7 @@ fn registers_owned_by_a_procedure_are_not_written_directly() {
 }
 
 #[test]
-fn a_filter_is_selected_if_it_differs() {
+fn selects_filter_if_different() {
     let plan = plan_filter(&kit(), &device(), PositionFilter::Dynamic).unwrap();
     assert_eq!(items(&plan), [("0x6E".to_owned(), 1)]);
     assert_eq!(plan.base.filter, Some(PositionFilter::Balanced));
@@ -94,7 +94,7 @@ fn a_filter_is_selected_if_it_differs() {
 }
 
 #[test]
-fn a_preset_is_stored_and_executed() {
+fn stores_and_executes_preset() {
     let value = PresetValue::new(0x18000, 2);
     let cases: [(Option<PresetValue>, Option<PresetParts>, &[&str]); 5] = [
         (value, Some(PresetParts::Both), &["0x01:0x02+6", "position"]),
@@ -125,7 +125,7 @@ fn a_preset_is_stored_and_executed() {
 }
 
 #[test]
-fn a_mounting_run_forms_one_plan() {
+fn mounting_run_forms_one_plan() {
     let mut data = profile("another");
     set_bank_bytes(&mut data, 0x24, &[(0, 1), (1, 2)]);
     let run = MountingSteps {
@@ -148,7 +148,7 @@ fn a_mounting_run_forms_one_plan() {
 }
 
 #[test]
-fn a_motor_that_needs_this_encoder_is_refused() {
+fn rejects_motor_that_needs_encoder() {
     let run = |calibrate, wiegand| MountingSteps { calibrate, wiegand, ..MountingSteps::default() };
     for run in [run(true, None), run(false, Some(false))] {
         let error = plan_mounting(&kit(), &device(), &run, MotorSource::ThisEncoder).unwrap_err();

@@ -42,7 +42,7 @@ fn planned(profile: &BissProfile, device: &DeviceState) -> Restore {
 
 /// Three changed bytes in one bank need only one save.
 #[test]
-fn differences_in_an_area_need_one_save() {
+fn area_differences_need_one_save() {
     let now = profile("1");
     let mut wanted = now.clone();
     set_bank_bytes(&mut wanted, 0x24, &[(0x10, 1), (0x11, 2), (0x30, 3)]);
@@ -113,7 +113,7 @@ fn restore_plans_for_each_case() {
 }
 
 #[test]
-fn a_bank_marked_empty_in_the_profile_is_cleared() {
+fn clears_bank_marked_empty() {
     let wanted = profile("1");
     let mut now = wanted.clone();
     set_bank_bytes(&mut now, 0x25, &[(1, 0xAB)]);
@@ -127,7 +127,7 @@ fn a_bank_marked_empty_in_the_profile_is_cleared() {
 
 /// Another kind of encoder must be allowed separately. Allowing another serial number is not sufficient (issue 22.9).
 #[test]
-fn another_kind_needs_a_separate_permission() {
+fn other_kind_needs_permission() {
     let mut wanted = profile("1");
     set_bank_bytes(&mut wanted, 0x24, &[(0, 1)]);
     let now = device(&profile("2"));
@@ -157,7 +157,7 @@ fn another_kind_needs_a_separate_permission() {
 }
 
 #[test]
-fn another_encoder_keeps_its_mounting() {
+fn other_encoder_keeps_mounting() {
     let mut wanted = profile("1");
     with_preset(&mut wanted, 0x18000, 3);
     set_bank_bytes(&mut wanted, 0x24, &[(0, 1), (1, 2), (2, 3)]);
@@ -188,7 +188,7 @@ fn another_encoder_keeps_its_mounting() {
 /// An encoder with another device ID or position width is of another type, which must be allowed separately. If the
 /// serial number differs as well, both must be allowed (issue 22.9).
 #[test]
-fn another_type_needs_a_separate_permission() {
+fn other_type_needs_permission() {
     let mut wanted = profile("1");
     with_preset(&mut wanted, 5, 5);
     let same = device(&profile("1"));
@@ -217,7 +217,7 @@ fn another_type_needs_a_separate_permission() {
 }
 
 #[test]
-fn another_kind_and_a_missing_serial_number_are_refused() {
+fn rejects_other_kind_and_missing_serial_number() {
     let wanted = profile("1");
     let mut now = device(&wanted);
     now.identity.device_id = [9; 6];
@@ -233,7 +233,7 @@ fn another_kind_and_a_missing_serial_number_are_refused() {
 }
 
 #[test]
-fn values_the_encoder_cannot_have_are_reported_or_refused() {
+fn reports_or_rejects_unsupported_values() {
     let mut wanted = profile("1");
     with_preset(&mut wanted, 5, 5);
     wanted.filter = Some(PositionFilter::Dynamic);
@@ -273,7 +273,7 @@ fn values_the_encoder_cannot_have_are_reported_or_refused() {
 
 /// Without an opening command, each register is written individually, at an assumed cost of one write cycle.
 #[test]
-fn an_area_without_a_procedure_is_written_directly() {
+fn writes_area_without_procedure_directly() {
     let mut now = device(&profile("1"));
     now.areas[1].open = None;
     let mut wanted = profile("1");
@@ -285,7 +285,7 @@ fn an_area_without_a_procedure_is_written_directly() {
 
 /// Restores the profiles supplied with the program to a new encoder with another serial number.
 #[test]
-fn ready_made_profiles_plan_the_expected_writes() {
+fn supplied_profiles_plan_expected_writes() {
     let read = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/biss").join(name);
         let text = std::fs::read_to_string(path).unwrap();

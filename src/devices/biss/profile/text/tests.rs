@@ -20,7 +20,7 @@ fn profile(text: &str) -> BissProfile {
 }
 
 #[test]
-fn a_handwritten_profile_parses() {
+fn parses_handwritten_profile() {
     let profile = profile(SHORT);
     assert_eq!(profile.identity.serial_number, "1234567");
     assert_eq!(profile.identity.device_id, [0x01, 0x01, 0x68, 0x11, 0x00, 0x01]);
@@ -61,7 +61,7 @@ fn full_profile() -> BissProfile {
 }
 
 #[test]
-fn emitted_profiles_parse_back() {
+fn emitted_profile_parses_back() {
     let mut document = ProfileDocument::new("2026-11-21T13:20:18Z".to_owned(), Body::new(full_profile()));
     document.note = Some("two\nlines".to_owned());
     let text = document.emit();
@@ -86,7 +86,7 @@ fn emitted_profiles_parse_back() {
 }
 
 #[test]
-fn unknown_fields_are_kept() {
+fn keeps_unknown_fields() {
     let text = SHORT
         .replace("schema: 1,", "schema: 1, owner: (name: \"CK\", floors: [1, 2]),")
         .replace("serial_number:", "colour: Some(\"red\"), serial_number:")
@@ -178,7 +178,7 @@ fn profile_errors_name_their_location() {
 }
 
 #[test]
-fn empty_banks_are_not_written() {
+fn omits_empty_banks() {
     let area = Area { name: "OEM data".to_owned().into(), first: 0x24, last: 0x27, access: Access::Rw, open: Some(2) };
     let some = |number| {
         let mut bank = Bank::filled_with(number, 0);
@@ -202,7 +202,7 @@ fn empty_banks_are_not_written() {
 }
 
 #[test]
-fn a_mark_covers_its_registers() {
+fn mark_covers_its_registers() {
     let mut profile = profile(SHORT);
     let item = MountingItem::Registers("0x25:0x08+4".parse().unwrap());
     profile.mounting.push(MountingMark { item, meaning: String::new(), unknown: Default::default() });
@@ -217,7 +217,7 @@ fn a_mark_covers_its_registers() {
 
 /// Changing a value changes only that part of the text (issue 22.26).
 #[test]
-fn a_change_edits_only_its_value() {
+fn change_edits_only_its_value() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/biss.ron"));
     let edit = |own: &mut BissProfile| own.filter = Some(PositionFilter::from_byte(0));
     assert_edit_in_place(text, edit, "filter: 4", "filter: 0x00");

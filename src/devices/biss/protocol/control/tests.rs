@@ -163,7 +163,7 @@ fn published_reply_matches() {
 }
 
 #[test]
-fn consecutive_registers_are_read_and_written() {
+fn reads_and_writes_consecutive_registers() {
     let mut line = Line::new(0);
     let read = line.ask(Request::read(0, 0x78, 8).unwrap());
     assert_eq!(read, Ok(vec![0xDD, 0xDC, 0xDF, 0xDE, 0xD9, 0xD8, 0xDB, 0xDA]));
@@ -173,7 +173,7 @@ fn consecutive_registers_are_read_and_written() {
 }
 
 #[test]
-fn an_encoder_may_delay_the_host() {
+fn encoder_may_delay_host() {
     for processing in [1, 13, 14, 50] {
         let mut line = Line::new(processing);
         assert_eq!(line.ask(Request::read(0, 0x66, 2).unwrap()), Ok(vec![0xC3, 0xC2]), "{processing} cycles");
@@ -186,7 +186,7 @@ fn an_encoder_may_delay_the_host() {
 }
 
 #[test]
-fn unknown_slaves_and_damaged_requests_get_no_reply() {
+fn ignores_unknown_slaves_and_corrupt_requests() {
     let mut line = Line::new(0);
     assert_eq!(line.ask(Request::read(3, 0x66, 1).unwrap()), Err(ControlError::NoSlave(3)));
     line.attach(3);
@@ -200,7 +200,7 @@ fn unknown_slaves_and_damaged_requests_get_no_reply() {
 }
 
 #[test]
-fn a_command_is_ignored() {
+fn ignores_command() {
     let mut encoder = Encoder::new(0);
     (0..REST_CYCLES).for_each(|_| assert_eq!(encoder.receive_cdm(false), None));
     // The bits are S, CTS = 0, CMD 01 and CRC4 C. The bits after them would read a register, but no register is
@@ -213,7 +213,7 @@ fn a_command_is_ignored() {
 
 /// After fourteen zeros, the line is idle, whatever was sent before.
 #[test]
-fn fourteen_zeros_reset_every_cycle() {
+fn fourteen_zeros_reset_line() {
     let (_, _, write) = WRITES[2];
     for cut in 0..=write.len() {
         let mut line = Line::new(0);
@@ -233,7 +233,7 @@ fn fourteen_zeros_reset_every_cycle() {
 }
 
 #[test]
-fn an_aborted_request_leaves_the_host_ready() {
+fn aborted_request_leaves_host_ready() {
     let mut host = Host::default();
     host.submit(Request::read(0, 0x66, 1).unwrap()).unwrap();
     assert!(host.submit(Request::read(0, 0x67, 1).unwrap()).is_err());
@@ -247,7 +247,7 @@ fn an_aborted_request_leaves_the_host_ready() {
 
 /// A flipped bit never causes a wrong value to be read or written.
 #[test]
-fn any_single_flipped_bit_is_detected() {
+fn detects_any_single_flipped_bit() {
     let read = || Request::read(0, 0x66, 1).unwrap();
     for cycle in 0..32 {
         let mut line = Line::new(0);
@@ -270,7 +270,7 @@ fn any_single_flipped_bit_is_detected() {
 }
 
 #[test]
-fn impossible_requests_are_refused() {
+fn rejects_impossible_requests() {
     assert_eq!(Request::read(8, 0, 1), Err(RequestError::Slave(8)));
     assert_eq!(Request::read(0, 0x80, 1), Err(RequestError::Range { address: 0x80, count: 1 }));
     assert_eq!(Request::read(0, 0x7F, 2), Err(RequestError::Range { address: 0x7F, count: 2 }));
@@ -292,7 +292,7 @@ proptest! {
     }
 
     #[test]
-    fn noise_does_not_panic_host_or_encoder(noise in proptest::collection::vec(any::<bool>(), 0..400)) {
+    fn noise_never_panics(noise in proptest::collection::vec(any::<bool>(), 0..400)) {
         let (mut host, mut encoder) = (Host::default(), Encoder::new(0));
         for bit in noise {
             if !host.is_busy() {

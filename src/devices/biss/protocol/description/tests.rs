@@ -22,7 +22,7 @@ fn kit_identity() -> Identity {
 }
 
 #[test]
-fn both_built_in_descriptions_parse() {
+fn built_in_descriptions_parse() {
     let (all, errors) = Descriptions::read(Descriptions::BUILT_IN);
     assert_eq!(errors, []);
     assert_eq!(all.iter().map(Description::name).collect::<Vec<_>>(), ["POSITAL IXARC kit encoder", "BiSS C encoder"]);
@@ -31,7 +31,7 @@ fn both_built_in_descriptions_parse() {
 
 /// The expected address, width, access and default values are taken from section 4, "Direct", of the reference.
 #[test]
-fn kit_encoder_registers_match_the_reference() {
+fn kit_encoder_registers_match_reference() {
     use Access::{R, Rw};
     let cases: [(&str, u8, Access, &[u8], Firmware); 24] = [
         ("0x40", 1, Rw, &[], Firmware::new(0, 0, 0)),
@@ -81,7 +81,7 @@ fn kit_encoder_registers_match_the_reference() {
 
 /// Expected values from section 5 of the reference.
 #[test]
-fn procedure_registers_match_the_reference() {
+fn procedure_registers_match_reference() {
     let kit = kit();
     let cases = [
         (ProcedureKind::WiegandTest, DeviceMode::WIEGAND_TEST, "0x00:0x06", "0x00:0x07", Firmware::new(0, 0, 0)),
@@ -111,7 +111,7 @@ fn procedure_registers_match_the_reference() {
 
 /// Checks that the description uses the same names, widths and defaults as the tables of the data sheet.
 #[test]
-fn the_file_agrees_with_the_protocol_tables() {
+fn file_matches_protocol_tables() {
     let kit = kit();
     for bank in [EdsBank::Common, EdsBank::Encoder] {
         for field in bank.fields() {
@@ -124,7 +124,7 @@ fn the_file_agrees_with_the_protocol_tables() {
 }
 
 #[test]
-fn registers_are_decoded() {
+fn decodes_registers() {
     let kit = kit();
     let decode = |place: &str, bytes: &[u8]| match kit.register_at(at(place)).unwrap().decode(bytes) {
         Some(DecodedValue::Bits(set)) => {
@@ -170,7 +170,7 @@ fn registers_are_decoded() {
 }
 
 #[test]
-fn names_exist_in_german_and_fall_back_to_english() {
+fn german_names_fall_back_to_english() {
     for (file, text) in Descriptions::BUILT_IN {
         let description = Description::parse(file, text).unwrap();
         let all =
@@ -191,7 +191,7 @@ fn names_exist_in_german_and_fall_back_to_english() {
 }
 
 #[test]
-fn an_encoder_finds_its_description() {
+fn finds_encoder_description() {
     let all = Descriptions::built_in();
     assert_eq!(all.find(&kit_identity()).unwrap().name(), "POSITAL IXARC kit encoder");
     let other = Identity { manufacturer: *b"XY", ..kit_identity() };
@@ -252,7 +252,7 @@ fn description_errors_name_their_location() {
 
 proptest! {
     #[test]
-    fn numbers_round_trip_in_either_byte_order(number: u64, width in 1u8..=8, low_first: bool) {
+    fn numbers_round_trip_in_both_byte_orders(number: u64, width in 1u8..=8, low_first: bool) {
         let mut register = kit().registers()[0].clone();
         (register.width, register.order) = (width, if low_first { ByteOrder::LowFirst } else { ByteOrder::HighFirst });
         let fits = width == 8 || number >> (8 * u32::from(width)) == 0;
@@ -264,7 +264,7 @@ proptest! {
     }
 
     #[test]
-    fn no_text_panics(cut in 0usize..400, more in ".*") {
+    fn arbitrary_text_never_panics(cut in 0usize..400, more in ".*") {
         let [_, (_, text)] = Descriptions::BUILT_IN;
         let head: String = text.chars().rev().take(cut).collect::<String>().chars().rev().collect();
         let _ = Description::parse("x", &format!("{head}{more}"));

@@ -100,7 +100,7 @@ fn published_data_sheet_parses() {
 }
 
 #[test]
-fn a_changed_byte_is_detected() {
+fn detects_changed_byte() {
     for (bank, bytes) in [(EdsBank::Common, common()), (EdsBank::Encoder, encoder())] {
         for bit in 0..64 * 8 {
             let mut damaged = bytes;
@@ -115,7 +115,7 @@ fn a_changed_byte_is_detected() {
 }
 
 #[test]
-fn special_values_are_decoded() {
+fn decodes_special_values() {
     let mut bank = common();
     (bank[0x02], bank[0x03], bank[0x05], bank[0x0C], bank[0x17]) = (0xFF, 0x05, 0x00, 0x00, 0x00);
     let eds = Eds::parse(EdsBank::Common, with_checksum(bank)).unwrap();
@@ -127,7 +127,7 @@ fn special_values_are_decoded() {
 }
 
 #[test]
-fn the_frame_format_is_derived_from_the_data_sheet() {
+fn derives_frame_format_from_data_sheet() {
     let with = |changes: &[(usize, u8)]| {
         let mut bank = encoder();
         changes.iter().for_each(|(offset, byte)| bank[*offset] = *byte);
@@ -160,7 +160,7 @@ fn the_frame_format_is_derived_from_the_data_sheet() {
 
 proptest! {
     #[test]
-    fn any_bank_round_trips_without_panic(mut bytes in proptest::array::uniform32(any::<[u8; 2]>())) {
+    fn arbitrary_banks_round_trip(mut bytes in proptest::array::uniform32(any::<[u8; 2]>())) {
         let mut bank = [0; 64];
         bank.iter_mut().zip(bytes.iter_mut().flatten()).for_each(|(place, byte)| *place = *byte);
         let bank = with_checksum(bank);

@@ -14,7 +14,7 @@ fn behind_adapter(query: &str) -> Host {
 
 /// Reads the example frame of the BiSS reference, with multiturn 1234h and singleturn 18000h.
 #[test]
-fn a_frame_is_read() {
+fn reads_frame() {
     let mut host = behind_adapter("");
     host.refuses(Request::BissRead, ErrorCode::BAD_ARGUMENT);
     host.expect(BISS, Reply::BissConfig { clock_hz: 2_000_000 });
@@ -38,7 +38,7 @@ fn a_frame_is_read() {
 }
 
 #[test]
-fn registers_are_read_and_written_by_bank() {
+fn reads_and_writes_registers_by_bank() {
     let mut host = behind_adapter("temperature=25&cycles=0");
     let read = |address| Request::BissRegisterRead { slave: 0, address };
     let write = |address, value| Request::BissRegisterWrite { slave: 0, address, value };
@@ -65,7 +65,7 @@ fn registers_are_read_and_written_by_bank() {
 
 /// Streams 20,000 frames per second for one second. Every frame arrives, in order and with the correct position.
 #[test]
-fn a_fast_stream_has_no_gap() {
+fn fast_stream_has_no_gap() {
     let mut host = behind_adapter("rpm=600&position=0");
     host.ask(BISS);
     host.send(&Request::BissStream { period_us: 50 });
@@ -95,7 +95,7 @@ fn a_fast_stream_has_no_gap() {
 }
 
 #[test]
-fn noise_is_detected_by_the_crc() {
+fn crc_detects_noise() {
     let mut host = behind_adapter("noise=0.25&seed=5");
     host.ask(BISS);
     host.ask(Request::BissStream { period_us: 100 });
@@ -110,7 +110,7 @@ fn noise_is_detected_by_the_crc() {
 }
 
 #[test]
-fn power_lost_in_a_store_returns_with_the_next_host() {
+fn next_host_restores_lost_power() {
     let mut host = behind_adapter("fault=die-in-store:1");
     host.ask(BISS);
     for (address, value) in [(0x6B, 0x2A), (0x6A, 0x07), (0x40, 0x01)] {

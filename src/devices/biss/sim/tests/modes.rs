@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_mode_needs_the_password() {
+fn mode_needs_password() {
     let mut host = Host::with("");
     for mode in [0x01, 0x02, 0x04, 0x05, 0x07] {
         assert!(!host.write("0x6A", mode));
@@ -22,7 +22,7 @@ fn a_mode_needs_the_password() {
 }
 
 #[test]
-fn nonexistent_modes_are_ignored() {
+fn ignores_nonexistent_modes() {
     let mut host = Host::with("");
     host.put("0x6B", 0x2A);
     for mode in [0x03, 0x06, 0x08, 0xFF] {
@@ -37,7 +37,7 @@ fn nonexistent_modes_are_ignored() {
 }
 
 #[test]
-fn commands_need_their_mode() {
+fn commands_need_matching_mode() {
     let mut host = Host::with("");
     let commands = [("0x00:0x00", 1, 0x01), ("0x00:0x06", 1, 0x02), ("0x00:0x1A", 1, 0x04), ("0x00:0x24", 1, 0x05)];
     for (register, command, _) in commands {
@@ -54,7 +54,7 @@ fn commands_need_their_mode() {
 }
 
 #[test]
-fn a_loss_of_power_resets_all_state() {
+fn power_loss_resets_all_state() {
     let mut host = Host::with("rpm=500");
     host.enter(0x02);
     host.put("0x40", 0x24);

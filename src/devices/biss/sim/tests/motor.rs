@@ -4,7 +4,7 @@
 use super::*;
 
 #[test]
-fn a_calibration_takes_two_runs() {
+fn calibration_takes_two_runs() {
     let mut host = Host::with("rpm=-500&cycles=5");
     host.enter(0x01);
     host.put("0x00:0x00", 0x01);
@@ -27,7 +27,7 @@ fn a_calibration_takes_two_runs() {
 }
 
 #[test]
-fn a_calibration_fails_with_the_matching_status() {
+fn calibration_fails_with_matching_status() {
     let cases = [
         ("rpm=500", 0x30),
         ("rpm=-500&temperature=24", 0x31),
@@ -52,7 +52,7 @@ fn a_calibration_fails_with_the_matching_status() {
 }
 
 #[test]
-fn a_failure_of_the_second_run_loses_the_table() {
+fn failed_second_run_loses_table() {
     let after_first_run = || {
         let mut host = Host::with("rpm=-500&cycles=0&calibration-silent=off");
         host.enter(0x01);
@@ -90,7 +90,7 @@ fn a_failure_of_the_second_run_loses_the_table() {
 }
 
 #[test]
-fn the_second_run_needs_the_first() {
+fn second_run_needs_first() {
     let mut host = Host::with("rpm=500");
     host.enter(0x01);
     assert!(!host.write("0x00:0x00", 0x02));
@@ -102,7 +102,7 @@ fn the_second_run_needs_the_first() {
 
 /// According to section 5.1 of the reference, 515 revolutions take 61.8 s at 500 rpm and 15.45 s at 2000 rpm.
 #[test]
-fn a_wiegand_test_takes_515_revolutions_each_way() {
+fn wiegand_test_takes_515_revolutions_each_way() {
     for (rpm, seconds) in [(500.0, 61.8), (2000.0, 15.45)] {
         let mut host = Host::with("pulses=6.3,5.8&cycles=0");
         host.enter(0x02);
@@ -135,7 +135,7 @@ fn a_wiegand_test_takes_515_revolutions_each_way() {
 }
 
 #[test]
-fn a_motor_that_pauses_only_takes_longer() {
+fn paused_motor_only_takes_longer() {
     let mut host = Host::with("rpm=1000");
     host.enter(0x02);
     host.put("0x00:0x06", 0x01);
@@ -151,7 +151,7 @@ fn a_motor_that_pauses_only_takes_longer() {
 }
 
 #[test]
-fn a_wiegand_test_fails_with_the_matching_status() {
+fn wiegand_test_fails_with_matching_status() {
     // The motor has not been reversed for the second run.
     let mut host = Host::with("rpm=1000&calibration-silent=off");
     host.enter(0x02);
@@ -174,7 +174,7 @@ fn a_wiegand_test_fails_with_the_matching_status() {
 }
 
 #[test]
-fn the_motor_handle_turns_the_shaft() {
+fn motor_handle_turns_shaft() {
     let mut host = Host::with("rpm=60&position=0");
     let motor = host.encoder.motor();
     host.wait(1.0);
@@ -197,7 +197,7 @@ fn the_motor_handle_turns_the_shaft() {
 }
 
 #[test]
-fn a_reversing_motor_reverses_when_a_procedure_waits() {
+fn motor_reverses_when_procedure_waits() {
     let mut host = Host::with("rpm=-500&motor=reverse&cycles=0");
     host.enter(0x01);
     host.put("0x00:0x00", 0x01);

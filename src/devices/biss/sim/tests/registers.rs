@@ -6,7 +6,7 @@ use crate::devices::biss::protocol::{Descriptions, ErrorRegister};
 
 /// Every register with a default in the description must contain it.
 #[test]
-fn a_new_encoder_has_factory_settings() {
+fn new_encoder_has_factory_settings() {
     let mut host = Host::with("");
     let all = Descriptions::built_in();
     let kit = all.find_by_name("POSITAL IXARC kit encoder").unwrap();
@@ -28,7 +28,7 @@ fn a_new_encoder_has_factory_settings() {
 }
 
 #[test]
-fn the_encoder_has_68_banks() {
+fn encoder_has_68_banks() {
     let mut host = Host::with("");
     host.expect("0x43:0x3F", 0);
     assert_eq!(host.encoder.read(host.now, address("0x44:0x00")), None);
@@ -42,7 +42,7 @@ fn the_encoder_has_68_banks() {
 }
 
 #[test]
-fn writes_to_read_only_registers_are_refused() {
+fn rejects_writes_to_read_only_registers() {
     let mut host = Host::with("");
     for register in ["0x41", "0x66", "0x6E", "0x74", "0x7F", "0x67", "0x00:0x01", "0x00:0x09", "0x02:0x05", "0x03:0x0A"]
     {
@@ -54,7 +54,7 @@ fn writes_to_read_only_registers_are_refused() {
 
 /// According to manual 6.8, the warning is set at 125 °C and above, and cleared below 123 °C.
 #[test]
-fn the_temperature_warning_has_a_hysteresis() {
+fn temperature_warning_has_hysteresis() {
     let mut host = Host::with("");
     for (celsius, register, warns) in [
         (124, 0xAE, false),
@@ -77,7 +77,7 @@ fn the_temperature_warning_has_a_hysteresis() {
 }
 
 #[test]
-fn an_error_makes_the_position_invalid() {
+fn error_invalidates_position() {
     let mut host = Host::with("errors=0x12");
     host.expect("0x68", 0x12);
     assert_eq!(host.encoder.position_at(host.now).map(|reading| reading.error), Some(true));

@@ -5,7 +5,7 @@ use crate::devices::biss::protocol::PositionFilter;
 
 /// OEM data is written only after its area has been opened, and is saved once, as in section 5.3 of the reference.
 #[test]
-fn oem_data_is_written_as_in_the_reference() {
+fn oem_data_write_matches_reference() {
     let mut host = Host::with("cycles=10");
     assert!(!host.write("0x24:0x10", 0xAB), "closed");
     host.enter(0x04);
@@ -31,7 +31,7 @@ fn oem_data_is_written_as_in_the_reference() {
 }
 
 #[test]
-fn motor_data_has_a_separate_area() {
+fn motor_data_has_separate_area() {
     let mut host = Host::with("");
     host.enter(0x04);
     host.put("0x00:0x1A", 0x01);
@@ -44,7 +44,7 @@ fn motor_data_has_a_separate_area() {
 }
 
 #[test]
-fn cancelled_or_abandoned_writes_are_discarded() {
+fn discards_cancelled_or_abandoned_writes() {
     for end in [("0x00:0x1A", 0x04), ("0x6A", 0x00)] {
         let mut host = Host::with("cycles=10");
         host.enter(0x04);
@@ -64,7 +64,7 @@ fn cancelled_or_abandoned_writes_are_discarded() {
 
 /// A filter is selected and saved, and takes effect after the restart, as in section 5.4 of the reference.
 #[test]
-fn the_filter_is_selected_as_in_the_reference() {
+fn filter_selection_matches_reference() {
     let mut host = Host::with("cycles=0");
     host.enter(0x05);
     host.expect("0x00:0x25", 0x00);
@@ -86,7 +86,7 @@ fn the_filter_is_selected_as_in_the_reference() {
 
 /// A preset value of 270° is stored first, and then the position is set to it, as in section 5.5 of the reference.
 #[test]
-fn the_position_is_preset_as_in_the_reference() {
+fn position_preset_matches_reference() {
     let mut host = Host::with("cycles=0&position=0x12345");
     host.enter(0x07);
     assert!(!host.write("0x01:0x02", 0x00), "not opened");
@@ -118,7 +118,7 @@ fn the_position_is_preset_as_in_the_reference() {
 }
 
 #[test]
-fn singleturn_and_multiturn_are_preset_separately() {
+fn presets_singleturn_and_multiturn_separately() {
     for (command, position) in [(0x04, (0, 0)), (0x05, (0, 0x18000)), (0x01, (0, 0))] {
         let mut host = Host::with("position=0x18000");
         host.enter(0x07);
@@ -129,7 +129,7 @@ fn singleturn_and_multiturn_are_preset_separately() {
 }
 
 #[test]
-fn a_preset_beyond_the_range_is_refused() {
+fn rejects_preset_beyond_range() {
     let mut host = Host::with("cycles=0");
     host.enter(0x07);
     host.put("0x01:0x00", 0x02);
@@ -142,7 +142,7 @@ fn a_preset_beyond_the_range_is_refused() {
 }
 
 #[test]
-fn power_can_fail_in_the_second_store() {
+fn power_fails_in_second_store() {
     let mut host = Host::with("fault=die-in-store:2");
     for _ in 0..2 {
         host.enter(0x04);

@@ -70,14 +70,14 @@ fn published_exchanges_match() {
 
 /// Sends the probe from section 2 of the UBICOM reference.
 #[test]
-fn the_probe_reveals_the_byte_order() {
+fn probe_reveals_byte_order() {
     Line::with("").expect("80 01 01 02 00 01 00 7A", "80 01 01 01 00 02 7A");
     Line::with("order=high-first").expect("80 01 01 02 00 01 00 7A", "80 01 01 01 00 01 7B");
 }
 
 /// An exchange takes eight bytes, one millisecond, and seven bytes, at 86.8 µs per byte.
 #[test]
-fn an_exchange_takes_the_expected_time() {
+fn exchange_takes_expected_time() {
     let mut line = Line::with("");
     line.port.on_bytes(line.now, &parse_hex(READ_TEMPERATURE).unwrap());
     let (_, last) = line.receive();
@@ -110,7 +110,7 @@ fn invalid_requests_get_no_reply() {
 }
 
 #[test]
-fn a_partial_frame_is_discarded_after_20_ms() {
+fn discards_partial_frame_after_20_ms() {
     let mut line = Line::with("temperature=25");
     line.port.on_bytes(line.now, &[0x80, 0x01, 0x01, 0x02]);
     assert_eq!(line.receive().0, "");
@@ -125,13 +125,13 @@ fn a_partial_frame_is_discarded_after_20_ms() {
 }
 
 #[test]
-fn sent_bytes_are_echoed_on_a_single_wire() {
+fn single_wire_echoes_sent_bytes() {
     let mut line = Line::with("temperature=25&echo=on&fault=delay:10");
     line.expect(READ_TEMPERATURE, &format!("{READ_TEMPERATURE} {TEMPERATURE}"));
 }
 
 #[test]
-fn a_request_while_the_encoder_is_busy_is_lost() {
+fn busy_encoder_ignores_request() {
     let mut line = Line::with("temperature=25");
     line.expect(&format!("{READ_TEMPERATURE} {READ_TEMPERATURE}"), TEMPERATURE);
     line.wait(1.0);
@@ -142,7 +142,7 @@ fn a_request_while_the_encoder_is_busy_is_lost() {
 }
 
 #[test]
-fn a_restart_is_acknowledged_and_followed_by_silence() {
+fn acknowledges_restart_then_stays_silent() {
     let mut line = Line::with("cycles=0");
     for request in ["80 01 02 03 00 2B 00 2A 24", "80 01 02 03 00 2A 00 07 48", "80 01 02 03 00 80 00 01 F8"] {
         line.expect(request, "80 01 02 01 00 90 EB");
@@ -153,7 +153,7 @@ fn a_restart_is_acknowledged_and_followed_by_silence() {
 }
 
 #[test]
-fn the_encoder_is_silent_during_calibration() {
+fn encoder_is_silent_during_calibration() {
     let mut line = Line::with("rpm=-500&temperature=25");
     for request in ["80 01 02 03 00 2B 00 2A 24", "80 01 02 03 00 2A 00 01 4E", "80 01 02 03 00 40 00 01 38"] {
         line.expect(request, "80 01 02 01 00 90 EB");
@@ -164,7 +164,7 @@ fn the_encoder_is_silent_during_calibration() {
 }
 
 #[test]
-fn line_faults_are_injected() {
+fn injects_line_faults() {
     Line::with("fault=drop:1").expect(READ_TEMPERATURE, "");
     Line::with("fault=flip:1").expect(READ_TEMPERATURE, "");
     let mut line = Line::with("fault=silent-after:2&temperature=25");
@@ -182,7 +182,7 @@ fn line_faults_are_injected() {
 }
 
 #[test]
-fn a_wrong_baud_rate_yields_no_frame() {
+fn wrong_baud_rate_yields_no_frame() {
     let mut line = Line::with("temperature=25");
     let format = CharacterFormat { baud: Baud::B9600, parity: Parity::None };
     line.port.set_host_format(line.now, format);
@@ -193,7 +193,7 @@ fn a_wrong_baud_rate_yields_no_frame() {
 
 /// The encoder loses power during a save and does not reply. Reopening the link restores its power.
 #[test]
-fn reopening_the_link_revives_a_dead_encoder() {
+fn reopened_link_revives_dead_encoder() {
     let mut line = Line::with("fault=die-in-store:1");
     for request in ["80 01 02 03 00 2B 00 2A 24", "80 01 02 03 00 2A 00 07 48"] {
         line.expect(request, "80 01 02 01 00 90 EB");
@@ -211,7 +211,7 @@ fn reopening_the_link_revives_a_dead_encoder() {
 /// Bytes that do not fit into a UART's buffer are lost, so the line becomes idle as soon as the buffer is empty (issue
 /// 22.18).
 #[test]
-fn the_encoder_answers_after_a_flood_of_bytes() {
+fn answers_after_flood_of_bytes() {
     let mut line = Line::with("temperature=25");
     for _ in 0..2_000 {
         line.port.on_bytes(line.now, &[0x55; 512]);

@@ -43,7 +43,7 @@ mod tests {
     use crate::app::Language;
 
     #[test]
-    fn damage_texts_match_the_protocol_errors() {
+    fn corrupt_reply_texts_match_protocol_errors() {
         let cases = [
             ReplyDamage::NoFrame { bytes: 7 },
             ReplyDamage::Reply(ReplyError::Address { expected: 1, got: 2 }),

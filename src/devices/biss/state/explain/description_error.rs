@@ -60,7 +60,7 @@ mod tests {
     use crate::devices::biss::protocol::{LayoutError, ProcedureKind, Role};
 
     #[test]
-    fn flaws_are_explained_in_both_languages() {
+    fn explains_description_errors() {
         let (name, address) = ("y".to_owned(), "0x7F".parse().unwrap());
         let flaws = [
             DescriptionErrorKind::Direct(0x3F),

@@ -240,7 +240,7 @@ mod tests {
     use crate::devices::biss::protocol::{PresetValue, WiegandResult};
 
     #[test]
-    fn modes_have_protocol_names_and_german_names() {
+    fn modes_have_german_names() {
         for byte in 0..=255 {
             let own = DeviceMode::new(byte);
             assert_eq!(mode_text(own).to_string_in(English), own.to_string());
@@ -250,7 +250,7 @@ mod tests {
 
     /// According to manual 6.3, the average minus four standard deviations must be above 5.3 V.
     #[test]
-    fn a_wiegand_result_is_compared_with_the_limit() {
+    fn compares_wiegand_result_with_limit() {
         let result = WiegandResult {
             average_cw: PulseVoltage::new(63),
             lowest_cw: PulseVoltage::new(54),
@@ -270,7 +270,7 @@ mod tests {
 
     /// According to manual 6.7, 18000h at 17 bits is 270°.
     #[test]
-    fn a_stored_preset_value_is_shown_as_an_angle() {
+    fn shows_stored_preset_as_angle() {
         let value = PresetValue::new(0x18000, 2).unwrap();
         let texts = outcome_texts(&Outcome::PresetStored { value, singleturn_bits: 17 });
         assert_eq!(texts[0].to_string_in(English), "Preset value saved: 270.000° (step 98304), turn 2.");
@@ -279,7 +279,7 @@ mod tests {
 
     /// The message never states a speed of zero for a shaft that is not at rest.
     #[test]
-    fn a_creeping_shaft_is_not_reported_at_zero_rpm() {
+    fn creeping_shaft_is_not_zero_rpm() {
         let words = |rpm| blocker_text(StartBlocker::Turning { rpm }).to_string_in(German);
         assert!(words(0.06).contains("0,1 1/min") && words(-3.0).contains("-3,0 1/min"));
         for rpm in [0.049, -0.03, 0.0] {
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn skipped_operations_are_named() {
+    fn names_skipped_operations() {
         let report = report_lines(&Op::Calibrate, &Outcome::Skipped { after: None });
         let [(Severity::Note, text)] = report.as_slice() else { panic!("{report:?}") };
         assert!(

@@ -13,7 +13,7 @@ use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
-fn link_errors_are_explained_in_both_languages() {
+fn explains_link_errors() {
     for text in ["order=x", "echo=x", "timeout=0", "margin=x", "clock=1", "voltage=24"] {
         let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, Transport::Adapter, Duration::ZERO).unwrap_err();
@@ -22,7 +22,7 @@ fn link_errors_are_explained_in_both_languages() {
 }
 
 #[test]
-fn profile_errors_are_explained_in_both_languages() {
+fn explains_profile_errors() {
     let bytes = "00 ".repeat(64);
     let good = r#"(schema: 1, device: "biss", identity: (serial_number: "1", profile_id: 0x6129, firmware: "1.6.0",
         device_id: "01 01 68 11 00 01", manufacturer: "46 72"), recorded: (wiegand_last: [1, 2, 3, 4]),

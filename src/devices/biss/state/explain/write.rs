@@ -271,7 +271,7 @@ mod tests {
     /// The suggested remedy depends on the kind of change, on the terminal as well. Data that may have changed is never
     /// reported as unchanged.
     #[test]
-    fn the_remedy_for_an_interrupted_write_matches_its_kind() {
+    fn interrupted_write_remedy_matches_kind() {
         let last = |interrupted: &InterruptedWrite, kind| {
             let text = interruption_text(interrupted, Path::new("b.ron"), 3, kind).pop().unwrap();
             assert!(text.terminal_text().contains("b.ron") && text.to_string_in(German).contains("b.ron"), "{text:?}");
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_calibration_names_the_limits_of_its_run() {
+    fn failed_calibration_names_limits_of_run() {
         let cases = [(CalibrationStatus::Speed, "300…700"), (CalibrationStatus::Temperature, "25…40 °C")];
         for (status, limits) in cases {
             let text = failure_text(&Failure::Calibration { run: MotorRun::CalibrationClockwise, status });
@@ -318,7 +318,7 @@ mod tests {
 
     /// The write can only be completed after the encoder has returned to operation mode (issue 22.5).
     #[test]
-    fn completing_a_write_is_advised_after_the_return_to_operation() {
+    fn advises_return_to_operation_before_completion() {
         for kind in [ChangeKind::Restore, ChangeKind::Bytes, ChangeKind::Guided, ChangeKind::Filter] {
             let last = |left| {
                 let interrupted = cut_off(1, Failure::Device(Error::NeverSilent), left);
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interrupted_write_names_step_cause_and_state() {
+    fn interrupted_write_names_step_cause_and_state() {
         let mode = DeviceMode::CALIBRATION;
         let activity = Activity::Running(MotorRun::CalibrationClockwise);
         let left = left_state(&[mode, DeviceMode::OPERATION], true, activity);
@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn every_activity_is_explained() {
+    fn explains_every_activity() {
         let activities = [
             Activity::Running(MotorRun::CalibrationCounterclockwise),
             Activity::Running(MotorRun::CalibrationClockwise),
@@ -387,7 +387,7 @@ mod tests {
 
     /// Every failure code in manual 6.3 and 6.4 has a message with a cause and a remedy.
     #[test]
-    fn failures_name_cause_and_remedy() {
+    fn failures_show_cause_and_remedy() {
         let (first, second) = (MotorRun::CalibrationCounterclockwise, MotorRun::CalibrationClockwise);
         let calibration = |run, byte| Failure::Calibration { run, status: CalibrationStatus::from_byte(byte) };
         let wiegand = |byte, code| Failure::Wiegand {
