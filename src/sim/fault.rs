@@ -174,7 +174,7 @@ mod tests {
     use proptest::proptest;
 
     #[test]
-    fn a_specification_parses() {
+    fn parses_fault_specification() {
         let faults: SimulatedFaults =
             "drop:0.01, flip:1,garbage:0,delay:25,silent-after:0,die-in-store:2".parse().unwrap();
         assert_eq!((faults.drop, faults.flip, faults.garbage), (0.01, 1.0, 0.0));
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_faults_are_reported() {
+    fn rejects_invalid_faults() {
         let cases = [
             ("drop:2", "fault `drop:2`: the probability must be a number from 0 to 1"),
             ("flip:NaN", "fault `flip:NaN`: the probability must be a number from 0 to 1"),
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn probability_one_always_happens_and_zero_never_does() {
+    fn probability_bounds_are_certain() {
         let mut rng = Rng::with_seed(1);
         let quiet = SimulatedFaults::default();
         let lossy: SimulatedFaults = "drop:1".parse().unwrap();
@@ -221,7 +221,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_text_panics(text in "[a-z:0-9,.-]*") {
+        fn arbitrary_text_never_panics(text in "[a-z:0-9,.-]*") {
             let _ = text.parse::<SimulatedFaults>();
         }
     }

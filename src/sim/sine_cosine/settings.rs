@@ -280,7 +280,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn out_of_range_values_are_refused_with_the_range() {
+    fn rejects_out_of_range_values() {
         for quantity in Quantity::ALL {
             let (least, most) = quantity.value_range();
             for value in [least, most] {
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn each_quantity_has_a_separate_field() {
+    fn quantities_have_separate_fields() {
         for quantity in Quantity::ALL {
             let changed = Settings::default().with_value(quantity, 0.123);
             let others = Quantity::ALL.into_iter().filter(|other| *other != quantity);
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sample_period_is_whole_nanoseconds() {
+    fn sample_period_is_whole_nanoseconds() {
         for (rate, nanoseconds) in [(1e6, 1_000), (44_100.0, 22_676), (10.0, 100_000_000), (30_000.0, 33_333)] {
             assert_eq!(Settings::default().with_value(Quantity::Rate, rate).period_ns(), nanoseconds);
         }

@@ -19,7 +19,7 @@ fn near(found: f64, expected: f64, tolerance: f64) {
 /// Voltages from section 7 of the reference for R = 0.5, p = 0.02, q = −0.03, r = 1.05 and α = 3°. At 10 rev/min and 60
 /// Hz, the shaft turns by 1° per sample.
 #[test]
-fn samples_match_section_7() {
+fn samples_match_reference() {
     let source = source(Settings {
         periods: 1.0,
         speed_rpm: 10.0,
@@ -49,7 +49,7 @@ fn samples_match_section_7() {
 }
 
 #[test]
-fn any_range_of_samples_is_reproducible_after_days() {
+fn sample_ranges_are_reproducible_after_days() {
     let settings = Settings { interference_v: 0.01, hum_v: 0.02, speed_rpm: 1234.567, ..Settings::default() };
     let mut source = source(settings.clone());
     let whole = source.samples_from(0, 3000).unwrap();
@@ -70,7 +70,7 @@ fn any_range_of_samples_is_reproducible_after_days() {
 }
 
 #[test]
-fn settings_change_at_a_sample_and_the_angle_is_continuous() {
+fn angle_is_continuous_across_settings() {
     // 60 rev/min at 1000 samples per second is 0.36° per sample.
     let slow = Settings { rate_hz: 1_000.0, ..silence_duration() };
     let mut source = source(slow.clone());
@@ -94,7 +94,7 @@ fn settings_change_at_a_sample_and_the_angle_is_continuous() {
 }
 
 #[test]
-fn old_changes_are_discarded_and_not_invented() {
+fn discards_old_changes() {
     let mut source = source(silence_duration());
     for at in 1..=200 {
         source.change_settings(at * 10, silence_duration().validate().unwrap());
@@ -105,7 +105,7 @@ fn old_changes_are_discarded_and_not_invented() {
 }
 
 #[test]
-fn noise_has_its_deviation_and_is_uncorrelated_between_wires() {
+fn noise_is_uncorrelated_between_wires() {
     let settings = Settings { amplitude_v: 0.0, noise_v: 0.01, ..Settings::default() };
     let wires = source(settings.clone()).samples_from(0, 40_000).unwrap();
     let columns = [&wires.sin_v, &wires.refsin_v, &wires.cos_v, &wires.refcos_v];
@@ -128,7 +128,7 @@ fn noise_has_its_deviation_and_is_uncorrelated_between_wires() {
 }
 
 #[test]
-fn an_open_wire_reads_as_the_receiver_terminates_it() {
+fn open_wire_follows_termination() {
     // A quarter of a period later, the sine is 0.5 V and the cosine is 0.
     let at = |open: Wire, terminated, references| {
         let settings = Settings {
@@ -163,7 +163,7 @@ fn an_open_wire_reads_as_the_receiver_terminates_it() {
 /// Expected values from Python: 0.5·(cos θ − 0.04·cos 3θ) and so on, at θ = 2π·(16·0.3 + 16·100/1296000·sin(2π·0.3))
 /// and 0.3 turns, with the amplitude 1 + 0.1·cos(2π·0.3).
 #[test]
-fn harmonic_modulation_and_eccentricity_are_simulated() {
+fn simulates_harmonics_modulation_and_eccentricity() {
     let settings = Settings {
         periods: 16.0,
         speed_rpm: 60.0,
@@ -179,7 +179,7 @@ fn harmonic_modulation_and_eccentricity_are_simulated() {
 }
 
 #[test]
-fn hum_is_in_phase_in_both_channels_and_interference_is_not() {
+fn only_hum_is_in_phase() {
     let settings = Settings { speed_rpm: 0.0, amplitude_v: 0.0, ..silence_duration() };
     // A quarter of a period takes 5 ms at 50 Hz and 31.25 µs at 8 kHz. Three samples of 10 µs are 0.24 of a period at 8
     // kHz.
