@@ -19,9 +19,9 @@ pub struct Continuity {
     /// Missing samples, or `None` if the capture has no gap or no times.
     pub missing: Option<MissingSamples>,
     /// Index of the first sample that is earlier than its predecessor, counted from 0.
-    pub back: Option<usize>,
+    pub first_backward_sample: Option<usize>,
     /// Total duration of the continuous sections in seconds, or `None` without times.
-    pub stretches_s: Option<f64>,
+    pub continuous_s: Option<f64>,
     /// Index of the first sample of each continuous section, except the first section.
     pub(super) breaks: Vec<usize>,
 }
@@ -47,7 +47,7 @@ impl Continuity {
             lost_s += step;
             continuity.breaks.push(before + 1);
             if step < 0.0 {
-                continuity.back = continuity.back.or(Some(before + 1));
+                continuity.first_backward_sample = continuity.first_backward_sample.or(Some(before + 1));
             } else {
                 let missing = continuity.missing.get_or_insert(MissingSamples { gaps: 0, longest_s: 0.0 });
                 missing.gaps += 1;
@@ -55,7 +55,7 @@ impl Continuity {
             }
         }
         let whole_s = times_s.last().zip(times_s.first()).map(|(last, first)| last - first - lost_s);
-        continuity.stretches_s = whole_s.filter(|seconds| seconds.is_finite() && *seconds > 0.0);
+        continuity.continuous_s = whole_s.filter(|seconds| seconds.is_finite() && *seconds > 0.0);
         continuity
     }
 }
@@ -111,10 +111,10 @@ mod tests {
         capture.drain(1000..1799);
         let told = Continuity::from_times(&capture);
         let missing = told.missing.unwrap();
-        assert_eq!((missing.gaps, told.breaks.as_slice(), told.back), (1, [1000].as_slice(), None));
+        assert_eq!((missing.gaps, told.breaks.as_slice(), told.first_backward_sample), (1, [1000].as_slice(), None));
         near(Some(missing.longest_s), 2e-3);
         // 3201 rows have 3199 usual steps.
-        near(told.stretches_s, 3199.0 * 2.5e-6);
+        near(told.continuous_s, 3199.0 * 2.5e-6);
         let mut one = times(100, |at| at * 1e-3);
         one.remove(50);
         assert_eq!(Continuity::from_times(&one).breaks, [50], "a single sample");
@@ -125,8 +125,11 @@ mod tests {
         // Two recordings in one file.
         let capture = times(2000, |at| (at % 1000.0) * 1e-5);
         let told = Continuity::from_times(&capture);
-        assert_eq!((told.back, told.missing, told.breaks.as_slice()), (Some(1000), None, [1000].as_slice()));
-        near(told.stretches_s, 2.0 * 999e-5);
+        assert_eq!(
+            (told.first_backward_sample, told.missing, told.breaks.as_slice()),
+            (Some(1000), None, [1000].as_slice())
+        );
+        near(told.continuous_s, 2.0 * 999e-5);
     }
 
     #[test]
@@ -138,7 +141,7 @@ mod tests {
             ("exact", 1e-3, 1e-3),
         ] {
             let told = Continuity::from_times(&times(5000, |at| (at * step / digit + 1e-6).floor() * digit));
-            assert_eq!((told.missing, told.back, told.breaks.len()), (None, None, 0), "{label}");
+            assert_eq!((told.missing, told.first_backward_sample, told.breaks.len()), (None, None, 0), "{label}");
         }
         let mut gap = times(5000, |at| (at * 2.5).floor() * 1e-6);
         gap.drain(100..110);
@@ -150,6 +153,6 @@ mod tests {
         for nothing in [&[][..], &[1.0], &[1.0, 1.0, 1.0], &[f64::NAN, f64::NAN, f64::NAN]] {
             assert_eq!(Continuity::from_times(nothing), Continuity::default(), "{nothing:?}");
         }
-        assert_eq!(Continuity::from_times(&[3.0, 2.0, 1.0]).stretches_s, None, "backwards all along");
+        assert_eq!(Continuity::from_times(&[3.0, 2.0, 1.0]).continuous_s, None, "backwards all along");
     }
 }

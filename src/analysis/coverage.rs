@@ -70,7 +70,7 @@ struct AnglePath {
     high: UnwrappedAngle,
     low: UnwrappedAngle,
     /// Angle at the start of the section. `turned` is the angle at the last reversal, and `here` is the current angle.
-    begun: UnwrappedAngle,
+    section_start: UnwrappedAngle,
     turned: UnwrappedAngle,
     here: UnwrappedAngle,
     direction: Direction,
@@ -97,7 +97,7 @@ impl AnglePath {
             bottom: first,
             high: first,
             low: first,
-            begun: first,
+            section_start: first,
             turned: first,
             here: first,
             direction: Direction::Unknown,
@@ -134,7 +134,7 @@ impl AnglePath {
     /// Starts a new section at the given angle, which follows a gap.
     fn begin_at(&mut self, here: UnwrappedAngle) {
         self.end_section();
-        (self.high, self.low, self.begun, self.turned, self.here) = (here, here, here, here, here);
+        (self.high, self.low, self.section_start, self.turned, self.here) = (here, here, here, here, here);
         self.direction = Direction::Unknown;
     }
 
@@ -146,7 +146,7 @@ impl AnglePath {
     fn end_section(&mut self) {
         self.update_extremes();
         self.path += (self.here.periods() - self.turned.periods()).abs();
-        self.travel += self.here.periods() - self.begun.periods();
+        self.travel += self.here.periods() - self.section_start.periods();
     }
 
     fn update_extremes(&mut self) {

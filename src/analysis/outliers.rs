@@ -12,7 +12,7 @@ use super::moments::{Moments, Scale};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outliers {
     /// Ranges of outliers by sample index, counted from 0, in ascending order. The ranges do not touch each other.
-    pub stretches: Vec<Range<usize>>,
+    pub excluded_ranges: Vec<Range<usize>>,
     pub count: usize,
     pub longest: usize,
     /// Largest distance of an outlier from the ellipse, in volts.
@@ -74,7 +74,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
         (None, None) => return OutlierResult::Nothing,
     };
     let mut ellipse = start;
-    let mut stretches: Vec<Range<usize>> = Vec::new();
+    let mut excluded_ranges: Vec<Range<usize>> = Vec::new();
     for round in 0..MAX_FITS {
         let limit = (DEVIATIONS * NORMAL_DEVIATION_RATIO * median_deviation(&ys, &xs, &ellipse))
             .max(MIN_SHARE * ellipse.amplitude_v);
@@ -83,25 +83,25 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
         if left_out as f64 > MAX_OUTLIER_SHARE * count as f64 {
             return OutlierResult::Nothing;
         }
-        if (round > 0 || Some(&ellipse) == all) && found == stretches {
+        if (round > 0 || Some(&ellipse) == all) && found == excluded_ranges {
             break;
         }
-        stretches = found;
+        excluded_ranges = found;
         let scale = Scale::new(ellipse.offset_sine_v, ellipse.offset_cosine_v, ellipse.amplitude_v);
-        match fit_excluding(sine, cosine, &stretches, scale) {
+        match fit_excluding(sine, cosine, &excluded_ranges, scale) {
             Ok(better) => ellipse = better,
             Err(_) => return OutlierResult::Nothing,
         }
     }
-    if stretches.is_empty() {
+    if excluded_ranges.is_empty() {
         return OutlierResult::Nothing;
     }
     let outliers = Outliers {
-        count: stretches.iter().map(Range::len).sum(),
-        longest: stretches.iter().map(Range::len).max().unwrap_or(0),
-        farthest_v: max_distance(sine, cosine, &stretches, &ellipse),
+        count: excluded_ranges.iter().map(Range::len).sum(),
+        longest: excluded_ranges.iter().map(Range::len).max().unwrap_or(0),
+        farthest_v: max_distance(sine, cosine, &excluded_ranges, &ellipse),
         all: all.and_then(|all| Some((*all, Coverage::measure(sine, cosine, all)?))),
-        stretches,
+        excluded_ranges,
     };
     OutlierResult::Outliers(ellipse, outliers)
 }
@@ -187,25 +187,25 @@ fn find_outliers(sine: &[f64], cosine: &[f64], ellipse: &Ellipse, limit: f64) ->
         let square = y * y + x * x;
         (square > most) | (square < least)
     };
-    let mut stretches: Vec<Range<usize>> = Vec::new();
+    let mut excluded_ranges: Vec<Range<usize>> = Vec::new();
     for (block, (ys, xs)) in sine.chunks(BLOCK).zip(cosine.chunks(BLOCK)).enumerate() {
         if !ys.iter().zip(xs).fold(false, |any, (y, x)| any | is_beyond(y, x)) {
             continue;
         }
         for at in ys.iter().zip(xs).enumerate().filter(|(_, (y, x))| is_beyond(y, x)).map(|(at, _)| block * BLOCK + at)
         {
-            match stretches.last_mut() {
+            match excluded_ranges.last_mut() {
                 Some(last) if last.end == at => last.end = at + 1,
-                _ => stretches.push(at..at + 1),
+                _ => excluded_ranges.push(at..at + 1),
             }
         }
     }
-    stretches
+    excluded_ranges
 }
 
-fn max_distance(sine: &[f64], cosine: &[f64], stretches: &[Range<usize>], ellipse: &Ellipse) -> f64 {
+fn max_distance(sine: &[f64], cosine: &[f64], excluded_ranges: &[Range<usize>], ellipse: &Ellipse) -> f64 {
     let correction = ellipse.correction();
-    let samples = stretches.iter().flat_map(|part| {
+    let samples = excluded_ranges.iter().flat_map(|part| {
         sine.get(part.clone()).unwrap_or_default().iter().zip(cosine.get(part.clone()).unwrap_or_default())
     });
     samples.fold(0.0, |most: f64, (y, x)| {

@@ -83,7 +83,7 @@ impl Analysis {
             OutlierResult::Nothing => (all?, None),
             OutlierResult::Outliers(ellipse, outliers) => (ellipse, Some(outliers)),
         };
-        let left_out = outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
+        let left_out = outliers.as_ref().map_or(&[][..], |outliers| &outliers.excluded_ranges);
         let continuity = Continuity::from_times(time_s);
         let coverage = Coverage::measure_without(sine_v, cosine_v, left_out, &continuity.breaks, &ellipse);
         let coverage = coverage.ok_or(FitError::TooFew { points: 0 })?;
@@ -111,7 +111,7 @@ impl Analysis {
     /// without times.
     pub fn frequency_hz(&self) -> Option<f64> {
         let Coverage { path_periods, travel_periods, reversals, .. } = self.coverage;
-        self.continuity.stretches_s.map(|seconds| if reversals > 0 { path_periods } else { travel_periods } / seconds)
+        self.continuity.continuous_s.map(|seconds| if reversals > 0 { path_periods } else { travel_periods } / seconds)
     }
 
     /// Returns whether there are enough samples per period to track the angle. Otherwise, the frequency is unknown.

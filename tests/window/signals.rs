@@ -441,7 +441,7 @@ fn findings_worse_than_the_kept_capture_are_reported() {
     desk.source(SourceAction::Set(Quantity::Interference, 0.02));
     desk.until("the drive is seen", |studio| {
         let rose = |own: &DiagnosisFinding| match own.kind {
-            FindingKind::InterferenceRose { frequency_hz, .. } => (frequency_hz - 8_000.0).abs() < 5.0,
+            FindingKind::InterferenceIncreased { frequency_hz, .. } => (frequency_hz - 8_000.0).abs() < 5.0,
             _ => false,
         };
         studio.signals().changes().is_some_and(|own| own.worse.iter().any(rose))

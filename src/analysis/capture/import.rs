@@ -128,10 +128,12 @@ impl TableImport {
         if let Err(error) = self.split_next_row(&[]) {
             self.skip_row(self.reader.line(), error);
         }
-        let (taken, left_out) = (self.capture.sine_v.len() as u64, self.capture.left_out);
+        let (taken, skipped_rows) = (self.capture.sine_v.len() as u64, self.capture.skipped_rows);
         match self.first_left_out {
             Some((_, error)) if taken < MIN_ROWS => Err(error),
-            Some((row, _)) if left_out > taken => Err(CaptureError::NoValues { left_out, rows: taken + left_out, row }),
+            Some((row, _)) if skipped_rows > taken => {
+                Err(CaptureError::NoValues { skipped_rows, rows: taken + skipped_rows, row })
+            }
             _ if taken == 0 => Err(CaptureError::NoNumbers),
             _ => Ok((self.layout, self.capture)),
         }
@@ -148,7 +150,7 @@ impl TableImport {
     }
 
     fn skip_row(&mut self, row: u64, why: CaptureError) {
-        self.capture.left_out += 1;
+        self.capture.skipped_rows += 1;
         self.first_left_out.get_or_insert((row, why));
     }
 

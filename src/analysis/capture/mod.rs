@@ -32,7 +32,7 @@ pub struct Capture {
     /// Absolute positions in steps of 1/32 period, if the table contains them.
     pub absolute: Option<Vec<i64>>,
     /// Number of skipped rows: those without a measured value (empty, NaN or overload), and a truncated last line.
-    pub left_out: u64,
+    pub skipped_rows: u64,
 }
 
 impl Capture {
@@ -89,10 +89,10 @@ pub enum CaptureError {
         text: String,
     },
     /// More than half of the rows have no measured value.
-    #[error("{left_out} of {rows} rows have no value (the first one is row {row})")]
+    #[error("{skipped_rows} of {rows} rows have no value (the first one is row {row})")]
     NoValues {
         /// Number of rows without a measured value.
-        left_out: u64,
+        skipped_rows: u64,
         rows: u64,
         /// Line number in the file of the first row without a measured value, counted from 1.
         row: u64,

@@ -189,7 +189,7 @@ fn skips_rows_without_value() {
     for gap in ["6,,3", "6,NaN,3", "6,2,-inf", "6,OVERLOAD,3", "6,2,---", "6,2,\u{221e}", "6, ,3"] {
         let (_, capture) =
             read(format!("t,sin,cos\n{six}{gap}\n7,8,9\n")).unwrap_or_else(|error| panic!("{gap}: {error}"));
-        assert_eq!((capture.left_out, capture.time_s), (1, vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 7.0]), "{gap}");
+        assert_eq!((capture.skipped_rows, capture.time_s), (1, vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 7.0]), "{gap}");
         assert_eq!((capture.sine_v[6], capture.cosine_v[6], capture.sine_v.len()), (8.0, 9.0, 7), "{gap}");
     }
     for (broken, column) in [("6,#,3", 2), ("nan,2,3", 1), (",2,3", 1)] {
@@ -202,7 +202,7 @@ fn skips_rows_without_value() {
     }
     for cut in ["6,3", "6,3,-", "6,", "6,3,4e", "6"] {
         let (_, capture) = read(format!("t,sin,cos\n{six}{cut}")).unwrap();
-        assert_eq!((capture.sine_v.len(), capture.left_out), (6, 1), "{cut}");
+        assert_eq!((capture.sine_v.len(), capture.skipped_rows), (6, 1), "{cut}");
     }
     let wires = "0,3,2.5,2,2.5,7\n".repeat(6);
     let (_, capture) = read(format!("t,SIN,REFSIN,COS,REFCOS,abs\n{wires}1,3,OL,2,2.5,8\n2,3,2.5,2,2.5,9\n")).unwrap();
@@ -213,7 +213,7 @@ fn skips_rows_without_value() {
         "all columns stay in step"
     );
     let most = format!("t,sin,cos\n{six}{}", "6,NaN,2\n".repeat(7));
-    assert_eq!(read(most).unwrap_err(), CaptureError::NoValues { left_out: 7, rows: 13, row: 8 });
+    assert_eq!(read(most).unwrap_err(), CaptureError::NoValues { skipped_rows: 7, rows: 13, row: 8 });
 }
 
 /// A table in UTF-16 and a second header row with units are accepted (issue 22.13).
@@ -249,10 +249,10 @@ fn finds_header_before_incomplete_rows() {
     for gap in ["1,,", "1,OVERLOAD,OVERLOAD", "1,---,---", "1, , "] {
         let (layout, capture) = read(format!("t [ms],cos,sin [mV]\n0,,\n{gap}\n{rows}")).unwrap();
         assert_eq!((layout.columns.sine, layout.columns.cosine, layout.first_row), (3, 2, 2), "{gap}");
-        assert_eq!((capture.time_s[0], capture.sine_v[0], capture.left_out), (0.002, 0.004, 2), "{gap}");
+        assert_eq!((capture.time_s[0], capture.sine_v[0], capture.skipped_rows), (0.002, 0.004, 2), "{gap}");
     }
     let (layout, capture) = read(format!("0,,\n1,OL,OL\n{rows}")).unwrap();
-    assert_eq!((layout.names, capture.left_out, capture.sine_v.len()), (Vec::new(), 2, 6), "without names");
+    assert_eq!((layout.names, capture.skipped_rows, capture.sine_v.len()), (Vec::new(), 2, 6), "without names");
 }
 
 /// A truncated last line is skipped. After an open quotation mark, however, several lines would be lost, which is an
@@ -271,7 +271,7 @@ fn rejects_unclosed_quote() {
     );
     // A quotation that spans two lines and is closed at the end of the file.
     let (_, capture) = read(format!("t,sin,cos,note\n{six}6,7,8,\"two\nlines\"")).unwrap();
-    assert_eq!((capture.sine_v.len(), capture.left_out), (7, 0));
+    assert_eq!((capture.sine_v.len(), capture.skipped_rows), (7, 0));
 }
 
 /// An oscilloscope's sample numbers are converted to times regardless of the channel names, and must be whole numbers
@@ -293,6 +293,6 @@ fn scpi_overload_values_count_as_missing() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
     for gap in ["6,9.9E+37,3", "6,2,-9.9E37", "6,9.91E+37,3"] {
         let (_, capture) = read(format!("t,sin,cos\n{six}{gap}\n7,8,9\n")).unwrap();
-        assert_eq!((capture.left_out, capture.sine_v.len(), capture.sine_v[6]), (1, 7, 8.0), "{gap}");
+        assert_eq!((capture.skipped_rows, capture.sine_v.len(), capture.sine_v[6]), (1, 7, 8.0), "{gap}");
     }
 }

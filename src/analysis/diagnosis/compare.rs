@@ -14,7 +14,7 @@ pub struct DiagnosisChanges {
     /// Findings that changed without becoming worse.
     pub changed: Vec<DiagnosisFinding>,
     /// Properties that cannot be compared.
-    pub untold: Vec<ComparisonObstacle>,
+    pub obstacles: Vec<ComparisonObstacle>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,8 +47,8 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> DiagnosisChanges {
             }
             compare_disturbances(before, after, to_v, &mut changes);
         }
-        (None, _) => changes.untold.push(ComparisonObstacle::NoEllipseBefore),
-        (Some(_), None) => changes.untold.push(ComparisonObstacle::NoEllipseAfter),
+        (None, _) => changes.obstacles.push(ComparisonObstacle::NoEllipseBefore),
+        (Some(_), None) => changes.obstacles.push(ComparisonObstacle::NoEllipseAfter),
     }
     changes.worse.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     changes
@@ -57,14 +57,14 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> DiagnosisChanges {
 /// Compares noise and spectral lines by magnitude.
 fn compare_disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: &mut DiagnosisChanges) {
     let (Some(earlier), Some(later)) = (&before.interference, &after.interference) else {
-        changes.untold.push(ComparisonObstacle::NoSpectrum);
+        changes.obstacles.push(ComparisonObstacle::NoSpectrum);
         return;
     };
     if let (Some(from_v), Some(to_v)) = (before.noise_v, after.noise_v)
         && to_v >= DISTURBANCE_INCREASE * from_v
         && to_v - from_v >= MIN_NOISE * amplitude
     {
-        let what = FindingKind::NoiseRose { from_v, to_v };
+        let what = FindingKind::NoiseIncreased { from_v, to_v };
         changes.worse.push(DiagnosisFinding { severity: severity(to_v / amplitude), kind: what });
     }
     let spacing = before.spacing_hz.unwrap_or(0.0).max(after.spacing_hz.unwrap_or(0.0));
@@ -111,7 +111,7 @@ fn is_same_or_worse(earlier: &FindingKind, later: &FindingKind) -> bool {
     match (earlier, later) {
         (FindingKind::Limit(earlier), FindingKind::Limit(later)) => discriminant(earlier) == discriminant(later),
         (FindingKind::Half { .. }, FindingKind::Limit(OutOfLimits::Amplitude { .. } | OutOfLimits::GainRatio(_)))
-        | (FindingKind::LetsGo { .. }, FindingKind::Spikes { .. }) => true,
+        | (FindingKind::IntermittentContact { .. }, FindingKind::Spikes { .. }) => true,
         (
             FindingKind::Dead { channel: earlier, .. } | FindingKind::Half { channel: earlier, .. },
             FindingKind::Half { channel: later, .. },
@@ -139,7 +139,7 @@ fn finding_magnitude(what: &FindingKind) -> f64 {
         FindingKind::Level { volts, ok_v, .. } => beyond(volts, ok_v),
         FindingKind::Harmonics { share, .. } | FindingKind::Modulation { share } => share,
         FindingKind::Clipping { samples, .. } => samples,
-        FindingKind::Spikes { count, .. } | FindingKind::LetsGo { count, .. } => count as f64,
+        FindingKind::Spikes { count, .. } | FindingKind::IntermittentContact { count, .. } => count as f64,
         FindingKind::Missing { gaps, .. } => gaps as f64,
         FindingKind::Half { share, .. } => 1.0 / share,
         // Such a finding has no magnitude: only its presence counts.
@@ -160,6 +160,6 @@ fn increase_finding(
         return None;
     }
     let (frequency_hz, common) = (line.frequency_hz, line.common);
-    let what = FindingKind::InterferenceRose { frequency_hz, from_v, to_v, common };
+    let what = FindingKind::InterferenceIncreased { frequency_hz, from_v, to_v, common };
     Some(DiagnosisFinding { severity: severity(to_v / amplitude), kind: what })
 }

@@ -94,7 +94,7 @@ pub enum FindingKind {
         /// Greatest distance of an outlier from the ellipse, in volts.
         volts: f64,
     },
-    LetsGo {
+    IntermittentContact {
         count: usize,
         /// Length of the longest interruption in samples.
         longest: usize,
@@ -104,7 +104,7 @@ pub enum FindingKind {
         /// Longest time between consecutive samples, in seconds.
         longest_s: f64,
     },
-    TimeBack {
+    TimeGoesBack {
         /// Index of the first sample that is earlier than its predecessor, counted from 0.
         sample: usize,
     },
@@ -121,7 +121,7 @@ pub enum FindingKind {
         /// Combined magnitude of the disturbances, as a fraction of the amplitude.
         share: f64,
     },
-    CorrectionHarms {
+    HarmfulCorrection {
         /// Peak-to-peak position error before the correction, in electrical degrees.
         raw_deg: f64,
         /// Peak-to-peak position error after the correction, in electrical degrees.
@@ -133,14 +133,14 @@ pub enum FindingKind {
         sine_v: f64,
         cosine_v: f64,
     },
-    NoiseRose {
+    NoiseIncreased {
         /// RMS noise of the first capture in volts.
         from_v: f64,
         /// RMS noise of the second capture in volts.
         to_v: f64,
     },
     /// The interference at this frequency is stronger in the second capture, or is new.
-    InterferenceRose {
+    InterferenceIncreased {
         frequency_hz: f64,
         /// Peak in the first capture, in volts, or 0 if no interference was visible.
         from_v: f64,

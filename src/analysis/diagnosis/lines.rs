@@ -33,7 +33,7 @@ const HARMONICS: (usize, usize) = (25, 5);
 /// Number of lines on each side of a harmonic that belong to it in a Hann window.
 const HARMONIC_HALF_WIDTH: usize = 3;
 /// Fraction of the signal's peak above which neighbouring lines belong to the signal.
-const WIDTH: f64 = 0.01;
+const SIGNAL_PEAK_FRACTION: f64 = 0.01;
 /// Number of neighbouring lines on each side from which the noise is determined.
 const NEIGHBOURS: usize = 50;
 /// Minimum ratio of a line to the median of its neighbours. Below it, the line is noise.
@@ -101,7 +101,7 @@ pub(super) fn find_interference(samples: &Samples<'_>, analysis: &Analysis) -> O
         .zip(spectra.1.amplitudes_v())
         .map(|(sine, cosine)| sine.hypot(*cosine))
         .collect();
-    let is_signal = signal(&both);
+    let is_signal = signal_line_mask(&both);
     let rest: Vec<f64> =
         both.iter().zip(&is_signal).filter(|(_, signal)| !**signal).map(|(height, _)| *height).collect();
     let noise_v = noise_from_median(median(rest)?, length);
@@ -129,7 +129,7 @@ pub(super) fn find_interference(samples: &Samples<'_>, analysis: &Analysis) -> O
 /// Replaces each outlier with the preceding value, because a spike would raise all spectral lines.
 fn replace_outliers(values: &mut [f64], start: usize, analysis: &Analysis) {
     let end = start + values.len();
-    let stretches = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
+    let stretches = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.excluded_ranges);
     for stretch in stretches.iter().filter(|stretch| stretch.start < end && stretch.end > start) {
         let (from, to) = (stretch.start.max(start) - start, stretch.end.min(end) - start);
         let before = from.checked_sub(1).or(Some(to)).and_then(|at| values.get(at)).copied();
@@ -145,13 +145,13 @@ fn magnitude_at(lines: &[f64], at: usize) -> f64 {
 
 /// Returns a mask of the lines that belong to the signal: the fundamental and its harmonics, including those aliased at
 /// half the sample rate.
-fn signal(both: &[f64]) -> Vec<bool> {
+fn signal_line_mask(both: &[f64]) -> Vec<bool> {
     let mut belongs = vec![false; both.len()];
     let first = HARMONIC_HALF_WIDTH.min(both.len());
     let peak =
         (first..both.len()).max_by(|a, b| magnitude_at(both, *a).total_cmp(&magnitude_at(both, *b))).unwrap_or(0);
     // An uneven motion widens each harmonic in proportion to its order.
-    let above = |at: usize| magnitude_at(both, at) > WIDTH * magnitude_at(both, peak);
+    let above = |at: usize| magnitude_at(both, at) > SIGNAL_PEAK_FRACTION * magnitude_at(both, peak);
     let up = (peak..both.len()).take_while(|at| above(*at)).count();
     let down = (0..=peak).rev().take_while(|at| above(*at)).count();
     let width = up.max(down).saturating_sub(1);

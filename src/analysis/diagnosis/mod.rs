@@ -78,7 +78,7 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
         Err(error) => diagnose_without_ellipse(record, error, &mut say),
         Ok(analysis) => {
             let amplitude = analysis.ellipse.amplitude_v;
-            parameters(analysis, limits, &mut say);
+            check_ellipse_limits(analysis, limits, &mut say);
             let seen = lines::find_interference(&record.samples, analysis);
             let noise_v = seen.as_ref().map_or(analysis.coverage.residual_rms * amplitude, |seen| seen.noise_v);
             report_disturbances(amplitude, noise_v, seen.as_ref(), &mut say);
@@ -133,7 +133,7 @@ impl Diagnosis {
         let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, kind: what });
         check_mean_levels(levels_v.map(|(sine, cosine)| (Some(sine), Some(cosine))), limits, &mut say);
         if let Ok(analysis) = analysis {
-            parameters(analysis, limits, &mut say);
+            check_ellipse_limits(analysis, limits, &mut say);
         }
         diagnosis.remove_explained_findings();
         diagnosis.findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
@@ -202,7 +202,7 @@ fn stuck_level(record: &Record<'_>, channel: SignalChannel) -> StuckLevel {
 
 /// Checks the ellipse against its limits. If a channel has lost a wire, deviations in amplitude and gain are attributed
 /// to that.
-fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
+fn check_ellipse_limits(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ratio = analysis.ellipse.gain_ratio;
     let half = if is_within(1.0 / ratio, HALF_AMPLITUDE_RATIO) {
         Some((SignalChannel::Sine, 1.0 / ratio))
@@ -285,7 +285,7 @@ fn report_shape(
         let severity = if many { Severity::Warning } else { Severity::Notice };
         if outliers.longest >= INTERMITTENT_SAMPLES {
             let (count, longest) = (outliers.count, outliers.longest);
-            say(Severity::Fault, FindingKind::LetsGo { count, longest });
+            say(Severity::Fault, FindingKind::IntermittentContact { count, longest });
         } else {
             say(severity, FindingKind::Spikes { count: outliers.count, volts: outliers.farthest_v });
         }

@@ -126,7 +126,7 @@ pub(super) fn amplitude_modulation(samples: &Samples<'_>, analysis: &Analysis, p
 /// Returns the sine and cosine of the samples that were not excluded.
 fn included_samples<'a>(samples: &Samples<'a>, analysis: &'a Analysis) -> impl Iterator<Item = (f64, f64)> {
     let (sine, cosine) = (samples.sine_v, samples.cosine_v);
-    let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
+    let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.excluded_ranges);
     remaining_ranges(sine.len().min(cosine.len()), left_out).flat_map(move |part| {
         let values = |values: &'a [f64]| values.get(part.clone()).unwrap_or_default().iter().copied();
         values(sine).zip(values(cosine))

@@ -16,8 +16,8 @@ const HARMFUL_FACTOR: f64 = 1.1;
 const HARMFUL_EXCESS_DEG: f64 = 0.2;
 
 pub(super) fn check_times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
-    if let Some(sample) = analysis.continuity.back {
-        say(Severity::Warning, FindingKind::TimeBack { sample });
+    if let Some(sample) = analysis.continuity.first_backward_sample {
+        say(Severity::Warning, FindingKind::TimeGoesBack { sample });
     }
     if let Some(missing) = analysis.continuity.missing {
         say(Severity::Warning, FindingKind::Missing { gaps: missing.gaps, longest_s: missing.longest_s });
@@ -37,7 +37,7 @@ pub(super) fn check_correction(analysis: &Analysis, say: &mut dyn FnMut(Severity
     let ErrorBasis::Motion { noise_deg } = analysis.error.basis else { return };
     let (raw_deg, corrected_deg) = (analysis.error.raw_peak_to_peak_deg(), analysis.error.corrected_pp_deg);
     if corrected_deg > HARMFUL_FACTOR * raw_deg && corrected_deg - raw_deg > HARMFUL_EXCESS_DEG.max(noise_deg) {
-        say(Severity::Warning, FindingKind::CorrectionHarms { raw_deg, corrected_deg });
+        say(Severity::Warning, FindingKind::HarmfulCorrection { raw_deg, corrected_deg });
     }
 }
 

@@ -52,7 +52,7 @@ fn excludes_single_spike() {
     let mut capture = made(360, 1.0, 0.0);
     capture.sine[100] = 5.0;
     let told = capture.assert_ellipse_fits(1e-9);
-    assert_eq!((told.stretches.first(), told.count, told.longest), (Some(&(100..101)), 1, 1));
+    assert_eq!((told.excluded_ranges.first(), told.count, told.longest), (Some(&(100..101)), 1, 1));
     // The sine changes from 0.45 V to 5 V. On the corrected circle, the change is multiplied by r/cos α and points
     // mostly outward.
     assert!(told.farthest_v > 4.0 && told.farthest_v < 5.2, "{told:?}");
@@ -76,7 +76,7 @@ fn spikes_do_not_change_long_fit() {
     // Some sparks move the sample along the ellipse instead of away from it.
     assert!(told.count <= 72 && told.count >= 66, "{}", told.count);
     assert_eq!(told.longest, 30);
-    assert_eq!((told.stretches.first(), told.stretches.last()), (Some(&(0..1)), Some(&(99_999..100_000))));
+    assert_eq!((told.excluded_ranges.first(), told.excluded_ranges.last()), (Some(&(0..1)), Some(&(99_999..100_000))));
     let analysis = capture.analysed().unwrap();
     assert!((analysis.coverage.periods - 100.0).abs() < 0.01, "{:?}", analysis.coverage);
     assert!((analysis.coverage.residual_rms - 0.002).abs() < 0.0002, "{:?}", analysis.coverage);
@@ -93,7 +93,7 @@ fn finds_spike_despite_ruined_fit() {
         (capture.sine[at], capture.cosine[at]) = (-80.0, 120.0);
     }
     let told = capture.assert_ellipse_fits(5e-4);
-    assert_eq!(told.stretches, [3..4, 200..202, 399..400]);
+    assert_eq!(told.excluded_ranges, [3..4, 200..202, 399..400]);
 }
 
 #[test]

@@ -43,8 +43,8 @@ fn capture_error_text(path: &Path, error: &CaptureError) -> Text {
         CaptureError::NotFinite { row, column, text: found } => {
             text("signal.not_finite").with("row", row).with("column", column).with("text", found)
         }
-        CaptureError::NoValues { left_out, rows, row } => {
-            text("signal.no_values").with("left_out", left_out).with("rows", rows).with("row", row)
+        CaptureError::NoValues { skipped_rows, rows, row } => {
+            text("signal.no_values").with("left_out", skipped_rows).with("rows", rows).with("row", row)
         }
         CaptureError::NoSampleClock { row } => text("signal.no_sample_clock").with("row", row),
         CaptureError::NotASampleNumber { row, column, text: found } => {
@@ -159,13 +159,13 @@ pub fn diagnosis_text(finding: &DiagnosisFinding) -> Text {
         FindingKind::Spikes { count, volts } => {
             Text::new("diagnosis.spikes").with("count", count).with_number("volts", volts, 2)
         }
-        FindingKind::LetsGo { count, longest } => {
+        FindingKind::IntermittentContact { count, longest } => {
             Text::new("diagnosis.lets_go").with("count", count).with("longest", longest)
         }
         FindingKind::Missing { gaps, longest_s } => {
             Text::new("diagnosis.missing").with("count", gaps).with_number("longest", longest_s * 1e3, 3)
         }
-        FindingKind::TimeBack { sample } => Text::new("diagnosis.time_back").with("sample", sample + 1),
+        FindingKind::TimeGoesBack { sample } => Text::new("diagnosis.time_back").with("sample", sample + 1),
         FindingKind::Reversed { times } => Text::new("diagnosis.reversed").with("count", times),
         FindingKind::Coarse { step_deg } => Text::new("diagnosis.coarse")
             .with_number("degrees", step_deg, 0)
@@ -173,17 +173,19 @@ pub fn diagnosis_text(finding: &DiagnosisFinding) -> Text {
         FindingKind::Uncertain { share } => Text::new("diagnosis.uncertain")
             .with_number("percent", share * 100.0, 1)
             .with_number("degrees", share.to_degrees(), 1),
-        FindingKind::CorrectionHarms { raw_deg, corrected_deg } => Text::new("diagnosis.correction_harms")
+        FindingKind::HarmfulCorrection { raw_deg, corrected_deg } => Text::new("diagnosis.correction_harms")
             .with_number("raw", raw_deg, 2)
             .with_number("corrected", corrected_deg, 2),
         FindingKind::SingleEnded { sine_v, cosine_v } => {
             Text::new("diagnosis.single_ended").with_number("sine", sine_v, 2).with_number("cosine", cosine_v, 2)
         }
-        FindingKind::NoiseRose { from_v, to_v } => change_text("diagnosis.noise_rose", from_v * 1e3, to_v * 1e3, 1),
-        FindingKind::InterferenceRose { frequency_hz, from_v: 0.0, to_v, .. } => {
+        FindingKind::NoiseIncreased { from_v, to_v } => {
+            change_text("diagnosis.noise_rose", from_v * 1e3, to_v * 1e3, 1)
+        }
+        FindingKind::InterferenceIncreased { frequency_hz, from_v: 0.0, to_v, .. } => {
             with_frequency(Text::new("diagnosis.interference_new").with_number("to", to_v * 1e3, 1), frequency_hz)
         }
-        FindingKind::InterferenceRose { frequency_hz, from_v, to_v, .. } => {
+        FindingKind::InterferenceIncreased { frequency_hz, from_v, to_v, .. } => {
             with_frequency(change_text("diagnosis.interference_rose", from_v * 1e3, to_v * 1e3, 1), frequency_hz)
         }
         FindingKind::AmplitudeChanged { from_v, to_v } => {
@@ -192,8 +194,8 @@ pub fn diagnosis_text(finding: &DiagnosisFinding) -> Text {
     }
 }
 
-pub fn comparison_obstacle(untold: ComparisonObstacle) -> Text {
-    Text::new(match untold {
+pub fn comparison_obstacle(obstacle: ComparisonObstacle) -> Text {
+    Text::new(match obstacle {
         ComparisonObstacle::NoEllipseBefore => "compare.no_ellipse_before",
         ComparisonObstacle::NoEllipseAfter => "compare.no_ellipse_after",
         ComparisonObstacle::NoSpectrum => "compare.no_spectrum",

@@ -117,7 +117,7 @@ fn analyse_capture(output: &Output, path: &Path, capture: &Capture, arguments: &
         findings: &findings,
         revolution,
         periods: arguments.periods,
-        rows_left_out: capture.left_out,
+        rows_left_out: capture.skipped_rows,
     };
     output.show(&report.json(), &report.text())?;
     Ok(Success::Well)
@@ -128,10 +128,10 @@ fn print_remarks(output: &Output, layout: &Layout, capture: &Capture) {
         let text = TEXTS.text("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
         output.print_message(&text.terminal_text());
     }
-    if capture.left_out > 0 {
+    if capture.skipped_rows > 0 {
         output.print_message(&format!(
             "{} rows without a value (empty, NaN or overload) were left out.",
-            capture.left_out
+            capture.skipped_rows
         ));
     }
 }
@@ -150,7 +150,7 @@ fn analyse_revolution(
             .print_message("The table contains the angle of a reference encoder. Add --periods N to get DNL and INL.");
         return None;
     };
-    let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
+    let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.excluded_ranges);
     let revolution =
         Revolution::from_samples(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
     revolution

@@ -113,7 +113,7 @@ impl Measurement {
         let results = MeasurementResult {
             diagnosis: diagnose_capture(&capture, &analysis, judge),
             judge,
-            rows_left_out: capture.left_out,
+            rows_left_out: capture.skipped_rows,
             levels_v: capture.references_v().map(|(sine, cosine)| (mean(sine), mean(cosine))),
             spectra: Spectra::from_samples(samples),
             nonlinearities: compare_with_reference(&capture, &analysis, judge),

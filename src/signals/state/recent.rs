@@ -94,7 +94,7 @@ impl Window {
         let reference_deg = column(|own| own.wire_samples(|wires| &wires.reference_deg));
         let period_s = self.period_ns as f64 * 1e-9;
         Capture {
-            left_out: 0,
+            skipped_rows: 0,
             time_s: (0..sine_v.len()).map(|at| at as f64 * period_s).collect(),
             sine_v,
             cosine_v,

@@ -71,7 +71,7 @@ pub(super) fn compute_nonlinearities(
     periods: u32,
 ) -> Option<Result<Nonlinearities, RevolutionError>> {
     let reference = capture.reference_deg.as_ref()?;
-    let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
+    let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.excluded_ranges);
     let revolution =
         Revolution::from_samples(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
     Some(revolution.map(|revolution| Nonlinearities {
@@ -118,7 +118,7 @@ pub(super) fn absolute_offset(
     analysis: Option<&Analysis>,
 ) -> Option<Result<AbsoluteOffset, OffsetError>> {
     let absolute = capture.absolute.as_ref()?;
-    let left_out = analysis.and_then(|own| own.outliers.as_ref()).map_or(&[][..], |outliers| &outliers.stretches);
+    let left_out = analysis.and_then(|own| own.outliers.as_ref()).map_or(&[][..], |outliers| &outliers.excluded_ranges);
     let count = absolute.len().min(capture.sine_v.len()).min(capture.cosine_v.len());
     let sample = |at: usize| -> Option<(u64, Phase)> {
         let steps = absolute.get(at)?.rem_euclid(STEPS as i64).unsigned_abs();

@@ -196,18 +196,18 @@ fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &DiagnosisChange
         ui.label(theme.caption(theme.format_text(&TEXTS.text(id).with_text("name", name.clone()))));
     };
     under(ui, "compare.worse");
-    if changes.worse.is_empty() && changes.untold.is_empty() {
+    if changes.worse.is_empty() && changes.obstacles.is_empty() {
         line_ui(ui, icons::CHECK_CIRCLE, theme.palette.good, translate(theme, "compare.nothing"));
     }
     for finding in &changes.worse {
         finding_ui(ui, theme, finding);
     }
-    for untold in &changes.untold {
+    for obstacle in &changes.obstacles {
         line_ui(
             ui,
             icons::QUESTION,
             theme.palette.muted,
-            theme.format_text(&explain::signal::comparison_obstacle(*untold)),
+            theme.format_text(&explain::signal::comparison_obstacle(*obstacle)),
         );
     }
     if !changes.changed.is_empty() {

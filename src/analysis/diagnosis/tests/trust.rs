@@ -33,7 +33,7 @@ fn reports_backward_time_step() {
     let mut capture = made(|time| 2_000.0 * time, plain);
     let shift = capture.time[20_000];
     capture.time.iter_mut().skip(20_000).for_each(|time| *time -= shift);
-    assert_eq!(found(&capture), [FindingKind::TimeBack { sample: 20_000 }]);
+    assert_eq!(found(&capture), [FindingKind::TimeGoesBack { sample: 20_000 }]);
     near(analysed(&capture).frequency_hz().unwrap(), 2_000.0, 0.01);
 }
 
@@ -85,13 +85,13 @@ fn reports_harmful_correction() {
         |_, angle: f64, (sine, cosine)| (sine + 0.01 * (3.0 * angle).sin(), cosine + 0.01 * (3.0 * angle).cos());
     for capture in [made(steady, third), made(steady, other)] {
         let found = found(&capture);
-        let [FindingKind::CorrectionHarms { raw_deg, corrected_deg }] = found.as_slice() else { panic!("{found:?}") };
+        let [FindingKind::HarmfulCorrection { raw_deg, corrected_deg }] = found.as_slice() else { panic!("{found:?}") };
         // The error is 0.02·sin 2θ, and the correction of the gain adds the same amount. Python yields 2.29° and 4.59°.
         near(*raw_deg, 2.29, 0.02);
         near(*corrected_deg, 4.59, 0.1);
     }
     let helps = made(steady, |_, _, (sine, cosine)| (sine + 0.02, cosine));
-    assert!(!found(&helps).iter().any(|what| matches!(what, FindingKind::CorrectionHarms { .. })));
+    assert!(!found(&helps).iter().any(|what| matches!(what, FindingKind::HarmfulCorrection { .. })));
 }
 
 #[test]
