@@ -171,7 +171,7 @@ fn restored_wire_starts_new_stream() {
     let sent = stand.tap.lock().unwrap().sent.len();
     stand.tap.lock().unwrap().mute_from = Some(0);
     let error = stand.session.take_sample().unwrap_err();
-    assert!(matches!(error, JobError::Device(Error::Adapter(AdapterError::Mute))), "{error}");
+    assert!(matches!(error, JobError::Device(Error::Adapter(AdapterError::StreamSilent))), "{error}");
     assert!(stand.tap.lock().unwrap().sent.len() > sent, "it was told to stop");
     stand.tap.lock().unwrap().mute_from = None;
     // HELLO ends the stream.
@@ -207,7 +207,7 @@ fn reconfigures_adapter_after_reset() {
         } else {
             // Data that were sent before still arrive.
             let error = (0..100).find_map(|_| stand.session.take_sample().err()).unwrap();
-            assert!(matches!(error, JobError::Device(Error::Adapter(AdapterError::Mute))), "{error}");
+            assert!(matches!(error, JobError::Device(Error::Adapter(AdapterError::StreamSilent))), "{error}");
         }
         assert!(stand.run().is_stream_start());
         let counts = [Operation::Hello, Operation::Supply, Operation::BissConfig].map(|own| stand.count(own));
@@ -225,7 +225,7 @@ fn repowers_encoder_after_reset() {
     stand.session.set_sample_interval(Some(FAST));
     stand.run();
     stand.tap.lock().unwrap().mute_from = Some(0);
-    assert!(matches!(stand.session.take_sample(), Err(JobError::Device(Error::Adapter(AdapterError::Mute)))));
+    assert!(matches!(stand.session.take_sample(), Err(JobError::Device(Error::Adapter(AdapterError::StreamSilent)))));
     stand.tap.lock().unwrap().mute_from = None;
     assert!(stand.run().is_stream_start());
     assert_eq!((stand.count(Operation::Hello), stand.count(Operation::Supply)), (2, 2));

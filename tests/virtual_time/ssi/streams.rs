@@ -127,7 +127,7 @@ fn restored_wire_starts_new_stream() {
     stand.sample();
     stand.tap.lock().unwrap().mute_from = Some(0);
     let error = stand.session.take_sample().unwrap_err();
-    assert_eq!(error, Error::Adapter(AdapterError::Mute));
+    assert_eq!(error, Error::Adapter(AdapterError::StreamSilent));
     stand.tap.lock().unwrap().mute_from = None;
     // HELLO ends the stream.
     assert!(stand.sample().is_stream_start());
@@ -150,7 +150,7 @@ fn reconfigures_adapter_reset_while_streaming() {
         } else {
             // Data that were sent before still arrive.
             let error = (0..100).find_map(|_| stand.session.take_sample().err()).unwrap();
-            assert_eq!(error, Error::Adapter(AdapterError::Mute));
+            assert_eq!(error, Error::Adapter(AdapterError::StreamSilent));
         }
         assert!(stand.sample().is_stream_start());
         assert_eq!((stand.count(Operation::Supply), stand.count(Operation::SsiConfig)), (2, 2), "{by_job}");

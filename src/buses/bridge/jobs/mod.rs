@@ -52,7 +52,7 @@ pub enum BridgeError {
 pub type OpenAdapterFn = Box<dyn FnOnce() -> Result<Box<dyn ByteLink>, OpenError> + Send>;
 
 pub struct Bridge<S> {
-    stretch: S,
+    format: S,
     supply: Option<SupplyVoltage>,
     open: Option<OpenAdapterFn>,
     wire: Option<Box<dyn ByteLink>>,
@@ -63,8 +63,8 @@ pub struct Bridge<S> {
 impl<S: StreamFormat> Bridge<S> {
     /// Creates a producer for an adapter. `open` opens its connection. `margin` extends the time limit for replies. The
     /// encoder supply is switched on only if `supply` is `Some`.
-    pub fn new(stretch: S, supply: Option<SupplyVoltage>, margin: Duration, open: OpenAdapterFn) -> Self {
-        Bridge { stretch, supply, open: Some(open), wire: None, tap: StreamTap::new(margin), streaming: Arc::default() }
+    pub fn new(format: S, supply: Option<SupplyVoltage>, margin: Duration, open: OpenAdapterFn) -> Self {
+        Bridge { format, supply, open: Some(open), wire: None, tap: StreamTap::new(margin), streaming: Arc::default() }
     }
 
     /// Returns the adapter and its actual settings, which are set once the adapter streams and are kept afterwards.
@@ -77,7 +77,7 @@ impl<S: StreamFormat> Bridge<S> {
         let wire = self.wire.insert(open()?);
         let (cancel, mut trace) = (CancelToken::default(), Trace::default());
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
-        let streaming = self.tap.start(ctx, self.stretch.stream_request(), self.supply)?;
+        let streaming = self.tap.start(ctx, self.format.stream_request(), self.supply)?;
         // The value is only set once, since the stream begins once.
         let _ = self.streaming.set(streaming);
         Ok(())
@@ -100,7 +100,7 @@ impl<S: StreamFormat> Producer for Bridge<S> {
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
         let Some(portion) = self.tap.next(ctx, clock.now() + patience)? else { return Ok(None) };
         let Chunk { first, time, period_ns, lost, data } = portion;
-        let samples = self.stretch.read(data, streaming);
+        let samples = self.format.read(data, streaming);
         Ok(samples.map(|samples| Batch { first, time, period_ns, lost, samples }))
     }
 

@@ -24,12 +24,12 @@ pub(crate) struct Bench<S: StreamFormat> {
     pub(crate) bridge: Bridge<S>,
 }
 
-pub(crate) fn bench<S: StreamFormat>(stretch: S, device: impl ByteDevice + 'static) -> Bench<S> {
+pub(crate) fn bench<S: StreamFormat>(format: S, device: impl ByteDevice + 'static) -> Bench<S> {
     let clock = Arc::new(VirtualClock::default());
     clock.sleep_until(Moment::from_elapsed(Duration::from_secs(3)));
     let adapter: Arc<Mutex<dyn ByteDevice>> = Arc::new(Mutex::new(device));
     let link = SimLink::connect(adapter.clone(), clock.clone());
-    let bridge = Bridge::new(stretch, None, MARGIN, Box::new(move || Ok(Box::new(link) as Box<dyn ByteLink>)));
+    let bridge = Bridge::new(format, None, MARGIN, Box::new(move || Ok(Box::new(link) as Box<dyn ByteLink>)));
     Bench { clock, adapter, bridge }
 }
 
@@ -148,13 +148,13 @@ fn counts_samples_lost_to_stalled_consumer() {
 }
 
 /// Adapter with scripted replies. It also sends scripted data when a stream begins.
-struct Puppet {
+struct ScriptedAdapter {
     capabilities: Capabilities,
     /// Amount in millivolts by which the supply exceeds the requested voltage.
     too_high: u16,
     refused: Vec<(Operation, ErrorCode)>,
     /// Operations whose next reply is lost, one entry per lost reply.
-    swallowed: Vec<Operation>,
+    lost_replies: Vec<Operation>,
     /// Data sent when a stream begins.
     data: Vec<Message>,
     heard: Arc<Mutex<Vec<Request>>>,
@@ -162,13 +162,13 @@ struct Puppet {
     out: Vec<u8>,
 }
 
-fn puppet(data: Vec<Message>) -> Puppet {
+fn scripted_adapter(data: Vec<Message>) -> ScriptedAdapter {
     let capabilities = Capabilities::BISS.union(Capabilities::ANALOG);
-    Puppet {
+    ScriptedAdapter {
         capabilities,
         too_high: 0,
         refused: Vec::new(),
-        swallowed: Vec::new(),
+        lost_replies: Vec::new(),
         data,
         heard: Arc::default(),
         receiver: Receiver::default(),
@@ -176,7 +176,7 @@ fn puppet(data: Vec<Message>) -> Puppet {
     }
 }
 
-impl Puppet {
+impl ScriptedAdapter {
     fn answer(&mut self, request: &Request) -> Message {
         if let Some((_, code)) = self.refused.iter().find(|(operation, _)| *operation == request.operation()) {
             return Message::Error { op: request.operation().byte(), code: *code, text: "no".to_owned() };
@@ -186,7 +186,7 @@ impl Puppet {
                 capabilities: self.capabilities,
                 max_clock_hz: 1_000_000,
                 max_sample_hz: 50_000,
-                name: "Puppet".to_owned(),
+                name: "ScriptedAdapter".to_owned(),
                 serial: String::new(),
                 firmware: String::new(),
             }),
@@ -205,7 +205,7 @@ impl Puppet {
     }
 }
 
-impl ByteDevice for Puppet {
+impl ByteDevice for ScriptedAdapter {
     fn on_bytes(&mut self, _: Moment, bytes: &[u8]) {
         self.receiver.push(bytes);
         while let Some(packet) = self.receiver.next_packet() {
@@ -215,8 +215,8 @@ impl ByteDevice for Puppet {
             let begins = matches!(request, Request::AnalogStream { on: true })
                 || matches!(request, Request::BissStream { period_us } if period_us > 0);
             self.heard.lock().unwrap().push(request);
-            if let Some(at) = self.swallowed.iter().position(|own| *own == operation) {
-                self.swallowed.remove(at);
+            if let Some(at) = self.lost_replies.iter().position(|own| *own == operation) {
+                self.lost_replies.remove(at);
                 continue;
             }
             self.out.extend(message.emit(packet.seq).emit());
@@ -250,7 +250,7 @@ const SINE_COSINE: SineCosine = SineCosine { sample_hz: 100_000 };
 
 #[test]
 fn converts_full_scale_to_volts() {
-    let device = puppet(vec![
+    let device = scripted_adapter(vec![
         analog(0, 0, vec![(32_767, 0), (-32_768, 16_384)]),
         analog(2, 0, vec![]),
         analog(12, 3, vec![(0, -32_767)]),
@@ -282,7 +282,8 @@ fn converts_full_scale_to_volts() {
 #[test]
 fn corrects_cosine_skew() {
     let ramp = |from: i16, count: i16| (from..from + count).map(|at| (7, at * 1000)).collect::<Vec<_>>();
-    let mut device = puppet(vec![analog(0, 0, ramp(0, 10)), analog(10, 0, ramp(10, 1)), analog(20, 9, ramp(20, 5))]);
+    let mut device =
+        scripted_adapter(vec![analog(0, 0, ramp(0, 10)), analog(10, 0, ramp(10, 1)), analog(20, 9, ramp(20, 5))]);
     device.capabilities = Capabilities::ANALOG.union(Capabilities::ANALOG_SKEW);
     let heard = device.heard.clone();
     let mut bench = bench(SINE_COSINE, device);
@@ -301,7 +302,7 @@ fn corrects_cosine_skew() {
 #[test]
 fn switches_requested_supply_on() {
     for (too_high, expected) in [(400, Ok((5_400, 60))), (600, Err((5_000, 5_600, 5_500)))] {
-        let mut device = puppet(vec![analog(0, 0, vec![(1, 1)])]);
+        let mut device = scripted_adapter(vec![analog(0, 0, vec![(1, 1)])]);
         device.capabilities = Capabilities::ANALOG.union(Capabilities::SUPPLY);
         device.too_high = too_high;
         let heard = device.heard.clone();
@@ -324,15 +325,15 @@ fn switches_requested_supply_on() {
         }
         assert_eq!(*heard.lock().unwrap(), requested);
     }
-    let mut bench = bench(SINE_COSINE, puppet(Vec::new()));
+    let mut bench = bench(SINE_COSINE, scripted_adapter(Vec::new()));
     bench.bridge.supply = Some(Family::Hiperface.supply_voltage());
-    assert_eq!(adapter_error(bench.error()), AdapterError::NoSupply { name: "Puppet".to_owned() });
+    assert_eq!(adapter_error(bench.error()), AdapterError::NoSupply { name: "ScriptedAdapter".to_owned() });
 }
 
 #[test]
 fn restarts_unanswered_stream() {
-    let mut device = puppet(vec![analog(0, 0, vec![(1, 1)])]);
-    device.swallowed = vec![Operation::AnalogStream];
+    let mut device = scripted_adapter(vec![analog(0, 0, vec![(1, 1)])]);
+    device.lost_replies = vec![Operation::AnalogStream];
     let heard = device.heard.clone();
     let mut bench = bench(SINE_COSINE, device);
     assert_eq!(bench.take(Duration::from_secs(1)).len(), 1);
@@ -349,18 +350,21 @@ fn adapter_error(error: BridgeError) -> AdapterError {
 
 #[test]
 fn reports_missing_capabilities() {
-    let mut lame = puppet(Vec::new());
+    let mut lame = scripted_adapter(Vec::new());
     lame.capabilities = Capabilities::SSI;
     let error = adapter_error(bench(SINE_COSINE, lame).error());
-    assert_eq!(error, AdapterError::NoAnalog { name: "Puppet".to_owned() });
-    let mut lame = puppet(Vec::new());
+    assert_eq!(error, AdapterError::NoAnalog { name: "ScriptedAdapter".to_owned() });
+    let mut lame = scripted_adapter(Vec::new());
     lame.capabilities = Capabilities::ANALOG;
-    assert_eq!(adapter_error(bench(RawFrames, lame).error()), AdapterError::NoBiss { name: "Puppet".to_owned() });
+    assert_eq!(
+        adapter_error(bench(RawFrames, lame).error()),
+        AdapterError::NoBiss { name: "ScriptedAdapter".to_owned() }
+    );
     let error = adapter_error(bench(SINE_COSINE, virtual_adapter("version=2")).error());
     assert_eq!(error, AdapterError::Version { expected: 1, got: 2 });
     let error = adapter_error(bench(SINE_COSINE, virtual_adapter("fault=silent-after:0")).error());
     assert_eq!(error, AdapterError::Silent);
-    let mut busy = puppet(Vec::new());
+    let mut busy = scripted_adapter(Vec::new());
     busy.refused = vec![(Operation::AnalogStream, ErrorCode::BUSY)];
     let error = adapter_error(bench(SINE_COSINE, busy).error());
     assert!(matches!(error, AdapterError::Refused { code: ErrorCode::BUSY, .. }), "{error}");
@@ -368,11 +372,11 @@ fn reports_missing_capabilities() {
 
 #[test]
 fn reports_unexpected_stream_end() {
-    let mut quiet = bench(SINE_COSINE, puppet(vec![analog(0, 0, vec![(1, 1)])]));
-    assert_eq!(adapter_error(quiet.error()), AdapterError::Mute);
+    let mut quiet = bench(SINE_COSINE, scripted_adapter(vec![analog(0, 0, vec![(1, 1)])]));
+    assert_eq!(adapter_error(quiet.error()), AdapterError::StreamSilent);
     assert!(quiet.clock.now().since_start() < Duration::from_secs(6), "three seconds before it began");
     let data = vec![analog(0, 0, vec![(1, 1); 9]), analog(0, 0, vec![(1, 1)])];
-    assert_eq!(adapter_error(bench(SINE_COSINE, puppet(data)).error()), AdapterError::Restarted);
+    assert_eq!(adapter_error(bench(SINE_COSINE, scripted_adapter(data)).error()), AdapterError::Restarted);
     let biss = Message::Data(StreamData::Biss(BissData {
         first_index: 0,
         t0_us: 0,
@@ -381,7 +385,7 @@ fn reports_unexpected_stream_end() {
         width: 6,
         values: vec![(BissStatus::OK, 0x024_6980_00CF)],
     }));
-    let mut other = bench(SINE_COSINE, puppet(vec![biss, analog(0, 0, vec![(1, 1)])]));
+    let mut other = bench(SINE_COSINE, scripted_adapter(vec![biss, analog(0, 0, vec![(1, 1)])]));
     assert_eq!(other.take(Duration::from_millis(100)).len(), 1, "what another stream has left is let go");
 }
 

@@ -8,7 +8,7 @@ use crate::analysis::SampleTime;
 #[derive(Clone, Debug, Default)]
 pub(super) struct ClockDrift {
     /// Offset in nanoseconds to add to the adapter's time, or `None` before the first packet.
-    ahead_ns: Option<i128>,
+    offset_ns: Option<i128>,
     /// Minimum offset in the current and the previous section of the stream, in nanoseconds.
     least: Option<(i128, Option<i128>)>,
     since_ns: i128,
@@ -33,7 +33,7 @@ impl ClockDrift {
         let lead = self.minimum_offset_ns(own_ns, most);
         let elapsed = (own_ns - self.before_ns).max(0);
         self.before_ns = own_ns;
-        let ahead = match self.ahead_ns {
+        let ahead = match self.offset_ns {
             Some(ahead) if (lead - ahead).abs() <= JUMP_NS => {
                 let wrong = lead - ahead;
                 let beyond = wrong - wrong.clamp(-SLACK_NS, SLACK_NS);
@@ -41,7 +41,7 @@ impl ClockDrift {
             }
             _ => lead,
         };
-        self.ahead_ns = Some(ahead);
+        self.offset_ns = Some(ahead);
         SampleTime::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
     }
 

@@ -45,7 +45,7 @@ pub(crate) struct SampleStream {
     missing: u64,
     /// Earliest time that a sample can have.
     not_before: SampleTime,
-    heard_at: Moment,
+    last_received_at: Moment,
     last: Option<SampleTime>,
     drift: ClockDrift,
 }
@@ -115,7 +115,7 @@ impl SampleStream {
             next: 0,
             missing: 0,
             not_before: after.map_or(begun_at, |after| begun_at.max(after.saturating_add_ns(1))),
-            heard_at: adapter.line.now(),
+            last_received_at: adapter.line.now(),
             last: None,
             drift: ClockDrift::default(),
         })
@@ -136,8 +136,8 @@ impl SampleStream {
     /// Returns the next samples, or `None` if none have arrived by `until`.
     ///
     /// # Errors
-    /// Returns [`AdapterError::Mute`], [`AdapterError::Restarted`] or [`AdapterError::Data`] if the stream has ended,
-    /// or another error if the job is cancelled or the connection fails.
+    /// Returns [`AdapterError::StreamSilent`], [`AdapterError::Restarted`] or [`AdapterError::Data`] if the stream has
+    /// ended, or another error if the job is cancelled or the connection fails.
     pub(crate) fn next(&mut self, adapter: &mut Adapter<'_, '_>, until: Moment) -> Result<Option<Chunk>, Failure> {
         let mut bytes = Vec::new();
         loop {
@@ -157,8 +157,8 @@ impl SampleStream {
             adapter.line.receive(until.max(now), &mut bytes).map_err(LineError::Link)?;
             if !bytes.is_empty() {
                 adapter.adapter.receiver.push(&bytes);
-            } else if adapter.line.now().duration_since(self.heard_at) > self.max_wait() {
-                return Err(AdapterError::Mute.into());
+            } else if adapter.line.now().duration_since(self.last_received_at) > self.max_wait() {
+                return Err(AdapterError::StreamSilent.into());
             } else if adapter.line.now() >= until {
                 return Ok(None);
             }
@@ -196,7 +196,7 @@ impl SampleStream {
             Ok(_) => return Ok(None),
             Err(cause) => return Err(AdapterError::Data { cause }),
         };
-        self.heard_at = now;
+        self.last_received_at = now;
         match self.continuity.gap_before(&data) {
             PacketGap::None => {}
             PacketGap::Missing(count) => self.missing += u64::from(count),

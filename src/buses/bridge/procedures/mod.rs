@@ -41,7 +41,7 @@ pub struct AdapterState {
     receiver: Receiver,
     next_seq: u8,
     hello: Option<Hello>,
-    has_spoken: bool,
+    has_received_bytes: bool,
     clocks: ClockOffsetBounds,
     power: SupplyState,
 }
@@ -73,7 +73,7 @@ pub enum AdapterError {
         greatest: u16,
     },
     #[error("the adapter no longer sends data")]
-    Mute,
+    StreamSilent,
     /// The sample numbers of the stream have started again from 0.
     #[error("the adapter has restarted")]
     Restarted,
@@ -140,12 +140,12 @@ impl AdapterState {
 
     /// Returns whether the encoder had power before the session, or `None` if this is unknown.
     pub(crate) const fn was_supplied_at_start(&self) -> Option<bool> {
-        self.power.found
+        self.power.was_on
     }
 
     /// Sets whether the encoder had power before the session.
     pub(crate) const fn set_supplied_at_start(&mut self, is_supplied: bool) {
-        self.power.found = Some(is_supplied);
+        self.power.was_on = Some(is_supplied);
     }
 
     /// Returns whether the supply must be switched off at the end of the session.
@@ -155,7 +155,7 @@ impl AdapterState {
 
     /// Returns whether the adapter has sent any bytes, including damaged ones.
     pub(crate) const fn has_received(&self) -> bool {
-        self.has_spoken
+        self.has_received_bytes
     }
 
     /// Converts the adapter time `t_us`, in microseconds, to local time. `answered` is the reply that contains `t_us`.
@@ -186,8 +186,8 @@ impl Adapter<'_, '_> {
                 return Err(AdapterError::unexpected_reply(Operation::Hello, &answered.reply).into());
             };
             // Adapters that do not report the state of the supply leave this bit clear.
-            if self.adapter.power.found.is_none() && hello.capabilities.contains(Capabilities::SUPPLY_ON) {
-                self.adapter.power.found = Some(true);
+            if self.adapter.power.was_on.is_none() && hello.capabilities.contains(Capabilities::SUPPLY_ON) {
+                self.adapter.power.was_on = Some(true);
             }
             self.adapter.hello = Some(hello);
         }
@@ -207,7 +207,7 @@ impl Adapter<'_, '_> {
         }
         let SupplyVoltage { given, greatest, .. } = voltage;
         // The supply may be on even if the reply is lost.
-        self.adapter.power.given = true;
+        self.adapter.power.is_switched_on = true;
         let answered = self.send_request(&Request::Supply { on: true, millivolt: given })?;
         let Reply::Supply { millivolt: measured, milliampere, .. } = answered.reply else {
             return Err(AdapterError::unexpected_reply(Operation::Supply, &answered.reply).into());
@@ -229,7 +229,7 @@ impl Adapter<'_, '_> {
 
     fn switch_off(&mut self) -> Result<(), Failure> {
         self.send_request(&Request::Supply { on: false, millivolt: 0 })?;
-        (self.adapter.power.given, self.adapter.power.found) = (false, Some(false));
+        (self.adapter.power.is_switched_on, self.adapter.power.was_on) = (false, Some(false));
         Ok(())
     }
 
@@ -304,7 +304,7 @@ impl Adapter<'_, '_> {
                 self.state.quality.silent += 1;
                 return Ok(None);
             }
-            self.adapter.has_spoken = true;
+            self.adapter.has_received_bytes = true;
             self.adapter.receiver.push(&portion);
             if self.line.now() >= deadline + OTHER_DATA_TIME {
                 self.state.damaged += 1;

@@ -26,18 +26,18 @@ impl SupplyAfterSession {
 pub(super) struct SupplyState {
     pub(super) after: SupplyAfterSession,
     /// Whether the encoder had power before the session, or `None` if unknown.
-    pub(super) found: Option<bool>,
-    pub(super) given: bool,
+    pub(super) was_on: Option<bool>,
+    pub(super) is_switched_on: bool,
 }
 
 impl SupplyState {
     /// Returns whether the supply must be switched off at the end of the session.
     pub(super) fn must_switch_off(self) -> bool {
-        let found = self.found == Some(true);
+        let was_on = self.was_on == Some(true);
         match self.after {
-            SupplyAfterSession::AsFound => self.given && !found,
+            SupplyAfterSession::AsFound => self.is_switched_on && !was_on,
             SupplyAfterSession::On => false,
-            SupplyAfterSession::Off => self.given || found,
+            SupplyAfterSession::Off => self.is_switched_on || was_on,
         }
     }
 }
@@ -69,8 +69,12 @@ mod tests {
             (Off, Some(true), true, true),
             (Off, None, false, false),
         ];
-        for (after, found, given, off) in cases {
-            assert_eq!(SupplyState { after, found, given }.must_switch_off(), off, "{after:?} {found:?} {given}");
+        for (after, was_on, is_switched_on, off) in cases {
+            assert_eq!(
+                SupplyState { after, was_on, is_switched_on }.must_switch_off(),
+                off,
+                "{after:?} {was_on:?} {is_switched_on}"
+            );
         }
         for (word, after) in [("as-found", Some(AsFound)), ("on", Some(On)), ("off", Some(Off)), ("yes", None)] {
             assert_eq!(SupplyAfterSession::KEYWORDS.read(word), after);

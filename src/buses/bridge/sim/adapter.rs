@@ -40,7 +40,7 @@ pub struct Adapter {
     pushed: u8,
     now: Moment,
     /// Time at which the transmission of the last reply ends.
-    replied: Moment,
+    last_reply_end: Moment,
     /// Bytes on the way to the host, in order of arrival.
     to_host: TransitQueue<Vec<u8>>,
     inbox: Vec<u8>,
@@ -84,7 +84,7 @@ impl Adapter {
             requests: 0,
             pushed: 0,
             now: Moment::START,
-            replied: Moment::START,
+            last_reply_end: Moment::START,
             to_host: TransitQueue::default(),
             inbox: Vec::new(),
         };
@@ -206,8 +206,8 @@ impl Adapter {
         if let (Message::Reply(Reply::Hello(_)), Some(version)) = (&message, reply.body.first_mut()) {
             *version = self.version;
         }
-        self.replied = self.replied.max(self.now) + Self::LATENCY + time + self.faults.reply_delay();
-        self.send(self.replied, &reply);
+        self.last_reply_end = self.last_reply_end.max(self.now) + Self::LATENCY + time + self.faults.reply_delay();
+        self.send(self.last_reply_end, &reply);
     }
 
     /// Returns how long the adapter processes a request, excluding transmission.
@@ -301,7 +301,7 @@ impl Adapter {
                 let [timeout, idle] = [timeout_us, idle_us].map(|time| Duration::from_micros(time.into()));
                 let transfer = self.uart.as_mut().ok_or(NOT_THERE)?.transfer(self.now, timeout, idle, &tx);
                 let transfer = transfer.ok_or(NOT_CONFIGURED)?;
-                self.replied = self.replied.max(transfer.end);
+                self.last_reply_end = self.last_reply_end.max(transfer.end);
                 Ok(Reply::UartTransfer { t_us: adapter_microseconds(transfer.start), rx: transfer.rx })
             }
         }
@@ -384,7 +384,7 @@ impl Adapter {
             return 0;
         }
         let period_us = period_us.max(least_us);
-        let start = self.replied.max(self.now) + Self::LATENCY;
+        let start = self.last_reply_end.max(self.now) + Self::LATENCY;
         self.clocked = Some(ClockedStream::new(kind, start, Duration::from_micros(period_us.into()), bits));
         period_us
     }

@@ -21,7 +21,7 @@ pub fn adapter_error_text(error: &AdapterError) -> Text {
             .with_number("given", volts(*given), 2)
             .with_number("measured", volts(*measured), 2)
             .with_number("greatest", volts(*greatest), 2),
-        AdapterError::Mute => TEXTS.text("adapter.mute"),
+        AdapterError::StreamSilent => TEXTS.text("adapter.mute"),
         AdapterError::Restarted => TEXTS.text("adapter.restarted"),
         AdapterError::Data { cause } => TEXTS.text("adapter.data").with_text("why", body_error_text(cause)),
         AdapterError::Refused { operation, code, text } => TEXTS
@@ -109,7 +109,7 @@ mod tests {
             (AdapterError::NoUart { name: name() }, "box"),
             (AdapterError::NoSupply { name: name() }, "box"),
             (AdapterError::Overvoltage { given: 5_000, measured: 5_600, greatest: 5_500 }, "60 V"),
-            (AdapterError::Mute, "."),
+            (AdapterError::StreamSilent, "."),
             (AdapterError::Restarted, "."),
             (AdapterError::Data { cause }, "0x94"),
             (AdapterError::Reply { operation: Operation::Hello, cause }, "0x94"),

@@ -106,7 +106,7 @@ impl<'a> Master<'a> {
         loop {
             let until = self.now() + CANCEL_CHECK_INTERVAL;
             let Station { line: state, adapter, flow, .. } = &mut *self.station;
-            let Some(flow) = flow else { return Err(AdapterError::Mute.into()) };
+            let Some(flow) = flow else { return Err(AdapterError::StreamSilent.into()) };
             let mut host = Adapter { line: &mut self.line, state, adapter };
             let portion = match flow.next(&mut host, until) {
                 Ok(portion) => portion,

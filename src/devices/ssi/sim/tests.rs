@@ -7,13 +7,13 @@ use proptest::prelude::*;
 use super::AttachableEncoder;
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::AttachableKind;
-use crate::buses::bridge::sim::tests::{Dial, Host, SSI};
+use crate::buses::bridge::sim::tests::{Host, SSI, TestBissDevice};
 use crate::sim::ConfigError;
 use crate::sim::setting::query_pairs;
 
 /// Creates a host with the encoder on a test shaft.
 fn host_with_dial(query: &str) -> Host {
-    Host::to(query, &[&AttachableEncoder::DEFAULT_ADAPTER, &Dial::SETTINGS])
+    Host::to(query, &[&AttachableEncoder::DEFAULT_ADAPTER, &TestBissDevice::SETTINGS])
 }
 
 fn read(query: &str) -> Result<(), ConfigError> {

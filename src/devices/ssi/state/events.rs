@@ -124,7 +124,7 @@ impl SessionEvents for Encoder {
     }
 
     fn is_no_response(&self, error: &JobError) -> bool {
-        matches!(error, JobError::Adapter(AdapterError::Silent | AdapterError::Mute))
+        matches!(error, JobError::Adapter(AdapterError::Silent | AdapterError::StreamSilent))
     }
 
     fn discard_requests(&mut self) {

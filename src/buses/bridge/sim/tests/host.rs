@@ -25,7 +25,7 @@ pub(crate) const SSI: Request =
 impl Host {
     /// Creates a host with an adapter to which the test devices are attached.
     pub(crate) fn with(query: &str) -> Self {
-        Self::to(query, &[&SsiTestEncoder, &Dial::SETTINGS])
+        Self::to(query, &[&SsiTestEncoder, &TestBissDevice::SETTINGS])
     }
 
     /// Creates a host with an adapter to which the given devices are attached.
@@ -91,7 +91,7 @@ impl Host {
 
 /// A BiSS device with a position of 35 bits, 17 of them within a revolution, followed by six other bits. Its registers
 /// store any value that is written. Its shaft is at 270° of turn 1234h, and the device needs half a second to start.
-pub(crate) struct Dial {
+pub(crate) struct TestBissDevice {
     motor: Motor,
     revolutions: f64,
     now: Moment,
@@ -106,7 +106,7 @@ pub(crate) struct DialSettings;
 /// SSI device that sends the position of the shaft: 12 turn bits and 13 step bits.
 pub(crate) struct SsiTestEncoder;
 
-impl Dial {
+impl TestBissDevice {
     pub(crate) const SETTINGS: DialSettings = DialSettings;
     const PER_TURN: u64 = 1 << 17;
     const START: Duration = Duration::from_millis(500);
@@ -134,14 +134,14 @@ impl AttachableKind for DialSettings {
         }
         let revolutions = f64::from(0x1234) + 0.75;
         let (motor, registers) = (Motor::with_speed(rpm), [0x61; 0x80]);
-        let dial = Dial { motor, revolutions, now: Moment::START, ready: Some(Moment::START), registers };
+        let dial = TestBissDevice { motor, revolutions, now: Moment::START, ready: Some(Moment::START), registers };
         Ok(Some(AttachedDevice::Biss(Box::new(dial))))
     }
 }
 
-impl BissDevice for Dial {
+impl BissDevice for TestBissDevice {
     fn clone_device(&self) -> Box<dyn BissDevice> {
-        Box::new(Dial { motor: Motor::with_speed(self.motor.rpm()), ..*self })
+        Box::new(TestBissDevice { motor: Motor::with_speed(self.motor.rpm()), ..*self })
     }
 
     fn frame_at(&mut self, at: Moment) -> Option<(u64, u8)> {

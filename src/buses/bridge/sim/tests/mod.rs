@@ -6,7 +6,7 @@ mod line;
 use std::time::Duration;
 
 use host::SsiTestEncoder;
-pub(crate) use host::{BISS, Dial, Host, SSI};
+pub(crate) use host::{BISS, Host, SSI, TestBissDevice};
 
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::{Adapter, all_setting_names};
