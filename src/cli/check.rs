@@ -37,7 +37,7 @@ pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&
     }
     output.show(&json, &text.text())?;
     if good {
-        Ok(Success::Well)
+        Ok(Success::Completed)
     } else {
         Err(Failure::Failed(vec!["The check found the faults named above.".to_owned()]))
     }

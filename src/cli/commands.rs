@@ -275,7 +275,11 @@ impl Commands {
     }
 
     /// Returns an error message if a given common option does not exist for the chosen device kind.
-    pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &KindOptions) -> Option<String> {
+    pub(super) fn foreign_common_option_error(
+        self,
+        chosen: &dyn DeviceCommands,
+        given: &KindOptions,
+    ) -> Option<String> {
         let own = chosen.common_options();
         let foreign = self.common_options().find(|option| {
             given.is_given(option.get_id().as_str()) && own.iter().all(|other| other.get_id() != option.get_id())
@@ -303,7 +307,7 @@ impl Commands {
     }
 
     /// Returns an error message if a given option does not exist for the chosen device kind or protocol.
-    pub(super) fn foreign_option(self, command: CommandId, chosen: &str, given: &KindOptions) -> Option<String> {
+    pub(super) fn foreign_option_error(self, command: CommandId, chosen: &str, given: &KindOptions) -> Option<String> {
         let has = |device: &&&dyn DeviceCommands, id: &clap::Id| {
             device.options(command).iter().any(|option| option.get_id() == id)
         };

@@ -42,7 +42,7 @@ pub(crate) fn show(output: &Output, frames: &[FrameExplanation]) -> Result {
     }
     output.show(&json!({ "frames": list }), &text)?;
     if broken.is_empty() {
-        return Ok(Success::Well);
+        return Ok(Success::Completed);
     }
     let more = broken.len().saturating_sub(3);
     if more > 1 {

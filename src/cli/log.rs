@@ -93,7 +93,7 @@ pub(super) fn log(common: &CommonArgs, output: &Output, arguments: &LogArgs) -> 
     for entry in &entries {
         output.show(&entry_json(entry), &entry_text(entry))?;
     }
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 /// Opens the logbook with the entries of all benches. Returns `None` if nothing has been recorded yet.

@@ -45,7 +45,7 @@ use crate::link::LinkUrl;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Success {
     /// The command found no errors and no differences. The exit status is 0.
-    Well,
+    Completed,
     /// `diff` or `verify` has found differences. The exit status is 3.
     ValueDifference,
 }
@@ -57,7 +57,7 @@ pub enum Failure {
     /// The device or the operation has failed. The message has one to four lines, and the exit status is 1.
     Failed(Vec<String>),
     /// The program that reads the output has closed the pipe, so nothing more can be printed.
-    NobodyReads,
+    OutputClosed,
 }
 
 pub type Result<T = Success> = std::result::Result<T, Failure>;
@@ -129,7 +129,7 @@ fn usage_error(message: &str) -> Failure {
 
 fn exit_code(result: Result) -> u8 {
     match result {
-        Ok(Success::Well) | Err(Failure::NobodyReads) => 0,
+        Ok(Success::Completed) | Err(Failure::OutputClosed) => 0,
         Ok(Success::ValueDifference) => 3,
         Err(Failure::Failed(lines)) => {
             for (at, line) in lines.iter().enumerate() {
@@ -181,7 +181,7 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
         Command::Decode(decode) => (CommandId::Decode, &decode.protocol, &decode.own),
         Command::Simulate(simulate) => (CommandId::Simulate, &simulate.device, &simulate.own),
     };
-    if let Some(why) = output.commands().foreign_option(id, chosen, own) {
+    if let Some(why) = output.commands().foreign_option_error(id, chosen, own) {
         return Err(Failure::Usage(why));
     }
     let run = || {

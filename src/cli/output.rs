@@ -67,7 +67,7 @@ impl Output {
         let mut out = io::stdout().lock();
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
             Ok(()) => Ok(()),
-            Err(error) if is_closed_pipe(&error) => Err(Failure::NobodyReads),
+            Err(error) if is_closed_pipe(&error) => Err(Failure::OutputClosed),
             Err(error) => Err(Failure::Failed(vec![format!("Could not print the result: {error}.")])),
         }
     }

@@ -20,5 +20,5 @@ pub(super) fn ports(output: &Output) -> Result {
     }
     let text = if ports.is_empty() { "no serial ports\n".to_owned() } else { lines.text() };
     output.show(&json!({ "ports": list }), &text)?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }

@@ -38,21 +38,21 @@ pub fn try_readings<D: CliDevice>(
             next = (next + interval).max(Instant::now());
             let paused = runner.pause(next.saturating_duration_since(Instant::now()));
             if endless && runner.is_interrupted() {
-                return Ok(Success::Well);
+                return Ok(Success::Completed);
             }
             paused?;
         }
         first = false;
         let came = match runner.try_run(job()) {
             Ok(output) => Ok(output),
-            Err(JobFailure::Job(error)) if endless && error.is_cancelled() => return Ok(Success::Well),
+            Err(JobFailure::Job(error)) if endless && error.is_cancelled() => return Ok(Success::Completed),
             Err(JobFailure::Job(error)) => Err(error),
             Err(ended) => return Err(ended.into_failure()),
         };
         lines += match show(runner, came) {
-            Err(_) if endless && runner.is_interrupted() => return Ok(Success::Well),
+            Err(_) if endless && runner.is_interrupted() => return Ok(Success::Completed),
             shown => u64::from(shown?),
         };
     }
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }

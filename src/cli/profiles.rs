@@ -189,7 +189,7 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
     let verdict =
         if equal { format!("equal ({compared} compared)\n") } else { format!("different ({compared} compared)\n") };
     output.show(&json, &(lines.text() + &verdict))?;
-    Ok(if equal { Success::Well } else { Success::ValueDifference })
+    Ok(if equal { Success::Completed } else { Success::ValueDifference })
 }
 
 /// Items that a restore leaves unchanged.
@@ -233,7 +233,7 @@ fn show_dry_run(
         undone.add_keys(&mut json, &plan.operations);
     }
     output.show(&json, &plan.text)?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn show_restored(
@@ -267,7 +267,7 @@ fn show_restored(
     output.show_write_result(&json, &lines.text())?;
     // They are also printed before the write, because they list the remaining work.
     left.print_warning(output);
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 /// Prints the result of writing an item. `operations` are the executed operations, and `changes` contains the old and
@@ -311,5 +311,5 @@ pub(crate) fn print_write_result(
         }
     };
     output.show_write_result(&json, &text)?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }

@@ -55,7 +55,7 @@ pub(super) fn report(common: &CommonArgs, output: &Output, arguments: &ReportArg
     let hash = report.content_hash();
     let json = json!({"file": file, "report_number": hash.report_number(), "sha256": hash.to_string()});
     output.show(&json, &format!("{}: report {}\n", file.display(), hash.report_number()))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn read_profile(common: &CommonArgs, output: &Output, arguments: &ReportArgs) -> Result<ReportRequest> {

@@ -72,10 +72,10 @@ pub struct Runner<D: CliDevice> {
     pub(super) store: Store,
     /// Whether Ctrl-C was pressed. Unlike the worker's cancellation flag, which applies to a single job, it stays set.
     interrupted: Arc<AtomicBool>,
-    patience: SlowReplyNotice,
+    reply_notice: SlowReplyNotice,
     pub remarks: Vec<D::DeviceMessage>,
     /// Device-specific state that stays outside the worker thread.
-    pub kept: D::Context,
+    pub context: D::Context,
 }
 
 pub enum JobFailure<D: CliDevice> {
@@ -102,7 +102,7 @@ impl<D: CliDevice> Runner<D> {
             return Err(Failure::Usage("this command needs --link URL; without hardware, use --link sim:".to_owned()));
         };
         let given = common.given_values()?;
-        if let Some(why) = common.commands.foreign_common_option(D::COMMANDS, &common.own) {
+        if let Some(why) = common.commands.foreign_common_option_error(D::COMMANDS, &common.own) {
             return Err(Failure::Usage(why));
         }
         if D::may_have_other_master(url) {
@@ -117,17 +117,17 @@ impl<D: CliDevice> Runner<D> {
             error => to_failure(&D::open_error(&error)),
         })?;
         session.share_log(common.log.clone());
-        let kept = D::prepare_context(&mut session, &given);
+        let context = D::prepare_context(&mut session, &given);
         if let Some(path) = &common.trace {
             record_trace(&mut session, path)?;
         }
-        let patience = SlowReplyNotice::start(D::reply_times(&session));
+        let reply_notice = SlowReplyNotice::start(D::reply_times(&session));
         let worker = Worker::spawn(session, Arc::new(|| ()))
             .map_err(|error| Failure::Failed(vec![format!("Could not start a thread: {error}.")]))?;
         let stop_handle = worker.stop_handle();
         let interrupted = Arc::new(AtomicBool::new(false));
         let pressed = interrupted.clone();
-        let interrupt = D::interrupt_handler(&kept);
+        let interrupt = D::interrupt_handler(&context);
         ctrlc::set_handler(move || {
             let again = pressed.swap(true, Ordering::SeqCst);
             interrupt(again);
@@ -137,7 +137,7 @@ impl<D: CliDevice> Runner<D> {
             stop_handle.stop();
         })
         .map_err(|error| Failure::Failed(vec![format!("Could not install the Ctrl-C handler: {error}.")]))?;
-        Ok(Runner { worker, store, interrupted, patience, remarks: Vec::new(), kept })
+        Ok(Runner { worker, store, interrupted, reply_notice, remarks: Vec::new(), context })
     }
 
     pub fn run(&mut self, job: D::Job) -> Result<D::Output> {
@@ -156,7 +156,7 @@ impl<D: CliDevice> Runner<D> {
         let mut announced = None;
         loop {
             let Some(event) = self.next_event()? else {
-                if let Some(words) = self.patience.take_message() {
+                if let Some(words) = self.reply_notice.take_message() {
                     bar.print_line(&words);
                 }
                 continue;
@@ -186,7 +186,7 @@ impl<D: CliDevice> Runner<D> {
     /// Returns the next event, or `None` if a check for slow replies is due.
     fn next_event(&self) -> std::result::Result<Option<Event<D>>, JobFailure<D>> {
         let events = self.worker.events();
-        let Some(left) = self.patience.time_until_check() else {
+        let Some(left) = self.reply_notice.time_until_check() else {
             return events.recv().map(Some).map_err(|_| JobFailure::Worker);
         };
         match events.recv_timeout(left) {

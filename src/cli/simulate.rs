@@ -59,7 +59,7 @@ pub(super) fn run_simulation(output: &Output, arguments: &SimulateArgs) -> Resul
         (None, Some(address)) => serve_tcp(address, &mut device, &ended)?,
         (None, None) => return Err(Failure::Usage("simulate needs --pty PATH or --listen ADDR".to_owned())),
     }
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 pub fn settings(output: &Output, arguments: &SimulateArgs) -> Result<Vec<(String, String)>> {

@@ -21,28 +21,28 @@ pub struct ReplyTiming {
 
 /// A monitor for long commands, which prints one notice if slow replies delay the command.
 pub(super) struct SlowReplyNotice {
-    pace: Option<ReplyTiming>,
-    look: Instant,
+    timing: Option<ReplyTiming>,
+    next_check: Instant,
 }
 
 impl SlowReplyNotice {
-    /// Starts measuring the time. If `pace` is `None`, the device is never reported as slow.
-    pub(super) fn start(pace: Option<ReplyTiming>) -> Self {
-        SlowReplyNotice { pace, look: Instant::now() + FIRST_NOTICE_DELAY }
+    /// Starts measuring the time. If `timing` is `None`, the device is never reported as slow.
+    pub(super) fn start(timing: Option<ReplyTiming>) -> Self {
+        SlowReplyNotice { timing, next_check: Instant::now() + FIRST_NOTICE_DELAY }
     }
 
     /// Returns the time until the next check, or `None` if no further check is needed.
     pub(super) fn time_until_check(&self) -> Option<Duration> {
-        self.pace.as_ref().map(|_| self.look.saturating_duration_since(Instant::now()))
+        self.timing.as_ref().map(|_| self.next_check.saturating_duration_since(Instant::now()))
     }
 
     /// Returns the notice if it is due.
     pub(super) fn take_message(&mut self) -> Option<String> {
         let now = Instant::now();
-        let words = self.pace.as_ref().filter(|_| now >= self.look).and_then(ReplyTiming::message);
+        let words = self.timing.as_ref().filter(|_| now >= self.next_check).and_then(ReplyTiming::message);
         match words {
-            Some(_) => self.pace = None,
-            None if now >= self.look => self.look = now + CHECK_INTERVAL,
+            Some(_) => self.timing = None,
+            None if now >= self.next_check => self.next_check = now + CHECK_INTERVAL,
             None => {}
         }
         words
@@ -109,15 +109,16 @@ mod tests {
     fn notice_appears_late_and_once() {
         let replies = ReplyTimes::default();
         replies.record(Duration::from_millis(300));
-        let pace = |replies| ReplyTiming { replies, timeout: Duration::from_secs(1), longest: Duration::from_secs(2) };
-        let mut patience = SlowReplyNotice::start(Some(pace(replies)));
+        let timing =
+            |replies| ReplyTiming { replies, timeout: Duration::from_secs(1), longest: Duration::from_secs(2) };
+        let mut notice = SlowReplyNotice::start(Some(timing(replies)));
         assert!(
-            patience.take_message().is_none()
-                && patience.time_until_check().is_some_and(|left| left > FIRST_NOTICE_DELAY / 2)
+            notice.take_message().is_none()
+                && notice.time_until_check().is_some_and(|left| left > FIRST_NOTICE_DELAY / 2)
         );
-        patience.look = Instant::now();
-        assert!(patience.take_message().is_some());
-        assert!(patience.take_message().is_none() && patience.time_until_check().is_none());
+        notice.next_check = Instant::now();
+        assert!(notice.take_message().is_some());
+        assert!(notice.take_message().is_none() && notice.time_until_check().is_none());
         assert!(SlowReplyNotice::start(None).time_until_check().is_none());
     }
 }

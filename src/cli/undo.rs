@@ -14,7 +14,7 @@ use crate::store::{DeviceKey, Entry, EntryId, EntryUid, UndoObstacle};
 use crate::worker::commit::PlannedWrite;
 
 /// Maximum number of items that an error lists.
-const NAMED: usize = 3;
+const MAX_LISTED_ITEMS: usize = 3;
 
 /// A logbook entry that a restore undoes.
 #[derive(Clone)]
@@ -40,7 +40,7 @@ pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Res
     let kept: Vec<_> = write.kept().iter().map(|own| (own.item.clone(), instruction(kind, own))).collect();
     if !write.has_effect() {
         let lines = kept.iter().map(|(item, instead)| format!("{item} cannot be undone: {instead}."));
-        return Err(Failure::Failed(lines.take(NAMED).collect()));
+        return Err(Failure::Failed(lines.take(MAX_LISTED_ITEMS).collect()));
     }
     if let Some(earlier) = entry.undone_by {
         let (id, by) = (entry.id, earlier.id);
@@ -115,8 +115,8 @@ impl UndoneEntry {
         let changed = self.write.changed_since(planned);
         let Some((first, further)) = changed.split_first() else { return Ok(()) };
         let mut lines = vec![format!("Entry {id} cannot be undone, because values have changed since.")];
-        lines.extend(std::iter::once(first).chain(further).take(NAMED - 1).map(describe));
-        if changed.len() >= NAMED {
+        lines.extend(std::iter::once(first).chain(further).take(MAX_LISTED_ITEMS - 1).map(describe));
+        if changed.len() >= MAX_LISTED_ITEMS {
             lines.push(format!("{} values differ in total. Undo the later writes first.", changed.len()));
         }
         Err(Failure::Failed(lines))
@@ -150,7 +150,7 @@ impl Restore {
     }
 
     /// Returns whether to report an item that is left unchanged. An undo reports only the items of its write.
-    pub(crate) fn concerns(&self, item: &str) -> bool {
+    pub(crate) fn must_report(&self, item: &str) -> bool {
         self.undone.as_ref().is_none_or(|undone| undone.write.concerns(item))
     }
 }

@@ -120,7 +120,7 @@ fn analyse_capture(output: &Output, path: &Path, capture: &Capture, arguments: &
         rows_left_out: capture.skipped_rows,
     };
     output.show(&report.json(), &report.text())?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn print_remarks(output: &Output, layout: &Layout, capture: &Capture) {

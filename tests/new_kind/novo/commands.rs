@@ -77,7 +77,7 @@ impl ProfileCommands for NovoCommands {
 fn identify(common: &CommonArgs, output: &Output) -> Result {
     let NovoProfile { serial, .. } = survey(&mut Runner::open(common)?)?;
     output.show(&json!({ "serial": serial }), &format!("serial number  {serial}\n"))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
@@ -95,7 +95,7 @@ fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result
 fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     save_profile(common, &save.file, Body::new(survey(&mut Runner::open(common)?)?))?;
     output.show(&json!({ "file": save.file }), &format!("{}\n", save.file.display()))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn survey(runner: &mut Runner) -> Result<NovoProfile> {

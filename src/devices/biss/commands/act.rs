@@ -81,7 +81,7 @@ fn return_to_operation(common: &CommonArgs, output: &Output, act: &ActionArgs) -
         BissOutput::ReturnedToOperation(mode) => {
             let text = format!("in operation, password cleared; it was in mode {mode}\n");
             output.show(&json!({"done": "lead-back", "mode": mode.byte()}), &text)?;
-            Ok(Success::Well)
+            Ok(Success::Completed)
         }
         other => Err(unexpected_output(&other)),
     }

@@ -42,7 +42,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
         "adapter": identity.adapter.as_ref().map(|hello| &hello.name),
     });
     output.show(&json, &identity_text(&identity, celsius))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 /// Returns the manufacturer ID as text if it is printable, or as hexadecimal bytes otherwise.
@@ -116,7 +116,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
         "filter": status.filter.map(register_text::filter),
     });
     output.show(&json, &status_text(&status))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn flag_list(bits: &FlagRegister) -> Vec<Json> {
@@ -162,7 +162,7 @@ fn status_text(status: &EncoderStatus) -> String {
 
 pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
-    let over_biss = runner.kept == Transport::Adapter;
+    let over_biss = runner.context == Transport::Adapter;
     if position.csv {
         output.write_stdout("t_s,raw,turns,steps,degrees,valid,warning\n")?;
     }
@@ -281,5 +281,5 @@ pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
     }
     let text = meaning.map_or_else(|| format!("{shown}\n"), |meaning| format!("{shown}  {meaning}\n"));
     output.show(&json, &text)?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }

@@ -33,7 +33,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     }
     let json = json!({"file": save.file, "banks": banks, "unsaved_in_mode": mode.map(DeviceMode::byte)});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(banks, "bank")))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 impl ProfileCommands for BissCommands {

@@ -31,7 +31,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output) -> Result {
     let text: String = drives.iter().map(discovered_device_text).collect();
     output.show(&json!({"devices": list, "others": others.len()}), &text)?;
     if !drives.is_empty() {
-        return Ok(Success::Well);
+        return Ok(Success::Completed);
     }
     let summary = match others.len() {
         0 => "No device answered.".to_owned(),

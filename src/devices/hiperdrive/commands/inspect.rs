@@ -38,7 +38,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
         "drives": identity.drives.iter().map(drive_json).collect::<Vec<Json>>(),
     });
     output.show(&json, &identity_text(&identity))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn drive_json(drive: &DriveIdentity) -> Json {
@@ -116,7 +116,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &StatusArgume
         "temperature_c": status.temperature,
     });
     output.show(&json, &status_text(&status, &facts))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -289,5 +289,5 @@ pub(super) fn read(common: &CommonArgs, output: &Output, read: &Read) -> Result 
         keys.insert("unit".to_owned(), json!(unit));
     }
     output.show(&json, &format!("{text}\n"))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }

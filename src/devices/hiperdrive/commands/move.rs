@@ -78,7 +78,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
         given?;
         let text = position.map_or_else(String::new, |position| format!("drive {} is at {position}\n", drive.get()));
         output.show(&json, &text)?;
-        return Ok(Success::Well);
+        return Ok(Success::Completed);
     }
     let error = match came {
         MotionOutcome::Ended(ActionEnd::Fault) => read_newest_error(&mut runner, drive),
@@ -154,7 +154,7 @@ fn refusal_failure(refusal: MotionRefusal) -> Failure {
 
 /// Refreshes the motion request until the motion ends, is interrupted, or times out.
 fn run_until_end(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience: Duration) -> MotionOutcome {
-    let motion = &runner.kept;
+    let motion = &runner.context;
     let until = Instant::now() + patience;
     let act = motion.request_motion(drive, wish);
     loop {
@@ -176,7 +176,7 @@ fn run_until_end(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patie
 }
 
 fn action_end(runner: &Runner, drive: DriveNumber, act: u64) -> Option<ActionEnd> {
-    let view = runner.kept.snapshot();
+    let view = runner.context.snapshot();
     let ended = view.drives.iter().find(|own| own.number == drive).and_then(|own| own.ended);
     match ended {
         Some((number, ended)) if number >= act => Some(ended),
@@ -187,7 +187,7 @@ fn action_end(runner: &Runner, drive: DriveNumber, act: u64) -> Option<ActionEnd
 
 /// Stops the drive, switches it off, and returns its last known state.
 fn stop_and_switch_off(runner: &Runner, drive: DriveNumber) -> Option<DriveSnapshot> {
-    let motion = &runner.kept;
+    let motion = &runner.context;
     let find = || motion.snapshot().drives.into_iter().find(|own| own.number == drive);
     let until = Instant::now() + STOP_TIMEOUT;
     while motion.is_open() && Instant::now() < until && find().is_some_and(|own| own.phase != Phase::Idle) {

@@ -27,7 +27,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     let json = json!({"file": save.file, "parameters": parameters, "drives": drives});
     let counted = format!("{} of the device and {}", count(parameters, "parameter"), count(drives, "drive"));
     output.show(&json, &format!("{}: {counted}\n", save.file.display()))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 impl ProfileCommands for HiperdriveCommands {

@@ -139,7 +139,7 @@ fn reset(common: &CommonArgs, output: &Output) -> Result {
         HiperfaceOutput::Reset(codes) => {
             let list: Vec<u8> = codes.iter().map(|code| code.byte()).collect();
             output.show(&json!({"done": "reset", "codes": list}), &format!("restarted: {}", codes_text(&codes)))?;
-            Ok(Success::Well)
+            Ok(Success::Completed)
         }
         other => Err(unexpected_output(&other)),
     }
@@ -151,7 +151,7 @@ fn set_temporary_settings(common: &CommonArgs, output: &Output, value: &str) -> 
         HiperfaceOutput::Configured => {
             let text = format!("until the next restart: {settings}\n");
             output.show(&json!({"done": "configure-for-now", "settings": settings.byte()}), &text)?;
-            Ok(Success::Well)
+            Ok(Success::Completed)
         }
         other => Err(unexpected_output(&other)),
     }

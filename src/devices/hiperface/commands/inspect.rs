@@ -58,7 +58,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output, find: &FindArgs) -> Res
                         .to_owned(),
                 ]));
             }
-            Ok(Success::Well)
+            Ok(Success::Completed)
         }
         HiperfaceOutput::Found(EncoderSearchResult::ForeignTraffic { bytes }) => Err(Failure::Failed(vec![format!(
             "Another device sends on this line ({bytes} bytes in one second), so nothing was sent. Disconnect the \
@@ -123,13 +123,13 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
         "eeprom_bytes": identity.label.eeprom_bytes(),
         "free_bytes": free,
         "data_fields": fields,
-        "baud": runner.kept.baud.bits_per_second(),
-        "parity": runner.kept.parity.keyword(),
+        "baud": runner.context.baud.bits_per_second(),
+        "parity": runner.context.parity.keyword(),
         "stored_settings": identity.label.settings.byte(),
         "options": identity.label.options,
     });
     output.show(&json, &identity_text(&identity, &runner))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn identity_text(identity: &Identity, runner: &Runner) -> String {
@@ -146,7 +146,7 @@ fn identity_text(identity: &Identity, runner: &Runner) -> String {
         .add_line("serial number", &identity.serial.serial_number)
         .add_line("firmware", format!("{} of {}", identity.serial.firmware_version, identity.serial.firmware_date))
         .add_line("address", format!("{:02X}h", identity.address))
-        .add_line("talking at", runner.kept)
+        .add_line("talking at", runner.context)
         .add_line("stored settings", identity.label.settings)
         .add_line("EEPROM", format!("{} bytes", identity.label.eeprom_bytes()))
         .add_line("free", identity.memory.map_or_else(unknown, |memory| format!("{} bytes", memory.bytes())))
@@ -176,7 +176,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
         &json!({"ok": errors.is_empty(), "errors": code_list(&errors), "warnings": code_list(&warnings)}),
         &codes_text(&codes),
     )?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn code_list(codes: &[StatusCode]) -> Vec<Json> {
@@ -288,7 +288,7 @@ pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
         Value::Number(number) => (json!({"item": item.to_string(), "value": number}), number_text(item, *number)),
     };
     output.show(&json, &text)?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn number_text(item: &Item, number: i64) -> String {

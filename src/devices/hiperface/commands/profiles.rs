@@ -31,7 +31,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     save_profile(common, &save.file, Body::new(saved.profile))?;
     let json = json!({"file": save.file, "fields": fields, "locked": locked});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(fields, "data field")))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 impl ProfileCommands for HiperfaceCommands {
@@ -55,7 +55,7 @@ impl ProfileCommands for HiperfaceCommands {
         if let Some(text) = explain::undeleted_fields_text(&prepared.created_left) {
             output.print_message(&text.terminal_text());
         }
-        for item in prepared.missing.iter().filter(|item| restore.concerns(&item.to_string())) {
+        for item in prepared.missing.iter().filter(|item| restore.must_report(&item.to_string())) {
             output.print_message(&format!(
                 "{item} is not restored: it is missing in the profile or the encoder, or cannot be read"
             ));

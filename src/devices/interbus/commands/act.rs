@@ -65,7 +65,7 @@ fn restore_mode(common: &CommonArgs, output: &Output) -> Result {
     let json = json!({"done": "lead-back", "mode": mode(now), "word": word});
     let Reply::Error(error) = reading.reply() else {
         output.show(&json, &format!("the encoder runs, in mode {is}\n"))?;
-        return Ok(Success::Well);
+        return Ok(Success::Completed);
     };
     output.show(&json, &format!("the encoder is in mode {is}\n"))?;
     let why = explain::error_word_text(error).terminal_text();

@@ -31,7 +31,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
         "steps_minus_one": identity.flags.steps_minus_one(),
     });
     output.show(&json, &identity_text(&identity))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn identity_text(identity: &Identity) -> String {
@@ -88,7 +88,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
         "operating_minutes": status.operating_minutes,
     });
     output.show(&json, &status_text(&status))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 /// Returns the bits of a position word that should be 0 but are set, with a message.
@@ -145,5 +145,5 @@ pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
     }
     let text = if unit.is_empty() { format!("{value}\n") } else { format!("{value} {unit}\n") };
     output.show(&json, &text)?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }

@@ -28,7 +28,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     save_profile(common, &save.file, Body::new(profile))?;
     let json = json!({"file": save.file, "programs": programs});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(programs, "cam program")))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 impl ProfileCommands for InterbusCommands {

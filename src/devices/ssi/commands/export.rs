@@ -64,7 +64,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
             output.show(&json!({ "file": path.display().to_string() }), "")?;
         }
     }
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn too_wide_failure(error: TooWideError) -> Failure {

@@ -36,7 +36,7 @@ pub(super) fn find(output: &Output, SsiFindArgs { file, clocks }: &SsiFindArgs) 
     if search.classes.is_empty() {
         return Err(to_failure(&explain::uncertainty_text(search.doubt)));
     }
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 fn json(search: &Search, families: &Families) -> Json {

@@ -22,7 +22,7 @@ pub(super) fn decode(output: &Output, SsiDecodeArgs { layout: spec, frames }: &S
         let told = DecodedFrame::new(&layout, frame);
         output.show(&told.json(), &told.text())?;
     }
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 pub(super) struct DecodedFrame<'a> {
@@ -157,7 +157,7 @@ pub(super) fn encode(output: &Output, arguments: &SsiEncodeArgs) -> Result {
     let mut lines = Lines::default();
     lines.add_line("bits", &bits).add_line("hex", &hex).add_line("frame", fields(&layout, frame));
     output.show(&json!({ "bits": bits, "hex": hex }), &lines.text())?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 /// Returns the position given by `--position`, or by `--turns` and `--steps`. If both are given, they must agree.

@@ -166,7 +166,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &Status) -> R
     let finding_lines =
         findings.iter().map(|finding| format!("{}\n", explained::finding_text(finding).terminal_text()));
     output.show(&json, &(lines.text() + &finding_lines.collect::<String>()))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 /// Converts a finding to JSON. The result includes the clock number if the finding concerns a single clock.

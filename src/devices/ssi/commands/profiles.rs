@@ -29,7 +29,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     write(&save.file, &profile_document(profile).emit())?;
     let json = json!({"file": save.file, "clocks": clocks});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(clocks.into(), "clock")))?;
-    Ok(Success::Well)
+    Ok(Success::Completed)
 }
 
 /// Creates a profile document. It has no time stamp, because the layout was not read from a device.

@@ -39,7 +39,7 @@ impl CliDevice for Ssi {
 pub(super) fn open_runner(common: &CommonArgs, output: &Output, chosen: &SelectedLayout) -> Result<Runner> {
     let mut runner = Runner::open(common)?;
     let names = |name: &str| common.link.as_ref().is_some_and(|url| url.query.get(name).is_some());
-    let (own, reading) = (runner.kept, chosen.profile.reading);
+    let (own, reading) = (runner.context, chosen.profile.reading);
     let asking = ClockSettings {
         clocks: chosen.layout.clock_count(),
         clock_hz: if names("clock") { own.clock_hz } else { reading.clock_hz },
