@@ -27,7 +27,7 @@ pub enum AllowedValues {
     Speed { most: u32 },
     /// A speed in revolutions per minute, in one direction only.
     #[error("a speed from 0 to {most} rpm")]
-    RevolutionsAMinute { most: u32 },
+    UnidirectionalSpeed { most: u32 },
     #[error("{low} to {high} seconds")]
     Seconds { low: Limit, high: Limit },
     #[error("a bit rate from {low} to {high} bit/s, usually 115200")]
@@ -70,7 +70,7 @@ pub enum AllowedValues {
     #[error("NUMBER:HEX for the access codes 0 to 3, separated by commas, such as 0:55,2:66")]
     AccessCodes,
     #[error("a firmware version such as 1.6.0")]
-    Release,
+    FirmwareVersion,
     #[error("a value of the error register from 0x00 to 0xFF")]
     ErrorRegister,
     #[error("the number of flash write cycles that the encoder has used so far")]

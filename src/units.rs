@@ -143,7 +143,7 @@ impl fmt::Display for CharacterFormat {
 pub struct SupplyVoltage {
     /// Minimum voltage at which the encoder works.
     pub least: u16,
-    pub given: u16,
+    pub nominal: u16,
     pub greatest: u16,
 }
 

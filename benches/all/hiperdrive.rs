@@ -113,7 +113,7 @@ trait DeviceConnection {
 }
 
 /// A function that opens a connection to a drive.
-type Begin = fn() -> (Box<dyn DeviceConnection>, Target);
+type OpenConnection = fn() -> (Box<dyn DeviceConnection>, Target);
 
 /// The program's own connection.
 struct Ours {
@@ -254,7 +254,7 @@ fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f6
 }
 
 /// Measures the intervals between packets, both on arrival at the target's socket and on arrival at the host.
-fn evenness(way: &dyn DeviceConnection, target: &Target, time: Duration) -> [Histogram; 2] {
+fn measure_intervals(way: &dyn DeviceConnection, target: &Target, time: Duration) -> [Histogram; 2] {
     sleep(INTERVAL * 5);
     target.words.try_iter().for_each(drop);
     let end = Instant::now() + time;
@@ -301,7 +301,7 @@ fn setting(name: &str, otherwise: usize) -> usize {
 pub(crate) fn run() {
     let count = setting("HIPERDRIVE_RELEASES", 200);
     let time = Duration::from_secs(setting("HIPERDRIVE_SECONDS", 20) as u64);
-    let ways: [Begin; 2] = [ours, naive];
+    let ways: [OpenConnection; 2] = [ours, naive];
     println!("From a release to the stop word at the socket, {count} releases at 10 ms (asked for: at most 15 ms)\n");
     for way in ways {
         let (way, target) = way();
@@ -318,7 +318,7 @@ pub(crate) fn run() {
         sleep(Duration::from_secs(2));
         let used = (processor_seconds() - before) / 2.0 * 100.0;
         let (end, drawing) = window();
-        let [sent, came] = evenness(way.as_ref(), &target, time);
+        let [sent, came] = measure_intervals(way.as_ref(), &target, time);
         end.store(true, Ordering::Relaxed);
         drawing.join().unwrap();
         let seconds = time.as_secs();

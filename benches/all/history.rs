@@ -29,7 +29,7 @@ pub(crate) fn run(parts: &[String]) {
         ] {
             let history = filled(kind, SIGNALS, flagged);
             println!("{SIGNALS} × 10 M samples, {label}:");
-            pictures(&history);
+            measure_frame_times(&history);
             statistics(&history);
             memory(&history, SIGNALS);
         }
@@ -125,12 +125,12 @@ fn append(batch: usize) {
     println!("append {SIGNALS} columns in batches of {batch}, median of {ROUNDS}, a value:");
     println!("  plain vectors {naive:6.2} ns, worst stall {naive_worst:8.1} µs");
     println!("  history       {ours:6.2} ns, worst stall {worst:8.1} µs, {:.2} × the time", ours / naive);
-    let (copy, copy_worst) = copies(&times(0, batch), &columns, batches);
+    let (copy, copy_worst) = measure_copies(&times(0, batch), &columns, batches);
     println!("  a bare copy   {:6.2} ns, worst stall {:8.1} µs", each(copy), micros(copy_worst));
 }
 
 /// Returns the total time of all batches, the median, and the worst one.
-fn copies(times: &[SampleTime], columns: &[Vec<f64>], batches: usize) -> (Duration, Duration) {
+fn measure_copies(times: &[SampleTime], columns: &[Vec<f64>], batches: usize) -> (Duration, Duration) {
     let mut least = vec![Duration::MAX; batches];
     let mut totals: Vec<Duration> = (0..ROUNDS)
         .map(|_| {
@@ -151,7 +151,7 @@ fn copies(times: &[SampleTime], columns: &[Vec<f64>], batches: usize) -> (Durati
 }
 
 /// Measures the frame times while the view moves by a tenth of a pixel column per frame.
-fn pictures(history: &History) {
+fn measure_frame_times(history: &History) {
     let all = history.indices();
     let (first, last) = (history.time(all.start).unwrap(), history.time(all.end - 1).unwrap());
     let span = last.nanoseconds_since(first);

@@ -47,12 +47,12 @@ pub(crate) fn run(parts: &[String]) {
     println!("a window with nothing in it:           {} ms", median(&mut least));
     let mut child = display.start(program, &[], folder.path());
     thread::sleep(Duration::from_secs(3));
-    println!("idle, connected to the virtual encoder: {:.2} % of a processor", busy(&child));
+    println!("idle, connected to the virtual encoder: {:.2} % of a processor", cpu_percent(&child));
     println!("resident memory of the same:            {:.0} MB", resident_mb(child.id()));
     end(&mut child);
     let mut child = display.start(program, &["--profile", "profiles/hiperface/multiturn-skm36.ron"], folder.path());
     thread::sleep(Duration::from_secs(3));
-    println!("idle, a profile open:                   {:.2} % of a processor", busy(&child));
+    println!("idle, a profile open:                   {:.2} % of a processor", cpu_percent(&child));
     end(&mut child);
     let capture = folder.path().join("capture.csv");
     write_capture(&capture);
@@ -300,7 +300,7 @@ fn resident_mb(process: u32) -> f64 {
 }
 
 /// Returns the CPU usage of a child process over ten seconds, in percent of one core.
-fn busy(child: &Child) -> f64 {
+fn cpu_percent(child: &Child) -> f64 {
     let ticks = || -> f64 {
         let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).unwrap();
         let fields: Vec<&str> = stat.rsplit(") ").next().unwrap().split(' ').collect();

@@ -57,8 +57,8 @@ impl Family {
     /// AFS and AFM60 encoders with sine and cosine (4.5 V to 5.5 V).
     pub const fn supply_voltage(self) -> SupplyVoltage {
         match self {
-            Family::Hiperface | Family::Ttk70 => SupplyVoltage { least: 7_000, given: 8_000, greatest: 12_000 },
-            Family::AfsAfm60 => SupplyVoltage { least: 4_500, given: 5_000, greatest: 5_500 },
+            Family::Hiperface | Family::Ttk70 => SupplyVoltage { least: 7_000, nominal: 8_000, greatest: 12_000 },
+            Family::AfsAfm60 => SupplyVoltage { least: 4_500, nominal: 5_000, greatest: 5_500 },
         }
     }
 

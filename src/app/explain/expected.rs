@@ -19,7 +19,7 @@ pub fn expected_text(expected: &AllowedValues) -> Text {
         AllowedValues::Whole => Text::new("expected.whole"),
         AllowedValues::Number32 => Text::new("expected.number_32"),
         AllowedValues::Speed { most } => Text::new("expected.speed").with("most", most),
-        AllowedValues::RevolutionsAMinute { most } => Text::new("expected.revolutions").with("most", most),
+        AllowedValues::UnidirectionalSpeed { most } => Text::new("expected.revolutions").with("most", most),
         AllowedValues::Seconds { low, high } => {
             Text::new("expected.seconds").with_formatted_number("low", low).with_formatted_number("high", high)
         }
@@ -44,7 +44,7 @@ pub fn expected_text(expected: &AllowedValues) -> Text {
         AllowedValues::Ascii { most } => Text::new("expected.ascii").with("most", most),
         AllowedValues::Steps => Text::new("expected.steps"),
         AllowedValues::AccessCodes => Text::new("expected.access_codes"),
-        AllowedValues::Release => Text::new("expected.release"),
+        AllowedValues::FirmwareVersion => Text::new("expected.release"),
         AllowedValues::ErrorRegister => Text::new("expected.error_register"),
         AllowedValues::WriteCycles => Text::new("expected.write_cycles"),
         AllowedValues::Stores => Text::new("expected.stores"),
@@ -155,7 +155,7 @@ mod tests {
             AllowedValues::Whole,
             AllowedValues::Number32,
             AllowedValues::Speed { most: 12_000 },
-            AllowedValues::RevolutionsAMinute { most: 1000 },
+            AllowedValues::UnidirectionalSpeed { most: 1000 },
             AllowedValues::Seconds { low: Limit::from_thousandths(500), high: 60.into() },
             AllowedValues::BitRate { low: 300, high: 4_000_000 },
             AllowedValues::Periods { most: 7 },
@@ -174,7 +174,7 @@ mod tests {
             AllowedValues::Ascii { most: 32 },
             AllowedValues::Steps,
             AllowedValues::AccessCodes,
-            AllowedValues::Release,
+            AllowedValues::FirmwareVersion,
             AllowedValues::ErrorRegister,
             AllowedValues::WriteCycles,
             AllowedValues::Stores,

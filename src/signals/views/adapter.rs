@@ -78,6 +78,6 @@ fn supply_text(theme: &Theme, family: Family) -> String {
     let voltage = family.supply_voltage();
     let volts = |millivolt: u16| f64::from(millivolt) / 1000.0;
     let text = TEXTS.text("adapter.supply_of").with("family", family.name());
-    let text = text.with_number("volts", volts(voltage.given), 1).with_number("least", volts(voltage.least), 1);
+    let text = text.with_number("volts", volts(voltage.nominal), 1).with_number("least", volts(voltage.least), 1);
     theme.format_text(&text.with_number("greatest", volts(voltage.greatest), 1))
 }

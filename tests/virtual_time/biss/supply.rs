@@ -32,7 +32,7 @@ fn switches_off_own_supply() {
 /// A supply that streaming has switched on is switched off again. One that was already on stays on (issue 22.16).
 #[test]
 fn streaming_signals_restores_supply() {
-    let volts = SupplyVoltage { least: 4_750, given: 5_000, greatest: 12_500 };
+    let volts = SupplyVoltage { least: 4_750, nominal: 5_000, greatest: 12_500 };
     let mut bench = Bench::supplied(On);
     assert!(bench.stream_signals(Some(volts)) && !has_power(&bench));
     assert!(!bench.stream_signals(None) && !has_power(&bench));

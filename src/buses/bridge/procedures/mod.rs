@@ -205,16 +205,16 @@ impl Adapter<'_, '_> {
         {
             return Err(AdapterError::NoSupply { name: hello.name.clone() }.into());
         }
-        let SupplyVoltage { given, greatest, .. } = voltage;
+        let SupplyVoltage { nominal, greatest, .. } = voltage;
         // The supply may be on even if the reply is lost.
         self.adapter.power.is_switched_on = true;
-        let answered = self.send_request(&Request::Supply { on: true, millivolt: given })?;
+        let answered = self.send_request(&Request::Supply { on: true, millivolt: nominal })?;
         let Reply::Supply { millivolt: measured, milliampere, .. } = answered.reply else {
             return Err(AdapterError::unexpected_reply(Operation::Supply, &answered.reply).into());
         };
         if measured > greatest {
             self.switch_off()?;
-            return Err(AdapterError::Overvoltage { given, measured, greatest }.into());
+            return Err(AdapterError::Overvoltage { given: nominal, measured, greatest }.into());
         }
         Ok((measured, milliampere))
     }

@@ -155,7 +155,7 @@ impl Supply {
 
     /// Returns the requested supply voltage with the allowed range of the kit encoder.
     pub(crate) const fn with_voltage(millivolt: u16) -> SupplyVoltage {
-        SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: *Self::RANGE.end() }
+        SupplyVoltage { least: *Self::RANGE.start(), nominal: millivolt, greatest: *Self::RANGE.end() }
     }
 }
 

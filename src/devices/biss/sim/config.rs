@@ -18,11 +18,11 @@ parameters! {
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
-        pub(super) firmware: Firmware = Firmware::new(1, 6, 0), "firmware" => CustomNotation(AllowedValues::Release, firmware);
+        pub(super) firmware: Firmware = Firmware::new(1, 6, 0), "firmware" => CustomNotation(AllowedValues::FirmwareVersion, firmware);
         pub(super) serial_number: u32 = 0x0012_D687, "serial" => CustomNotation(AllowedValues::Number32, parse_whole::<u32>);
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
         pub(super) reverses: bool = false, "motor" => Keywords(&[("steady", false), ("reverse", true)]);
-        pub(super) waver: f64 = 0.5, "waver" => CustomNotation(AllowedValues::RevolutionsAMinute { most: 1000 }, |text| parse_in_range(text, 0.0..=1000.0));
+        pub(super) waver: f64 = 0.5, "waver" => CustomNotation(AllowedValues::UnidirectionalSpeed { most: 1000 }, |text| parse_in_range(text, 0.0..=1000.0));
         pub(super) position: u64 = 0x1234 << 17 | 0x18000, "position" => WholeNumbers(Quantity::Position, 0..=(1 << 33) - 1);
         pub(super) temperature: i16 = 30, "temperature" => WholeNumbers(Quantity::WholeCelsius, -50..=205);
         pub(super) errors: u8 = 0, "errors" => CustomNotation(AllowedValues::ErrorRegister, parse_whole::<u8>);

@@ -53,7 +53,7 @@ const POWER_UP: Duration = Duration::from_secs(1);
 impl AdapterParameters {
     /// Returns the supply that the adapter switches on, or `None` if it leaves the supply unchanged.
     pub fn supply(&self) -> Option<LineSupply> {
-        let voltage = |given| SupplyVoltage { least: *SUPPLY_RANGE.start(), given, greatest: *SUPPLY_RANGE.end() };
+        let voltage = |nominal| SupplyVoltage { least: *SUPPLY_RANGE.start(), nominal, greatest: *SUPPLY_RANGE.end() };
         self.millivolt.map(|given| LineSupply { voltage: voltage(given), power_up: POWER_UP })
     }
 }

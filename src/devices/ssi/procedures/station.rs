@@ -90,7 +90,7 @@ impl Supply {
     /// Returns the supply voltage with its limits. The encoder is unknown, so the upper limit is 10 % above the
     /// requested voltage. An AFS60 at 5 V, for example, allows 4.5 to 5.5 V.
     pub(super) const fn with_voltage(millivolt: u16) -> SupplyVoltage {
-        SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: millivolt + millivolt / 10 }
+        SupplyVoltage { least: *Self::RANGE.start(), nominal: millivolt, greatest: millivolt + millivolt / 10 }
     }
 }
 
@@ -181,7 +181,7 @@ mod tests {
             (own.line.margin, own.to_string()),
             (Duration::from_millis(5), "SSI of 25 clocks at 1500000 Hz".into())
         );
-        assert_eq!(Supply::with_voltage(5_000), SupplyVoltage { least: 4_500, given: 5_000, greatest: 5_500 });
+        assert_eq!(Supply::with_voltage(5_000), SupplyVoltage { least: 4_500, nominal: 5_000, greatest: 5_500 });
     }
 
     #[test]
