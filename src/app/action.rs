@@ -4,7 +4,7 @@ use std::any::Any;
 use std::path::PathBuf;
 
 use super::company_form::CompanyAction;
-use super::comparison::{ComparisonAction, Moments, Side};
+use super::comparison::{ComparisonAction, ComparisonCandidates, Side};
 use super::devices::{AnyDevice, DeviceCommand, OpenProfile};
 use super::diverged::{ConflictResolution, ProfileConflict};
 use super::file_question::FileQuestion;
@@ -38,7 +38,7 @@ pub enum Action {
     /// Show live values without (`true`) or with their plot.
     ShowValuesAlone(bool),
     /// Store the new size of the window, in points.
-    KeepSize(u32, u32),
+    StoreWindowSize(u32, u32),
     Select(SessionId),
     /// End a session. If the session has edits, the user is asked first.
     CloseSession(SessionId),
@@ -46,7 +46,7 @@ pub enum Action {
     StopMotion,
     /// End all motions that last while a button is held, because the window has lost the keyboard focus or a dialog
     /// covers it.
-    LetGo,
+    ReleaseMotion,
     /// Handle the Escape key: stop the running job, or else close the dialog.
     Escape,
     /// Close the window. The user is asked first if data would be lost.
@@ -82,7 +82,7 @@ pub enum Action {
     AddNote(DeviceKey, String),
     Recorder(RecorderOwner, recorder::RecorderAction),
     /// Clear a recording. The user is asked first if the recording is long.
-    AskForget(RecorderOwner),
+    AskClearRecording(RecorderOwner),
     /// Ask for the file to which a recording is exported as a table.
     AskTable {
         owner: RecorderOwner,
@@ -95,7 +95,7 @@ pub enum Action {
     /// Ask for the file to which a session's trace is written.
     AskTrace(SessionId),
     /// Report that no picture was taken, because the plot is not completely visible.
-    PictureCut,
+    PictureTruncated,
     Review(SessionId, ReviewAction),
     /// Execute a command that every kind of device supports. The session need not be the one shown.
     Command(SessionId, DeviceCommand),
@@ -123,7 +123,7 @@ pub enum ReviewAction {
 
 pub enum TaskResult {
     /// The check whether the target file of a save exists has ended.
-    Looked {
+    TargetChecked {
         question: FileQuestion,
         path: PathBuf,
         exists: bool,
@@ -148,7 +148,7 @@ pub enum TaskResult {
         result: Result<Box<ProfileDocument>, ReadError>,
     },
     /// The backups and logbook entries that can be compared with a kind of device were listed.
-    Moments(Box<Moments>),
+    ComparisonCandidates(Box<ComparisonCandidates>),
     Written {
         saving: Box<SaveRequest>,
         file: ProfileFile,
@@ -179,7 +179,7 @@ pub enum TaskResult {
     SettingsRead(LoadedSettings),
     SettingsKept(Result<SavedSettings, FileError>),
     /// The settings were read again while drives are under control. `None` means that there is no file.
-    SettingsSeen(Result<Option<Box<Settings>>, FileError>),
+    SettingsReread(Result<Option<Box<Settings>>, FileError>),
     Draft(SessionId, DraftOutcome),
     Listed(SessionId, DeviceKey, Box<DeviceHistory>),
     /// A logbook search has ended. The number identifies the search.
@@ -214,7 +214,7 @@ pub struct ConnectAttempt {
 pub struct OpenedConnection<D: Kind> {
     pub(super) worker: Worker<D>,
     /// Handle that stays with the window while the session runs on its thread.
-    pub(crate) aside: D::SessionHandle,
+    pub(crate) session_handle: D::SessionHandle,
     pub(super) url: crate::link::LinkUrl,
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
     pub(super) is_virtual: bool,

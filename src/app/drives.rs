@@ -99,7 +99,7 @@ impl RememberedDrives {
         RememberedDrives { pitches, measure, unsaved, ..RememberedDrives::default() }
     }
 
-    pub(crate) fn control_count(&self, drive: u8) -> u64 {
+    pub(crate) fn mark_count(&self, drive: u8) -> u64 {
         self.marks.get(&drive).copied().unwrap_or_default()
     }
 
@@ -115,9 +115,9 @@ impl RememberedDrives {
         }
     }
 
-    pub(crate) fn set_control_count(&mut self, drive: u8, times: u64) {
+    pub(crate) fn add_marks(&mut self, drive: u8, times: u64) {
         self.set_unconfirmed(drive, true);
-        self.marks.insert(drive, self.control_count(drive).wrapping_add(times));
+        self.marks.insert(drive, self.mark_count(drive).wrapping_add(times));
     }
 
     /// Returns the drives whose limits were marked as unconfirmed since `before`.
@@ -126,8 +126,8 @@ impl RememberedDrives {
     /// version that does not count marks contain no numbers.
     pub(crate) fn newly_marked_drives(&self, before: &RememberedDrives) -> Vec<u8> {
         let is_new = |drive: &u8| {
-            let number = self.control_count(*drive);
-            number != before.control_count(*drive) || number == 0 && !before.is_unconfirmed(*drive)
+            let number = self.mark_count(*drive);
+            number != before.mark_count(*drive) || number == 0 && !before.is_unconfirmed(*drive)
         };
         self.unconfirmed.iter().copied().filter(is_new).collect()
     }
@@ -146,12 +146,12 @@ impl RememberedDrives {
         }
         let locked = known.unconfirmed.iter().chain(&ours.unconfirmed).copied();
         for drive in drives([&known.marks, &ours.marks]).into_iter().chain(locked).collect::<BTreeSet<_>>() {
-            let marked_here = ours.control_count(drive).wrapping_sub(known.control_count(drive));
+            let marked_here = ours.mark_count(drive).wrapping_sub(known.mark_count(drive));
             let is_marked = ours.is_unconfirmed(drive) && (marked_here > 0 || !known.is_unconfirmed(drive));
             let is_confirmed = known.is_unconfirmed(drive) && !ours.is_unconfirmed(drive);
-            let is_same = self.control_count(drive) == known.control_count(drive);
+            let is_same = self.mark_count(drive) == known.mark_count(drive);
             if is_marked {
-                self.set_control_count(drive, marked_here);
+                self.add_marks(drive, marked_here);
             } else if is_confirmed && is_same {
                 self.set_unconfirmed(drive, false);
             }

@@ -43,7 +43,7 @@ impl Studio {
         }
         self.services.tasks.run("look", move || {
             let exists = path.exists();
-            Action::Done(TaskResult::Looked { question, path, exists })
+            Action::Done(TaskResult::TargetChecked { question, path, exists })
         });
     }
 

@@ -23,8 +23,8 @@ impl Studio {
     }
 
     /// Returns whether a motion requested in this window is running. The Escape key stops it before closing anything.
-    pub fn is_turned_by_hand(&self) -> bool {
-        self.motion_controls().any(MotionControl::is_turned_by_hand)
+    pub fn is_requested_motion_running(&self) -> bool {
+        self.motion_controls().any(MotionControl::is_requested_motion_running)
     }
 
     /// Returns whether a motion requested in this window has not ended yet.
@@ -40,7 +40,7 @@ impl Studio {
     /// Returns whether STOP has an effect on drives, because this window controls a drive or has requested a motion
     /// that has not ended. STOP cannot stop the motion of another controller.
     pub fn can_stop_motion(&self) -> bool {
-        self.has_control() || self.is_turned_by_hand()
+        self.has_control() || self.is_requested_motion_running()
     }
 
     pub(super) fn stop_motion(&mut self) {

@@ -232,7 +232,7 @@ fn open<D: Kind>(
         .map_or_else(|| D::open(url, world.store.clone()), |opener| opener.open(url, world.store.clone()))
         .map_err(|error| Box::new(OpenFailure::Link(error)))?;
     prepare(&mut session);
-    let (is_virtual, aside) = (session.is_virtual(), D::session_handle(&session));
+    let (is_virtual, session_handle) = (session.is_virtual(), D::session_handle(&session));
     let trace: Ring<TraceEntry> =
         Ring::with_byte_limit(FRAMES, FRAME_BYTES, |entry| entry.bytes.len() + size_of_val(entry));
     let (ring, last) = (trace.clone(), WakeOnDrop(wake.clone()));
@@ -242,7 +242,7 @@ fn open<D: Kind>(
     });
     match Worker::spawn(session, wake) {
         Ok(worker) => {
-            Ok(Box::new(OpenedConnection { worker, aside, trace, is_virtual, began, url: url.clone(), turn }))
+            Ok(Box::new(OpenedConnection { worker, session_handle, trace, is_virtual, began, url: url.clone(), turn }))
         }
         Err(error) => Err(Box::new(OpenFailure::Thread(error.to_string()))),
     }

@@ -95,7 +95,7 @@ impl<K: Reviewable> Review<K> {
     pub(in crate::app) fn adopt_plan(&mut self, mut prepared: Box<K::Prepared>) {
         if let Some(undone) = &self.undone {
             if let Some(texts) = undone.rejection(&*prepared) {
-                return self.end_early(texts, false, 0);
+                return self.abort(texts, false, 0);
             }
             K::retain_missing(&mut prepared, &|item| undone.concerns(item));
         }
@@ -130,7 +130,7 @@ impl<K: Reviewable> Review<K> {
     }
 
     /// Aborts the review. `done` is the number of completed operations, if the execution had begun.
-    pub(in crate::app) fn end_early(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
+    pub(in crate::app) fn abort(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
         let cut_off = self.plan_in_progress().filter(|_| begun).cloned().map(|prepared| (Box::new(prepared), done));
         self.state = ReviewState::Failed { texts, begun, cut_off };
     }

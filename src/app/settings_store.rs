@@ -200,7 +200,7 @@ impl SettingsStore {
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         services.tasks.run("settings", move || {
             let found = read_settings(&path, kinds).map(|found| found.map(Box::new));
-            Action::Done(TaskResult::SettingsSeen(found))
+            Action::Done(TaskResult::SettingsReread(found))
         });
         true
     }

@@ -107,7 +107,7 @@ impl Studio {
             Action::KeepLayout(layout) => self.settings.layout = Some(layout),
             Action::OpenLowerPanel(open) => self.settings.lower_open = open,
             Action::ShowValuesAlone(alone) => self.settings.values_alone = alone,
-            Action::KeepSize(width, height) => self.settings.size = Some((width, height)),
+            Action::StoreWindowSize(width, height) => self.settings.size = Some((width, height)),
             Action::Select(id) => {
                 if let Some(tab) = self.device(id).map(|device| device.tab()) {
                     self.show(tab, id);
@@ -116,7 +116,7 @@ impl Studio {
             Action::CloseSession(id) => self.close_session(id),
             Action::Stop => self.stop(),
             Action::StopMotion => self.stop_motion(),
-            Action::LetGo => self.release_jogs(),
+            Action::ReleaseMotion => self.release_jogs(),
             Action::Escape => self.press_escape(),
             Action::Close => self.close(),
             Action::Quit => self.force_quit(),
@@ -151,12 +151,12 @@ impl Studio {
             Action::Chosen(question, path) => self.handle_chosen_path(question, path),
             Action::Comparison(action) => self.apply_comparison_action(action),
             Action::Recorder(owner, action) => self.apply_recorder_action(owner, action),
-            Action::AskForget(owner) => self.confirm_discard_recording(owner),
+            Action::AskClearRecording(owner) => self.confirm_discard_recording(owner),
             Action::AskTable { owner, visible } => self.ask_table_path(owner, visible),
             Action::AskReport(owner) => self.ask_report_path(owner),
             Action::AskPicture(picture) => self.ask_picture_path(picture),
             Action::AskTrace(session) => self.ask_trace_path(session),
-            Action::PictureCut => self.notify_picture_truncated(),
+            Action::PictureTruncated => self.notify_picture_truncated(),
             Action::Review(id, action) => {
                 self.with_device(id, |device, services| device.apply_review_action(action, services))
             }
@@ -347,14 +347,14 @@ impl Studio {
             }
             TaskResult::Read { file, result, open } => self.read(file, result, open),
             TaskResult::Compare { side, path, result } => self.show_compared_profile(side, path, result),
-            TaskResult::Moments(moments) => self.show_moments(*moments),
+            TaskResult::ComparisonCandidates(candidates) => self.show_candidates(*candidates),
             TaskResult::Waited(what) => self.waited = self.waited.max(Some(what)),
-            TaskResult::Looked { question, path, exists: true } => {
+            TaskResult::TargetChecked { question, path, exists: true } => {
                 let text = Text::new("question.replace").with("path", path.display());
                 let confirm = Text::new("question.replace_it");
                 self.question = Some(Question::new(text, confirm, FollowUpAction::Write(question, path)));
             }
-            TaskResult::Looked { question, path, exists: false } => self.handle_chosen_path(question, path),
+            TaskResult::TargetChecked { question, path, exists: false } => self.handle_chosen_path(question, path),
             TaskResult::TableWritten(owner, exported) => self.finish_table_export(owner, exported),
             TaskResult::CompanyChecked(wanted, checked) => self.save_company(*wanted, checked),
             TaskResult::ReportWritten { path, result } => self.finish_report(&path, result),
@@ -370,8 +370,8 @@ impl Studio {
             TaskResult::SettingsKept(result) => {
                 self.settings_store.finish_write(result, &mut self.settings, &mut self.services)
             }
-            TaskResult::SettingsSeen(Ok(found)) => self.apply_read_settings(found.map(|found| *found)),
-            TaskResult::SettingsSeen(Err(error)) => self.handle_settings_error(&error),
+            TaskResult::SettingsReread(Ok(found)) => self.apply_read_settings(found.map(|found| *found)),
+            TaskResult::SettingsReread(Err(error)) => self.handle_settings_error(&error),
             TaskResult::Draft(id, done) => self.finish_draft(id, done),
             TaskResult::Listed(id, of, listed) => {
                 self.with_device(id, |device, _| device.set_history(&of, *listed));
@@ -405,7 +405,7 @@ impl Studio {
 
     fn press_escape(&mut self) {
         // Escape stops a motion before anything else.
-        if self.is_turned_by_hand() {
+        if self.is_requested_motion_running() {
             return self.stop_motion();
         }
         if self.dismiss_question() || self.diverged.take().is_some() || self.close_comparison() {

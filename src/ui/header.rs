@@ -227,7 +227,7 @@ fn link_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 /// drive, the button is twice as wide, acts on press instead of release, and ends only motion. The tooltip states what
 /// a press would stop.
 fn stop_button_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    let (moves, by_hand) = (shows_stop_overlay(studio), studio.is_turned_by_hand());
+    let (moves, by_hand) = (shows_stop_overlay(studio), studio.is_requested_motion_running());
     let active = studio.can_stop_motion() || studio.can_stop();
     // Live values alone are no reason for an alarm.
     let is_alarming = moves || studio.is_working() || studio.has_control();

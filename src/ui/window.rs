@@ -195,7 +195,7 @@ impl Window {
         self.close_heard = true;
         // No frame contains the jog buttons of a minimised window.
         if self.studio.is_motion_active() && ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
-            self.studio.handle_action(Action::LetGo);
+            self.studio.handle_action(Action::ReleaseMotion);
         }
         if !self.studio.is_closing() && !self.studio.drive_stop_handles().has_begun() {
             if ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
@@ -234,7 +234,7 @@ impl Window {
         }
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         actions.extend(dropped.iter().map(|file| Action::Open(file.path().to_owned())));
-        let (moves, asks) = (self.studio.is_turned_by_hand(), self.is_asking());
+        let (moves, asks) = (self.studio.is_requested_motion_running(), self.is_asking());
         if self.keys.filter_events(ctx, moves, asks) {
             actions.push(Action::StopMotion);
         }
@@ -247,7 +247,7 @@ impl Window {
         if covered || !ctx.input(|input| input.focused) {
             // The held button is not visible, or the release of its key will not be reported. The effect is already in
             // this frame. An action would request another frame each time.
-            self.studio.handle_action(Action::LetGo);
+            self.studio.handle_action(Action::ReleaseMotion);
         }
         if self.has_open_dialog() {
             return;
@@ -317,7 +317,7 @@ impl Window {
     /// open menu or a drag in progress is cancelled first.
     fn handle_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
         // While this window moves a drive, Esc applies to the motion, even if something is open or dragged.
-        let moves = self.studio.is_turned_by_hand();
+        let moves = self.studio.is_requested_motion_running();
         let press_began = stop_debounce::is_escape_pressed(ctx);
         let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
         if !is_pressed && press_began && moves {
@@ -353,7 +353,7 @@ impl Window {
         let size = ctx.content_rect().size();
         let size = (size.x.round() as u32, size.y.round() as u32);
         if self.studio.settings.size != Some(size) {
-            self.studio.handle_action(Action::KeepSize(size.0, size.1));
+            self.studio.handle_action(Action::StoreWindowSize(size.0, size.1));
         }
         if self.studio.can_close() {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);

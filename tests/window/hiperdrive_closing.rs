@@ -74,7 +74,7 @@ fn the_close_question_follows_the_stop_and_nothing_resumes() {
         assert!(began.elapsed() < LONG, "it moves under the question");
         std::thread::sleep(Duration::from_millis(1));
     }
-    desk.until("the window knows it", |studio| !studio.is_turned_by_hand());
+    desk.until("the window knows it", |studio| !studio.is_requested_motion_running());
     desk.act(Action::Escape);
     assert!(desk.studio.question.is_none());
     for _ in 0..300 {

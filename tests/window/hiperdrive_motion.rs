@@ -116,7 +116,7 @@ fn a_frozen_window_stops_motion() {
 fn hiding_the_jog_pad_ends_a_jog_immediately() {
     type Cover = fn(&mut Desk);
     let covers: [(&str, Cover); 14] = [
-        ("focus", |desk| desk.act(Action::LetGo)),
+        ("focus", |desk| desk.act(Action::ReleaseMotion)),
         ("tab", |desk| desk.act(Action::ShowTab(crate::tabs::BISS))),
         ("dialog", |desk| desk.connect(connect::ConnectAction::Open)),
         // The jog ends with the request for the dialog, because the system may take half a second to show it.
@@ -168,7 +168,7 @@ fn a_move_continues_in_another_tab_and_ends_with_stop() {
     let mut desk = in_control("sim:");
     let goes_on = while_it_moves(&mut desk, |desk| {
         desk.act(Action::ShowTab(crate::tabs::BISS));
-        desk.act(Action::LetGo);
+        desk.act(Action::ReleaseMotion);
         for _ in 0..400 {
             desk.studio.poll();
             std::thread::sleep(Duration::from_millis(1));

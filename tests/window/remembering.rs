@@ -31,7 +31,7 @@ fn theme_language_layout_and_links_are_remembered() {
     desk.act(Action::SetTheme(ColorScheme::Light));
     desk.act(Action::SetLanguage(Language::German));
     desk.act(Action::KeepLayout("(a layout)".to_owned()));
-    desk.act(Action::KeepSize(1500, 900));
+    desk.act(Action::StoreWindowSize(1500, 900));
     for port in [PORT, OTHER_PORT] {
         desk.open(&format!("serial:{port}"));
         desk.until_read();

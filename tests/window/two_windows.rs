@@ -89,7 +89,7 @@ fn changes_of_each_window_survive_the_others_write() {
     first.act(Action::SetTheme(ColorScheme::Light));
     first.studio.settings.use_link(crate::tabs::HIPERFACE, "tcp:first:1");
     second.act(Action::SetLanguage(Language::German));
-    second.act(Action::KeepSize(1500, 900));
+    second.act(Action::StoreWindowSize(1500, 900));
     second.studio.settings.use_link(crate::tabs::HIPERFACE, "tcp:second:1");
     let all = ["Light", "German", "1500", "tcp:first:1", "tcp:second:1"];
     poll_both_until([&mut first, &mut second], "both are kept", |first, _| settings_contain(first, &all));
@@ -238,7 +238,7 @@ fn concurrent_processes_lose_no_settings() {
 fn process_writing_forever() {
     let (mut studio, name) = studio_of_process();
     for number in 0_u32.. {
-        studio.handle_action(Action::KeepSize(number, 900));
+        studio.handle_action(Action::StoreWindowSize(number, 900));
         studio.settings.use_link(crate::tabs::BISS, &format!("tcp:{name}:{}", number % 7));
         studio.poll();
     }

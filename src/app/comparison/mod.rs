@@ -44,12 +44,12 @@ pub struct ComparisonView {
     shows_all: bool,
     rows: Option<Result<ComparedRows, Text>>,
     refusal: Option<Text>,
-    moments: Moments,
+    candidates: ComparisonCandidates,
 }
 
 /// Backups, and logbook entries with a backup, for one kind of device.
 #[derive(Debug, Default)]
-pub struct Moments {
+pub struct ComparisonCandidates {
     /// Kind of device, or `None` before it is known.
     kind: Option<&'static str>,
     /// Backups of the open devices that belong to no listed entry, newest first.
@@ -112,7 +112,7 @@ impl Studio {
         let is_of_kind = |device: &&AnyDevice| kind.is_none() || self.kind_of(*device) == kind;
         let sessions = self.devices.iter().map(Box::as_ref).filter(is_of_kind);
         let sessions = sessions.map(|device| ComparisonSource::Session(device.id()));
-        let Moments { backups, entries, .. } = &view.moments;
+        let ComparisonCandidates { backups, entries, .. } = &view.candidates;
         let backups = backups.iter().cloned().map(ComparisonSource::Backup);
         sessions
             .chain(backups)
@@ -212,10 +212,10 @@ impl Studio {
         if view.rows.is_none() {
             view.rows = self.compare_sides(&view);
         }
-        let kind = view.kind().filter(|kind| view.moments.kind != Some(kind));
+        let kind = view.kind().filter(|kind| view.candidates.kind != Some(kind));
         self.comparison = Some(view);
         if let Some(kind) = kind {
-            self.list_moments(kind);
+            self.list_candidates(kind);
         }
     }
 
@@ -248,24 +248,28 @@ impl Studio {
     }
 
     /// Starts a task that lists the backups and logbook entries that can be compared with a kind of device.
-    fn list_moments(&mut self, kind: &'static str) {
+    fn list_candidates(&mut self, kind: &'static str) {
         let Some(view) = &mut self.comparison else { return };
-        view.moments = Moments { kind: Some(kind), ..Moments::default() };
+        view.candidates = ComparisonCandidates { kind: Some(kind), ..ComparisonCandidates::default() };
         let of_kind = self.devices.iter().filter_map(|device| device.logbook_key()).filter(|key| key.kind == kind);
         let (devices, store): (Vec<DeviceKey>, _) = (of_kind.collect(), self.services.world.store.clone());
-        self.services.tasks.run("moments", move || {
+        self.services.tasks.run("candidates", move || {
             let entries = entries_with_backup(&store, kind).unwrap_or_default();
             let is_listed = |backup: &Backup| entries.iter().any(|own| own.backup.as_deref() == Some(&backup.path));
             let of_device =
                 |key: &DeviceKey| store.backups().list_for(&key.kind, &key.serial_number).unwrap_or_default();
             let backups = devices.iter().flat_map(of_device).filter(|backup| !is_listed(backup)).collect();
-            Action::Done(TaskResult::Moments(Box::new(Moments { kind: Some(kind), backups, entries })))
+            Action::Done(TaskResult::ComparisonCandidates(Box::new(ComparisonCandidates {
+                kind: Some(kind),
+                backups,
+                entries,
+            })))
         });
     }
 
-    pub(super) fn show_moments(&mut self, moments: Moments) {
-        if let Some(view) = self.comparison.as_mut().filter(|view| view.moments.kind == moments.kind) {
-            view.moments = moments;
+    pub(super) fn show_candidates(&mut self, candidates: ComparisonCandidates) {
+        if let Some(view) = self.comparison.as_mut().filter(|view| view.candidates.kind == candidates.kind) {
+            view.candidates = candidates;
         }
     }
 }

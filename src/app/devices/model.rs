@@ -304,7 +304,7 @@ pub trait MotionControl {
     fn is_moving(&self) -> bool;
 
     /// Returns whether a drive is moving, or about to move, because of a request from this window.
-    fn is_turned_by_hand(&self) -> bool;
+    fn is_requested_motion_running(&self) -> bool;
 
     /// Returns whether a motion requested in this window has not ended yet.
     fn is_motion_active(&self) -> bool;

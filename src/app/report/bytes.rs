@@ -31,7 +31,7 @@ pub fn byte_table(
             if whole_rows > ROW && meaning(at..at + whole_rows).is_empty() { at + whole_rows } else { at + row.len() };
         let cells = if end > at + row.len() {
             let repeated = Text::new("report.repeated").with("count", end - at).with("byte", format!("{byte:02X}"));
-            [address(at), context.say(repeated), String::new(), String::new()]
+            [address(at), context.localize(repeated), String::new(), String::new()]
         } else {
             let text = row.iter().map(|byte| ascii(*byte).unwrap_or(UNPRINTABLE)).collect();
             [address(at), hex(row), text, meaning(at..end)]

@@ -28,20 +28,20 @@ impl<'a> ReportContext<'a> {
     }
 
     /// Returns a text in the report's language.
-    pub fn say(&self, text: impl Into<Text>) -> String {
+    pub fn localize(&self, text: impl Into<Text>) -> String {
         text.into().to_string_in(self.language)
     }
 
     /// Creates a label–value pair whose value is text.
     pub fn fact(&self, label: impl Into<Text>, value: impl Into<Text>) -> Fact {
-        Fact::new(self.say(label), self.say(value))
+        Fact::new(self.localize(label), self.localize(value))
     }
 
     /// Creates a label–value pair whose value is an identifier, an address or bytes. An empty value is shown as a dash.
     pub fn code(&self, label: impl Into<Text>, value: impl Into<String>) -> Fact {
         let value: String = value.into();
         let shown = if value.trim().is_empty() { NONE.to_owned() } else { value };
-        Fact::code(self.say(label), shown)
+        Fact::code(self.localize(label), shown)
     }
 
     /// Formats a number with the decimal separator of the report's language.
@@ -56,7 +56,7 @@ impl<'a> ReportContext<'a> {
 
     /// Creates a table without rows.
     pub fn table<const N: usize>(&self, columns: [(Text, CellStyle); N]) -> Table {
-        Table::new(columns.map(|(heading, style)| (self.say(heading), style)))
+        Table::new(columns.map(|(heading, style)| (self.localize(heading), style)))
     }
 }
 

@@ -91,9 +91,11 @@ impl History {
         }
         let count = self.write_cycles.map_or_else(|| Text::new("wear.unknown"), explain::cycle_count_text);
         let cycles = Text::new("report.cycles").with_text("cycles", count);
-        let mut history = Section::new(context.say("report.history")).with(Block::Paragraph(context.say(cycles)));
+        let mut history =
+            Section::new(context.localize("report.history")).with(Block::Paragraph(context.localize(cycles)));
         if self.has_more {
-            history = history.with(Block::Paragraph(context.say(Text::new("logbook.newest").with("count", LIMIT))));
+            history =
+                history.with(Block::Paragraph(context.localize(Text::new("logbook.newest").with("count", LIMIT))));
         }
         let history = history.with(Block::Table(self.table(context, kinds)));
         let backups = (!self.backups.is_empty()).then(|| self.backup_section(context));
@@ -117,13 +119,14 @@ impl History {
                 Some(Outcome::Done) | None => Mark::None,
             };
             let cycles = if entry.kind.has_result() { entry.write_cycles().to_string() } else { String::new() };
-            let mut first = [entry.id.to_string(), time(entry.at), what(context, entry, self.names_virtual), cycles];
+            let mut first =
+                [entry.id.to_string(), time(entry.at), entry_summary(context, entry, self.names_virtual), cycles];
             if entry.items.is_empty() {
                 table.add_marked_row(mark, first.into_iter().chain([description(entry), String::new(), String::new()]));
                 continue;
             }
             for item in &entry.items {
-                let name = context.say(kinds.item_name(&entry.device.kind, &item.item, item.name.as_deref()));
+                let name = context.localize(kinds.item_name(&entry.device.kind, &item.item, item.name.as_deref()));
                 let [old, new] = [&item.old, &item.new].map(|value| value.as_deref().unwrap_or(NONE).to_owned());
                 let begin = std::mem::take(&mut first);
                 table.add_marked_row(mark, begin.into_iter().chain([name, old, new]));
@@ -139,10 +142,10 @@ impl History {
             (Text::new("report.checksum"), CellStyle::Code),
         ]);
         for backup in &self.backups {
-            let checksum = backup.checksum.clone().unwrap_or_else(|why| context.say(why));
+            let checksum = backup.checksum.clone().unwrap_or_else(|why| context.localize(why));
             table.add_row([backup.entry.clone(), backup.name.clone(), checksum]);
         }
-        Section::new(context.say("report.backups")).with(Block::Table(table))
+        Section::new(context.localize("report.backups")).with(Block::Table(table))
     }
 }
 
@@ -168,15 +171,15 @@ fn description(entry: &Entry) -> String {
 }
 
 /// Describes an entry by its kind, its user and, for an incomplete write, the result.
-fn what(context: &ReportContext<'_>, entry: &Entry, names_virtual: bool) -> String {
-    let kind = context.say(entry_kind_text(entry.kind));
+fn entry_summary(context: &ReportContext<'_>, entry: &Entry, names_virtual: bool) -> String {
+    let kind = context.localize(entry_kind_text(entry.kind));
     let kind = if names_virtual && entry.device.is_virtual {
-        context.say(Text::new("logbook.virtual").with("device", kind))
+        context.localize(Text::new("logbook.virtual").with("device", kind))
     } else {
         kind
     };
     let is_done = entry.conclusion.as_ref().is_some_and(|end| end.outcome == Outcome::Done);
-    let result = outcome_text(entry).filter(|_| !is_done).map(|text| context.say(text));
+    let result = outcome_text(entry).filter(|_| !is_done).map(|text| context.localize(text));
     let parts = [Some(kind), result, entry.origin.user.clone()];
     parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
 }

@@ -100,7 +100,7 @@ impl ReportRequest {
             sections.push(comparison_section(&context, name, &compared));
         }
         sections.extend(history.sections(&context, kinds));
-        let subject = context.say(Text::new("report.subject").with("bus", kind.bus_name()));
+        let subject = context.localize(Text::new("report.subject").with("bus", kind.bus_name()));
         Ok(report(&context, subject, content.title, origin(&context, document, source, asset), sections))
     }
 }
@@ -113,10 +113,10 @@ pub fn data_report(
     asset: Option<&AssetName>,
     content: ReportContent,
 ) -> Report {
-    let mut origin = vec![Fact::new(context.say(source), name)];
-    origin.extend(asset.map(|asset| Fact::new(context.say("logbook.kind_assigned"), asset.to_string())));
+    let mut origin = vec![Fact::new(context.localize(source), name)];
+    origin.extend(asset.map(|asset| Fact::new(context.localize("logbook.kind_assigned"), asset.to_string())));
     origin.push(program_fact(context));
-    report(context, context.say(subject), content.title, origin, content.sections)
+    report(context, context.localize(subject), content.title, origin, content.sections)
 }
 
 fn report(
@@ -149,35 +149,35 @@ fn origin(
     asset: Option<String>,
 ) -> Vec<Fact> {
     let mut facts = vec![match source {
-        ReportSource::Profile(name) => Fact::new(context.say("report.profile"), name),
-        ReportSource::Device { link, .. } => Fact::new(context.say("report.link"), link),
+        ReportSource::Profile(name) => Fact::new(context.localize("report.profile"), name),
+        ReportSource::Device { link, .. } => Fact::new(context.localize("report.link"), link),
     }];
     if let Some(saved) = &document.saved {
         let shown = saved.parse().map_or_else(|_| saved.clone(), time);
-        facts.push(Fact::new(context.say("report.read_at"), shown));
+        facts.push(Fact::new(context.localize("report.read_at"), shown));
     }
     if let Some(note) = &document.note {
-        facts.push(Fact::new(context.say("report.note"), note));
+        facts.push(Fact::new(context.localize("report.note"), note));
     }
     if let Some(asset) = asset {
-        facts.push(Fact::new(context.say("logbook.kind_assigned"), asset));
+        facts.push(Fact::new(context.localize("logbook.kind_assigned"), asset));
     }
     facts.push(program_fact(context));
     facts
 }
 
 fn program_fact(context: &ReportContext<'_>) -> Fact {
-    Fact::new(context.say("report.program"), format!("encoder-studio {}", env!("CARGO_PKG_VERSION")))
+    Fact::new(context.localize("report.program"), format!("encoder-studio {}", env!("CARGO_PKG_VERSION")))
 }
 
 fn labels(context: &ReportContext<'_>) -> Labels {
     Labels {
-        number: context.say("report.number"),
-        content_hash: context.say("report.content_hash"),
-        printed: context.say("report.printed"),
-        page: context.say("report.page"),
-        of: context.say("report.of"),
-        no_certificate: context.say("report.no_certificate"),
-        signatures: ["report.made_by", "report.checked_by", "report.place_date"].map(|id| context.say(id)).into(),
+        number: context.localize("report.number"),
+        content_hash: context.localize("report.content_hash"),
+        printed: context.localize("report.printed"),
+        page: context.localize("report.page"),
+        of: context.localize("report.of"),
+        no_certificate: context.localize("report.no_certificate"),
+        signatures: ["report.made_by", "report.checked_by", "report.place_date"].map(|id| context.localize(id)).into(),
     }
 }

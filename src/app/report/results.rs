@@ -19,8 +19,8 @@ pub(super) fn result_section(context: &ReportContext<'_>, result: &SessionResult
     match result {
         SessionResult::Check(lines) => check_section(context, lines),
         SessionResult::Procedure { title, lines } => {
-            let paragraphs = lines.iter().map(|line| Block::Paragraph(context.say(line.clone())));
-            paragraphs.fold(Section::new(context.say(title.clone())), Section::with)
+            let paragraphs = lines.iter().map(|line| Block::Paragraph(context.localize(line.clone())));
+            paragraphs.fold(Section::new(context.localize(title.clone())), Section::with)
         }
     }
 }
@@ -38,9 +38,10 @@ fn check_section(context: &ReportContext<'_>, lines: &[CheckLine]) -> Section {
             Verdict::Attention => Mark::Warning,
             Verdict::Bad => Mark::Bad,
         };
-        let findings: Vec<String> = line.findings.iter().map(|text| context.say(text.clone())).collect();
-        let cells = [context.say(line.step.clone()), findings.join("; "), context.say(verdict_text(line.verdict))];
+        let findings: Vec<String> = line.findings.iter().map(|text| context.localize(text.clone())).collect();
+        let cells =
+            [context.localize(line.step.clone()), findings.join("; "), context.localize(verdict_text(line.verdict))];
         table.add_marked_row(mark, cells);
     }
-    Section::new(context.say("check_card.title")).with(Block::Table(table))
+    Section::new(context.localize("check_card.title")).with(Block::Table(table))
 }

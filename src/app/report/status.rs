@@ -25,9 +25,9 @@ pub struct DeviceReading {
 }
 
 pub(super) fn status_section(context: &ReportContext<'_>, status: &[StatusLine]) -> Section {
-    let section = Section::new(context.say("report.status"));
+    let section = Section::new(context.localize("report.status"));
     if status.is_empty() {
-        return section.with(Block::Paragraph(context.say("report.no_errors")));
+        return section.with(Block::Paragraph(context.localize("report.no_errors")));
     }
     let mut table = context.table([
         ("report.code".into(), CellStyle::Short),
@@ -36,13 +36,14 @@ pub(super) fn status_section(context: &ReportContext<'_>, status: &[StatusLine])
         ("report.verdict".into(), CellStyle::Short),
     ]);
     for line in status {
-        let advice: Vec<String> = line.advice.iter().map(|text| context.say(text.clone())).collect();
+        let advice: Vec<String> = line.advice.iter().map(|text| context.localize(text.clone())).collect();
         let verdict = Text::new(match line.mark {
             Mark::Bad => "report.error",
             Mark::Warning => "report.warning",
             Mark::Good | Mark::None => "report.earlier",
         });
-        let cells = [line.code.clone(), context.say(line.text.clone()), advice.join(" "), context.say(verdict)];
+        let cells =
+            [line.code.clone(), context.localize(line.text.clone()), advice.join(" "), context.localize(verdict)];
         table.add_marked_row(line.mark, cells);
     }
     section.with(Block::Table(table))

@@ -3,7 +3,7 @@
 
 #![warn(missing_docs)]
 
-use super::{EarlyEnd, HasDraft, HasSession, Kind, SessionEvents};
+use super::{HasDraft, HasSession, Interruption, Kind, SessionEvents};
 use crate::app::review::{
     self, OperationTexts, Permit, Review, ReviewSheet, ReviewState, Reviewable, UndoneEntry, written_texts,
 };
@@ -130,7 +130,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         let objection = self.change_rejection(&change);
         let review = self.review_mut().insert(review);
         if let Some(why) = objection {
-            return review.end_early(vec![why], false, 0);
+            return review.abort(vec![why], false, 0);
         }
         if !self.try_submit(Self::prepare_job(change), services) {
             *self.review_mut() = None;
@@ -171,7 +171,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         let Some(review) = self.review_mut() else { return };
         match objection {
             None => review.adopt_plan(prepared),
-            Some(why) => review.end_early(vec![why], false, 0),
+            Some(why) => review.abort(vec![why], false, 0),
         }
     }
 
@@ -259,17 +259,17 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
 
     /// Handles the interruption of a plan, and returns whether the review reports it. If the user cancels while the
     /// plan is being made, the review closes.
-    fn handle_interrupted_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
+    fn handle_interrupted_write(&mut self, how: Interruption<Error<Self>>, texts: &[Text]) -> bool {
         let Some(review) = self.open_review() else { return false };
         let (begun, done) = match (how, review.is_planning(), review.is_writing()) {
-            (_, false, false) | (EarlyEnd::Lost, _, false) => return false,
-            (EarlyEnd::Cancelled(_), true, _) => {
+            (_, false, false) | (Interruption::Lost, _, false) => return false,
+            (Interruption::Cancelled(_), true, _) => {
                 *self.review_mut() = None;
                 return false;
             }
             // The number of completed operations is not known.
-            (EarlyEnd::Lost, ..) => (true, 0),
-            (EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error), ..) => {
+            (Interruption::Lost, ..) => (true, 0),
+            (Interruption::Failed(error) | Interruption::Cancelled(error), ..) => {
                 let done = error.operations_done();
                 if done.is_some() {
                     self.schedule_rereads();
@@ -278,7 +278,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
             }
         };
         if let Some(review) = self.review_mut() {
-            review.end_early(texts.to_vec(), begun, done);
+            review.abort(texts.to_vec(), begun, done);
         }
         true
     }

@@ -27,7 +27,7 @@ pub use saved::{HasProfile, KnownProfile, unsaved_edits_remark};
 pub(in crate::app) use saving::DivergedFile;
 pub use saving::{FileSnapshot, ProfileFile, SaveRequest};
 pub(crate) use session_events::first;
-pub use session_events::{EarlyEnd, SessionEvents};
+pub use session_events::{Interruption, SessionEvents};
 pub use state::SessionState;
 
 use super::action::OpenedConnection;

@@ -19,7 +19,7 @@ type Sample<T> = <<T as HasSession>::Device as Device>::Sample;
 type JobStep<T> = <<T as HasSession>::Device as Device>::JobStep;
 
 /// The reason why a request was interrupted.
-pub enum EarlyEnd<'e, E> {
+pub enum Interruption<'e, E> {
     /// The user cancelled the request.
     Cancelled(&'e E),
     /// The request failed with this error.
@@ -62,7 +62,12 @@ pub trait SessionEvents: HasSession {
     }
 
     /// Handles the interruption of a job. Returns whether the review reports it.
-    fn handle_early_end(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
+    fn handle_interruption(
+        &mut self,
+        _how: Interruption<Error<Self>>,
+        _texts: &[Text],
+        _services: &mut Services,
+    ) -> bool {
         false
     }
 
@@ -149,7 +154,7 @@ pub trait SessionEvents: HasSession {
         services.end_job(self.session().id, id, JobState::Cancelled);
         self.session_mut().save_to = None;
         let (texts, begun) = (Self::Device::error_texts(error), error.has_begun());
-        let stands_there = self.handle_early_end(EarlyEnd::Cancelled(error), &texts, services);
+        let stands_there = self.handle_interruption(Interruption::Cancelled(error), &texts, services);
         let severity = if begun { Severity::Warning } else { Severity::Note };
         self.session().report_message(severity, texts, stands_there, services);
         if begun {
@@ -161,7 +166,7 @@ pub trait SessionEvents: HasSession {
     fn handle_failed_job(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         let texts = Self::Device::error_texts(error);
         services.end_job(self.session().id, id, JobState::Failed(first(&texts)));
-        let stands_there = self.handle_early_end(EarlyEnd::Failed(error), &texts, services);
+        let stands_there = self.handle_interruption(Interruption::Failed(error), &texts, services);
         self.session_mut().save_to = None;
         match Self::Device::connection_error(error) {
             Some(why) => self.connection_lost(why, services),
@@ -184,7 +189,7 @@ pub trait SessionEvents: HasSession {
         // The last frames are fetched because they best show the cause.
         self.fetch_samples_and_frames();
         self.discard_requests();
-        self.handle_early_end(EarlyEnd::Lost, std::slice::from_ref(&why), services);
+        self.handle_interruption(Interruption::Lost, std::slice::from_ref(&why), services);
         self.session_mut().connection_lost(why, services);
     }
 

@@ -105,7 +105,7 @@ impl Tool for Signals {
     fn report(&self) -> Option<CreateReport> {
         let measurement = self.measurement.clone()?;
         Some(Box::new(move |context| {
-            let name = context.say(measurement.origin.name());
+            let name = context.localize(measurement.origin.name());
             report::report(&measurement, name, None, context)
         }))
     }

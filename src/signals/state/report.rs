@@ -54,7 +54,7 @@ fn content(measurement: &Measurement, context: &ReportContext<'_>) -> Result<Rep
         sections.push(spectrum_section(context, spectra, analysis));
     }
     sections.push(error_section(context, analysis, settings.periods));
-    Ok(ReportContent { title: context.say(measurement.origin.name()), key: None, sections })
+    Ok(ReportContent { title: context.localize(measurement.origin.name()), key: None, sections })
 }
 
 fn quality_section(context: &ReportContext<'_>, quantities: &[Quantity], family: Family) -> Section {
@@ -76,16 +76,16 @@ fn quality_section(context: &ReportContext<'_>, quantities: &[Quantity], family:
         table.add_marked_row(
             mark,
             [
-                context.say(TEXTS.text(quantity.word)),
+                context.localize(TEXTS.text(quantity.word)),
                 context.number(quantity.value, quantity.decimals),
                 quantity.unit.unit_symbol().to_owned(),
                 quantity.bound.map(|bound| bound.format(plain)).unwrap_or_default(),
-                verdict.map(|id| context.say(TEXTS.text(id))).unwrap_or_default(),
+                verdict.map(|id| context.localize(TEXTS.text(id))).unwrap_or_default(),
             ],
         );
     }
-    let limits = Fact::new(context.say(TEXTS.text("quality.family")), family.name());
-    Section::new(context.say(TEXTS.text("report.sig_quality")))
+    let limits = Fact::new(context.localize(TEXTS.text("quality.family")), family.name());
+    Section::new(context.localize(TEXTS.text("report.sig_quality")))
         .with(Block::Facts(vec![limits]))
         .with(Block::Table(table))
 }
@@ -95,16 +95,16 @@ fn quantity_fact(context: &ReportContext<'_>, quantity: &Quantity) -> Fact {
     let shown = |value, decimals, unit: Unit| format!("{} {}", context.number(value, decimals), unit.unit_symbol());
     let also = quantity.also.map(|(value, decimals, unit)| format!(" ({})", shown(value, decimals, unit)));
     let value = shown(quantity.value, quantity.decimals, quantity.unit) + &also.unwrap_or_default();
-    Fact { style: CellStyle::Code, ..Fact::new(context.say(TEXTS.text(quantity.word)), value) }
+    Fact { style: CellStyle::Code, ..Fact::new(context.localize(TEXTS.text(quantity.word)), value) }
 }
 
 fn findings_section(context: &ReportContext<'_>, measurement: &Measurement) -> Section {
-    let section = Section::new(context.say(TEXTS.text("quality.findings")));
+    let section = Section::new(context.localize(TEXTS.text("quality.findings")));
     let findings = &measurement.diagnosis.findings;
     if findings.is_empty() {
-        return section.with(Block::Paragraph(context.say(TEXTS.text("quality.good"))));
+        return section.with(Block::Paragraph(context.localize(TEXTS.text("quality.good"))));
     }
-    let texts = findings.iter().map(|finding| Block::Paragraph(context.say(diagnosis_text(finding))));
+    let texts = findings.iter().map(|finding| Block::Paragraph(context.localize(diagnosis_text(finding))));
     texts.fold(section, Section::with)
 }
 
@@ -117,10 +117,10 @@ fn time_section(context: &ReportContext<'_>, measurement: &Measurement, analysis
     let curve = |values: &[f64], colour, id| {
         let points = capture.time_s.iter().zip(values).take(count);
         let points = points.map(|(time, volts)| (1e3 * (time - first), *volts)).collect();
-        Curve { points: thinned(points), colour, name: Some(context.say(TEXTS.text(id))) }
+        Curve { points: thinned(points), colour, name: Some(context.localize(TEXTS.text(id))) }
     };
     let curves = vec![curve(&capture.sine_v, SINE, "scope.sine"), curve(&capture.cosine_v, COSINE, "scope.cosine")];
-    let title = context.say(TEXTS.text("scope.title"));
+    let title = context.localize(TEXTS.text("scope.title"));
     let y = symmetric_range(&curves);
     let plot = plot(context, title.clone(), WIDE, (0.0, 1e3 * span), y, ("ms", "V"), curves);
     Some(Section::new(title).with(Block::Drawing(plot)))
@@ -141,7 +141,7 @@ fn lissajous_section(
         name,
     };
     let (least, most) = family.limits().ok_v;
-    let name = |id| Some(context.say(TEXTS.text(id)));
+    let name = |id| Some(context.localize(TEXTS.text(id)));
     let ellipse = circle(|angle| {
         let (sine, cosine) = analysis.ellipse.point_at(angle);
         (cosine, sine)
@@ -153,7 +153,7 @@ fn lissajous_section(
         Curve { points: ellipse, colour: CORRECTED, name: name("report.sig_ellipse") },
     ];
     let range = symmetric_range(&curves);
-    let title = context.say(TEXTS.text("quality.lissajous"));
+    let title = context.localize(TEXTS.text("quality.lissajous"));
     let plot = plot(context, title.clone(), SQUARE, range, range, ("cos (V)", "sin (V)"), curves);
     Section::new(title).with(Block::Drawing(plot))
 }
@@ -165,13 +165,13 @@ fn spectrum_section(context: &ReportContext<'_>, spectra: &Spectra, analysis: &A
         .map_or(most, |hz| (ORDERS * hz.abs()).clamp(spectra.spacing_hz, most.max(spectra.spacing_hz)));
     let curve = |lines: &[(f64, f64)], colour, id| {
         let points = lines.iter().filter(|(hz, _)| *hz <= range).map(|(hz, volts)| (hz / 1e3, *volts)).collect();
-        Curve { points, colour, name: Some(context.say(TEXTS.text(id))) }
+        Curve { points, colour, name: Some(context.localize(TEXTS.text(id))) }
     };
     let curves =
         vec![curve(&spectra.sine.lines, SINE, "scope.sine"), curve(&spectra.cosine.lines, COSINE, "scope.cosine")];
     let highest = curves.iter().flat_map(|curve| &curve.points).map(|(_, volts)| *volts).fold(0.0, f64::max);
-    let title = context.say(TEXTS.text("spectrum.title"));
-    let unit = context.say(TEXTS.text("spectrum.volts"));
+    let title = context.localize(TEXTS.text("spectrum.title"));
+    let unit = context.localize(TEXTS.text("spectrum.volts"));
     let x = (0.0, range / 1e3);
     let plot = plot(context, title.clone(), WIDE, x, (0.0, 1.1 * highest.max(1e-6)), ("kHz", &unit), curves);
     let mut table: Table = context.table([
@@ -184,7 +184,7 @@ fn spectrum_section(context: &ReportContext<'_>, spectra: &Spectra, analysis: &A
         for peak in &channel.peaks {
             let order = analysis.frequency_hz().map(|hz| peak.frequency_hz / hz.abs().max(1e-9));
             table.add_row([
-                context.say(TEXTS.text(id)),
+                context.localize(TEXTS.text(id)),
                 context.number(peak.frequency_hz / 1e3, 4),
                 context.number(1e3 * peak.amplitude_v, 2),
                 order.map(|order| context.number(order, 2)).unwrap_or_default(),
@@ -198,13 +198,13 @@ fn error_section(context: &ReportContext<'_>, analysis: &Analysis, periods: Opti
     let curve = |values: &[f64], colour, id| {
         let step = 360.0 / values.len().max(1) as f64;
         let points = values.iter().zip(0_u32..).map(|(error, at)| (f64::from(at) * step, *error)).collect();
-        Curve { points, colour, name: Some(context.say(TEXTS.text(id))) }
+        Curve { points, colour, name: Some(context.localize(TEXTS.text(id))) }
     };
     let curves = vec![
         curve(&analysis.error.raw_deg, SINE, "error.raw_pp"),
         curve(&analysis.error.corrected_deg, CORRECTED, "error.corrected_pp"),
     ];
-    let title = context.say(TEXTS.text("report.sig_error"));
+    let title = context.localize(TEXTS.text("report.sig_error"));
     let y = symmetric_range(&curves);
     let plot = plot(context, title.clone(), WIDE, (0.0, 360.0), y, ("°", "°"), curves);
     let facts = error_quantities(analysis, periods).iter().map(|quantity| quantity_fact(context, quantity)).collect();

@@ -46,7 +46,7 @@ impl Screenshot {
                 *frames += 1;
                 if *frames > FRAMES {
                     *self = Screenshot::None;
-                    actions.push(Action::PictureCut);
+                    actions.push(Action::PictureTruncated);
                     return;
                 }
                 ui.scroll_to_rect(plot, None);
@@ -165,6 +165,6 @@ mod tests {
         shot.request(&ctx);
         let plot = Rect::from_min_size(pos2(0.0, 0.0), egui::vec2(8.0, 20.0));
         let told = (0..100).flat_map(|_| frame(&ctx, &mut shot, 8.0, plot)).collect::<Vec<_>>();
-        assert!(matches!(&told[..], [Action::PictureCut]) && !shot.is_wanted());
+        assert!(matches!(&told[..], [Action::PictureTruncated]) && !shot.is_wanted());
     }
 }

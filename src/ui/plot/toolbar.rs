@@ -186,7 +186,7 @@ fn export_menu_ui(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::S
         }
         ui.separator();
         if enabled_button(ui, some, icons::TRASH, &theme.translate("live.clear")).clicked() {
-            chosen = Some(Studio::AskForget(owner));
+            chosen = Some(Studio::AskClearRecording(owner));
             ui.close();
         }
     });

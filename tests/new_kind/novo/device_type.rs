@@ -83,7 +83,7 @@ impl DeviceType for Encoder {
         for (item, value) in profile.values.iter().enumerate() {
             table.add_row([name_of(item).to_owned(), value.to_string()]);
         }
-        let settings = Section::new(context.say("report.settings")).with(Block::Table(table));
+        let settings = Section::new(context.localize("report.settings")).with(Block::Table(table));
         Ok(ReportContent { title: KIND.to_owned(), key: None, sections: vec![settings] })
     }
 

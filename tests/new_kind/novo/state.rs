@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use encoder_studio::app::session::{EarlyEnd, HasDraft, HasMemory, HasProfile, HasSession, Session, SessionEvents};
+use encoder_studio::app::session::{HasDraft, HasMemory, HasProfile, HasSession, Interruption, Session, SessionEvents};
 use encoder_studio::app::track::{DeviceRecorder, PositionSample, PositionScales};
 use encoder_studio::app::{
     ActionContext, Catalogue, DeviceAction, DeviceMemory, DeviceModel, EditBase, Edits, JobState, OpenedConnection,
@@ -137,7 +137,7 @@ impl SessionEvents for Encoder {
     fn discard_requests(&mut self) {
         self.discard_plan();
     }
-    fn handle_early_end(&mut self, how: EarlyEnd<'_, JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn handle_interruption(&mut self, how: Interruption<'_, JobError>, texts: &[Text], _: &mut Services) -> bool {
         self.handle_interrupted_write(how, texts)
     }
 }

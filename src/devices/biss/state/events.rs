@@ -6,7 +6,7 @@ use super::format;
 use crate::app::FrameExplanation;
 use crate::app::review::{Review, written_texts};
 use crate::app::services::{JobState, Services};
-use crate::app::session::{EarlyEnd, HasMemory, Kind, SessionEvents, first};
+use crate::app::session::{HasMemory, Interruption, Kind, SessionEvents, first};
 use crate::app::{Severity, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobError, JobStep};
 use crate::devices::biss::procedures::{Error, PolledSample};
@@ -154,8 +154,8 @@ impl SessionEvents for Encoder {
         self.discard_plan();
     }
 
-    fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
-        let moves = matches!(how, EarlyEnd::Failed(JobError::Device(Error::Moving { .. })));
+    fn handle_interruption(&mut self, how: Interruption<JobError>, texts: &[Text], _: &mut Services) -> bool {
+        let moves = matches!(how, Interruption::Failed(JobError::Device(Error::Moving { .. })));
         let stands_there = self.end_interrupted_procedure(&how, texts) || self.handle_interrupted_write(how, texts);
         if stands_there || !moves || self.session.save_to.is_some() || self.session.just_connected {
             return stands_there;

@@ -22,7 +22,7 @@ impl DeviceModel for Encoder {
     fn connect(&mut self, opened: OpenedConnection<Biss>, services: &mut Services) {
         self.release_thread(JobState::Cancelled, services);
         self.record.begin_session(&opened.began);
-        self.motor = opened.aside.clone();
+        self.motor = opened.session_handle.clone();
         self.session.attach_connection(opened, services);
         self.update_watches();
         self.submit(BissJob::Survey, services);

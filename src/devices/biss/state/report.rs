@@ -56,7 +56,7 @@ fn identity_section(context: &ReportContext<'_>, profile: &BissProfile) -> Secti
     let code = identity.manufacturer;
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
     let mut facts = vec![
-        Fact::new(context.say("encoder_card.title"), identity.description.as_str()),
+        Fact::new(context.localize("encoder_card.title"), identity.description.as_str()),
         context.code("encoder_card.serial", &identity.serial_number),
         context.code("encoder_card.firmware", firmware),
         context.code(TEXTS.text("biss_card.profile"), identity.profile_id.to_string()),
@@ -70,7 +70,7 @@ fn identity_section(context: &ReportContext<'_>, profile: &BissProfile) -> Secti
             .with("singleturn", singleturn);
         facts.push(context.fact(TEXTS.text("biss_card.frame"), widths));
     }
-    Section::new(context.say("report.identity")).with(Block::Facts(facts))
+    Section::new(context.localize("report.identity")).with(Block::Facts(facts))
 }
 
 fn settings_section(context: &ReportContext<'_>, profile: &BissProfile) -> Section {
@@ -89,9 +89,9 @@ fn settings_section(context: &ReportContext<'_>, profile: &BissProfile) -> Secti
     let marks = profile.mounting.iter();
     facts.extend(marks.map(|mark| {
         let value = format!("{} ({})", mark.item, mark.meaning);
-        Fact::new(context.say("report.mounting"), value)
+        Fact::new(context.localize("report.mounting"), value)
     }));
-    Section::new(context.say("report.settings")).with(Block::Facts(facts))
+    Section::new(context.localize("report.settings")).with(Block::Facts(facts))
 }
 
 /// Returns the results of the calibration and of the Wiegand tests, or `None` if the profile contains none.
@@ -105,7 +105,7 @@ fn procedures_section(context: &ReportContext<'_>, profile: &BissProfile) -> Opt
     .into_iter()
     .filter_map(|(id, result)| Some((id, result?)))
     .collect();
-    let mut section = Section::new(context.say(TEXTS.text("report.biss_procedures")));
+    let mut section = Section::new(context.localize(TEXTS.text("report.biss_procedures")));
     if let Some(status) = recorded.calibration_status {
         let label = TEXTS.text("report.biss_calibration");
         section = section.with(Block::Facts(vec![context.code(label, format!("0x{status:02X}"))]));
@@ -133,11 +133,11 @@ fn procedures_section(context: &ReportContext<'_>, profile: &BissProfile) -> Opt
                 table.add_marked_row(
                     mark,
                     [
-                        context.say(TEXTS.text(id)),
-                        context.say(TEXTS.text(direction)),
+                        context.localize(TEXTS.text(id)),
+                        context.localize(TEXTS.text(direction)),
                         context.number(average.volts(), 1),
                         context.number(lowest.volts(), 1),
-                        context.say(verdict),
+                        context.localize(verdict),
                     ],
                 );
             }
@@ -149,7 +149,7 @@ fn procedures_section(context: &ReportContext<'_>, profile: &BissProfile) -> Opt
 
 /// Returns the named registers in the profile that are outside the data areas, with their decoded values.
 fn data_sheet_section(context: &ReportContext<'_>, encoder: &Encoder) -> Option<Section> {
-    let mut section = Section::new(context.say(TEXTS.text("report.biss_registers")));
+    let mut section = Section::new(context.localize(TEXTS.text("report.biss_registers")));
     for group in encoder.table.groups() {
         let mut table = context.table([
             ("report.address".into(), CellStyle::Short),
@@ -167,16 +167,16 @@ fn data_sheet_section(context: &ReportContext<'_>, encoder: &Encoder) -> Option<
             let meaning = encoder.describe_register(&entry).or_else(number);
             table.add_row([
                 row.register.address.to_string(),
-                context.say(explained::name_text(&row.register.name)),
+                context.localize(explained::name_text(&row.register.name)),
                 hex(bytes),
-                meaning.map(|text| context.say(text)).unwrap_or_default(),
+                meaning.map(|text| context.localize(text)).unwrap_or_default(),
             ]);
         }
         if table.rows.is_empty() {
             continue;
         }
         if let Some(name) = &group.name {
-            section = section.with(Block::Heading(context.say(explained::name_text(name))));
+            section = section.with(Block::Heading(context.localize(explained::name_text(name))));
         }
         section = section.with(Block::Table(table));
     }
@@ -186,11 +186,11 @@ fn data_sheet_section(context: &ReportContext<'_>, encoder: &Encoder) -> Option<
 fn data_section(context: &ReportContext<'_>, profile: &BissProfile, area: &DataImage) -> Section {
     let (first, last) = (format!("0x{:02X}", area.first), format!("0x{:02X}", area.last));
     let text = TEXTS.text("report.biss_area").with("name", &area.name).with("first", first).with("last", last);
-    let mut section = Section::new(context.say(text));
+    let mut section = Section::new(context.localize(text));
     if let Some(byte) = area.empty {
         let count = usize::from(area.last.saturating_sub(area.first)) + 1 - area.listed.len();
         let text = TEXTS.text("report.biss_empty").with("count", count).with("byte", format!("0x{byte:02X}"));
-        section = section.with(Block::Paragraph(context.say(text)));
+        section = section.with(Block::Paragraph(context.localize(text)));
     }
     for listed in &area.listed {
         let bank = listed.bank;
@@ -202,8 +202,8 @@ fn data_section(context: &ReportContext<'_>, profile: &BissProfile, area: &DataI
         let address = |offset| at(offset).map(|address| address.to_string()).unwrap_or_default();
         let is_mounting =
             |range: std::ops::Range<usize>| range.filter_map(at).any(|address| profile.depends_on_mounting(address));
-        let meaning = |range| if is_mounting(range) { context.say("report.mounting") } else { String::new() };
-        section = section.with(Block::Heading(context.say(heading))).with(Block::Table(byte_table(
+        let meaning = |range| if is_mounting(range) { context.localize("report.mounting") } else { String::new() };
+        section = section.with(Block::Heading(context.localize(heading))).with(Block::Table(byte_table(
             context,
             &bank.bytes,
             address,

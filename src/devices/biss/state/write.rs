@@ -7,7 +7,7 @@ use super::encoder::Encoder;
 use super::guide::{ProcedureEnd, ProcedureRun};
 use super::review::{ReviewState, is_guided};
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, EarlyEnd, HasMemory, HasProfile, KnownProfile, unsaved_edits_remark};
+use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, Interruption, KnownProfile, unsaved_edits_remark};
 use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, Change, Commit, Committed, JobError, OperatorPresence, Prepared};
 use crate::devices::biss::procedures::procedure::{Failure, OperatorAnswer, OperatorTask, UnattendedOperator};
@@ -46,10 +46,10 @@ impl Encoder {
     }
 
     /// Ends the display of an interrupted guided procedure. Returns whether one was running.
-    pub(super) fn end_interrupted_procedure(&mut self, how: &EarlyEnd<JobError>, texts: &[Text]) -> bool {
+    pub(super) fn end_interrupted_procedure(&mut self, how: &Interruption<JobError>, texts: &[Text]) -> bool {
         let error = match how {
-            EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error) => Some(*error),
-            EarlyEnd::Lost => None,
+            Interruption::Failed(error) | Interruption::Cancelled(error) => Some(*error),
+            Interruption::Lost => None,
         };
         if !self.guide.as_ref().is_some_and(ProcedureRun::is_running) {
             return false;

@@ -9,7 +9,7 @@ use super::unit::HiperdriveDevice;
 use crate::app::FrameExplanation;
 use crate::app::review::{Review, written_texts};
 use crate::app::services::Services;
-use crate::app::session::{EarlyEnd, HasMemory, Kind, SessionEvents};
+use crate::app::session::{HasMemory, Interruption, Kind, SessionEvents};
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::{
     DeviceMessage, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Motion,
@@ -278,12 +278,12 @@ impl SessionEvents for HiperdriveDevice {
         self.discard_plan();
     }
 
-    fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn handle_interruption(&mut self, how: Interruption<JobError>, texts: &[Text], _: &mut Services) -> bool {
         match how {
-            EarlyEnd::Failed(_) => self.moves.stop(),
+            Interruption::Failed(_) => self.moves.stop(),
             // Values required before a controlled drive moves are read even if the job ended early.
-            EarlyEnd::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
-            EarlyEnd::Lost => {}
+            Interruption::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
+            Interruption::Lost => {}
         }
         let is_told = self.handle_interrupted_write(how, texts);
         let begun =

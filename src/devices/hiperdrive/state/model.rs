@@ -27,11 +27,11 @@ impl DeviceModel for HiperdriveDevice {
         self.record.begin_session(&opened.began);
         self.records.values_mut().for_each(|record| record.begin_session(&opened.began));
         self.began = Some(opened.began.clone());
-        self.moves.begin_session(opened.aside.motion.clone());
-        self.target = opened.aside.target.clone();
+        self.moves.begin_session(opened.session_handle.motion.clone());
+        self.target = opened.session_handle.target.clone();
         // Values read over an earlier link are no longer valid.
         (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, self.survey.is_some());
-        let motion = opened.aside.motion.clone();
+        let motion = opened.session_handle.motion.clone();
         self.session.attach_connection(opened, services);
         self.request_temperatures();
         if let Some(line) = self.session.live_session() {
@@ -104,7 +104,7 @@ impl DeviceModel for HiperdriveDevice {
     }
 
     fn is_active(&self) -> bool {
-        self.session.phase == Phase::Opening || self.session.is_busy() || self.is_turned_by_hand()
+        self.session.phase == Phase::Opening || self.session.is_busy() || self.is_requested_motion_running()
     }
 
     fn stop(&mut self, services: &mut Services) {
@@ -143,7 +143,7 @@ impl MotionControl for HiperdriveDevice {
         HiperdriveDevice::is_moving(self)
     }
 
-    fn is_turned_by_hand(&self) -> bool {
+    fn is_requested_motion_running(&self) -> bool {
         self.moves.is_moving() || self.moves.is_motion_active()
     }
 

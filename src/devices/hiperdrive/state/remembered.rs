@@ -41,11 +41,11 @@ impl StoredDriveData for HiperdriveDevice {
         let scaled_anew =
             |drive: &DriveNumber| before.scales.get(drive).is_some_and(|scale| now.scales.get(drive) != Some(scale));
         for drive in now.unconfirmed.iter().filter(|own| !before.unconfirmed.contains(own) || scaled_anew(own)) {
-            next.set_control_count(drive.get(), 1);
+            next.add_marks(drive.get(), 1);
         }
         for drive in before.unconfirmed.difference(&now.unconfirmed).map(|drive| drive.get()) {
             // Limits that another window has marked again have not been confirmed here.
-            if kept.control_count(drive) == before.kept.control_count(drive) {
+            if kept.mark_count(drive) == before.kept.mark_count(drive) {
                 next.set_unconfirmed(drive, false);
             }
         }

@@ -34,11 +34,11 @@ pub(super) fn content(
             ("hd_device.version", &identity.version),
         ];
         let facts = facts.map(|(label, value)| context.code(TEXTS.text(label), value)).into();
-        sections.push(Section::new(context.say("report.identity")).with(Block::Facts(facts)));
+        sections.push(Section::new(context.localize("report.identity")).with(Block::Facts(facts)));
     }
     let of_device = parameter_table(context, profile, unit.rows(None));
     if !of_device.rows.is_empty() {
-        let title = context.say(TEXTS.text("hd_params.device"));
+        let title = context.localize(TEXTS.text("hd_params.device"));
         sections.push(Section::new(title).with(Block::Table(of_device)));
     }
     sections.extend(unit.drives().into_iter().map(|drive| drive_section(context, profile, &unit, drive)));
@@ -78,7 +78,7 @@ fn drive_section(
     unit: &HiperdriveDevice,
     drive: DriveNumber,
 ) -> Section {
-    let title = context.say(TEXTS.text("report.hd_drive").with("drive", drive.get()));
+    let title = context.localize(TEXTS.text("report.hd_drive").with("drive", drive.get()));
     let mut section = Section::new(title);
     let identity = profile.drive(drive).map(|own| drive_facts(context, own)).unwrap_or_default();
     let facts: Vec<Fact> = identity.into_iter().chain(travel_fact(context, profile, unit, drive)).collect();
@@ -132,13 +132,13 @@ fn parameter_table(context: &ReportContext<'_>, profile: &HiperdriveProfile, row
         ("report.factory".into(), CellStyle::Number),
     ]);
     for row in rows.into_iter().filter(|row| row.value.is_some()) {
-        let say = |text: Option<Text>| text.map(|text| context.say(text)).unwrap_or_default();
-        let mounting = profile.depends_on_mounting(Item(row.number)).then(|| context.say("report.mounting"));
-        let meaning = row.meaning.map(|text| context.say(text));
+        let say = |text: Option<Text>| text.map(|text| context.localize(text)).unwrap_or_default();
+        let mounting = profile.depends_on_mounting(Item(row.number)).then(|| context.localize("report.mounting"));
+        let meaning = row.meaning.map(|text| context.localize(text));
         let meaning = meaning.into_iter().chain(mounting).collect::<Vec<_>>().join(", ");
         table.add_row([
             row.number.to_string(),
-            context.say(row.name),
+            context.localize(row.name),
             row.shown,
             say(row.unit),
             meaning,

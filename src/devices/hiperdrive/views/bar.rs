@@ -72,7 +72,7 @@ fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action
     let pressed = press_began(ui, &response);
     if name(response, active, &word).clicked() || pressed {
         // A second press shortly after the first has the same meaning.
-        register_stop_press(ui.ctx(), studio.is_turned_by_hand(), press_time(ui, pressed));
+        register_stop_press(ui.ctx(), studio.is_requested_motion_running(), press_time(ui, pressed));
         actions.push(Action::StopMotion);
     }
 }

@@ -7,7 +7,7 @@ use super::review::Review;
 use crate::app::FrameExplanation;
 use crate::app::review::written_texts;
 use crate::app::services::{JobState, Services};
-use crate::app::session::{EarlyEnd, HasDraft, HasMemory, Kind, SessionEvents, Source, first};
+use crate::app::session::{HasDraft, HasMemory, Interruption, Kind, SessionEvents, Source, first};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::hiperface::jobs::{
     DeviceMessage, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, JobStep, SavedProfile, Value,
@@ -250,8 +250,8 @@ impl SessionEvents for Encoder {
         self.discard_plan();
     }
 
-    fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], services: &mut Services) -> bool {
-        if let EarlyEnd::Cancelled(error) = how {
+    fn handle_interruption(&mut self, how: Interruption<JobError>, texts: &[Text], services: &mut Services) -> bool {
+        if let Interruption::Cancelled(error) = how {
             self.apply_completed_steps(error, services);
             self.asked = None;
             self.cancel_rest_reading();
@@ -294,7 +294,7 @@ impl SessionEvents for Encoder {
         if gone.is_none() && !silent && !garbled {
             self.session.mark_replying();
         }
-        let is_shown = self.handle_interrupted_write(EarlyEnd::Failed(error), &texts);
+        let is_shown = self.handle_interrupted_write(Interruption::Failed(error), &texts);
         match gone {
             Some(why) => {
                 if is_shown {

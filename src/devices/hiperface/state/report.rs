@@ -55,8 +55,8 @@ pub fn status_lines(codes: &[StatusCode]) -> Vec<StatusLine> {
 fn identity_section(context: &ReportContext<'_>, identity: &Identity) -> Section {
     let serial = &identity.serial;
     let resolution = identity.geometry.map_or_else(|| TEXTS.text("encoder_card.no_geometry"), explain::geometry_text);
-    Section::new(context.say("report.identity")).with(Block::Facts(vec![
-        Fact::new(context.say("encoder_card.title"), identity.name.as_str()),
+    Section::new(context.localize("report.identity")).with(Block::Facts(vec![
+        Fact::new(context.localize("encoder_card.title"), identity.name.as_str()),
         context.code("encoder_card.serial", &serial.serial_number),
         context.code(TEXTS.text("encoder_card.type"), format!("{:02X}h", identity.label.encoder_type)),
         context.fact(TEXTS.text("encoder_card.resolution"), resolution),
@@ -78,7 +78,7 @@ fn interface_section(context: &ReportContext<'_>, profile: &HiperfaceProfile, id
     let counter = profile.recorded.counter;
     facts.extend(position);
     facts.extend(counter.map(|counter| context.code(TEXTS.text("recorder.counter"), counter.to_string())));
-    Section::new(context.say("report.interface")).with(Block::Facts(facts))
+    Section::new(context.localize("report.interface")).with(Block::Facts(facts))
 }
 
 fn label_section(context: &ReportContext<'_>, identity: &Identity) -> Option<Section> {
@@ -89,9 +89,9 @@ fn label_section(context: &ReportContext<'_>, identity: &Identity) -> Option<Sec
         ("report.meaning".into(), CellStyle::Text),
     ]);
     for row in rows {
-        table.add_row([row.addresses, row.bytes, context.say(row.meaning)]);
+        table.add_row([row.addresses, row.bytes, context.localize(row.meaning)]);
     }
-    Some(Section::new(context.say(TEXTS.text("label_card.title"))).with(Block::Table(table)))
+    Some(Section::new(context.localize(TEXTS.text("label_card.title"))).with(Block::Table(table)))
 }
 
 fn memory_section(context: &ReportContext<'_>, profile: &HiperfaceProfile) -> Section {
@@ -100,20 +100,20 @@ fn memory_section(context: &ReportContext<'_>, profile: &HiperfaceProfile) -> Se
     let id = if fields.len() == 1 { "memory.used_one" } else { "memory.used" };
     let text = TEXTS.text(id).with("fields", fields.len()).with("used", used);
     let size = TEXTS.text("report.hf_memory").with("bytes", profile.identity.eeprom_bytes);
-    let mut section = Section::new(context.say(TEXTS.text("report.hf_fields"))).with(Block::Paragraph(format!(
+    let mut section = Section::new(context.localize(TEXTS.text("report.hf_fields"))).with(Block::Paragraph(format!(
         "{} {}",
-        context.say(size),
-        context.say(text)
+        context.localize(size),
+        context.localize(text)
     )));
     if fields.is_empty() {
         return section;
     }
     section = section.with(Block::Drawing(field_map(context, profile)));
     for field in fields {
-        let name = context.say(TEXTS.text("memory.field").with("number", field.number));
+        let name = context.localize(TEXTS.text("memory.field").with("number", field.number));
         section = section
             .with(Block::Heading(name))
-            .with(Block::Paragraph(context.say(explain::field_status(field.status))))
+            .with(Block::Paragraph(context.localize(explain::field_status(field.status))))
             .with(field_block(context, profile, field));
     }
     section
@@ -122,7 +122,7 @@ fn memory_section(context: &ReportContext<'_>, profile: &HiperfaceProfile) -> Se
 /// Returns the bytes of a field as a table. Mounting values have their meaning next to them.
 fn field_block(context: &ReportContext<'_>, profile: &HiperfaceProfile, field: &FieldImage) -> Block {
     let Some(bytes) = &field.bytes else {
-        return Block::Paragraph(context.say(TEXTS.text("report.hf_locked")));
+        return Block::Paragraph(context.localize(TEXTS.text("report.hf_locked")));
     };
     let meaning = |range: Range<usize>| {
         let marks = profile.mounting.iter().filter(|mark| {
@@ -146,7 +146,7 @@ fn field_map(context: &ReportContext<'_>, profile: &HiperfaceProfile) -> Drawing
     owners.truncate(1 << 12);
     let blocks = total.max(used).min(1 << 12);
     let rows = blocks.div_ceil(MAP_ROW).max(1);
-    let title = context.say(TEXTS.text("report.hf_fields"));
+    let title = context.localize(TEXTS.text("report.hf_fields"));
     let mut drawing = Drawing::new(MAP_ROW * BLOCK + 2, rows * (BLOCK + 4) + 2, title);
     let mut owners = owners.into_iter();
     for block in 0..blocks {

@@ -6,7 +6,7 @@ use super::job;
 use crate::app::FrameExplanation;
 use crate::app::review::{Review, written_texts};
 use crate::app::services::{JobState, Services};
-use crate::app::session::{EarlyEnd, HasMemory, HasProfile, Kind, SessionEvents};
+use crate::app::session::{HasMemory, HasProfile, Interruption, Kind, SessionEvents};
 use crate::app::{Severity, Text};
 use crate::devices::interbus::jobs::{DeviceMessage, Interbus, InterbusJob, InterbusOutput, JobError, JobStep};
 use crate::devices::interbus::procedures::WordReading;
@@ -145,7 +145,7 @@ impl SessionEvents for Encoder {
         self.discard_plan();
     }
 
-    fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn handle_interruption(&mut self, how: Interruption<JobError>, texts: &[Text], _: &mut Services) -> bool {
         self.handle_interrupted_write(how, texts)
     }
 

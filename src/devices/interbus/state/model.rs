@@ -21,7 +21,7 @@ impl DeviceModel for Encoder {
     fn connect(&mut self, opened: OpenedConnection<Interbus>, services: &mut Services) {
         self.release_thread(JobState::Cancelled, services);
         self.record.begin_session(&opened.began);
-        self.motor = opened.aside.clone();
+        self.motor = opened.session_handle.clone();
         self.trace = FrameDecoder::new(self.word_order());
         self.session.attach_connection(opened, services);
         self.submit(InterbusJob::Hello, services);

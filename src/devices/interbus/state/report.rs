@@ -35,7 +35,7 @@ pub(super) fn content(
     context: &ReportContext<'_>,
 ) -> Result<ReportContent, Text> {
     let serial = &profile.identity.serial_number;
-    let class = context.say(TEXTS.text("ib_card.class"));
+    let class = context.localize(TEXTS.text("ib_card.class"));
     let title = if serial.is_empty() { class } else { format!("{class} · {serial}") };
     let mut sections = vec![identity_section(context, profile), parameter_section(context, profile)];
     let staged = StagedEdits::for_profile(profile.image.clone(), profile.names.clone());
@@ -73,7 +73,7 @@ fn identity_section(context: &ReportContext<'_>, profile: &InterbusProfile) -> S
             .temperature_tenths
             .map(|tenths| context.fact(TEXTS.text("ib_card.temperature"), format::temperature_text(tenths))),
     ];
-    Section::new(context.say("report.identity")).with(Block::Facts(facts.into_iter().flatten().collect()))
+    Section::new(context.localize("report.identity")).with(Block::Facts(facts.into_iter().flatten().collect()))
 }
 
 fn parameter_section(context: &ReportContext<'_>, profile: &InterbusProfile) -> Section {
@@ -88,16 +88,16 @@ fn parameter_section(context: &ReportContext<'_>, profile: &InterbusProfile) -> 
         let Some(value) = profile.image.value_of(item) else { continue };
         let name = item.parameter().map_or_else(|| TEXTS.text("report.ib_shift"), format::parameter);
         let meaning = match value {
-            ItemValue::Direction(direction) => context.say(direction_text(direction)),
-            _ if profile.depends_on_mounting(item) => context.say("report.mounting"),
+            ItemValue::Direction(direction) => context.localize(direction_text(direction)),
+            _ if profile.depends_on_mounting(item) => context.localize("report.mounting"),
             _ => String::new(),
         };
-        let unit = unit_text(item).map(|unit| context.say(unit)).unwrap_or_default();
-        table.add_row([item.to_string(), context.say(name), value.to_string(), unit, meaning]);
+        let unit = unit_text(item).map(|unit| context.localize(unit)).unwrap_or_default();
+        table.add_row([item.to_string(), context.localize(name), value.to_string(), unit, meaning]);
     }
     let parameters = &profile.image.parameters;
     let range = context.fact(TEXTS.text("ib_card.range"), format::range_text(parameters.steps, parameters.revolutions));
-    Section::new(context.say("report.settings")).with(Block::Facts(vec![range])).with(Block::Table(table))
+    Section::new(context.localize("report.settings")).with(Block::Facts(vec![range])).with(Block::Table(table))
 }
 
 fn program_section(
@@ -108,10 +108,13 @@ fn program_section(
 ) -> Section {
     let name = profile.names.program(number);
     let title = TEXTS.text("report.ib_program").with("program", number.get());
-    let title = if name.is_empty() { context.say(title) } else { format!("{}: {name}", context.say(title)) };
+    let title = if name.is_empty() { context.localize(title) } else { format!("{}: {name}", context.localize(title)) };
     let scale = Scale::default();
     let facts = chart.lanes.iter().filter(|lane| is_used(lane)).map(|lane| {
-        Fact::new(context.say(cam_labels::cam(lane)), context.say(cam_labels::lane_text(lane, &scale, chart.range)))
+        Fact::new(
+            context.localize(cam_labels::cam(lane)),
+            context.localize(cam_labels::lane_text(lane, &scale, chart.range)),
+        )
     });
     Section::new(title.clone())
         .with(Block::Drawing(cam_chart(context, chart, title)))
@@ -127,8 +130,8 @@ fn is_used(lane: &Lane) -> bool {
 fn unused_section(context: &ReportContext<'_>, programs: impl Iterator<Item = u8>) -> Option<Section> {
     let numbers: Vec<String> = programs.map(|number| number.to_string()).collect();
     let text = TEXTS.text("report.ib_unused").with("programs", numbers.join(", "));
-    let title = context.say(TEXTS.text("ib_card.programs"));
-    (!numbers.is_empty()).then(|| Section::new(title).with(Block::Paragraph(context.say(text))))
+    let title = context.localize(TEXTS.text("ib_card.programs"));
+    (!numbers.is_empty()).then(|| Section::new(title).with(Block::Paragraph(context.localize(text))))
 }
 
 /// Draws the lanes of a program across the measuring range, as in the window.
@@ -142,7 +145,7 @@ fn cam_chart(context: &ReportContext<'_>, chart: &Chart, title: String) -> Drawi
     for tick in grid_ticks(&scale, &view, chart.range, apart) {
         let at = x(tick.position);
         let path = vec![PathSegment::Move(at.into(), RULER.into()), PathSegment::Down(height.into())];
-        let words = context.say(cam_labels::tick_label(tick.value, tick.decimals, scale.unit()));
+        let words = context.localize(cam_labels::tick_label(tick.value, tick.decimals, scale.unit()));
         let label = DrawingLabel::new(at, RULER - 6, 9, words.trim());
         drawing.shapes.extend([
             DrawingShape::Line { path, colour: GRID },
@@ -153,7 +156,7 @@ fn cam_chart(context: &ReportContext<'_>, chart: &Chart, title: String) -> Drawi
         let top = RULER + u32::from(lane.cam.get()) * LANE;
         let right = (HEAD + PLOT).into();
         let path = vec![PathSegment::Move(0.into(), (top + LANE).into()), PathSegment::Across(right)];
-        let label = DrawingLabel::new(0, top + 13, 9, context.say(cam_labels::cam(lane)));
+        let label = DrawingLabel::new(0, top + 13, 9, context.localize(cam_labels::cam(lane)));
         drawing.shapes.extend([DrawingShape::Line { path, colour: GRID }, DrawingShape::Text(label)]);
         for range in lane.on_ranges(chart.range) {
             let (from, to) = (x(range.first.into()), x(f64::from(range.last) + 1.0));

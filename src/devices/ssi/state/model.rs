@@ -31,7 +31,7 @@ impl DeviceModel for Encoder {
     fn connect(&mut self, opened: OpenedConnection<Ssi>, services: &mut Services) {
         self.release_thread(JobState::Cancelled, services);
         self.record.begin_session(&opened.began);
-        self.motor = opened.aside.clone();
+        self.motor = opened.session_handle.clone();
         self.requested = None;
         self.session.attach_connection(opened, services);
         if !self.session.drafting.is_loaded() {

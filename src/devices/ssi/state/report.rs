@@ -23,19 +23,19 @@ pub(super) fn content(
     designer.open(profile.clone());
     let mut facts = Vec::new();
     if let Some(family) = designer.family() {
-        facts.push(Fact::new(context.say(TEXTS.text("report.ssi_family")), &family.name));
+        facts.push(Fact::new(context.localize(TEXTS.text("report.ssi_family")), &family.name));
     }
-    let mut settings = Section::new(context.say("report.settings")).with(Block::Facts(facts));
+    let mut settings = Section::new(context.localize("report.settings")).with(Block::Facts(facts));
     for group in designer.form_groups() {
         let rows = group.rows.iter().map(|row| row_fact(context, row)).collect();
-        settings = settings.with(Block::Heading(context.say(TEXTS.text(group.title)))).with(Block::Facts(rows));
+        settings = settings.with(Block::Heading(context.localize(TEXTS.text(group.title)))).with(Block::Facts(rows));
     }
     let reading = designer.reading_form().iter().map(|row| row_fact(context, row)).collect();
-    let reading = Section::new(context.say("report.interface")).with(Block::Facts(reading));
+    let reading = Section::new(context.localize("report.interface")).with(Block::Facts(reading));
     let drawings = [("report.ssi_frame", ExportFormat::Frame), ("report.ssi_timing", ExportFormat::Timing)];
     let drawings = drawings.into_iter().filter_map(|(title, format)| {
         let drawing = designer.layout_picture(format, context.language)?;
-        Some(Section::new(context.say(TEXTS.text(title))).with(Block::Drawing(drawing)))
+        Some(Section::new(context.localize(TEXTS.text(title))).with(Block::Drawing(drawing)))
     });
     let sections = drawings.collect::<Vec<_>>();
     let sections = [settings, reading].into_iter().chain(sections).collect();
@@ -43,17 +43,17 @@ pub(super) fn content(
 }
 
 fn row_fact(context: &ReportContext<'_>, row: &Row) -> Fact {
-    let label = context.say(row.name.clone());
+    let label = context.localize(row.name.clone());
     match &row.entry {
         Entry::Number { value, unit } => {
-            let unit = unit.as_ref().map(|unit| format!(" {}", context.say(unit.clone()))).unwrap_or_default();
+            let unit = unit.as_ref().map(|unit| format!(" {}", context.localize(unit.clone()))).unwrap_or_default();
             Fact::new(label, format!("{value}{unit}"))
         }
         Entry::Frequency(hertz) => Fact::new(label, frequency_text(context, *hertz)),
         Entry::Choice { options, chosen } => {
-            Fact::new(label, options.get(*chosen).map(|text| context.say(text.clone())).unwrap_or_default())
+            Fact::new(label, options.get(*chosen).map(|text| context.localize(text.clone())).unwrap_or_default())
         }
-        Entry::Switch(on) => Fact::new(label, context.say(if *on { "report.yes" } else { "report.no" })),
+        Entry::Switch(on) => Fact::new(label, context.localize(if *on { "report.yes" } else { "report.no" })),
         Entry::Words(words) => Fact::new(label, words),
     }
 }
