@@ -323,13 +323,13 @@ fn holding_freezes_the_measurement_and_stopping_ends_it() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Start);
     desk.until_live("it is measured", |own| own.ellipse.offset_cosine_v.abs() < 1e-3);
-    desk.source(SourceAction::Hold(true));
+    desk.source(SourceAction::Freeze(true));
     let held = desk.studio.signals().measurement().unwrap().clone();
     desk.source(SourceAction::Set(Quantity::OffsetCosine, 0.1));
     let began = std::time::Instant::now();
     desk.until("a second has passed", |_| began.elapsed().as_millis() > 1_000);
     assert!(std::sync::Arc::ptr_eq(&held, desk.studio.signals().measurement().unwrap()));
-    desk.source(SourceAction::Hold(false));
+    desk.source(SourceAction::Freeze(false));
     desk.until_live("it goes on", |own| (own.ellipse.offset_cosine_v - 0.1).abs() < 1e-3);
     assert_eq!(desk.studio.signals().source().lost_samples(), 0);
     desk.act(Action::Escape);

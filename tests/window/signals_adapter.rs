@@ -205,7 +205,7 @@ fn the_adapter_is_chosen_started_held_and_stopped() {
         assert!(screen.shows(&screen.say("virtual.running")));
         screen.check_signals_pages();
         screen.click("virtual.hold");
-        assert!(screen.studio().signals().source().is_held());
+        assert!(screen.studio().signals().source().is_frozen());
         screen.click("shell.stop");
         assert!(screen.shows(&screen.say("virtual.stopped")));
         assert!(screen.has_button("virtual.again"));

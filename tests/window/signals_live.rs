@@ -23,12 +23,12 @@ fn time_on_hold_is_a_gap_in_the_scope() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Source(SourceAction::Start));
     desk.until("samples come", |studio| recorded(studio).0 > 1_000);
-    desk.signals(Signals::Source(SourceAction::Hold(true)));
+    desk.signals(Signals::Source(SourceAction::Freeze(true)));
     let (count, breaks) = recorded(&desk.studio);
     let began = std::time::Instant::now();
     desk.until("some time passes", |_| began.elapsed().as_millis() > 200);
     assert_eq!(recorded(&desk.studio).0, count);
-    desk.signals(Signals::Source(SourceAction::Hold(false)));
+    desk.signals(Signals::Source(SourceAction::Freeze(false)));
     desk.until("it goes on", |studio| recorded(studio).0 > count);
     let after = recorded(&desk.studio).1;
     assert!(after.contains(&count) && !breaks.contains(&count), "{count}: {after:?}");
@@ -43,7 +43,7 @@ fn periods_are_not_assumed() {
     desk.until("it is measured", |studio| {
         studio.signals().capture_reading().is_none() && studio.signals().measurement().is_some()
     });
-    let judged = |studio: &Studio| studio.signals().measurement().and_then(|own| own.judge.periods);
+    let judged = |studio: &Studio| studio.signals().measurement().and_then(|own| own.diagnosis_settings.periods);
     assert_eq!((desk.studio.signals().signal_periods(), judged(&desk.studio)), (None, None));
     desk.signals(Signals::SetPeriods(512));
     desk.signals(Signals::Example(ExampleCapture::WithErrors));
@@ -67,7 +67,7 @@ fn periods_of_a_stopped_source_apply_to_its_measurement() {
     desk.signals(Signals::Source(SourceAction::Start));
     desk.until("it is measured", |studio| studio.signals().measurement().is_some());
     desk.signals(Signals::Source(SourceAction::Stop));
-    let judged = |studio: &Studio| studio.signals().measurement().and_then(|own| own.judge.periods);
+    let judged = |studio: &Studio| studio.signals().measurement().and_then(|own| own.diagnosis_settings.periods);
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Periods, 512.0)));
     desk.until("it is judged again", |studio| judged(studio) == Some(512));
     desk.signals(Signals::SetPeriods(16));

@@ -194,9 +194,9 @@ fn the_virtual_encoder_is_started_set_held_and_stopped() {
         screen.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 7.0)));
         assert!(screen.shows("Amplitude: 7 is outside the range from 0 to 2 V."));
         screen.click("virtual.hold");
-        assert!(screen.studio().signals().source().is_held());
+        assert!(screen.studio().signals().source().is_frozen());
         screen.click("virtual.go_on");
-        assert!(!screen.studio().signals().source().is_held());
+        assert!(!screen.studio().signals().source().is_frozen());
         screen.click("shell.stop");
         assert!(!screen.studio().signals().source().is_running());
         assert!(screen.shows(&screen.say("virtual.stopped")) && screen.has_button("virtual.again"));

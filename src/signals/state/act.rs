@@ -193,14 +193,18 @@ impl Signals {
     /// Returns the changes from the capture kept for comparison. The same limits apply to both captures.
     pub fn changes(&self) -> Option<DiagnosisChanges> {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
-        let before = kept.diagnosis.with_new_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
+        let before = kept.diagnosis.with_new_limits(
+            kept.analysis.as_ref(),
+            kept.levels_v,
+            &own.diagnosis_settings.family.limits(),
+        );
         Some(compare(&before, &own.diagnosis))
     }
 
     pub(super) fn set_periods(&mut self, periods: u32, of_source: bool, services: &mut Services) {
         self.periods = Some(periods.clamp(1, MAX_PERIODS));
         self.periods_of_source = of_source;
-        if self.measurement.as_ref().is_some_and(|own| own.judge != self.diagnosis_settings()) {
+        if self.measurement.as_ref().is_some_and(|own| own.diagnosis_settings != self.diagnosis_settings()) {
             self.update_verdicts(services);
         }
     }
@@ -263,7 +267,7 @@ impl Signals {
                     self.adopt_capture(*read, &reading, services);
                 }
             }
-            TaskResult::Judged { number, measurement } => {
+            TaskResult::Rediagnosed { number, measurement } => {
                 let same = |own: &Arc<Measurement>| Arc::ptr_eq(&own.capture, &measurement.capture);
                 if self.judgements == number && self.measurement.as_ref().is_some_and(same) {
                     self.measurement = Some(Arc::new(*measurement));
@@ -271,7 +275,7 @@ impl Signals {
             }
             TaskResult::Measured { number, measurement } => self.handle_measurement(number, *measurement, services),
             TaskResult::Failed(failed) => self.handle_failed_task(failed, services),
-            TaskResult::LetGo => {}
+            TaskResult::ValueDropped => {}
         }
     }
 
@@ -321,7 +325,7 @@ impl Signals {
             Ok((measurement, scope)) => {
                 self.source.stop(services);
                 self.replace_scope(scope, services);
-                let judge = measurement.judge;
+                let judge = measurement.diagnosis_settings;
                 self.show(measurement, services);
                 if judge != self.diagnosis_settings() {
                     self.update_verdicts(services);
@@ -377,9 +381,8 @@ impl Signals {
         let Some(measurement) = self.measurement.clone() else { return };
         self.judgements = self.judgements.wrapping_add(1);
         let (number, judge) = (self.judgements, self.diagnosis_settings());
-        task_guard::run(&services.tasks, "judge", TaskResult::Failed(FailedTask::Judge), move || TaskResult::Judged {
-            number,
-            measurement: Box::new(measurement.with_settings(judge)),
+        task_guard::run(&services.tasks, "judge", TaskResult::Failed(FailedTask::Judge), move || {
+            TaskResult::Rediagnosed { number, measurement: Box::new(measurement.with_settings(judge)) }
         });
     }
 

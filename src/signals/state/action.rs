@@ -41,7 +41,7 @@ pub enum TaskResult {
         read: Box<ReadCapture>,
     },
     /// New verdicts are available for the displayed capture.
-    Judged {
+    Rediagnosed {
         /// Number of the attempt. Results of earlier attempts are ignored.
         number: u32,
         measurement: Box<Measurement>,
@@ -54,7 +54,7 @@ pub enum TaskResult {
     /// A task could not be started, or ended without a result.
     Failed(FailedTask),
     /// A large value was dropped in the background.
-    LetGo,
+    ValueDropped,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -34,7 +34,7 @@ pub enum SourceAction {
     /// Stop the source. The last measurement remains on display.
     Stop,
     /// Freeze or resume the display. The source continues to run.
-    Hold(bool),
+    Freeze(bool),
     /// Set a value of the virtual encoder. A value out of range is rejected.
     Set(Quantity, f64),
     SetOpenWire(Option<Wire>),
@@ -162,7 +162,7 @@ impl Source {
     }
 
     /// Returns whether the display is frozen while the source runs.
-    pub fn is_held(&self) -> bool {
+    pub fn is_frozen(&self) -> bool {
         self.live.as_ref().is_some_and(|live| live.held)
     }
 
@@ -313,7 +313,7 @@ impl Signals {
                 self.source.adapter_problem = None;
             }
             SourceAction::Stop => self.source.stop(services),
-            SourceAction::Hold(held) => {
+            SourceAction::Freeze(held) => {
                 if let Some(live) = &mut self.source.live {
                     live.held = held;
                     // Samples that arrived while the display was frozen are missing, so the trace has a gap.
@@ -401,7 +401,7 @@ impl Signals {
         if live.held {
             return;
         }
-        let judge = measurement.judge;
+        let judge = measurement.diagnosis_settings;
         self.show_live_measurement(measurement, services);
         // The settings have changed during the measurement.
         if judge != self.diagnosis_settings() {

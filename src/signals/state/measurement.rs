@@ -71,7 +71,7 @@ pub struct MeasurementResult {
     pub rows_left_out: u64,
     pub analysis: Result<Analysis, AnalysisError>,
     pub diagnosis: Diagnosis,
-    pub judge: DiagnosisSettings,
+    pub diagnosis_settings: DiagnosisSettings,
     /// Mean voltages of REFSIN and REFCOS, if recorded.
     pub levels_v: Option<(f64, f64)>,
     /// Spectra of both channels, or the reason why they cannot be determined.
@@ -106,17 +106,17 @@ const MIN_HALF_V: f64 = 0.75;
 
 impl Measurement {
     /// Analyses a capture. This takes about 100 ms for a million samples.
-    pub fn from_capture(origin: Origin, capture: Arc<Capture>, judge: DiagnosisSettings) -> Self {
+    pub fn from_capture(origin: Origin, capture: Arc<Capture>, diagnosis_settings: DiagnosisSettings) -> Self {
         let samples = capture_samples(&capture);
         let analysis = Analysis::from_samples(samples);
         let mean = |column: &[f64]| column.iter().sum::<f64>() / column.len().max(1) as f64;
         let results = MeasurementResult {
-            diagnosis: diagnose_capture(&capture, &analysis, judge),
-            judge,
+            diagnosis: diagnose_capture(&capture, &analysis, diagnosis_settings),
+            diagnosis_settings,
             rows_left_out: capture.skipped_rows,
             levels_v: capture.references_v().map(|(sine, cosine)| (mean(sine), mean(cosine))),
             spectra: Spectra::from_samples(samples),
-            nonlinearities: compare_with_reference(&capture, &analysis, judge),
+            nonlinearities: compare_with_reference(&capture, &analysis, diagnosis_settings),
             absolute_offset: reference_comparison::absolute_offset(&capture, analysis.as_ref().ok()),
             raw: sample_density(samples, None),
             corrected: analysis.as_ref().ok().and_then(|own| sample_density(samples, Some(own.ellipse.correction()))),
@@ -131,11 +131,11 @@ impl Measurement {
     }
 
     #[must_use]
-    pub fn with_settings(&self, judge: DiagnosisSettings) -> Self {
+    pub fn with_settings(&self, diagnosis_settings: DiagnosisSettings) -> Self {
         let results = MeasurementResult {
-            diagnosis: diagnose_capture(&self.capture, &self.analysis, judge),
-            nonlinearities: compare_with_reference(&self.capture, &self.analysis, judge),
-            judge,
+            diagnosis: diagnose_capture(&self.capture, &self.analysis, diagnosis_settings),
+            nonlinearities: compare_with_reference(&self.capture, &self.analysis, diagnosis_settings),
+            diagnosis_settings,
             ..(*self.results).clone()
         };
         Measurement { capture: self.capture.clone(), results: Arc::new(results) }
@@ -165,19 +165,19 @@ fn capture_samples(capture: &Capture) -> Samples<'_> {
 fn diagnose_capture(
     capture: &Capture,
     analysis: &Result<Analysis, AnalysisError>,
-    judge: DiagnosisSettings,
+    diagnosis_settings: DiagnosisSettings,
 ) -> Diagnosis {
     let references_v = capture.references_v();
-    let record = Record { samples: capture_samples(capture), references_v, periods: judge.periods };
-    diagnose(&record, analysis.as_ref(), &judge.family.limits())
+    let record = Record { samples: capture_samples(capture), references_v, periods: diagnosis_settings.periods };
+    diagnose(&record, analysis.as_ref(), &diagnosis_settings.family.limits())
 }
 
 fn compare_with_reference(
     capture: &Capture,
     analysis: &Result<Analysis, AnalysisError>,
-    judge: DiagnosisSettings,
+    diagnosis_settings: DiagnosisSettings,
 ) -> Option<Result<Nonlinearities, RevolutionError>> {
-    reference_comparison::compute_nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
+    reference_comparison::compute_nonlinearities(capture, analysis.as_ref().ok()?, diagnosis_settings.periods?)
 }
 
 /// Returns the Lissajous figure centred on zero, after the correction if one is given.

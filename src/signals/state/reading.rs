@@ -89,7 +89,7 @@ impl Drop for CaptureReading {
 pub(super) fn read(
     place: TableSource,
     hints: TableHints,
-    judge: DiagnosisSettings,
+    diagnosis_settings: DiagnosisSettings,
     progress: &ReadingProgress,
 ) -> ReadCapture {
     let (head, result) = match &place {
@@ -105,7 +105,7 @@ pub(super) fn read(
     let table = Table::from_head(place, &head, hints);
     let result = result.map(|capture| {
         let scope = Scope::from_capture(&capture);
-        (Measurement::from_capture(Origin::Table(table.place.clone()), Arc::new(capture), judge), scope)
+        (Measurement::from_capture(Origin::Table(table.place.clone()), Arc::new(capture), diagnosis_settings), scope)
     });
     ReadCapture { table, result }
 }

@@ -15,16 +15,16 @@ use crate::signals::state::TEXTS;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nonlinearities {
-    pub raw: Part,
+    pub raw: DeviationCurves,
     /// Values after the correction of offsets, gain ratio and phase error.
-    pub corrected: Part,
+    pub corrected: DeviationCurves,
     /// Number of revolutions covered by the samples. The INL applies to a whole revolution if this is at least 1.
     pub revolutions: f64,
 }
 
 /// DNL and INL of the raw or the corrected signals.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct DeviationCurves {
     /// DNL in mechanical degrees, as a ± value.
     pub differential_deg: f64,
     /// INL in mechanical degrees, as a ± value.
@@ -76,12 +76,12 @@ pub(super) fn compute_nonlinearities(
         Revolution::from_samples(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
     Some(revolution.map(|revolution| Nonlinearities {
         revolutions: revolution.raw.revolutions,
-        raw: Part::from_nonlinearity(&revolution.raw),
-        corrected: Part::from_nonlinearity(&revolution.corrected),
+        raw: DeviationCurves::from_nonlinearity(&revolution.raw),
+        corrected: DeviationCurves::from_nonlinearity(&revolution.corrected),
     }))
 }
 
-impl Part {
+impl DeviationCurves {
     fn from_nonlinearity(nonlinearity: &Nonlinearity) -> Self {
         let (mut deviation, mut mean) = (Vec::new(), Vec::new());
         let whole = |own: &Deviation| own.differential_deg + own.integral_deg;
@@ -92,7 +92,7 @@ impl Part {
             mean.extend(stretch.first().map(|own| (own.reference_deg, own.integral_deg)));
         }
         let Nonlinearity { differential_deg, integral_deg, .. } = *nonlinearity;
-        Part { differential_deg, integral_deg, deviation, mean }
+        DeviationCurves { differential_deg, integral_deg, deviation, mean }
     }
 }
 

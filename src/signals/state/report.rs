@@ -40,7 +40,7 @@ pub(crate) fn report(
 }
 
 fn content(measurement: &Measurement, context: &ReportContext<'_>) -> Result<ReportContent, Text> {
-    let settings = measurement.judge;
+    let settings = measurement.diagnosis_settings;
     let analysis = match (&measurement.analysis, measurement.failure_text(context.language)) {
         (Ok(analysis), _) => analysis,
         (Err(_), Some(why)) => return Err(why),

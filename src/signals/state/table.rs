@@ -12,7 +12,7 @@ pub struct Table {
     /// Format of the table, if it can be detected.
     pub layout: Option<Layout>,
     /// Columns of REFSIN and REFCOS while only one of them is selected.
-    pub half_chosen: (Option<usize>, Option<usize>),
+    pub partial_references: (Option<usize>, Option<usize>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Table {
         };
         let lines = text.split(|byte| *byte == b'\n').take(LINES).map(shown).collect();
         let layout = Layout::detect(head, &hints).ok();
-        Table { place, head: lines, hints, layout, half_chosen: (None, None) }
+        Table { place, head: lines, hints, layout, partial_references: (None, None) }
     }
 
     pub fn delimiter(&self) -> Option<Delimiter> {
@@ -64,8 +64,8 @@ impl Table {
             Column::Cosine => Some(columns.cosine),
             Column::ReferenceAngle => columns.reference_angle,
             Column::Absolute => columns.absolute,
-            Column::RefSine => columns.references.map(|(sine, _)| sine).or(self.half_chosen.0),
-            Column::RefCosine => columns.references.map(|(_, cosine)| cosine).or(self.half_chosen.1),
+            Column::RefSine => columns.references.map(|(sine, _)| sine).or(self.partial_references.0),
+            Column::RefCosine => columns.references.map(|(_, cosine)| cosine).or(self.partial_references.1),
         }
     }
 
@@ -100,7 +100,7 @@ impl Table {
                 *(if column == Column::RefSine { &mut sine } else { &mut cosine }) = number;
                 let before = columns.references;
                 columns.references = sine.zip(cosine);
-                self.half_chosen = if columns.references.is_some() { (None, None) } else { (sine, cosine) };
+                self.partial_references = if columns.references.is_some() { (None, None) } else { (sine, cosine) };
                 if columns.references == before {
                     return false;
                 }

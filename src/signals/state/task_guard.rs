@@ -47,7 +47,7 @@ pub(super) fn run(
 pub(super) fn drop_in_background(tasks: &TaskRunner, large: impl Send + 'static) {
     tasks.run("let go", move || {
         drop(large);
-        done_action(TaskResult::LetGo)
+        done_action(TaskResult::ValueDropped)
     });
 }
 

@@ -51,7 +51,7 @@ pub(crate) struct SignalsUiState {
     source: source::SourceUiState,
     periods: Draft,
     corrected: bool,
-    pictures: [quality::Picture; 2],
+    pictures: [quality::LissajousTexture; 2],
     octant: octant::OctantUiState,
     scope: scope::ScopeUiState,
     input_circuit: Circuit,

@@ -78,7 +78,7 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
         };
         let [own, other] = &mut view.pictures;
         if signals.compared_result().is_none() {
-            *other = Picture::default();
+            *other = LissajousTexture::default();
         }
         let compared = signals.compared_result().map(|kept| {
             let picture = other.texture_of(ui, theme, kept, corrected, 1);
@@ -102,9 +102,9 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
 
 /// Cached texture of a Lissajous figure. It is replaced when the samples or the colour change.
 #[derive(Default)]
-pub(super) struct Picture(Option<(Arc<MeasurementResult>, bool, Color32, TextureHandle)>);
+pub(super) struct LissajousTexture(Option<(Arc<MeasurementResult>, bool, Color32, TextureHandle)>);
 
-impl Picture {
+impl LissajousTexture {
     fn texture_of(
         &mut self,
         ui: &Ui,

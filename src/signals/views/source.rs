@@ -176,7 +176,7 @@ fn live_title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     if matches!(origin, Some(Origin::Virtual | Origin::Adapter { is_virtual: true, .. })) {
         badge(ui, theme, &theme.translate("shell.virtual"), palette.warn);
     }
-    let (id, colour) = match (source.is_running(), source.is_held()) {
+    let (id, colour) = match (source.is_running(), source.is_frozen()) {
         (true, _) if origin.is_none() => ("adapter.asking", palette.accent),
         (true, true) => ("virtual.held", palette.staged),
         (true, false) => ("virtual.running", palette.good),
@@ -218,10 +218,10 @@ fn source_buttons_ui(
         if labelled_button(ui, icons::STOP, &translate(theme, "virtual.stop")).clicked() {
             ask(SourceAction::Stop);
         }
-        let held = source.is_held();
+        let held = source.is_frozen();
         let (icon, id) = if held { (icons::PLAY, "virtual.go_on") } else { (icons::PAUSE, "virtual.hold") };
         if labelled_button(ui, icon, &translate(theme, id)).clicked() {
-            ask(SourceAction::Hold(!held));
+            ask(SourceAction::Freeze(!held));
         }
     } else if labelled_button(ui, icons::PLAY, &translate(theme, "virtual.again")).clicked() {
         ask(match kind {

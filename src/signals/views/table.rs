@@ -62,7 +62,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
             let text = TEXTS.text("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
             paragraph(ui, theme.caption(theme.format_text(&text)));
         }
-        if table.half_chosen != (None, None) {
+        if table.partial_references != (None, None) {
             paragraph(ui, theme.caption(translate(theme, "columns.half_chosen")));
         }
     });

@@ -28,14 +28,14 @@ fn started(services: &mut Services) -> Signals {
     signals
 }
 
-fn measurement(judge: DiagnosisSettings) -> Measurement {
+fn measurement(diagnosis_settings: DiagnosisSettings) -> Measurement {
     let angle = |at: i32| f64::from(at) / 1000.0 * 4.0 * std::f64::consts::TAU;
     let capture = Capture {
         sine_v: (0..1000).map(|at| 0.42 * angle(at).sin()).collect(),
         cosine_v: (0..1000).map(|at| 0.42 * angle(at).cos()).collect(),
         ..Capture::default()
     };
-    Measurement::from_capture(Origin::Virtual, Arc::new(capture), judge)
+    Measurement::from_capture(Origin::Virtual, Arc::new(capture), diagnosis_settings)
 }
 
 /// Processes task results until the condition is true.
