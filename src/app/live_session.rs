@@ -99,7 +99,7 @@ impl<D: Kind> LiveSession<D> {
                 }
             }
             Event::Finished(..) | Event::Failed(..) | Event::Cancelled(..) => self.running = None,
-            Event::PollFailed(_) | Event::Started(_) | Event::Remark(_) | Event::Lost(_) => {}
+            Event::PollFailed(_) | Event::Started(_) | Event::DeviceMessage(_) | Event::Lost(_) => {}
         }
         Some(event)
     }

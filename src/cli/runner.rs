@@ -170,7 +170,7 @@ impl<D: CliDevice> Runner<D> {
                     announced = words;
                     bar.show(progress.done, progress.total, &D::describe_step(&progress.step));
                 }
-                Event::Remark(remark) => {
+                Event::DeviceMessage(remark) => {
                     D::print_message(&remark);
                     self.remarks.push(remark);
                 }

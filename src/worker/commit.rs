@@ -95,7 +95,7 @@ pub enum NotStarted {
     },
     /// The backup cannot be saved.
     #[error(transparent)]
-    NotKept(FileError),
+    BackupFailed(FileError),
 }
 
 /// A plan made by a job, with everything needed to write it except the connection.
@@ -189,7 +189,7 @@ pub fn write_plan<P: PlannedWrite, W: Write<Base = P::Base, Op = P::Op>, E>(
     let intent =
         Intent { kind: prepared.entry_kind(), items, planned_cycles: cost, backup: None, undoes: undoes.clone() };
     let intended = WriteIntent::record(store, &prepared.device(is_virtual), intent, &prepared.backup().emit());
-    let intended = intended.map_err(NotStarted::NotKept)?;
+    let intended = intended.map_err(NotStarted::BackupFailed)?;
     if let (Err(why), false) = (&intended.entry, *force_wear || cost == 0) {
         tracing::warn!("{why}");
         return Err(NotStarted::WearUnknown { cost }.into());

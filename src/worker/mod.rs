@@ -181,7 +181,7 @@ pub enum JobReport<R, W> {
     /// Progress of the job.
     Progress(Progress<W>),
     /// A message from the device. Every message is passed on.
-    Remark(R),
+    DeviceMessage(R),
 }
 
 /// A report from a worker.
@@ -192,7 +192,7 @@ pub enum Event<D: Device> {
     /// Progress of a job.
     Progress(JobId, Progress<D::JobStep>),
     /// A message from the device during a job or at its end.
-    Remark(D::DeviceMessage),
+    DeviceMessage(D::DeviceMessage),
     /// A job has been completed. Contains its result.
     Finished(JobId, Box<D::Output>),
     /// The job failed.
@@ -221,7 +221,7 @@ pub enum SubmitError {
 
 /// A handle to a session's thread. Dropping it stops the running work and ends the thread, without waiting.
 pub struct Worker<D: Device> {
-    orders: Sender<SubmittedJob<D>>,
+    jobs: Sender<SubmittedJob<D>>,
     events: Receiver<Event<D>>,
     samples: Ring<D::Sample>,
     live: LiveRequests,
@@ -240,7 +240,7 @@ impl<D: Device> Worker<D> {
     /// # Errors
     /// Returns an error if the system cannot create a thread.
     pub fn spawn(session: Session<D>, wake: Arc<dyn Fn() + Send + Sync>) -> std::io::Result<Self> {
-        let (orders, incoming) = bounded(1);
+        let (jobs, incoming) = bounded(1);
         let (outgoing, events) = bounded(CAPACITY);
         let (alive, ended) = bounded(0);
         let (live, changes) = LiveRequests::new();
@@ -249,7 +249,7 @@ impl<D: Device> Worker<D> {
         let busy = Arc::new(AtomicBool::new(false));
         let bench = SessionThread {
             session,
-            orders: incoming,
+            jobs: incoming,
             changes,
             live: live.clone(),
             watches: watches.clone(),
@@ -258,7 +258,7 @@ impl<D: Device> Worker<D> {
             busy: busy.clone(),
         };
         thread::start(bench, alive)?;
-        Ok(Worker { orders, events, samples, live, watches, busy, ended, next: 0 })
+        Ok(Worker { jobs, events, samples, live, watches, busy, ended, next: 0 })
     }
 
     /// Submits a job. It takes precedence over sampling and waits only for an exchange in progress.
@@ -278,7 +278,7 @@ impl<D: Device> Worker<D> {
         // affect it.
         let cancel = CancelToken::default();
         self.live.set_job_cancel(cancel.clone());
-        if self.orders.try_send(SubmittedJob { id, job, cancel }).is_err() {
+        if self.jobs.try_send(SubmittedJob { id, job, cancel }).is_err() {
             self.busy.store(false, Ordering::SeqCst);
             return Err(SubmitError::Ended);
         }
@@ -352,7 +352,7 @@ impl<D: Device> Worker<D> {
     pub fn finish(&mut self, patience: Duration) -> bool {
         self.live.stop();
         // The thread ends as soon as no more jobs can arrive.
-        self.orders = bounded(0).0;
+        self.jobs = bounded(0).0;
         matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
 

@@ -20,7 +20,7 @@ pub(super) struct PollScheduler<W> {
 struct WatchSchedule<W> {
     value: W,
     interval: Duration,
-    pace: PollTiming,
+    timing: PollTiming,
 }
 
 impl<W> Default for PollScheduler<W> {
@@ -34,8 +34,9 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
     pub(super) fn set_watched(&mut self, watched: Vec<(W, Duration)>) {
         let mut before = std::mem::take(&mut self.watches);
         for (what, interval) in watched {
-            let pace = before.iter_mut().find(|watch| watch.value == what).map(|watch| std::mem::take(&mut watch.pace));
-            self.watches.push(WatchSchedule { value: what, interval, pace: pace.unwrap_or_default() });
+            let timing =
+                before.iter_mut().find(|watch| watch.value == what).map(|watch| std::mem::take(&mut watch.timing));
+            self.watches.push(WatchSchedule { value: what, interval, timing: timing.unwrap_or_default() });
         }
     }
 
@@ -44,8 +45,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
     pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, DueRequest<W>)> {
         let sample = self.sample.next_due(polling, now);
         let mut next: Option<(Instant, DueRequest<W>)> = None;
-        for WatchSchedule { value: what, interval, pace } in &mut self.watches {
-            let due = pace.next_due(polling.and(Some(*interval)), now);
+        for WatchSchedule { value: what, interval, timing } in &mut self.watches {
+            let due = timing.next_due(polling.and(Some(*interval)), now);
             if let Some(due) = due
                 && self.sample_was_last
                 && next.as_ref().is_none_or(|(earliest, _)| due < *earliest)
@@ -64,7 +65,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
             DueRequest::Sample => self.sample.mark_completed(now),
             DueRequest::Watch(what) => {
                 if let Some(watch) = self.watches.iter_mut().find(|watch| watch.value == *what) {
-                    watch.pace.mark_completed(now);
+                    watch.timing.mark_completed(now);
                 }
             }
         }
@@ -107,18 +108,18 @@ mod tests {
     #[test]
     fn late_sample_causes_no_burst() {
         let (step, start) = (ms(100), Instant::now());
-        let mut pace = PollTiming::default();
-        assert_eq!(pace.next_due(None, start), None);
-        assert_eq!(pace.next_due(Some(step), start), Some(start));
-        pace.mark_completed(start + ms(25));
-        assert_eq!(pace.next_due(Some(step), start + ms(25)), Some(start + ms(100)), "from start to start");
-        pace.mark_completed(start + ms(500));
-        assert_eq!(pace.next_due(Some(step), start + ms(500)), Some(start + ms(500)), "at once, once");
-        pace.mark_completed(start + ms(525));
-        assert_eq!(pace.next_due(Some(step), start + ms(525)), Some(start + ms(600)));
-        assert_eq!(pace.next_due(None, start + ms(530)), None);
-        pace.mark_completed(start + ms(530));
-        assert_eq!(pace.next_due(None, start + ms(530)), None);
+        let mut timing = PollTiming::default();
+        assert_eq!(timing.next_due(None, start), None);
+        assert_eq!(timing.next_due(Some(step), start), Some(start));
+        timing.mark_completed(start + ms(25));
+        assert_eq!(timing.next_due(Some(step), start + ms(25)), Some(start + ms(100)), "from start to start");
+        timing.mark_completed(start + ms(500));
+        assert_eq!(timing.next_due(Some(step), start + ms(500)), Some(start + ms(500)), "at once, once");
+        timing.mark_completed(start + ms(525));
+        assert_eq!(timing.next_due(Some(step), start + ms(525)), Some(start + ms(600)));
+        assert_eq!(timing.next_due(None, start + ms(530)), None);
+        timing.mark_completed(start + ms(530));
+        assert_eq!(timing.next_due(None, start + ms(530)), None);
     }
 
     /// Returns the requests made until `end` with their start times in milliseconds. Each request takes 25 ms.

@@ -12,7 +12,7 @@ struct State<T> {
     items: VecDeque<T>,
     capacity: usize,
     /// Maximum total size of the entries in bytes, as measured by `size_of`.
-    most: usize,
+    byte_limit: usize,
     size: usize,
     size_of: fn(&T) -> usize,
     dropped: u64,
@@ -33,11 +33,11 @@ impl<T> Ring<T> {
         Ring::with_byte_limit(capacity, usize::MAX, |_| 0)
     }
 
-    /// Creates an empty ring that is also limited to `most` bytes, as measured by `size_of`. The newest entry is always
-    /// kept.
-    pub fn with_byte_limit(capacity: usize, most: usize, size_of: fn(&T) -> usize) -> Self {
+    /// Creates an empty ring that is also limited to `byte_limit` bytes, as measured by `size_of`. The newest entry is
+    /// always kept.
+    pub fn with_byte_limit(capacity: usize, byte_limit: usize, size_of: fn(&T) -> usize) -> Self {
         let (items, capacity) = (VecDeque::new(), capacity.max(1));
-        Ring(Arc::new(Mutex::new(State { items, capacity, most, size: 0, size_of, dropped: 0 })))
+        Ring(Arc::new(Mutex::new(State { items, capacity, byte_limit, size: 0, size_of, dropped: 0 })))
     }
 
     /// Appends an entry. A full ring drops its oldest entry.
@@ -45,7 +45,7 @@ impl<T> Ring<T> {
         let mut state = self.lock();
         let size = (state.size_of)(&item);
         let mut oldest = if state.items.len() >= state.capacity { state.drop_oldest() } else { None };
-        while state.size + size > state.most && !state.items.is_empty() {
+        while state.size + size > state.byte_limit && !state.items.is_empty() {
             oldest = state.drop_oldest();
         }
         state.size += size;

@@ -109,10 +109,10 @@ impl<D: Device> Session<D> {
         tell(Event::Started(id));
         let result = self.run_and_record(job, &mut |report| match report {
             JobReport::Progress(progress) => tell(Event::Progress(id, progress)),
-            JobReport::Remark(remark) => tell(Event::Remark(remark)),
+            JobReport::DeviceMessage(remark) => tell(Event::DeviceMessage(remark)),
         });
         while let Some(remark) = self.take_device_message() {
-            tell(Event::Remark(remark));
+            tell(Event::DeviceMessage(remark));
         }
         match result {
             Ok(output) => Event::Finished(id, Box::new(output)),

@@ -15,7 +15,7 @@ use crate::store::{
 
 /// Maximum time that a job waits for a logbook in use by another process. After this time, the connection is recorded
 /// later.
-const BRIEFLY: Duration = Duration::from_millis(50);
+const LOGBOOK_TIMEOUT: Duration = Duration::from_millis(50);
 
 /// Access to the logbook for one session. Clones refer to the same session.
 #[derive(Clone, Debug, Default)]
@@ -89,7 +89,7 @@ impl SessionLog {
         state.is_assigned = false;
         let connection = Connection { store: store.clone(), at: Timestamp::now(), device: device.clone(), asset };
         state.pending.push_back(connection);
-        state.record_pending(|path| Logbook::open_with_timeout(path, BRIEFLY));
+        state.record_pending(|path| Logbook::open_with_timeout(path, LOGBOOK_TIMEOUT));
     }
 
     /// Records an event of the last identified device. Does nothing if there is none.
@@ -141,7 +141,7 @@ impl State {
 
 impl Drop for State {
     fn drop(&mut self) {
-        self.record_pending(|path| Logbook::open_with_timeout(path, BRIEFLY));
+        self.record_pending(|path| Logbook::open_with_timeout(path, LOGBOOK_TIMEOUT));
         for Connection { device, .. } in &self.pending {
             tracing::warn!("the connection of {device:?} was not recorded, because the logbook is in use");
         }

@@ -29,7 +29,7 @@ pub(super) enum Never {}
 /// The state of a session's thread.
 pub(super) struct SessionThread<D: Device> {
     pub(super) session: Session<D>,
-    pub(super) orders: Receiver<SubmittedJob<D>>,
+    pub(super) jobs: Receiver<SubmittedJob<D>>,
     pub(super) changes: Receiver<()>,
     pub(super) live: LiveRequests,
     pub(super) watches: WatchList<D::Watch>,
@@ -69,7 +69,7 @@ fn run_loop<D: Device>(mut bench: SessionThread<D>) {
     loop {
         // The token is reset before the requests for which it was set are read. See `Live::interrupt_sample`.
         bench.live.sampling_cancel_token().reset();
-        match bench.orders.try_recv() {
+        match bench.jobs.try_recv() {
             Ok(order) => {
                 bench.run_job(order);
                 lost = false;
@@ -149,7 +149,7 @@ impl<D: Device> SessionThread<D> {
             Err(error) => {
                 self.live.poll_failed(request);
                 while let Some(remark) = self.session.take_device_message() {
-                    self.events.send(Event::Remark(remark));
+                    self.events.send(Event::DeviceMessage(remark));
                 }
                 self.events.send(Event::PollFailed(Box::new(error)));
             }
@@ -161,7 +161,7 @@ impl<D: Device> SessionThread<D> {
         // A job interrupts this request, just as it interrupts a sample.
         self.session.set_cancel(self.live.sampling_cancel_token().clone());
         if let Some(remark) = self.session.maintain() {
-            self.events.send(Event::Remark(remark));
+            self.events.send(Event::DeviceMessage(remark));
         }
     }
 
@@ -169,7 +169,7 @@ impl<D: Device> SessionThread<D> {
     /// loop.
     fn wait_for_work(&self, patience: Duration) {
         let mut ready = Select::new();
-        ready.recv(&self.orders);
+        ready.recv(&self.jobs);
         ready.recv(&self.changes);
         // An error only means that the time has passed and nothing is ready.
         let _ = ready.ready_timeout(patience);

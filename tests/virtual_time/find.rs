@@ -144,7 +144,7 @@ fn reports_encoders_as_they_answer() {
     let mut progress = 0;
     let end =
         desk.session.run(JobId::default(), HiperfaceJob::Find(FindOptions::default()), &mut |event| match event {
-            Event::Remark(DeviceMessage::Found(found)) => told.push((found, progress)),
+            Event::DeviceMessage(DeviceMessage::Found(found)) => told.push((found, progress)),
             Event::Progress(_, step) => progress = step.done,
             _ => {}
         });

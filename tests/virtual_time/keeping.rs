@@ -26,7 +26,7 @@ fn writes_nothing_without_backup() {
         // Without a folder, the number of write cycles is unknown as well.
         let refused = match in_the_way {
             "data" => matches!(error, JobError::NotStarted(NotStarted::WearUnknown { cost: 1 })),
-            _ => matches!(error, JobError::NotStarted(NotStarted::NotKept(_))),
+            _ => matches!(error, JobError::NotStarted(NotStarted::BackupFailed(_))),
         };
         assert!(refused, "{in_the_way}: {error:?}");
         assert_eq!((desk.memory(), desk.wear()), (memory, 0), "{in_the_way}");

@@ -163,8 +163,8 @@ fn reports_lost_status_codes() {
         desk.tap().swallow_reply = Some(already + lost);
         let (mut codes, mut unheard) = (Vec::new(), 0);
         let end = desk.session.run(JobId::default(), HiperfaceJob::Status, &mut |event| match event {
-            Event::Remark(DeviceMessage::Codes(own)) => codes.extend(own),
-            Event::Remark(DeviceMessage::CodesUnheard(count)) => unheard += count,
+            Event::DeviceMessage(DeviceMessage::Codes(own)) => codes.extend(own),
+            Event::DeviceMessage(DeviceMessage::CodesUnheard(count)) => unheard += count,
             _ => {}
         });
         let Event::Finished(_, output) = end else { panic!("{lost}: {end:?}") };

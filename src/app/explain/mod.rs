@@ -175,7 +175,7 @@ pub fn newer_profile(path: &Path, document: &ProfileDocument) -> Text {
 pub fn not_started_text(why: &NotStarted) -> Text {
     match why {
         NotStarted::OtherPlan => Text::new("write.other_plan"),
-        NotStarted::NotKept(error) => Text::new("write.not_kept").with_text("why", file_error_text(error)),
+        NotStarted::BackupFailed(error) => Text::new("write.not_kept").with_text("why", file_error_text(error)),
         NotStarted::WearUnknown { cost } => Text::new("write.uncounted").with("cost", cost),
         NotStarted::WearIncomplete { seen, cost, limit } => {
             Text::new("write.incomplete").with("seen", seen).with("cost", cost).with("limit", limit)

@@ -121,7 +121,7 @@ pub trait SessionEvents: HasSession {
         match event {
             Event::Started(_) => {}
             Event::Progress(_, progress) => self.handle_progress(progress.step),
-            Event::Remark(remark) => self.message_received(remark, services),
+            Event::DeviceMessage(remark) => self.message_received(remark, services),
             Event::Finished(id, output) => {
                 services.end_job(self.session().id, id, JobState::Done);
                 if Self::is_device_reply(&output) {

@@ -9,7 +9,7 @@ use crate::sim::sine_cosine::{Quantity, Settings};
 use crate::units::Moment;
 
 /// A time limit that exceeds the duration of any test.
-const HANGS: Duration = Duration::from_secs(20);
+const TEST_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// A producer of consecutive numbers, as fast as possible until it stalls or fails. Each batch advances its clock by
 /// one millisecond.
@@ -18,14 +18,14 @@ struct Numbers {
     next: u64,
     fails: bool,
     /// Received requests.
-    heard: Sender<u64>,
+    requests: Sender<u64>,
     /// Dropped together with the producer.
     _alive: Sender<Never>,
 }
 
 fn numbers(sizes: impl IntoIterator<Item = usize>, fails: bool) -> (Numbers, Receiver<u64>, Receiver<Never>) {
-    let ((heard, wishes), (alive, gone)) = (crossbeam_channel::unbounded(), bounded(0));
-    (Numbers { sizes: sizes.into_iter().collect(), next: 0, fails, heard, _alive: alive }, wishes, gone)
+    let ((requests, wishes), (alive, gone)) = (crossbeam_channel::unbounded(), bounded(0));
+    (Numbers { sizes: sizes.into_iter().collect(), next: 0, fails, requests, _alive: alive }, wishes, gone)
 }
 
 impl Producer for Numbers {
@@ -34,7 +34,7 @@ impl Producer for Numbers {
     type Error = &'static str;
 
     fn apply_change(&mut self, wish: u64) {
-        self.heard.send(wish).unwrap();
+        self.requests.send(wish).unwrap();
     }
 
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Vec<u64>>>, &'static str> {
@@ -52,7 +52,7 @@ impl Producer for Numbers {
 fn wait_until(what: impl Fn() -> bool) {
     let begun = Instant::now();
     while !what() {
-        assert!(begun.elapsed() < HANGS);
+        assert!(begun.elapsed() < TEST_TIMEOUT);
         std::thread::sleep(Duration::from_millis(1));
     }
 }
@@ -144,8 +144,8 @@ fn last_batch_before_silence_wakes_reader() {
         let _ = told.try_send(());
     });
     let stream = Stream::spawn(producer, 10, Arc::new(RealClock::start()), wake).unwrap();
-    wakes.recv_timeout(HANGS).unwrap();
-    wakes.recv_timeout(HANGS).unwrap();
+    wakes.recv_timeout(TEST_TIMEOUT).unwrap();
+    wakes.recv_timeout(TEST_TIMEOUT).unwrap();
     assert_eq!(check(&stream.take_batches(), 0), 2);
     assert!(!stream.is_finished());
     assert!(wakes.recv_timeout(Duration::from_millis(120)).is_err(), "silence wakes no thread");
@@ -156,10 +156,10 @@ fn latest_change_arrives_before_drop() {
     let (producer, wishes, gone) = numbers([], false);
     let stream = Stream::spawn(producer, 10, Arc::new(RealClock::start()), Arc::new(|| ())).unwrap();
     (0..1_000).for_each(|wish| stream.request_change(wish));
-    while wishes.recv_timeout(HANGS).unwrap() != 999 {}
+    while wishes.recv_timeout(TEST_TIMEOUT).unwrap() != 999 {}
     assert!(wishes.is_empty());
     drop(stream);
-    assert!(matches!(gone.recv_timeout(HANGS), Err(crossbeam_channel::RecvTimeoutError::Disconnected)));
+    assert!(matches!(gone.recv_timeout(TEST_TIMEOUT), Err(crossbeam_channel::RecvTimeoutError::Disconnected)));
 }
 
 fn settings(rate_hz: f64) -> crate::sim::sine_cosine::CheckedSettings {

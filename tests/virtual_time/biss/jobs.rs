@@ -413,7 +413,7 @@ fn reports_broken_descriptions_once() {
     for expected in [1, 0] {
         let mut remarks = Vec::new();
         bench.session.run(JobId::default(), BissJob::Identify, &mut |event| {
-            if let Event::Remark(remark) = event {
+            if let Event::DeviceMessage(remark) = event {
                 remarks.push(remark);
             }
         });

@@ -89,7 +89,7 @@ impl Stand {
     pub(crate) fn follow(&mut self, job: InterbusJob) -> (Result<InterbusOutput, JobError>, Vec<Handshake>) {
         let mut steps = Vec::new();
         let ended = self.session.run(JobId::default(), job, &mut |event| {
-            if let Event::Remark(DeviceMessage::Handshake(step)) = event {
+            if let Event::DeviceMessage(DeviceMessage::Handshake(step)) = event {
                 steps.push(step);
             }
         });

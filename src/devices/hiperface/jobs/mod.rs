@@ -273,7 +273,7 @@ fn search_report(news: SearchProgress<'_>) -> JobReport<DeviceMessage, JobStep> 
         SearchProgress::Trying { done, total, attempt } => {
             JobReport::Progress(Progress { done, total, step: JobStep::Attempt(attempt.clone()) })
         }
-        SearchProgress::Found(found) => JobReport::Remark(DeviceMessage::Found(found.clone())),
+        SearchProgress::Found(found) => JobReport::DeviceMessage(DeviceMessage::Found(found.clone())),
     }
 }
 

@@ -71,7 +71,7 @@ impl Search {
         let dead = self.line.as_ref().is_some_and(LiveSession::is_dead);
         while let Some(event) = self.line.as_mut().and_then(LiveSession::next) {
             match event {
-                Event::Remark(DeviceMessage::Found(found)) => self.found.push(found),
+                Event::DeviceMessage(DeviceMessage::Found(found)) => self.found.push(found),
                 Event::Finished(_, output) => self.finish(*output),
                 Event::Failed(_, error) | Event::Cancelled(_, error) => {
                     self.end = words::job_error_texts(&error).into_iter().next();
@@ -79,7 +79,9 @@ impl Search {
                 Event::Lost(error) => self.end = Some(explain::link_error_text(&error)),
                 Event::Started(_)
                 | Event::Progress(..)
-                | Event::Remark(DeviceMessage::Codes(_) | DeviceMessage::CodesUnheard(_) | DeviceMessage::Line(_))
+                | Event::DeviceMessage(
+                    DeviceMessage::Codes(_) | DeviceMessage::CodesUnheard(_) | DeviceMessage::Line(_),
+                )
                 | Event::PollFailed(_) => {}
             }
         }

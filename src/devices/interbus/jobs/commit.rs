@@ -19,8 +19,8 @@ pub(super) fn commit_plan(
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let tell = std::cell::RefCell::new(tell);
-    let master =
-        encoder.create_master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
+    let master = encoder
+        .create_master(context, |step| (tell.borrow_mut())(JobReport::DeviceMessage(DeviceMessage::Handshake(step))));
     let mut write = EncoderWriter { master, identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
         (tell.borrow_mut())(JobReport::Progress(at.map_step(|op| JobStep::Operation(op.item_names()))));

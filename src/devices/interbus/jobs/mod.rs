@@ -208,8 +208,9 @@ impl Interbus {
         ask: impl FnOnce(&mut Master<'_>, Steps<'_>) -> Result<InterbusOutput, Error>,
     ) -> Result<InterbusOutput, JobError> {
         let tell = std::cell::RefCell::new(tell);
-        let mut master =
-            self.create_master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
+        let mut master = self.create_master(context, |step| {
+            (tell.borrow_mut())(JobReport::DeviceMessage(DeviceMessage::Handshake(step)))
+        });
         let mut steps =
             |done, total, what| (tell.borrow_mut())(JobReport::Progress(Progress { done, total, step: what }));
         Ok(ask(&mut master, &mut steps)?)

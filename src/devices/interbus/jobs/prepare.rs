@@ -18,8 +18,8 @@ pub(super) fn prepare_plan(
 ) -> Result<Prepared, JobError> {
     let (log, store, is_virtual) = (context.log(), context.store.clone(), context.is_virtual);
     let tell = std::cell::RefCell::new(tell);
-    let mut master =
-        encoder.create_master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
+    let mut master = encoder
+        .create_master(context, |step| (tell.borrow_mut())(JobReport::DeviceMessage(DeviceMessage::Handshake(step))));
     let report = &mut |done, total, program| {
         (tell.borrow_mut())(JobReport::Progress(Progress { done, total, step: JobStep::Program(program) }));
     };

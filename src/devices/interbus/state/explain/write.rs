@@ -151,7 +151,7 @@ pub(super) fn not_started_text(why: &NotStarted) -> Text {
             TEXTS.text("ib_stores.refused").with("used", seen).with("cost", cost).with("limit", WEAR_LIMIT)
         }
         NotStarted::OtherPlan
-        | NotStarted::NotKept(_)
+        | NotStarted::BackupFailed(_)
         | NotStarted::WearUnknown { .. }
         | NotStarted::WearIncomplete { .. } => explain::not_started_text(why),
     }
