@@ -109,13 +109,13 @@ fn a_bank_is_read_once_when_it_becomes_visible() {
     let mut desk = open("sim:?bridge=on");
     let bank = encoder(&desk).table.position(Some(0x24)).unwrap();
     assert!(encoder(&desk).should_read_bank(&encoder(&desk).table.groups()[bank]));
-    ask(&mut desk, Biss::SeeBank(Some(0x24)));
+    ask(&mut desk, Biss::ReadVisibleBank(Some(0x24)));
     desk.until("the bank is read", |studio| {
         studio.biss().is_some_and(|own| own.session.is_ready() && own.memory.read(at("0x24:0x3F")).is_some())
     });
     let jobs = desk.studio.services.jobs().len();
     assert!(!encoder(&desk).should_read_bank(&encoder(&desk).table.groups()[bank]));
-    ask(&mut desk, Biss::SeeBank(Some(0x24)));
+    ask(&mut desk, Biss::ReadVisibleBank(Some(0x24)));
     assert_eq!(desk.studio.services.jobs().len(), jobs);
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 
 /// Settings without noise.
-fn silence_duration() -> Settings {
+fn noiseless_settings() -> Settings {
     Settings { noise_v: 0.0, ..Settings::default() }
 }
 
@@ -28,7 +28,7 @@ fn samples_match_reference() {
         offset_cosine_v: 0.02,
         gain_ratio: 1.05,
         phase_error_deg: 3.0,
-        ..silence_duration()
+        ..noiseless_settings()
     });
     let wires = source.samples_from(0, 361).unwrap();
     let cases = [
@@ -72,7 +72,7 @@ fn sample_ranges_are_reproducible_after_days() {
 #[test]
 fn angle_is_continuous_across_settings() {
     // 60 rev/min at 1000 samples per second is 0.36° per sample.
-    let slow = Settings { rate_hz: 1_000.0, ..silence_duration() };
+    let slow = Settings { rate_hz: 1_000.0, ..noiseless_settings() };
     let mut source = source(slow.clone());
     let fast = Settings { speed_rpm: -600.0, rate_hz: 10_000.0, offset_cosine_v: 0.1, ..slow };
     source.change_settings(500, fast.clone().validate().unwrap());
@@ -95,9 +95,9 @@ fn angle_is_continuous_across_settings() {
 
 #[test]
 fn discards_old_changes() {
-    let mut source = source(silence_duration());
+    let mut source = source(noiseless_settings());
     for at in 1..=200 {
-        source.change_settings(at * 10, silence_duration().validate().unwrap());
+        source.change_settings(at * 10, noiseless_settings().validate().unwrap());
     }
     assert_eq!(source.samples_from(100, 10), None);
     assert_eq!(source.time(0), None);
@@ -138,7 +138,7 @@ fn open_wire_follows_termination() {
             open_wire: Some(open),
             terminated,
             references,
-            ..silence_duration()
+            ..noiseless_settings()
         };
         let wires = source(settings).samples_from(10, 1).unwrap();
         (wires.sine_v()[0], wires.sin_v[0], wires.refsin_v[0])
@@ -171,7 +171,7 @@ fn simulates_harmonics_modulation_and_eccentricity() {
         third_harmonic_percent: 4.0,
         modulation_percent: 10.0,
         eccentricity_arcsec: 100.0,
-        ..silence_duration()
+        ..noiseless_settings()
     };
     let wires = source(settings).samples_from(300, 1).unwrap();
     near(wires.sine_v()[0], -0.448_673_821, 1e-9);
@@ -180,7 +180,7 @@ fn simulates_harmonics_modulation_and_eccentricity() {
 
 #[test]
 fn only_hum_is_in_phase() {
-    let settings = Settings { speed_rpm: 0.0, amplitude_v: 0.0, ..silence_duration() };
+    let settings = Settings { speed_rpm: 0.0, amplitude_v: 0.0, ..noiseless_settings() };
     // A quarter of a period takes 5 ms at 50 Hz and 31.25 µs at 8 kHz. Three samples of 10 µs are 0.24 of a period at 8
     // kHz.
     let hum = source(Settings { hum_v: 0.1, ..settings.clone() }).samples_from(500, 1).unwrap();

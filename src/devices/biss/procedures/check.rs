@@ -39,7 +39,7 @@ pub enum CheckFinding {
     Error(u8, Option<Name>),
     Warning(u8, Option<Name>),
     /// The encoder or its firmware has no registers for errors and warnings.
-    NotTold,
+    NotReported,
     Mode(DeviceMode),
     Open,
     Position(PositionReading),
@@ -52,7 +52,7 @@ pub enum CheckFinding {
     /// The encoder has no data sheet, or its profile is not supported.
     NoSheet,
     /// The data sheet and the description define different multiturn and singleturn widths.
-    OtherFrame {
+    FrameMismatch {
         sheet: (u8, u8),
         description: (u8, u8),
     },
@@ -136,7 +136,7 @@ fn status(status: &EncoderStatus) -> BissStepResult {
     let warnings = set(&status.warnings).into_iter();
     findings.extend(warnings.map(|(bit, name)| (Verdict::Attention, CheckFinding::Warning(bit, name))));
     if status.errors.is_none() && status.warnings.is_none() {
-        findings.push((Verdict::Attention, CheckFinding::NotTold));
+        findings.push((Verdict::Attention, CheckFinding::NotReported));
     }
     let mode = status.mode.filter(|mode| *mode != DeviceMode::OPERATION);
     findings.extend(mode.map(|mode| (Verdict::Attention, CheckFinding::Mode(mode))));
@@ -176,8 +176,8 @@ fn data_sheet(identity: &Identity) -> BissStepResult {
                     (layout.multiturn_bits(), layout.singleturn_bits())
                 };
                 let described = identity.description.layout().map(widths).filter(|own| *own != widths(sheet_layout));
-                let other =
-                    described.map(|description| CheckFinding::OtherFrame { sheet: widths(sheet_layout), description });
+                let other = described
+                    .map(|description| CheckFinding::FrameMismatch { sheet: widths(sheet_layout), description });
                 findings.extend(other.map(|finding| (Verdict::Attention, finding)));
             }
         }

@@ -131,7 +131,7 @@ pub enum Error {
     Layout(#[from] LayoutError),
     /// Fewer registers were read than requested.
     #[error("{got} registers were read from {start} instead of {expected}")]
-    TooFew { start: RegisterAddress, expected: usize, got: usize },
+    TooFewRegisters { start: RegisterAddress, expected: usize, got: usize },
     /// The encoder does not return to operation mode, or its password remains set.
     #[error("the encoder stays in device mode {mode}, or its password stays set")]
     StaysUnlocked { mode: DeviceMode },
@@ -152,9 +152,9 @@ pub(super) fn requested_register(number: u16) -> RegisterAddress {
 /// Converts register values to an array of known size.
 ///
 /// # Errors
-/// Returns [`Error::TooFew`] if the number of registers differs.
+/// Returns [`Error::TooFewRegisters`] if the number of registers differs.
 pub(super) fn to_register_array<const N: usize>(start: RegisterAddress, bytes: Vec<u8>) -> Result<[u8; N], Error> {
-    bytes.try_into().map_err(|bytes: Vec<u8>| Error::TooFew { start, expected: N, got: bytes.len() })
+    bytes.try_into().map_err(|bytes: Vec<u8>| Error::TooFewRegisters { start, expected: N, got: bytes.len() })
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -6,9 +6,9 @@ use super::{Error, Master};
 use crate::devices::biss::protocol::{Crc, Layout, LayoutError, detect_data_bits};
 
 /// Number of bits read per frame, which is the maximum frame length including the checksum.
-const CLOCKED: u8 = 64;
+const FRAME_BITS: u8 = 64;
 /// Maximum number of frames to examine.
-const FRAMES: usize = 200;
+const MAX_FRAMES: usize = 200;
 const READING_INTERVAL: Duration = Duration::from_millis(2);
 /// Maximum width of the singleturn position in bits.
 const MAX_SINGLETURN_BITS: u8 = 32;
@@ -22,10 +22,10 @@ const MAX_SINGLETURN_BITS: u8 = 32;
 /// fails.
 pub(super) fn find_frame_layout(master: &mut Master<'_>) -> Result<Layout, Error> {
     let crc = Crc::new(Crc::POSITION, 0, true).map_err(LayoutError::from)?;
-    let mut frames = Vec::with_capacity(FRAMES);
-    while frames.len() < FRAMES {
-        frames.push(master.read_frame(CLOCKED - crc.width(), crc.width())?);
-        if let Some(bits) = detect_data_bits(&frames, CLOCKED, &crc) {
+    let mut frames = Vec::with_capacity(MAX_FRAMES);
+    while frames.len() < MAX_FRAMES {
+        frames.push(master.read_frame(FRAME_BITS - crc.width(), crc.width())?);
+        if let Some(bits) = detect_data_bits(&frames, FRAME_BITS, &crc) {
             let position = bits.saturating_sub(2);
             let singleturn = position.min(MAX_SINGLETURN_BITS);
             return Ok(Layout::new(position - singleturn, singleturn, true, true, Some(crc))?);

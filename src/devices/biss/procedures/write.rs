@@ -154,16 +154,16 @@ impl Write for EncoderWriter<'_, '_> {
 /// Returns the encoder to operation mode if the line still works.
 fn return_to_operation(guide: &mut ProcedureContext<'_, '_>, cause: Option<&Failure>) -> Result<(), Error> {
     match cause {
-        Some(Failure::Device(error)) if is_gone(error) => Err(error.clone()),
+        Some(Failure::Device(error)) if is_link_lost(error) => Err(error.clone()),
         _ => guide.return_to_operation(),
     }
 }
 
 /// Returns whether the connection is lost and nothing more can be sent.
-fn is_gone(error: &Error) -> bool {
+fn is_link_lost(error: &Error) -> bool {
     match error {
         Error::Link(_) => true,
-        Error::Unclear { cause, .. } => is_gone(cause),
+        Error::Unclear { cause, .. } => is_link_lost(cause),
         _ => false,
     }
 }

@@ -38,7 +38,7 @@ impl Encoder {
             BissAction::Check => self.submit(BissJob::Check, services),
             BissAction::Watch(register, on) => self.watch_register(*register, on),
             BissAction::ReadBank(bank) => self.read_bank(bank, services),
-            BissAction::SeeBank(bank) => {
+            BissAction::ReadVisibleBank(bank) => {
                 // A bank is read only once, and only if nothing is running and no stream would be interrupted.
                 let free = self.session.is_ready() && self.active_stream().is_none();
                 if free && self.seen.insert(bank) {

@@ -18,7 +18,7 @@ pub enum BissAction {
     /// Reads a bank, or the direct registers for `None`.
     ReadBank(Option<u8>),
     /// Reads a bank that has become visible for the first time. Ignored while a job is running.
-    SeeBank(Option<u8>),
+    ReadVisibleBank(Option<u8>),
     /// Reads the data area that starts at the given bank.
     ReadArea(u8),
     /// Edits bytes of a data area.

@@ -116,7 +116,7 @@ pub fn encoder_error_text(error: &Error) -> Text {
         }
         Error::FrameStatus { status } => TEXTS.text("biss.frame_status").with("status", format_byte(*status)),
         Error::Layout(error) => layout_error_text(error),
-        Error::TooFew { start, expected, got } => {
+        Error::TooFewRegisters { start, expected, got } => {
             TEXTS.text("biss.too_few").with("start", start).with("expected", expected).with("got", got)
         }
         Error::StaysUnlocked { mode } => in_mode("biss.stays_unlocked", *mode),

@@ -200,7 +200,7 @@ fn table_ui(
     let in_sight = encoder.table.groups().iter().enumerate().skip(output.groups.start).take(output.groups.len());
     let unread = |(at, own): &(usize, &Group)| !view.table.is_folded(*at) && encoder.should_read_bank(own);
     if let Some((_, own)) = in_sight.into_iter().find(unread) {
-        actions.push(Action::device(encoder.session.id, Biss::SeeBank(own.bank)));
+        actions.push(Action::device(encoder.session.id, Biss::ReadVisibleBank(own.bank)));
     }
 }
 

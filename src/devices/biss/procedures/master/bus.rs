@@ -16,9 +16,9 @@ use crate::units::Moment;
 /// Slave number of the only encoder on the line.
 const SLAVE: u8 = 0;
 /// Time after a reply within which the encoder cannot restart unnoticed. A restart takes 500 ms (data sheet, 02:0Eh).
-const BANK_TRUST: Duration = Duration::from_millis(200);
+const BANK_CACHE_TIME: Duration = Duration::from_millis(200);
 /// Pause between two attempts. The adapter reports a missing encoder immediately, so there would be no pause otherwise.
-const PAUSE: Duration = Duration::from_millis(20);
+const RETRY_PAUSE: Duration = Duration::from_millis(20);
 /// Number of consecutive frames with a wrong checksum after which noise is ruled out as the cause. The number is not
 /// documented (`U`).
 const WRONG_FRAMES: u32 = 16;
@@ -83,7 +83,7 @@ impl<'a> Master<'a> {
     fn select_bank_once(&mut self, address: RegisterAddress) -> AttemptResult<()> {
         let Some(bank) = address.bank() else { return Ok(Ok(())) };
         let now = self.now();
-        let fresh = |(own, at): (u8, Moment)| own == bank && now.duration_since(at) < BANK_TRUST;
+        let fresh = |(own, at): (u8, Moment)| own == bank && now.duration_since(at) < BANK_CACHE_TIME;
         if self.station.bank.is_some_and(fresh) {
             return Ok(Ok(()));
         }
@@ -257,7 +257,7 @@ impl<'a> Master<'a> {
     }
 
     pub(super) fn pause(&mut self) -> Result<(), Error> {
-        self.wait(PAUSE)
+        self.wait(RETRY_PAUSE)
     }
 
     /// Returns the maximum duration of an exchange with two attempts.

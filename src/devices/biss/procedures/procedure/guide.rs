@@ -25,16 +25,16 @@ pub(super) const SILENCE_LIMIT: Duration = Duration::from_secs(10);
 const STATUS_POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// Interval between position readings. At 2000 rpm, half a turn takes 15 ms. With longer intervals, the turns of a
 /// singleturn encoder could not be counted.
-const SAMPLING: Duration = Duration::from_millis(10);
+const SAMPLE_INTERVAL: Duration = Duration::from_millis(10);
 /// Interval at which the operator is asked for an answer.
 const QUESTION_INTERVAL: Duration = Duration::from_millis(200);
 /// Duration of a motor speed measurement.
 const SPEED_MEASUREMENT_TIME: Duration = Duration::from_secs(1);
 const STANDSTILL_MEASUREMENT_TIME: Duration = Duration::from_millis(250);
 /// Time limit for the encoder to accept a device mode.
-const MODE: Duration = Duration::from_millis(500);
+const MODE_TIMEOUT: Duration = Duration::from_millis(500);
 /// Time limit for an expected status.
-const STATUS: Duration = Duration::from_secs(5);
+const STATUS_TIMEOUT: Duration = Duration::from_secs(5);
 /// Silence after which the encoder is assumed to have started the calibration. The time is not documented (`U`). The
 /// silence after a damaged reply is shorter.
 const START_SILENCE: Duration = Duration::from_secs(1);
@@ -163,7 +163,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
         let Some(lock) = self.description.lock() else { return Err(Failure::NotDescribed { kind: procedure.kind }) };
         unlock(self.master, lock, &mut self.standing)?;
         set_mode(self.master, lock, mode, &mut self.standing)?;
-        let end = self.master.now() + MODE;
+        let end = self.master.now() + MODE_TIMEOUT;
         loop {
             let found = DeviceMode::new(self.master.read(lock.mode_at)?);
             if found == mode {
@@ -209,7 +209,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
     }
 
     pub(super) fn await_status(&mut self, procedure: &Procedure, expected: u8) -> Result<(), Failure> {
-        let end = self.master.now() + STATUS;
+        let end = self.master.now() + STATUS_TIMEOUT;
         loop {
             let found = self.master.read(procedure.status)?;
             if found == expected {
@@ -253,7 +253,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
             begun |= status == course.active || status != course.was;
             begun |= course.run.is_calibration() && self.master.now().duration_since(requested) >= START_SILENCE;
             let waits = status == course.before || !begun;
-            if waits && elapsed < STATUS {
+            if waits && elapsed < STATUS_TIMEOUT {
                 // The run has not started yet.
             } else if status == course.before || (waits && status == course.done) {
                 // The start command was not received.
@@ -343,7 +343,7 @@ impl<'g, 'm> ProcedureContext<'g, 'm> {
             if self.master.now() >= end {
                 break;
             }
-            self.master.wait(SAMPLING)?;
+            self.master.wait(SAMPLE_INTERVAL)?;
         }
         if let (OperatorTask::Turn(run), Some(temperature)) = (task, self.role_address(Role::Temperature))
             && run.is_calibration()

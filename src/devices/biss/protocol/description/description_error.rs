@@ -67,10 +67,10 @@ pub enum DescriptionErrorKind {
     },
     /// The factor or offset is not a finite number.
     #[error("\"{0}\": factor and offset must be finite numbers")]
-    Endless(String),
+    NotFinite(String),
     /// A register that cannot be written has `saves` values, which would trigger a save.
     #[error("\"{0}\": a read-only register cannot have \"saves\" values")]
-    SavesNothing(String),
+    SavesOnReadOnly(String),
     /// The first bank of an area comes after its last bank.
     #[error("\"{name}\": the first bank (0x{first:02X}) comes after the last bank (0x{last:02X})")]
     Banks {
@@ -92,7 +92,7 @@ pub enum DescriptionErrorKind {
     GermanEmpty(String),
     /// A German name is listed for an English name that the description does not use.
     #[error("german: the description does not contain the name \"{0}\"")]
-    GermanNeedless(String),
+    UnusedGermanName(String),
 }
 
 /// An item that may occur only once in a description.

@@ -269,10 +269,10 @@ impl RegisterRow {
         if let ValueDecoding::Scaled { factor, offset } = decoding
             && !(factor.is_finite() && offset.is_finite())
         {
-            return Err(DescriptionErrorKind::Endless(name.to_string()));
+            return Err(DescriptionErrorKind::NotFinite(name.to_string()));
         }
         if !self.access.is_writable() && !self.saves.is_empty() {
-            return Err(DescriptionErrorKind::SavesNothing(name.to_string()));
+            return Err(DescriptionErrorKind::SavesOnReadOnly(name.to_string()));
         }
         Ok(Register {
             address,

@@ -33,7 +33,7 @@ impl GermanNames {
         }
         match self.0.into_keys().next() {
             None => Ok(()),
-            Some(english) => Err((entry_location(&english, text), DescriptionErrorKind::GermanNeedless(english))),
+            Some(english) => Err((entry_location(&english, text), DescriptionErrorKind::UnusedGermanName(english))),
         }
     }
 }

@@ -35,7 +35,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::Mismatch(found) => mismatch_text(found),
         CheckFinding::Error(bit, name) => bit_text("check.error", *bit, name.as_ref()),
         CheckFinding::Warning(bit, name) => bit_text("check.warning", *bit, name.as_ref()),
-        CheckFinding::NotTold => TEXTS.text("check.not_told"),
+        CheckFinding::NotReported => TEXTS.text("check.not_told"),
         CheckFinding::Mode(found) => TEXTS.text("check.mode").with_text("mode", mode_text(*found)),
         CheckFinding::Open => TEXTS.text("check.open"),
         CheckFinding::Position(reading) if !reading.is_split_known => {
@@ -52,7 +52,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::SumsFit => TEXTS.text("check.sums"),
         CheckFinding::Sheet(error) => TEXTS.text("check.sheet").with_text("why", data_sheet_error_text(error)),
         CheckFinding::NoSheet => TEXTS.text("check.no_sheet"),
-        CheckFinding::OtherFrame { sheet, description } => TEXTS
+        CheckFinding::FrameMismatch { sheet, description } => TEXTS
             .text("check.other_frame")
             .with("sheet", format!("{}+{}", sheet.0, sheet.1))
             .with("description", format!("{}+{}", description.0, description.1)),

@@ -25,8 +25,8 @@ pub(super) fn description_problem_text(flaw: &DescriptionErrorKind) -> Text {
         DescriptionErrorKind::Bit { name, bit, width } => {
             TEXTS.text("biss_flaw.bit").with("name", name).with("bit", bit).with("width", width)
         }
-        DescriptionErrorKind::Endless(name) => TEXTS.text("biss_flaw.endless").with("name", name),
-        DescriptionErrorKind::SavesNothing(name) => TEXTS.text("biss_flaw.saves_nothing").with("name", name),
+        DescriptionErrorKind::NotFinite(name) => TEXTS.text("biss_flaw.endless").with("name", name),
+        DescriptionErrorKind::SavesOnReadOnly(name) => TEXTS.text("biss_flaw.saves_nothing").with("name", name),
         DescriptionErrorKind::Banks { name, first, last } => TEXTS
             .text("biss_flaw.banks")
             .with("name", name)
@@ -35,7 +35,7 @@ pub(super) fn description_problem_text(flaw: &DescriptionErrorKind) -> Text {
         DescriptionErrorKind::Layout(error) => layout_error_text(error),
         DescriptionErrorKind::Twice(claim) => TEXTS.text("biss_flaw.twice").with_text("claim", self::item_text(claim)),
         DescriptionErrorKind::GermanEmpty(name) => TEXTS.text("biss_flaw.german_empty").with("name", name),
-        DescriptionErrorKind::GermanNeedless(name) => TEXTS.text("biss_flaw.german_needless").with("name", name),
+        DescriptionErrorKind::UnusedGermanName(name) => TEXTS.text("biss_flaw.german_needless").with("name", name),
     }
 }
 
@@ -69,8 +69,8 @@ mod tests {
             DescriptionErrorKind::BeyondBank { name: name.clone(), width: 2, address },
             DescriptionErrorKind::Default { name: name.clone(), bytes: 2, width: 1 },
             DescriptionErrorKind::Bit { name: name.clone(), bit: 8, width: 1 },
-            DescriptionErrorKind::Endless(name.clone()),
-            DescriptionErrorKind::SavesNothing(name.clone()),
+            DescriptionErrorKind::NotFinite(name.clone()),
+            DescriptionErrorKind::SavesOnReadOnly(name.clone()),
             DescriptionErrorKind::Banks { name: name.clone(), first: 5, last: 4 },
             DescriptionErrorKind::Layout(LayoutError::Empty),
             DescriptionErrorKind::Twice(UniqueItem::Register(address)),
@@ -79,7 +79,7 @@ mod tests {
             DescriptionErrorKind::Twice(UniqueItem::Procedure(ProcedureKind::Preset)),
             DescriptionErrorKind::Twice(UniqueItem::Name(name.clone())),
             DescriptionErrorKind::GermanEmpty(name.clone()),
-            DescriptionErrorKind::GermanNeedless(name),
+            DescriptionErrorKind::UnusedGermanName(name),
         ];
         for own in flaws {
             assert_in_both_languages(&description_problem_text(&own), &own);
