@@ -164,7 +164,7 @@ fn reports_lost_status_codes() {
         let (mut codes, mut unheard) = (Vec::new(), 0);
         let end = desk.session.run(JobId::default(), HiperfaceJob::Status, &mut |event| match event {
             Event::DeviceMessage(DeviceMessage::Codes(own)) => codes.extend(own),
-            Event::DeviceMessage(DeviceMessage::CodesUnheard(count)) => unheard += count,
+            Event::DeviceMessage(DeviceMessage::CodesLost(count)) => unheard += count,
             _ => {}
         });
         let Event::Finished(_, output) = end else { panic!("{lost}: {end:?}") };
@@ -185,5 +185,5 @@ fn unrequested_codes_are_not_lost() {
     let end = desk.session.run(JobId::default(), HiperfaceJob::Status, &mut |event| told.push(format!("{event:?}")));
     assert!(matches!(end, Event::Failed(..)), "{end:?}");
     assert!(!desk.tap().sent.iter().any(|frame| frame.get(1) == Some(&0x50)));
-    assert!(!told.iter().any(|event| event.contains("CodesUnheard")), "{told:?}");
+    assert!(!told.iter().any(|event| event.contains("CodesLost")), "{told:?}");
 }

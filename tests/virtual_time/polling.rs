@@ -140,7 +140,7 @@ fn polling_continues_without_position() {
     for _ in 0..3 {
         let PolledSample::NoPosition { codes, .. } = desk.session.take_sample().unwrap() else { panic!("too fast") };
         assert!(codes.contains(&StatusCode::TOO_FAST), "{codes:?}");
-        assert!(desk.session.station().codes_met.is_empty(), "they are told with the sample");
+        assert!(desk.session.station().codes_to_display.is_empty(), "they are told with the sample");
     }
     let now = desk.clock.now();
     desk.bus().encoder_mut(0).unwrap().set_rpm(now, 0.0);

@@ -93,7 +93,7 @@ fn follows_encoder_warning_during_change() {
     let mut desk = Desk::new("");
     warn(&mut desk);
     desk.change(Change::SetAddress(DeviceAddress::new(0x45).unwrap())).unwrap();
-    assert_eq!(desk.session.station().codes_met, [StatusCode::TEMPERATURE], "and the code is kept");
+    assert_eq!(desk.session.station().codes_to_display, [StatusCode::TEMPERATURE], "and the code is kept");
 }
 
 fn warn_at(desk: &mut Desk, frame: usize) {

@@ -34,7 +34,7 @@ fn survey_reads_each_byte_once() {
     // The geometry is still known, so a sample has it.
     let sample = desk.session.take_sample().unwrap();
     assert!(matches!(&sample, PolledSample::Position(reading) if reading.position.is_some()), "{sample:?}");
-    assert!(desk.session.station().codes_met.is_empty());
+    assert!(desk.session.station().codes_to_display.is_empty());
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn logs_read_status_codes() {
     desk.tap().mute_from = Some(sent + 1);
     assert!(desk.run(HiperfaceJob::Survey).is_err());
     assert_eq!(noted(&desk)[0], "20h singleturn position unreliable");
-    assert_eq!(desk.session.station().codes_met, [StatusCode::new(0x20)], "it is told as well");
+    assert_eq!(desk.session.station().codes_to_display, [StatusCode::new(0x20)], "it is told as well");
     // The sample reports the code. A code that remains is recorded once per minute, not with each sample.
     desk.tap().mute_from = None;
     for _ in 0..5 {

@@ -119,7 +119,7 @@ fn watched_reading_includes_status_codes() {
         panic!()
     };
     assert_eq!((hot.value, hot.codes), (Ok(130), vec![StatusCode::TEMPERATURE]));
-    assert!(desk.session.station().codes_met.is_empty(), "they are told with the reading");
+    assert!(desk.session.station().codes_to_display.is_empty(), "they are told with the reading");
     let now = |code| WatchedReading {
         at: Moment::START,
         watch: SINE,

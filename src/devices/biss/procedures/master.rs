@@ -109,9 +109,9 @@ impl<'a> Master<'a> {
 
     /// Runs `work`, in which every register must yield the same value twice. Used for values that will be stored.
     pub fn run_double_checked<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
-        let before = std::mem::replace(&mut self.station.thorough, true);
+        let before = std::mem::replace(&mut self.station.reads_twice, true);
         let result = work(self);
-        self.station.thorough = before;
+        self.station.reads_twice = before;
         result
     }
 

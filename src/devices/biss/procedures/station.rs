@@ -119,7 +119,7 @@ pub struct Station {
     /// Source of the frame layout, or `None` before identification.
     pub(super) source: Option<FrameSource>,
     /// Whether every value must be read twice, even on a line without errors, because the values will be stored.
-    pub(super) thorough: bool,
+    pub(super) reads_twice: bool,
     pub(super) noisy: bool,
     pub(super) bus: Option<Bus>,
     /// The bank selected over BiSS, and the last time at which the selection was certain.
@@ -184,7 +184,7 @@ impl Station {
             layout: None,
             given: None,
             source: None,
-            thorough: false,
+            reads_twice: false,
             noisy: false,
             bus: None,
             bank: None,
@@ -248,7 +248,7 @@ impl Station {
 
     /// Returns whether values must be read twice, since a checksum misses some pairs of flipped bits.
     pub(super) fn requires_double_read(&self) -> bool {
-        self.thorough || self.noisy
+        self.reads_twice || self.noisy
     }
 
     /// Returns whether reading back a register proves that a write succeeded. It proves nothing for a command register,

@@ -34,7 +34,7 @@ impl CliDevice for Hiperface {
 
     /// Prints each announced status code on its own line.
     fn print_message(remark: &DeviceMessage) {
-        if let DeviceMessage::CodesUnheard(count) = remark {
+        if let DeviceMessage::CodesLost(count) = remark {
             write_stderr(&format!("{}\n", explain::unanswered_codes(*count).terminal_text()));
         }
         for code in codes_in_message(remark) {
@@ -55,6 +55,6 @@ pub(super) fn reported_codes(runner: &Runner) -> Vec<StatusCode> {
 fn codes_in_message(remark: &DeviceMessage) -> &[StatusCode] {
     match remark {
         DeviceMessage::Codes(codes) => codes,
-        DeviceMessage::CodesUnheard(_) | DeviceMessage::Found(_) | DeviceMessage::Line(_) => &[],
+        DeviceMessage::CodesLost(_) | DeviceMessage::Found(_) | DeviceMessage::Line(_) => &[],
     }
 }

@@ -208,7 +208,7 @@ pub enum DeviceMessage {
     Codes(Vec<StatusCode>),
     /// Number of status codes that may have been lost. Command 50h removes a code from the encoder even if the reply is
     /// lost or damaged.
-    CodesUnheard(u32),
+    CodesLost(u32),
     /// An encoder that replied during a search.
     Found(FoundEncoder),
     /// A request was repeated, or a reply arrived too late.

@@ -42,7 +42,7 @@ pub struct Hiperface {
     geometry: Option<Geometry>,
     status: RecentStatusCodes,
     /// Number of line errors of each kind that have already been reported.
-    told_troubles: [u64; 4],
+    reported_line_errors: [u64; 4],
 }
 
 impl fmt::Debug for Hiperface {
@@ -99,7 +99,7 @@ impl Session<Hiperface> {
     ) -> Self {
         let geometry = station.geometry;
         let (types, status) = (Arc::new(types), RecentStatusCodes::default());
-        let device = Hiperface { wire, station, types, geometry, status, told_troubles: [0; 4] };
+        let device = Hiperface { wire, station, types, geometry, status, reported_line_errors: [0; 4] };
         Session::from_device(device, clock, store, is_virtual)
     }
 
@@ -147,12 +147,12 @@ impl Device for Hiperface {
 
     fn take_sample(&mut self, context: &mut SessionContext) -> Result<PolledSample, JobError> {
         let geometry = self.geometry;
-        let met_before = self.station.codes_met.len();
+        let met_before = self.station.codes_to_display.len();
         let sample = read_sample(&mut self.create_master(context), geometry);
         self.record_sampled_codes(context);
         let sample = sample?;
         // The result already contains these codes.
-        self.station.codes_met.truncate(met_before);
+        self.station.codes_to_display.truncate(met_before);
         Ok(sample)
     }
 
@@ -161,12 +161,12 @@ impl Device for Hiperface {
         context: &mut SessionContext,
         what: &WatchedQuantity,
     ) -> Result<WatchReply<PolledSample>, JobError> {
-        let met_before = self.station.codes_met.len();
+        let met_before = self.station.codes_to_display.len();
         let reading = read_watched_value(&mut self.create_master(context), *what);
         self.record_sampled_codes(context);
         let reading = reading?;
         // The result already contains these codes.
-        self.station.codes_met.truncate(met_before);
+        self.station.codes_to_display.truncate(met_before);
         let refused = reading.is_refused();
         let sample = PolledSample::Watched(reading);
         Ok(if refused { WatchReply::Refused(sample) } else { WatchReply::Sample(sample) })
@@ -188,10 +188,10 @@ impl Device for Hiperface {
         }
         let line = &self.station.line;
         // If the line fails, its errors are reported together with the failure.
-        if line.has_errors() || line.quality.counts() == self.told_troubles {
+        if line.has_errors() || line.quality.counts() == self.reported_line_errors {
             return None;
         }
-        self.told_troubles = line.quality.counts();
+        self.reported_line_errors = line.quality.counts();
         Some(DeviceMessage::Line(line.quality.clone()))
     }
 
@@ -202,7 +202,7 @@ impl Device for Hiperface {
 
 impl Hiperface {
     fn lost_codes_message(&mut self) -> Option<DeviceMessage> {
-        Some(self.station.take_missed_code_count()).filter(|count| *count > 0).map(DeviceMessage::CodesUnheard)
+        Some(self.station.take_missed_code_count()).filter(|count| *count > 0).map(DeviceMessage::CodesLost)
     }
 
     fn execute_job(

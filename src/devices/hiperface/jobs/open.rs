@@ -45,13 +45,13 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
         Ok(link)
     })?;
     if url.scheme == LinkScheme::Bridge {
-        wire = at_adapter(wire, &clock, url, &station, adapter);
+        wire = adapter_link(wire, &clock, url, &station, adapter);
     }
     Ok(Session::new(wire, clock, station, store, types, url.scheme == LinkScheme::Sim))
 }
 
 /// Returns a link to the encoder through an adapter's serial line.
-fn at_adapter(
+fn adapter_link(
     wire: Box<dyn ByteLink>,
     clock: &Arc<dyn Clock>,
     url: &LinkUrl,

@@ -86,7 +86,7 @@ pub enum ReadBackValue {
     Value(String),
     /// The data field does not behave as its newly written status specifies.
     #[error("another status")]
-    AnotherStatus,
+    StatusMismatch,
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -124,7 +124,7 @@ pub fn read_range(
             bytes.extend(read_byte(master, field, address + bytes.len(), code)?);
             break;
         }
-        let chunk = first.as_ref().map_or(master.station().chunk.min(count - bytes.len()), Vec::len);
+        let chunk = first.as_ref().map_or(master.station().max_transfer.min(count - bytes.len()), Vec::len);
         let request = transfer_request(field, address + bytes.len(), chunk, code)?;
         let trouble = match (read_once(master, &request)?, first.take()) {
             (Ok(again), Some(before)) if again != before => {
@@ -141,8 +141,8 @@ pub fn read_range(
                 failures = 0;
                 in_a_row += 1;
                 let station = master.station();
-                if in_a_row >= 4 && station.chunk < MAX_TRANSFER {
-                    station.chunk *= 2;
+                if in_a_row >= 4 && station.max_transfer < MAX_TRANSFER {
+                    station.max_transfer *= 2;
                     in_a_row = 0;
                 }
                 continue;
@@ -156,9 +156,9 @@ pub fn read_range(
         in_a_row = 0;
         master.prepare_retry(&request, failures, trouble)?;
         let station = master.station();
-        station.chunk = (station.chunk.min(chunk) / 2).max(MIN_TRANSFER);
+        station.max_transfer = (station.max_transfer.min(chunk) / 2).max(MIN_TRANSFER);
         if let Some(first) = &mut first {
-            first.truncate(station.chunk);
+            first.truncate(station.max_transfer);
         }
     }
     Ok(bytes)

@@ -26,12 +26,12 @@ pub struct PositionReading {
 /// # Errors
 /// Returns an error if the exchange fails or the encoder does not report a position.
 pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PositionReading, Error> {
-    let met_before = master.station().codes_met.len();
+    let met_before = master.station().codes_to_display.len();
     let timed = master.request_with_time(&Request::ReadPosition)?;
     let Reply::Position(raw) = timed.reply else {
         return Err(Error::unexpected_reply(Command::ReadPosition, &timed.reply));
     };
-    let codes = master.station().codes_met.get(met_before..).unwrap_or_default().to_vec();
+    let codes = master.station().codes_to_display.get(met_before..).unwrap_or_default().to_vec();
     let position = geometry.map(|geometry| geometry.position(raw));
     let in_range = position.is_none_or(|position| position.in_range);
     let valid = in_range && !codes.iter().any(|code| code.invalidates_position());
@@ -92,7 +92,7 @@ impl WatchedReading {
 /// # Errors
 /// Returns an error if the exchange fails.
 pub fn read_watched_value(master: &mut Master<'_>, what: WatchedQuantity) -> Result<WatchedReading, Error> {
-    let met_before = master.station().codes_met.len();
+    let met_before = master.station().codes_to_display.len();
     let answer = match what {
         WatchedQuantity::Analogue(channel) => request_analogue(master, channel).map(|(at, value)| (at, value.into())),
         WatchedQuantity::Counter => read_counter(master).map(|value| (master.now(), value.into())),
@@ -102,7 +102,7 @@ pub fn read_watched_value(master: &mut Master<'_>, what: WatchedQuantity) -> Res
         Err(error @ Error::Rejected { .. }) => (master.now(), Err(error)),
         Err(error) => return Err(error),
     };
-    let codes = master.station().codes_met.get(met_before..).unwrap_or_default().to_vec();
+    let codes = master.station().codes_to_display.get(met_before..).unwrap_or_default().to_vec();
     Ok(WatchedReading { at, watch: what, value, codes })
 }
 
@@ -111,7 +111,7 @@ pub fn read_watched_value(master: &mut Master<'_>, what: WatchedQuantity) -> Res
 /// # Errors
 /// Returns an error if the exchange fails or the encoder rejects the request for another reason.
 pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PolledSample, Error> {
-    let met_before = master.station().codes_met.len();
+    let met_before = master.station().codes_to_display.len();
     match read_position(master, geometry) {
         Ok(reading) => Ok(PolledSample::Position(reading)),
         Err(error) if error.is_without_position() => {
@@ -120,7 +120,7 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
                 Error::Rejected { codes, .. } => codes,
                 _ => Vec::new(),
             };
-            let met = master.station().codes_met.get(met_before..).unwrap_or_default();
+            let met = master.station().codes_to_display.get(met_before..).unwrap_or_default();
             let more: Vec<StatusCode> = met.iter().copied().filter(|code| !codes.contains(code)).collect();
             codes.extend(more);
             Ok(PolledSample::NoPosition { at, codes })

@@ -31,7 +31,8 @@ fn save_once(
     options: SaveOptions,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<HiperfaceProfile, Error> {
-    let Survey { identity, fields, counter, position, .. } = read_survey(master, types, progress, ReadPolicy::Whole)?;
+    let Survey { identity, fields, counter, position, .. } =
+        read_survey(master, types, progress, ReadPolicy::Complete)?;
     if let Some(locked) = fields.iter().find(|field| field.bytes.is_none())
         && options.complete
     {

@@ -111,17 +111,17 @@ pub struct Station {
     /// Periods and turns, as specified by the user for an encoder type that is not in the table.
     pub geometry: Option<Geometry>,
     /// Status codes to display, in the order in which they were read. They are removed once displayed.
-    pub codes_met: Vec<StatusCode>,
+    pub codes_to_display: Vec<StatusCode>,
     /// Status codes for the logbook. This is their only copy, because command 50h removes them from the encoder.
-    codes_read: Vec<StatusCode>,
+    codes_to_log: Vec<StatusCode>,
     /// Type and serial number of the encoder that was identified last.
     pub identified: Option<(u8, String)>,
     /// Number of missing or damaged replies to command 50h. Each of them may have contained a status code.
     pub(super) unanswered_codes: u32,
     /// Whether every value is read twice because it will be stored. This applies even to a line without errors.
-    pub(super) thorough: bool,
+    pub(super) reads_twice: bool,
     /// Maximum number of bytes per transfer. It is halved if the line damages long replies, and doubled otherwise.
-    pub(super) chunk: usize,
+    pub(super) max_transfer: usize,
 }
 
 impl Station {
@@ -133,12 +133,12 @@ impl Station {
             line: LineState::new(margin),
             codes: Codes::default(),
             geometry: None,
-            codes_met: Vec::new(),
-            codes_read: Vec::new(),
+            codes_to_display: Vec::new(),
+            codes_to_log: Vec::new(),
             identified: None,
             unanswered_codes: 0,
-            thorough: false,
-            chunk: MAX_TRANSFER,
+            reads_twice: false,
+            max_transfer: MAX_TRANSFER,
         }
     }
 
@@ -163,18 +163,18 @@ impl Station {
 
     /// Returns whether values must be read twice, because the XOR checksum misses some pairs of flipped bits.
     pub(super) fn requires_double_read(&self) -> bool {
-        self.thorough || self.line.damaged > 0
+        self.reads_twice || self.line.damaged > 0
     }
 
     pub(super) fn queue_codes(&mut self, codes: impl IntoIterator<Item = StatusCode>) {
         let codes: Vec<StatusCode> = codes.into_iter().filter(|code| *code != StatusCode::OK).collect();
-        self.codes_read.extend(&codes);
-        self.codes_met.extend(codes);
+        self.codes_to_log.extend(&codes);
+        self.codes_to_display.extend(codes);
     }
 
     /// Removes and returns the codes for the logbook. They must be stored before any of them is displayed.
     pub fn take_unlogged_codes(&mut self) -> Vec<StatusCode> {
-        std::mem::take(&mut self.codes_read)
+        std::mem::take(&mut self.codes_to_log)
     }
 
     /// Returns the number of missing or damaged replies to command 50h since the last call, and resets it. Each of
@@ -184,7 +184,7 @@ impl Station {
     }
 
     pub fn take_undisplayed_codes(&mut self) -> Vec<StatusCode> {
-        std::mem::take(&mut self.codes_met)
+        std::mem::take(&mut self.codes_to_display)
     }
 }
 

@@ -50,7 +50,7 @@ pub fn read_all_values(
 pub(super) enum ReadPolicy {
     AsFarAsPossible,
     /// Returns an error if a field cannot be read, because a saved profile must be complete.
-    Whole,
+    Complete,
 }
 
 /// Reads all values except the status queue.
@@ -64,7 +64,7 @@ pub(super) fn read_survey(
     let count = identity.memory.map_or(0, |memory| memory.fields);
     let mut unreadable = Vec::new();
     let fields = match reading {
-        ReadPolicy::Whole => read_all_fields(master, count, progress)?,
+        ReadPolicy::Complete => read_all_fields(master, count, progress)?,
         ReadPolicy::AsFarAsPossible => read_accessible_fields(master, count, &mut unreadable, progress)?,
     };
     // A restore requires neither value, so a rejection does not end the survey.

@@ -283,7 +283,7 @@ fn verify_plan(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Res
                 let redefined = |op: &Op| matches!(op, Op::Define { field: other, .. } if other == field);
                 if !later.iter().any(redefined) && !reads_back_status(master, *field, *to)? {
                     let (item, expected) = (op.plan_item(), format!("{:02X}", to.byte()));
-                    return Err(Error::NotVerified { item, expected, got: ReadBackValue::AnotherStatus });
+                    return Err(Error::NotVerified { item, expected, got: ReadBackValue::StatusMismatch });
                 }
                 verified += 1;
             }

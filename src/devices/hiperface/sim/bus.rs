@@ -23,7 +23,7 @@ pub struct Bus {
     to_encoders: TransitQueue<CharacterInTransit>,
     /// Characters in transit to the host, by end time.
     to_host: TransitQueue<CharacterInTransit>,
-    talks: Vec<LineDrivePeriod>,
+    drive_periods: Vec<LineDrivePeriod>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +68,7 @@ impl Bus {
             wires: LineConditions::new(&config.faults, config.seed, CharacterFormat::FACTORY),
             to_encoders: TransitQueue::default(),
             to_host: TransitQueue::default(),
-            talks: Vec::new(),
+            drive_periods: Vec::new(),
         }
     }
 
@@ -158,15 +158,15 @@ impl Bus {
             echo.for_each(|own| self.to_host.insert(own.character.end, own));
         }
         let now = self.wires.now;
-        self.talks.retain(|talk| talk.end + Self::LONGEST_CHARACTER > now);
-        self.talks.push(LineDrivePeriod { talker, start, end: sent.end });
+        self.drive_periods.retain(|talk| talk.end + Self::LONGEST_CHARACTER > now);
+        self.drive_periods.push(LineDrivePeriod { talker, start, end: sent.end });
         sent.end
     }
 
     /// Returns whether another device drives the line during this character.
     fn has_collision(&self, CharacterInTransit { talker, character, .. }: &CharacterInTransit) -> bool {
         let other = |talk: &&LineDrivePeriod| talk.talker != *talker;
-        self.talks.iter().filter(other).any(|talk| talk.start < character.end && character.start < talk.end)
+        self.drive_periods.iter().filter(other).any(|talk| talk.start < character.end && character.start < talk.end)
     }
 }
 

@@ -14,7 +14,7 @@ pub(super) struct Shaft {
     geometry: Geometry,
     rpm: f64,
     /// Mechanical position at the time `since`, in steps.
-    place: f64,
+    mechanical_steps: f64,
     since: Moment,
     offset: u64,
 }
@@ -30,11 +30,11 @@ impl Shaft {
     const AMPLITUDE_VOLTS: f64 = 0.5;
 
     pub(super) fn new(geometry: Geometry, position: u32, rpm: f64) -> Self {
-        Shaft { geometry, rpm, place: f64::from(position), since: Moment::START, offset: 0 }
+        Shaft { geometry, rpm, mechanical_steps: f64::from(position), since: Moment::START, offset: 0 }
     }
 
     pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
-        (self.place, self.since) = (self.steps_at(now), now);
+        (self.mechanical_steps, self.since) = (self.steps_at(now), now);
         self.rpm = rpm;
     }
 
@@ -89,7 +89,7 @@ impl Shaft {
         let moved = at.duration_since(self.since).as_secs_f64() * self.rpm / 60.0 * steps_per_turn;
         let range = self.position_count() as f64;
         // rem_euclid may round up to the range itself.
-        let place = (self.place + moved).rem_euclid(range);
+        let place = (self.mechanical_steps + moved).rem_euclid(range);
         if place < range { place } else { 0.0 }
     }
 

@@ -81,7 +81,7 @@ impl Encoder {
     /// Submits a job that changes the line settings of the encoder.
     fn submit_settings_job(&mut self, job: HiperfaceJob, then: Option<LineSettings>, services: &mut Services) {
         if self.try_submit(job, services) {
-            self.settings_then = then;
+            self.settings_after_job = then;
         }
     }
 

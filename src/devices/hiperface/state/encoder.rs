@@ -40,9 +40,9 @@ pub struct Encoder {
     pub(super) access_codes: Vec<(AccessCodeNumber, AccessCode)>,
     pub(super) asked: Option<Item>,
     /// Access codes that are passed to the session again once the encoder is identified.
-    pub(super) codes_due: Vec<(AccessCodeNumber, AccessCode)>,
+    pub(super) pending_codes: Vec<(AccessCodeNumber, AccessCode)>,
     /// Interface settings of the encoder after the running job.
-    pub(super) settings_then: Option<LineSettings>,
+    pub(super) settings_after_job: Option<LineSettings>,
     /// Number of the access code that the user entered last. The next survey shows whether this code is correct.
     pub(super) tried_code: Option<AccessCodeNumber>,
 }
@@ -66,8 +66,8 @@ impl Encoder {
             meaning: FrameDecoder::default(),
             access_codes: Vec::new(),
             asked: None,
-            codes_due: Vec::new(),
-            settings_then: None,
+            pending_codes: Vec::new(),
+            settings_after_job: None,
             tried_code: None,
         }
     }

@@ -77,7 +77,7 @@ impl Encoder {
 
     /// Passes the next access code to the session, or reads the encoder if no access code is left.
     fn submit_access_codes(&mut self, services: &mut Services) {
-        match self.codes_due.pop() {
+        match self.pending_codes.pop() {
             Some((number, code)) => self.submit(HiperfaceJob::UseCode { number, code }, services),
             None => self.submit(HiperfaceJob::Survey, services),
         }
@@ -119,7 +119,7 @@ impl Encoder {
 
     /// Takes over the line settings that a job has changed, so that the next session starts with them.
     fn adopt_line_settings(&mut self) {
-        let Some(settings) = self.settings_then.take() else { return };
+        let Some(settings) = self.settings_after_job.take() else { return };
         let (Source::Link(url), Some(format)) = (&mut self.session.source, settings.character_format()) else { return };
         let Ok(now) = Station::from_query(&url.query, std::time::Duration::ZERO) else { return };
         if now.format.baud != format.baud {
@@ -180,7 +180,7 @@ impl SessionEvents for Encoder {
     fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
             DeviceMessage::Codes(codes) => self.add_announced_codes(codes, services),
-            DeviceMessage::CodesUnheard(count) => {
+            DeviceMessage::CodesLost(count) => {
                 let text = explained::unanswered_codes(count);
                 services.notify(Severity::Warning, vec![text], Some(&self.session.name()));
             }
@@ -199,7 +199,7 @@ impl SessionEvents for Encoder {
             HiperfaceOutput::Identity(identity) => {
                 let proven = !identity.serial.serial_number.is_empty() && !self.is_different_device(&identity);
                 if proven {
-                    self.codes_due.clone_from(&self.access_codes);
+                    self.pending_codes.clone_from(&self.access_codes);
                 } else {
                     self.access_codes.clear();
                 }
@@ -269,7 +269,7 @@ impl SessionEvents for Encoder {
         let begun = self.session.submit(job, services);
         if begun {
             self.asked = asked;
-            self.settings_then = None;
+            self.settings_after_job = None;
         }
         begun
     }

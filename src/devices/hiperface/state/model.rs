@@ -29,7 +29,7 @@ impl DeviceModel for Encoder {
         self.record.begin_session(&opened.began);
         self.session.attach_connection(opened, services);
         self.update_watches();
-        self.codes_due.clear();
+        self.pending_codes.clear();
         self.tried_code = None;
         self.read_encoder(services);
     }

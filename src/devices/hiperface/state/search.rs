@@ -80,7 +80,7 @@ impl Search {
                 Event::Started(_)
                 | Event::Progress(..)
                 | Event::DeviceMessage(
-                    DeviceMessage::Codes(_) | DeviceMessage::CodesUnheard(_) | DeviceMessage::Line(_),
+                    DeviceMessage::Codes(_) | DeviceMessage::CodesLost(_) | DeviceMessage::Line(_),
                 )
                 | Event::PollFailed(_) => {}
             }

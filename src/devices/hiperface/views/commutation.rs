@@ -25,7 +25,7 @@ const POSITION_WIDTH: f32 = 104.0;
 /// Minimum width in points for showing the position on the same line as its buttons.
 const MIN_ONE_LINE_WIDTH: f32 = 430.0;
 /// Minimum width in points for two entries in one row.
-const BOTH: f32 = 420.0;
+const MIN_TWO_ENTRIES_WIDTH: f32 = 420.0;
 const MESSAGE_LINES: f32 = 2.0;
 /// Minimum width in points for two columns.
 const MIN_TWO_COLUMN_WIDTH: f32 = 700.0;
@@ -111,7 +111,7 @@ fn two_numbers_ui(
     (one, first, first_hint): (&'static str, &mut String, &str),
     (other, second, second_hint): (&'static str, &mut String, &str),
 ) {
-    if ui.available_width() < BOTH {
+    if ui.available_width() < MIN_TWO_ENTRIES_WIDTH {
         number_ui(ui, theme, one, first, first_hint);
         number_ui(ui, theme, other, second, second_hint);
         return;
@@ -145,7 +145,7 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
             let directions = directions.map(|(reversed, id)| (reversed, translate(theme, id)));
             dropdown(ui, &translate(theme, "commutation.direction"), &mut form.reversed, directions);
         });
-        let beside = ui.available_width() >= BOTH;
+        let beside = ui.available_width() >= MIN_TWO_ENTRIES_WIDTH;
         entry(ui, theme, &translate(theme, "commutation.source"), |ui| {
             let sources = [
                 (Source::Signals, "commutation.from_signals"),

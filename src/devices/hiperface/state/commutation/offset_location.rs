@@ -31,7 +31,7 @@ impl Commutation {
         let writable = || wanted.iter().rev().filter(|field| rules::check_edit(field).is_ok());
         let candidates = || writable().filter(|field| form.field.is_none_or(|own| own == field.number));
         if form.address.trim().is_empty() {
-            let kept = candidates().find_map(|field| first(field, |bytes| is_kept(form.storage, bytes)));
+            let kept = candidates().find_map(|field| first(field, |bytes| is_replaceable_record(form.storage, bytes)));
             let free = || candidates().find_map(|field| first(field, is_filler));
             return kept.or_else(free).ok_or_else(no_room);
         }
@@ -52,7 +52,11 @@ impl Commutation {
             true => places.filter_map(|at| staged.device_byte(field, at)).collect(),
             false => wanted,
         };
-        if there.len() < bytes.len() || there == bytes || is_filler(&there) || is_kept(self.form.storage, &there) {
+        if there.len() < bytes.len()
+            || there == bytes
+            || is_filler(&there)
+            || is_replaceable_record(self.form.storage, &there)
+        {
             return None;
         }
         let text = TEXTS.text("commutation.replaces").with("field", field).with("first", address);
@@ -72,7 +76,7 @@ fn is_filler(bytes: &[u8]) -> bool {
 }
 
 /// Returns whether the location contains a complete record, which a new record may replace.
-fn is_kept(storage: Storage, bytes: &[u8]) -> bool {
+fn is_replaceable_record(storage: Storage, bytes: &[u8]) -> bool {
     storage == Storage::Record && matches!(CommutationRecord::parse(bytes), Some(Ok(_)))
 }
 

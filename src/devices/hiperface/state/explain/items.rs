@@ -41,7 +41,7 @@ pub fn plan_item_text(own: &PlanItem) -> Text {
 pub fn read_back(read: &ReadBackValue) -> Text {
     match read {
         ReadBackValue::Value(value) => literal_text(value),
-        ReadBackValue::AnotherStatus => TEXTS.text("hf_item.another_status"),
+        ReadBackValue::StatusMismatch => TEXTS.text("hf_item.another_status"),
     }
 }
 

@@ -114,5 +114,5 @@ fn names_checked_items_in_both_languages() {
         assert_in_both_languages(&plan_item_text(&item), &item);
         assert_eq!(plan_item_text(&item).to_string_in(German), german);
     }
-    assert_in_both_languages(&read_back(&ReadBackValue::AnotherStatus), &ReadBackValue::AnotherStatus);
+    assert_in_both_languages(&read_back(&ReadBackValue::StatusMismatch), &ReadBackValue::StatusMismatch);
 }

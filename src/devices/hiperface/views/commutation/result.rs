@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use super::{BOTH, assistant_action, fixed_height_message_ui, number_ui};
+use super::{MIN_TWO_ENTRIES_WIDTH, assistant_action, fixed_height_message_ui, number_ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, DeviceCommand, PendingEdits};
 use crate::devices::hiperface::state::commutation::{
@@ -35,7 +35,7 @@ pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mu
             let label = egui::Label::new(theme.monospace(&parts)).truncate().selectable(true);
             ui.add(label).on_hover_text(&parts);
         };
-        if ui.available_width() >= BOTH {
+        if ui.available_width() >= MIN_TWO_ENTRIES_WIDTH {
             ui.horizontal(|ui| {
                 ui.label(angle);
                 parts(ui);
