@@ -9,12 +9,12 @@ use super::packet::{Packet, PacketError};
 pub struct Receiver {
     bytes: Vec<u8>,
     /// Index at which to continue searching for the next 00.
-    searched: usize,
+    search_index: usize,
     /// Whether the current packet is too long. If so, its bytes are dropped until the next 00.
     overlong: bool,
     dropped: u64,
     /// Most recent damaged packet, or `None` if it has already been taken.
-    broken: Option<Vec<u8>>,
+    damaged_packet: Option<Vec<u8>>,
 }
 
 impl Receiver {
@@ -26,28 +26,28 @@ impl Receiver {
     /// Returns the next valid packet, or `None` if more bytes are needed.
     pub fn next_packet(&mut self) -> Option<Packet> {
         loop {
-            let behind = self.bytes.get(self.searched..).unwrap_or_default();
+            let behind = self.bytes.get(self.search_index..).unwrap_or_default();
             let Some(end) = behind.iter().position(|byte| *byte == 0) else {
-                self.searched = self.bytes.len();
+                self.search_index = self.bytes.len();
                 self.overlong |= self.bytes.len() > Packet::MAX_STUFFED;
                 if self.overlong {
-                    (self.bytes, self.searched) = (Vec::new(), 0);
+                    (self.bytes, self.search_index) = (Vec::new(), 0);
                 }
                 return None;
             };
-            let end = self.searched + end;
+            let end = self.search_index + end;
             let parsed = match self.bytes.get(..end) {
                 Some([]) if !self.overlong => None,
                 Some(stuffed) if !self.overlong && end <= Packet::MAX_STUFFED => Some(Packet::parse(stuffed)),
                 _ => Some(Err(PacketError::Length(end))),
             };
             let packet: Vec<u8> = self.bytes.drain(..=end).collect();
-            (self.searched, self.overlong) = (0, false);
+            (self.search_index, self.overlong) = (0, false);
             match parsed {
                 Some(Ok(packet)) => return Some(packet),
                 Some(Err(_)) => {
                     self.dropped += 1;
-                    self.broken = Some(packet);
+                    self.damaged_packet = Some(packet);
                 }
                 // Two adjacent 00 bytes enclose no packet.
                 None => {}
@@ -57,7 +57,7 @@ impl Receiver {
 
     /// Takes the bytes of the most recent damaged packet, or returns `None` if there are none.
     pub const fn take_damaged_bytes(&mut self) -> Option<Vec<u8>> {
-        self.broken.take()
+        self.damaged_packet.take()
     }
 
     /// Returns the number of damaged packets so far.

@@ -58,7 +58,7 @@ pub struct Adapter<B> {
     /// Earliest time for the next frame, in microseconds.
     free_us: u64,
     /// Sequence number of the next stream packet.
-    pushed: u8,
+    stream_seq: u8,
     /// Number of packets with a valid checksum but invalid content.
     malformed: u32,
     /// Number of samples lost because the host did not fetch them in time.
@@ -90,7 +90,7 @@ impl<B: Bus> Adapter<B> {
             transfer: None,
             line_free_us: 0,
             free_us: 0,
-            pushed: 0,
+            stream_seq: 0,
             malformed: 0,
             lost: 0,
         }
@@ -156,8 +156,8 @@ impl<B: Bus> Adapter<B> {
             }
             for data in [clocked, sampled].into_iter().flatten() {
                 self.lost = self.lost.saturating_add(data.sample_range().2.into());
-                self.send(&Message::Data(data), self.pushed);
-                self.pushed = self.pushed.wrapping_add(1);
+                self.send(&Message::Data(data), self.stream_seq);
+                self.stream_seq = self.stream_seq.wrapping_add(1);
             }
         }
     }

@@ -86,9 +86,9 @@ impl AnalogStream {
     /// Maximum time in microseconds before a packet is sent, even if it is not full.
     const FLUSH_US: u64 = 5_000;
     /// Number of bytes before the samples in a packet.
-    const HEAD: usize = 15;
+    const HEADER_BYTES: usize = 15;
     /// Maximum number of samples in a packet.
-    const FIT: u64 = ((MAX_BODY - Self::HEAD) / 4) as u64;
+    const MAX_SAMPLES: u64 = ((MAX_BODY - Self::HEADER_BYTES) / 4) as u64;
 
     /// Starts the conversions.
     pub(crate) fn begin<B: Bus>(setting: AnalogSetting, corrections: [Correction; 2], bus: &mut B) -> Self {
@@ -127,10 +127,10 @@ impl AnalogStream {
         // A pair is complete once its cosine is converted.
         let ready = self.converted.checked_sub(next + 2).map_or(0, |behind| behind / step + 1);
         let t0_us = self.start.0 + (self.next - self.start.1) * self.period_us();
-        if ready == 0 || ready < Self::FIT && bus.now_us() < t0_us + Self::FLUSH_US {
+        if ready == 0 || ready < Self::MAX_SAMPLES && bus.now_us() < t0_us + Self::FLUSH_US {
             return None;
         }
-        let count = ready.min(Self::FIT);
+        let count = ready.min(Self::MAX_SAMPLES);
         let [sine, cosine] = self.corrections;
         let samples: Vec<(i16, i16)> = (0..count)
             .map(|at| {

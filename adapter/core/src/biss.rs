@@ -35,7 +35,7 @@ impl BissSetting {
     const MIN_HZ: u32 = 80_000;
     const MAX_TIMEOUT_US: u16 = 500;
     /// Number of levels sampled before the data.
-    const HEAD: u8 = 4;
+    const LEADING_LEVELS: u8 = 4;
     /// Maximum round-trip delay of the line, in tenths of a microsecond.
     const LINE_DELAY: u32 = 10;
     /// Maximum time that an encoder needs to prepare its data, in tenths of a microsecond, with a margin over the
@@ -67,7 +67,7 @@ impl BissSetting {
 
     /// Returns the number of bits sampled by the state machine.
     pub const fn sampled_bits(self) -> u8 {
-        self.bits + Self::HEAD
+        self.bits + Self::LEADING_LEVELS
     }
 
     /// Returns the number of steps after which the search for an edge ends. A step is a sixth of a clock for the

@@ -12,7 +12,7 @@ pub struct Outbox {
 }
 
 /// Number of waiting bytes above which no samples are added.
-const ROOM: usize = 24 * 1024;
+const SAMPLE_LIMIT_BYTES: usize = 24 * 1024;
 /// Additional space in bytes for the replies to all requests in a USB packet.
 const REPLIES: usize = 8 * 1024;
 /// Time in microseconds after which a host that fetches nothing is considered lost.
@@ -21,7 +21,7 @@ const LOST_US: u64 = 2_000_000;
 impl Default for Outbox {
     /// Allocates all memory at once, because a small heap has no room for reallocation.
     fn default() -> Self {
-        Outbox { bytes: VecDeque::with_capacity(ROOM + REPLIES), progress_us: 0 }
+        Outbox { bytes: VecDeque::with_capacity(SAMPLE_LIMIT_BYTES + REPLIES), progress_us: 0 }
     }
 }
 
@@ -51,7 +51,7 @@ impl Outbox {
     }
 
     pub(crate) fn has_room(&self) -> bool {
-        self.bytes.len() < ROOM
+        self.bytes.len() < SAMPLE_LIMIT_BYTES
     }
 
     /// Returns whether the host has fetched nothing for too long.
@@ -71,14 +71,14 @@ mod tests {
         outbox.consume(2, 5);
         outbox.push(&[4], 6);
         assert_eq!(outbox.pending(), [3, 4]);
-        outbox.push(&[9; ROOM], 7);
+        outbox.push(&[9; SAMPLE_LIMIT_BYTES], 7);
         assert!(!outbox.has_room());
         outbox.consume(2, 8);
-        outbox.consume(ROOM, 9);
+        outbox.consume(SAMPLE_LIMIT_BYTES, 9);
         assert!(outbox.pending().is_empty() && outbox.has_room());
         // The bytes wrap around to the beginning of the memory.
         for round in 0..10 {
-            outbox.push(&[round; ROOM / 4 * 3], 10);
+            outbox.push(&[round; SAMPLE_LIMIT_BYTES / 4 * 3], 10);
             let mut count = 0;
             while !outbox.pending().is_empty() {
                 assert!(outbox.pending().iter().all(|byte| *byte == round));
@@ -86,9 +86,9 @@ mod tests {
                 outbox.consume(length, 11);
                 count += length;
             }
-            assert_eq!(count, ROOM / 4 * 3);
+            assert_eq!(count, SAMPLE_LIMIT_BYTES / 4 * 3);
         }
-        assert!(outbox.bytes.capacity() < ROOM + REPLIES + 64, "the memory is not moved");
+        assert!(outbox.bytes.capacity() < SAMPLE_LIMIT_BYTES + REPLIES + 64, "the memory is not moved");
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::{Bus, Clocking, FrameWords};
 /// Maximum time in microseconds before a packet is sent, even if it is not full.
 const FLUSH_US: u64 = 10_000;
 /// Number of bytes before the samples in a packet.
-const HEAD: usize = 20;
+const HEADER_BYTES: usize = 20;
 
 /// A running stream of SSI or BiSS frames.
 #[derive(Clone, Debug)]
@@ -64,7 +64,7 @@ impl ClockedStream {
             ready -= lost;
         }
         let (width, size) = self.width();
-        let fit = ((MAX_BODY - HEAD) / size.max(1)).min(255);
+        let fit = ((MAX_BODY - HEADER_BYTES) / size.max(1)).min(255);
         let full = u32::try_from(fit).unwrap_or(255);
         let t0_us = self.start_us + self.next * u64::from(self.period_us);
         let is_due = bus.now_us() >= t0_us + FLUSH_US;

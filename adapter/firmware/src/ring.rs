@@ -18,7 +18,7 @@ pub(crate) const CONVERSIONS: u32 = BYTES / 2;
 const BYTES: u32 = 1 << ADDRESS_BITS;
 const ADDRESS_BITS: u32 = 15;
 /// Number of values that a channel copies before the other channel continues.
-const TURN: u32 = 1 << 31;
+const VALUES_PER_TURN: u32 = 1 << 31;
 
 /// Memory with the alignment required by a DMA ring.
 #[repr(C, align(32768))]
@@ -66,7 +66,7 @@ impl Ring {
             unsafe {
                 registers.ch_read_addr().write(|w| w.bits(fifo as u32));
                 registers.ch_write_addr().write(|w| w.bits(self.memory.0.get() as u32));
-                registers.ch_trans_count().write(|w| w.bits(TURN));
+                registers.ch_trans_count().write(|w| w.bits(VALUES_PER_TURN));
                 // This register sets up the channel without starting it.
                 registers.ch_al1_ctrl().write(|w| {
                     w.bits(
@@ -115,9 +115,9 @@ impl Ring {
     fn count(&self) -> u32 {
         let [first, second] = self.channels.map(|channel| dma().ch(channel));
         if second.ch_ctrl_trig().read().busy().bit_is_set() {
-            TURN.wrapping_add(TURN - second.ch_trans_count().read().bits())
+            VALUES_PER_TURN.wrapping_add(VALUES_PER_TURN - second.ch_trans_count().read().bits())
         } else {
-            TURN - first.ch_trans_count().read().bits()
+            VALUES_PER_TURN - first.ch_trans_count().read().bits()
         }
     }
 

@@ -27,12 +27,12 @@ static PORT: Mutex<RefCell<Option<Port>>> = Mutex::new(RefCell::new(None));
 /// Maximum length of a USB packet in bytes.
 const PACKET: usize = 64;
 /// Size of the buffer for received bytes that the main loop has not read yet.
-const KEPT: usize = 8 * PACKET;
+const RECEIVE_BUFFER_BYTES: usize = 8 * PACKET;
 
 struct Port {
     device: UsbDevice<'static, UsbBus>,
     serial: SerialPort<'static, UsbBus>,
-    received: [u8; KEPT],
+    received: [u8; RECEIVE_BUFFER_BYTES],
     count: usize,
 }
 
@@ -58,7 +58,7 @@ pub(crate) fn start(bus: &'static UsbBusAllocator<UsbBus>, serial_number: &'stat
     let Ok(builder) = builder.max_packet_size_0(64) else { return false };
     let device = builder.device_class(usbd_serial::USB_CLASS_CDC).build();
     critical_section::with(|section| {
-        PORT.borrow(section).replace(Some(Port { device, serial, received: [0; KEPT], count: 0 }))
+        PORT.borrow(section).replace(Some(Port { device, serial, received: [0; RECEIVE_BUFFER_BYTES], count: 0 }))
     });
     unmask();
     true

@@ -18,13 +18,13 @@ const LENGTH: usize = 512;
 /// characters.
 const SEND: usize = 4;
 const MARK: usize = 5;
-const STAMP: usize = 6;
+const EDGE_TIME: usize = 6;
 const RECEIVE: usize = 7;
 /// Number of the DMA request signal that is always active.
 const ALWAYS: u8 = 63;
 /// Placeholder for a character that has not arrived. It is distinct, because received characters use only the highest
 /// bits of a word.
-const NOTHING: u32 = 1;
+const NO_CHARACTER: u32 = 1;
 
 /// Memory shared by the DMA and the processor.
 struct Shared<const N: usize>(UnsafeCell<[u32; N]>);
@@ -89,7 +89,7 @@ impl Serial {
         (self.no_edge, self.count) = (now.wrapping_sub(1), 0);
         EDGE.write(1, self.no_edge);
         for at in 0..LENGTH {
-            RECEIVED.write(at, NOTHING);
+            RECEIVED.write(at, NO_CHARACTER);
         }
         let count = characters.len().min(LENGTH);
         for (at, word) in characters.iter().take(count).enumerate() {
@@ -98,18 +98,18 @@ impl Serial {
         let (fifo, request) = self.receiver.output();
         // Each channel starts the next one: the mark, its time, and the characters.
         let timer = timer_address();
-        channel(MARK, fifo as u32, EDGE.address(), 1, Copied { request, chain: STAMP, advance: 0 });
+        channel(MARK, fifo as u32, EDGE.address(), 1, CopyOptions { request, chain: EDGE_TIME, advance: 0 });
         channel(
-            STAMP,
+            EDGE_TIME,
             timer,
             EDGE.address().wrapping_add(1),
             1,
-            Copied { request: ALWAYS, chain: RECEIVE, advance: 0 },
+            CopyOptions { request: ALWAYS, chain: RECEIVE, advance: 0 },
         );
-        let characters = Copied { request, chain: RECEIVE, advance: WRITES };
+        let characters = CopyOptions { request, chain: RECEIVE, advance: WRITES };
         channel(RECEIVE, fifo as u32, RECEIVED.address(), LENGTH as u32, characters);
         let (fifo, request) = self.sender.input();
-        let words = Copied { request, chain: SEND, advance: READS };
+        let words = CopyOptions { request, chain: SEND, advance: READS };
         channel(SEND, SENT.address() as u32, fifo.cast_mut(), count as u32, words);
         // Safety: the channels are set up. The channels of the time and the characters are started by chaining.
         unsafe { dma().multi_chan_trigger().write(|w| w.bits(1 << MARK | 1 << SEND)) };
@@ -126,7 +126,7 @@ impl Serial {
     }
 
     pub(super) fn received(&mut self) -> usize {
-        while self.count < LENGTH && RECEIVED.read(self.count) != NOTHING {
+        while self.count < LENGTH && RECEIVED.read(self.count) != NO_CHARACTER {
             self.count += 1;
         }
         self.count
@@ -138,7 +138,7 @@ impl Serial {
 
     /// Ends a transfer and prepares the receiver for the next one.
     pub(super) fn end(&mut self) {
-        let channels = [SEND, MARK, STAMP, RECEIVE];
+        let channels = [SEND, MARK, EDGE_TIME, RECEIVE];
         let mask = channels.iter().fold(0, |mask, channel| mask | 1 << channel);
         for channel in channels {
             // Safety: disables the channel, so that an abort does not start the next one.
@@ -160,7 +160,7 @@ const READS: u32 = 1 << 4;
 const WRITES: u32 = 1 << 5;
 
 /// Options of a DMA copy.
-struct Copied {
+struct CopyOptions {
     request: u8,
     /// Channel to start when the copy ends, or the channel's own number to start none.
     chain: usize,
@@ -168,7 +168,7 @@ struct Copied {
 }
 
 /// Sets up a channel that copies words, without starting it.
-fn channel(number: usize, from: u32, to: *mut u32, count: u32, copied: Copied) {
+fn channel(number: usize, from: u32, to: *mut u32, count: u32, options: CopyOptions) {
     let registers = dma().ch(number);
     // Safety: the addresses are a FIFO, the timer, and memory that is never freed and has room for the count.
     unsafe {
@@ -176,7 +176,7 @@ fn channel(number: usize, from: u32, to: *mut u32, count: u32, copied: Copied) {
         registers.ch_write_addr().write(|w| w.bits(to as u32));
         registers.ch_trans_count().write(|w| w.bits(count));
         let bits =
-            1 | 2 << 2 | copied.advance | (copied.chain as u32) << 11 | u32::from(copied.request) << 15 | 1 << 21;
+            1 | 2 << 2 | options.advance | (options.chain as u32) << 11 | u32::from(options.request) << 15 | 1 << 21;
         registers.ch_al1_ctrl().write(|w| w.bits(bits));
     }
 }
