@@ -40,7 +40,7 @@ impl Reading {
     }
 
     /// Records an entry that the schema does not define.
-    pub(super) fn is_beyond(&self, path: String) {
+    pub(super) fn record_undefined_entry(&self, path: String) {
         self.beyond.borrow_mut().push(path);
     }
 

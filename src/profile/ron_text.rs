@@ -200,12 +200,12 @@ impl Entries {
     }
 
     /// Records an entry that the schema does not define.
-    pub fn is_beyond(&self, path: String) {
-        self.reading.is_beyond(path);
+    pub fn record_undefined_entry(&self, path: String) {
+        self.reading.record_undefined_entry(path);
     }
 
     fn report_unknown_entries(&self, left: &UnknownValues) {
-        left.keys().for_each(|name| self.reading.is_beyond(self.entry_path(name)));
+        left.keys().for_each(|name| self.reading.record_undefined_entry(self.entry_path(name)));
     }
 }
 

@@ -96,7 +96,7 @@ fn reports_faults_and_other_master() {
         (&["--deaf-from=1"], |error| matches!(error, Error::TimeOut { .. })),
         (&["--other-data"], |error| matches!(error, Error::TimeOut { input: 0xCA00_0062, .. })),
         (&["--no-position"], |error| matches!(error, Error::Refused { .. } | Error::ModeNotRestored { .. })),
-        (&["--unstored"], |error| matches!(error, Error::NotTaken { .. })),
+        (&["--unstored"], |error| matches!(error, Error::NotAccepted { .. })),
         (&["--error=1:98000004"], |error| matches!(error, Error::Refused { .. })),
     ];
     let bench = Bench::new();

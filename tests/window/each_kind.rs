@@ -95,7 +95,7 @@ impl Case {
     fn confirm_standstill(&self, desk: &mut Desk) {
         if self.tab == crate::tabs::INTERBUS {
             let id = shown(&desk.studio).unwrap().id();
-            desk.act(Action::device(id, Interbus::Stopped(true)));
+            desk.act(Action::device(id, Interbus::ConfirmStandstill(true)));
         }
     }
 

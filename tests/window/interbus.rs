@@ -206,7 +206,7 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
     desk.settle();
     assert!(desk.studio.take_file_question().is_none());
     assert_eq!((desk.notice_count("ib_stop.first"), sent(&desk)), (3, 0));
-    act(&mut desk, Interbus::Stopped(true));
+    act(&mut desk, Interbus::ConfirmStandstill(true));
     wish(&mut desk, DeviceCommand::Read);
     desk.until("it is read", |studio| studio.interbus().unwrap().survey.is_some());
     until_ready(&mut desk);

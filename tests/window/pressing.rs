@@ -66,7 +66,7 @@ fn notices_and_progress_do_not_move_buttons() {
         let id = screen.studio().selected_device().unwrap().id();
         if tab == crate::tabs::INTERBUS {
             // The encoder is read only after the user has confirmed that the machine is stopped.
-            screen.act(Action::device(id, Interbus::Stopped(true)));
+            screen.act(Action::device(id, Interbus::ConfirmStandstill(true)));
         }
         screen.act(Action::Dismiss);
         for page in encoder_studio::kinds::program().tabs.page_text_ids(tab) {

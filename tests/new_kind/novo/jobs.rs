@@ -70,7 +70,7 @@ pub(crate) enum Error {
     #[error("it is no longer as it was when the plan was made")]
     Changed,
     #[error("{0} was not taken")]
-    NotTaken(&'static str),
+    NotAccepted(&'static str),
     #[error("the profile is of serial number {profile}, the encoder has {device}")]
     OtherDevice { profile: u16, device: u16 },
     #[error(transparent)]

@@ -35,7 +35,7 @@ impl Write for NovoWrite<'_> {
         done.write_cycles += 1;
         self.novo.ask(self.context, Request::Write(address, op.to))?;
         if self.novo.ask(self.context, Request::Read(address))? != op.to {
-            return Err(Error::NotTaken(op.name()));
+            return Err(Error::NotAccepted(op.name()));
         }
         done.verified += 1;
         done.count_operation(1);

@@ -159,7 +159,7 @@ fn assert_partly_stored(stored: &Memory, case: &Case, interrupted: &InterruptedW
     for ((stored, before), after) in values(stored).into_iter().zip(before).zip(after) {
         assert!(stored == before || stored == after, "{context}: {stored} is neither {before} nor {after}");
     }
-    assert!(matches!(interrupted.cause, Error::NotTaken { .. }), "{context}: {stored:?} is not described");
+    assert!(matches!(interrupted.cause, Error::NotAccepted { .. }), "{context}: {stored:?} is not described");
 }
 
 /// Returns all values of a memory.

@@ -114,7 +114,7 @@ fn echo_equal_to_busy_must_last_longer() {
     let (ended, steps, sent) = carry_out(Script::new(), cams(0, 0, 0, 1));
     // The script returns 0 for every read-out, so the mask counts as not accepted.
     let interrupted = ended.unwrap_err();
-    assert!(matches!(&interrupted.cause, Error::NotTaken { item, wanted: 1, reads: 0 } if item == "cam-mask:1"));
+    assert!(matches!(&interrupted.cause, Error::NotAccepted { item, wanted: 1, reads: 0 } if item == "cam-mask:1"));
     let cam = [0x4000_0000, 0x2020_0010, 0, 0x6000_0000, 0x2020_0020, 0, 0x2040_0001];
     assert!(sent.windows(7).any(|own| own == cam), "{sent:08X?}");
     let start = steps.iter().position(|step| step.out == 0x4000_0000).unwrap();
@@ -255,7 +255,7 @@ fn restores_mode_after_uncertain_write() {
 fn restoring_mode_creates_run_edge() {
     let script = Script { out: RUN, input: 0xC200_00FF, ..Script::new() };
     let (sent, mut station) = (script.sent.clone(), station(""));
-    assert_eq!(Master::for_job(script, &mut station).end_foreign_operation(), Ok(StartupMode::K3));
+    assert_eq!(Master::for_job(script, &mut station).end_interrupted_operation(), Ok(StartupMode::K3));
     assert_eq!(sent.lock().unwrap()[..2], [0, RUN]);
 }
 

@@ -190,7 +190,7 @@ pub enum Error {
     },
     /// The value read back differs from the value written.
     #[error("parameter {number} ({}): {wanted} was written, but {reads} was read back", parameter_name(*number))]
-    NotTaken { number: ParameterNumber, wanted: i64, reads: i64 },
+    NotAccepted { number: ParameterNumber, wanted: i64, reads: i64 },
     /// The network settings read back differ from those written.
     #[error("attribute {attribute} of the TCP/IP object differs from the value that was written")]
     NetworkNotTaken { attribute: u16 },

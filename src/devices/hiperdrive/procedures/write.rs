@@ -150,11 +150,11 @@ fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Resul
     master.set_parameter(number, wanted)?;
     let reads = master.read_number(number)?;
     let Some(drive) = number.drive().filter(|_| number.drive1_number() == REFERENCE) else {
-        return if reads == wanted { Ok(()) } else { Err(Error::NotTaken { number, wanted, reads }) };
+        return if reads == wanted { Ok(()) } else { Err(Error::NotAccepted { number, wanted, reads }) };
     };
     let rounded = i32::try_from(wanted).ok().and_then(nearest_reference).map_or(wanted, i64::from);
     if reads != rounded && reads != wanted {
-        return Err(Error::NotTaken { number, wanted, reads });
+        return Err(Error::NotAccepted { number, wanted, reads });
     }
     let number = drive_parameter(POSITION, drive)?;
     let (numerator, denominator) = (
@@ -168,7 +168,7 @@ fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Resul
     if (position - reads).abs() <= near {
         Ok(())
     } else {
-        Err(Error::NotTaken { number, wanted: reads, reads: position })
+        Err(Error::NotAccepted { number, wanted: reads, reads: position })
     }
 }
 
@@ -242,7 +242,7 @@ fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error>
     master.set_parameter(number, 0)?;
     match master.read_number(number)? {
         0 => Ok(()),
-        reads => Err(Error::NotTaken { number, wanted: 0, reads }),
+        reads => Err(Error::NotAccepted { number, wanted: 0, reads }),
     }
 }
 

@@ -226,7 +226,7 @@ fn read_parameters(
                 let path = format!("{}.{}", entries.entry_path("parameters"), value_text(&name));
                 return Err(ProfileError::invalid_entry(path, invalid_parameter_error(own, drive)));
             }
-            entries.is_beyond(format!("{}.{}", entries.entry_path("parameters"), value_text(&name)));
+            entries.record_undefined_entry(format!("{}.{}", entries.entry_path("parameters"), value_text(&name)));
             unknown.0.entry(drive).or_default().push((name, value));
             continue;
         };

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::DisturbanceLevel;
 use super::args::InterbusAction;
-use super::inspect::mode;
+use super::inspect::mode_name;
 use super::plan::{change_lines, commit_plan, operations_json, prepare_plan};
 use super::run::Runner;
 use super::value::value;
@@ -62,7 +62,7 @@ fn restore_mode(common: &CommonArgs, output: &Output) -> Result {
     let now = result_of!(runner.run(InterbusJob::RestoreMode)?, InterbusOutput::ModeRestored(now) => now);
     let reading = result_of!(runner.run(InterbusJob::Position)?, InterbusOutput::Position(reading) => reading);
     let (is, word) = (explain::startup_mode_text(now).terminal_text(), format!("0x{:08X}", reading.word));
-    let json = json!({"done": "lead-back", "mode": mode(now), "word": word});
+    let json = json!({"done": "lead-back", "mode": mode_name(now), "word": word});
     let Reply::Error(error) = reading.reply() else {
         output.show(&json, &format!("the encoder runs, in mode {is}\n"))?;
         return Ok(Success::Completed);

@@ -19,9 +19,9 @@ pub(super) fn decode(output: &Output, arguments: &DecodeArgs) -> Result {
         read_out: options.read_out.as_deref().map(read_out).transpose()?,
         shift: options.shift.and_then(WindowShift::new),
     };
-    let words: Vec<CapturedData> = arguments.hex.iter().map(|word| parse_captured(word)).collect::<Result<_>>()?;
-    if let (Some(CapturedData::K1(word)), Some(Direction::Out)) =
-        (words.iter().find(|word| matches!(word, CapturedData::K1(_))), direction)
+    let words: Vec<CapturedWord> = arguments.hex.iter().map(|word| parse_captured(word)).collect::<Result<_>>()?;
+    if let (Some(CapturedWord::K1(word)), Some(Direction::Out)) =
+        (words.iter().find(|word| matches!(word, CapturedWord::K1(_))), direction)
     {
         return Err(Failure::Usage(format!(
             "{word:04X} has 4 digits: only K3 encoders take words, K1 encoders do not"
@@ -32,20 +32,20 @@ pub(super) fn decode(output: &Output, arguments: &DecodeArgs) -> Result {
 }
 
 #[derive(Clone, Copy)]
-enum CapturedData {
+enum CapturedWord {
     /// A 16-bit word, entered as 4 digits.
     K1(u16),
     /// A 32-bit word, entered as 8 digits.
     Long(u32),
 }
 
-fn parse_captured(text: &str) -> Result<CapturedData> {
+fn parse_captured(text: &str) -> Result<CapturedWord> {
     let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
     // The number parser would also accept a sign.
     let number = digits.chars().all(|c| c.is_ascii_hexdigit()).then_some(digits);
     let word = match (number, digits.len()) {
-        (Some(digits), 4) => u16::from_str_radix(digits, 16).ok().map(CapturedData::K1),
-        (Some(digits), 8) => u32::from_str_radix(digits, 16).ok().map(CapturedData::Long),
+        (Some(digits), 4) => u16::from_str_radix(digits, 16).ok().map(CapturedWord::K1),
+        (Some(digits), 8) => u32::from_str_radix(digits, 16).ok().map(CapturedWord::Long),
         _ => None,
     };
     word.ok_or_else(|| {
@@ -68,12 +68,12 @@ fn read_out(text: &str) -> Result<ReadOutNumber> {
     })
 }
 
-fn explain_word(word: CapturedData, direction: Option<Direction>, known: &WordContext) -> FrameExplanation {
+fn explain_word(word: CapturedWord, direction: Option<Direction>, known: &WordContext) -> FrameExplanation {
     let (shown, meanings) = match word {
-        CapturedData::K1(word) => {
+        CapturedWord::K1(word) => {
             (format!("{word:04X}"), Ok(vec![meaning::k1_word_meaning(SingleWord::parse_k1(word))]))
         }
-        CapturedData::Long(word) => (format!("{word:08X}"), long_word_meanings(word, direction, known)),
+        CapturedWord::Long(word) => (format!("{word:08X}"), long_word_meanings(word, direction, known)),
     };
     let mut more = Map::from_iter([("device".to_owned(), json!(KIND))]);
     if let Ok(meanings) = &meanings {

@@ -26,7 +26,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
         "revolutions": identity.revolutions,
         "direction": identity.direction.keyword(),
         "software_version": identity.software_version.to_string(),
-        "mode": mode(identity.mode),
+        "mode": mode_name(identity.mode),
         "multiturn": identity.flags.counts_turns(),
         "steps_minus_one": identity.flags.steps_minus_one(),
     });
@@ -54,7 +54,7 @@ fn format_turns(turns: u32) -> String {
 }
 
 /// Returns the name of a start-up mode for JSON output, such as `velocity` or `cam 3`.
-pub(super) fn mode(mode: StartupMode) -> String {
+pub(super) fn mode_name(mode: StartupMode) -> String {
     match mode {
         StartupMode::K2 => "K2".to_owned(),
         StartupMode::K3 => "K3".to_owned(),
@@ -83,7 +83,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
         "errors": errors,
         "warnings": warnings,
         "raw": status.reading.word,
-        "mode": mode(status.mode),
+        "mode": mode_name(status.mode),
         "temperature_c": to_celsius(status.temperature_tenths),
         "operating_minutes": status.operating_minutes,
     });

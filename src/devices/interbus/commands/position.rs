@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::DisturbanceLevel;
-use super::inspect::mode;
+use super::inspect::mode_name;
 use super::run::{Runner, identity, programs};
 use crate::cli::Result;
 use crate::cli::args::{CommonArgs, Position};
@@ -45,7 +45,7 @@ fn show(output: &Output, reading: &WordReading) -> Result<()> {
         "degrees": place.map(|place| place.degrees),
         "valid": reading.is_valid(),
         "position": reading.position(),
-        "mode": reading.mode.map(mode),
+        "mode": reading.mode.map(mode_name),
     });
     if let Some(keys) = json.as_object_mut() {
         if let Some(cams) = &cams {

@@ -156,9 +156,8 @@ impl Device for Interbus {
                 };
                 Ok(Out::Saved(Box::new(save(master, programs, report)?)))
             }),
-            InterbusJob::RestoreMode => {
-                self.run_reading_job(context, tell, |master, _| Ok(Out::ModeRestored(master.end_foreign_operation()?)))
-            }
+            InterbusJob::RestoreMode => self
+                .run_reading_job(context, tell, |master, _| Ok(Out::ModeRestored(master.end_interrupted_operation()?))),
         }
     }
 

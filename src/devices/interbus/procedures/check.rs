@@ -45,7 +45,7 @@ pub enum CheckFinding {
     },
     Runs(u32),
     /// Bits that should be 0 are set.
-    Stray(u32),
+    StrayBits(u32),
     Error(ErrorWord),
     /// The encoder is being parameterised or read out, presumably by another master.
     Occupied(u32),
@@ -140,7 +140,7 @@ fn check_in_word(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bo
     };
     let (input, free) = match Reply::parse(word) {
         Reply::Run { stray: 0, .. } => ((Verdict::Good, CheckFinding::Runs(word)), true),
-        Reply::Run { .. } => ((Verdict::Attention, CheckFinding::Stray(word)), true),
+        Reply::Run { .. } => ((Verdict::Attention, CheckFinding::StrayBits(word)), true),
         Reply::Error(error) => ((Verdict::Bad, CheckFinding::Error(error)), true),
         Reply::ReadOut(_) | Reply::UnknownReadOut(_) => ((Verdict::Attention, CheckFinding::Occupied(word)), false),
         Reply::Echo { .. } | Reply::Busy { .. } | Reply::Unknown { .. } => {

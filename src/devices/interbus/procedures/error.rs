@@ -214,7 +214,7 @@ pub enum Error {
     Moving { from: u32, to: u32 },
     /// The value read back differs from the value written.
     #[error("{item}: {wanted} was written, but {reads} was read back")]
-    NotTaken { item: String, wanted: u32, reads: u32 },
+    NotAccepted { item: String, wanted: u32, reads: u32 },
     #[error("{item} has changed since the plan was made")]
     Changed { item: String },
     /// The encoder could not be returned to its mode after the job.

@@ -175,7 +175,7 @@ pub(super) fn read_parameter(master: &mut Master<'_>, parameter: Parameter) -> R
 }
 
 fn check_value(item: impl FnOnce() -> String, wanted: u32, reads: u32) -> Result<(), Error> {
-    if reads == wanted { Ok(()) } else { Err(Error::NotTaken { item: item(), wanted, reads }) }
+    if reads == wanted { Ok(()) } else { Err(Error::NotAccepted { item: item(), wanted, reads }) }
 }
 
 /// Selects a cam program and changes it. The changes are stored with 80000000h, then read back.

@@ -16,7 +16,7 @@ use crate::profile::Body;
 impl Encoder {
     pub(crate) fn handle_action(&mut self, action: InterbusAction, services: &mut Services) {
         match action {
-            InterbusAction::Stopped(stopped) => self.set_stopped(stopped),
+            InterbusAction::ConfirmStandstill(stopped) => self.set_stopped(stopped),
             InterbusAction::ReadPrograms(programs) => self.submit(InterbusJob::Programs(programs), services),
             InterbusAction::ReadOut(what) => self.submit(InterbusJob::ReadOut(what), services),
             InterbusAction::Select(mode) => self.submit(InterbusJob::Select(mode), services),

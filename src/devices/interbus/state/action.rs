@@ -10,7 +10,7 @@ use crate::devices::interbus::protocol::{ProgramNumber, ReadOutNumber, StartupMo
 
 pub enum InterbusAction {
     /// Sets whether the user has confirmed that the machine is at standstill.
-    Stopped(bool),
+    ConfirmStandstill(bool),
     /// Reads cam programs. The outputs of the encoder switch to each program in turn.
     ReadPrograms(Vec<ProgramNumber>),
     ReadOut(ReadOutNumber),

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::preview::Preview;
+use super::preview::OutputComparison;
 use super::record::Record;
 use super::staged::{EditFinding, EditedValues, StagedEdits, ValueId};
 use super::table::Import;
@@ -35,7 +35,7 @@ pub struct Encoder {
     pub read_outs: BTreeMap<u16, Value>,
     pub record: Record,
     /// Comparison of the encoder's outputs with its cam programs.
-    pub preview: Preview,
+    pub preview: OutputComparison,
     /// Steps of recent handshakes in chronological order.
     pub handshake: VecDeque<Handshake>,
     pub motor: Option<Motor>,
@@ -62,7 +62,7 @@ impl Encoder {
             staged,
             read_outs: BTreeMap::new(),
             record: Record::default(),
-            preview: Preview::default(),
+            preview: OutputComparison::default(),
             handshake: VecDeque::new(),
             motor: None,
             import: None,

@@ -105,7 +105,7 @@ pub fn encoder_error_text(error: &Error) -> Text {
         }
         Error::UnknownMode { mode } => TEXTS.text("interbus.unknown_mode").with_text("mode", startup_mode_text(*mode)),
         Error::Moving { from, to } => TEXTS.text("interbus.moving").with("from", from).with("to", to),
-        Error::NotTaken { item, wanted, reads } => {
+        Error::NotAccepted { item, wanted, reads } => {
             TEXTS.text("interbus.not_taken").with("item", item).with("wanted", wanted).with("reads", reads)
         }
         Error::Changed { item } => TEXTS.text("interbus.changed").with("item", item),

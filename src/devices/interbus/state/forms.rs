@@ -22,7 +22,7 @@ pub fn parse_number(text: &str) -> Result<u32, Text> {
 ///
 /// # Errors
 /// Returns an error with a message if the entry is not a number.
-pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<Edit, Text> {
+pub fn parse_parameter_edit(parameter: Parameter, text: &str, now: &Parameters) -> Result<Edit, Text> {
     let value = parse_number(text)?;
     Ok(match parameter {
         Parameter::Steps => Edit::Gear { steps: check_in_range(parameter, value, now)?, revolutions: now.revolutions },
@@ -39,7 +39,7 @@ pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<E
 ///
 /// # Errors
 /// Returns an error with a message if the entry is not a number or is beyond the measuring range.
-pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
+pub fn parse_preset(text: &str, now: &Parameters) -> Result<u32, Text> {
     if text.trim().is_empty() {
         return Ok(now.preset);
     }
@@ -50,7 +50,7 @@ pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
 ///
 /// # Errors
 /// Returns an error with a message if the entry is not a number.
-pub fn offset(text: &str) -> Result<i64, Text> {
+pub fn parse_offset(text: &str) -> Result<i64, Text> {
     let entry = text.trim().replace('\u{2212}', "-");
     entry.parse::<i32>().map(i64::from).map_err(|_| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
@@ -67,7 +67,7 @@ pub fn format_position(step: u32, scale: &Scale, range: u32) -> String {
 ///
 /// # Errors
 /// Returns an error with a message if the entry is not a number or is beyond the measuring range.
-pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
+pub fn parse_position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
     let refused = || TEXTS.text("ib_entry.position").with("entry", text.trim());
     let value = decimal(text).ok_or_else(refused)?;
     let placed = scale.round_position(value, range).map_err(|error| {
@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(parse_number(" 33 554 431 "), Ok(33_554_431));
         assert_eq!(parse_number("0x1FF"), Ok(511));
         assert!(parse_number("-1").is_err() && parse_number("1.5").is_err() && parse_number("").is_err());
-        let edit = |parameter: Parameter, text: &str| super::parameter(parameter, text, &now());
+        let edit = |parameter: Parameter, text: &str| super::parse_parameter_edit(parameter, text, &now());
         assert_eq!(edit(Parameter::Turns, "4096"), Ok(Edit::Revolutions(4096)));
         assert_eq!(edit(Parameter::Preset, "4095"), Ok(Edit::Preset(4095)));
         // According to reference 3, a preset is below the number of steps, of which there are at most 8192 per turn.
@@ -162,7 +162,7 @@ mod tests {
         assert_eq!(refused, "Preset value: 4096 is outside the range 0 to 4095.");
         assert!(edit(Parameter::Steps, "8193").is_err() && edit(Parameter::Steps, "8192").is_ok());
         assert!(edit(Parameter::Turns, "4097").is_err() && edit(Parameter::Turns, "0").is_err());
-        assert_eq!((preset("", &now()), preset("12", &now())), (Ok(7), Ok(12)));
-        assert!(preset("4096", &now()).is_err());
+        assert_eq!((parse_preset("", &now()), parse_preset("12", &now())), (Ok(7), Ok(12)));
+        assert!(parse_preset("4096", &now()).is_err());
     }
 }

@@ -33,7 +33,7 @@ pub use texts::TEXTS;
 pub use action::InterbusAction;
 pub use connect_form::{InterbusForm, InterbusLinkKind};
 pub use encoder::Encoder;
-pub use preview::{OutputMismatch, Preview};
+pub use preview::{OutputComparison, OutputMismatch};
 pub use record::Record;
 pub use report::status_lines;
 pub use review::{Review, ReviewState};

@@ -5,7 +5,7 @@ use crate::devices::interbus::protocol::{CompiledPrograms, Program, ProgramNumbe
 
 /// The encoder's cam programs, and how many words had outputs that match them.
 #[derive(Clone, Debug)]
-pub struct Preview {
+pub struct OutputComparison {
     programs: [Option<Program>; ProgramNumber::COUNT],
     compiled: CompiledPrograms,
     /// Number of words whose outputs match their program.
@@ -23,22 +23,22 @@ pub struct OutputMismatch {
     pub expected: u8,
 }
 
-impl Default for Preview {
+impl Default for OutputComparison {
     fn default() -> Self {
-        Preview::from_programs([None; ProgramNumber::COUNT])
+        OutputComparison::from_programs([None; ProgramNumber::COUNT])
     }
 }
 
-impl Preview {
+impl OutputComparison {
     fn from_programs(programs: [Option<Program>; ProgramNumber::COUNT]) -> Self {
         let compiled = CompiledPrograms::new(&programs.map(Option::unwrap_or_default));
-        Preview { programs, compiled, same: 0, other: 0, last: None }
+        OutputComparison { programs, compiled, same: 0, other: 0, last: None }
     }
 
     /// Sets the programs of the encoder. If they have changed, the comparison starts again.
     pub(super) fn set_programs(&mut self, programs: &[Option<Program>; ProgramNumber::COUNT]) {
         if self.programs != *programs {
-            *self = Preview::from_programs(*programs);
+            *self = OutputComparison::from_programs(*programs);
         }
     }
 
@@ -74,7 +74,7 @@ mod tests {
         program.cams[3] = Some(Cam { start: Value::new(15).unwrap(), stop: Value::new(213).unwrap() });
         let mut programs = [None; ProgramNumber::COUNT];
         programs[1] = Some(program);
-        let mut preview = Preview::default();
+        let mut preview = OutputComparison::default();
         preview.set_programs(&programs);
         let reading = |number: u8, position: u32, outputs: u32| WordReading {
             at: Moment::START,

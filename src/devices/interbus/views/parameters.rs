@@ -95,7 +95,7 @@ fn table_ui(
                 } else {
                     let draft = view.drafts.entry(parameter.name()).or_default();
                     committed_entry(ui, draft, &now.to_string(), ENTRY_WIDTH, &word, |text| {
-                        let edit = forms::parameter(parameter, text, new)?;
+                        let edit = forms::parse_parameter_edit(parameter, text, new)?;
                         actions.push(Action::device(id, Interbus::Edit(Box::new(edit))));
                         Ok(())
                     });
@@ -158,7 +158,7 @@ fn preset_ui(
             let hint = parameters.preset.to_string();
             crate::ui::controls::text_entry(ui, &mut view.preset, ENTRY_WIDTH, &word, &hint);
             if enabled_button(ui, ready, icons::TARGET, &translate(theme, "ib_preset.set")).clicked() {
-                match forms::preset(&view.preset, &parameters) {
+                match forms::parse_preset(&view.preset, &parameters) {
                     Ok(value) => {
                         view.preset_problem = None;
                         actions.push(Action::device(id, Interbus::Plan(Box::new(Change::Preset { value }))));

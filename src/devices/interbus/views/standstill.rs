@@ -21,7 +21,7 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mu
             let ink = if stopped { theme.palette.good } else { theme.palette.warn };
             ui.label(RichText::new(if stopped { icons::CHECK_CIRCLE } else { icons::WARNING }).color(ink));
             if ui.checkbox(&mut stopped, translate(theme, "ib_stop.stands")).changed() {
-                actions.push(Action::device(id, Interbus::Stopped(stopped)));
+                actions.push(Action::device(id, Interbus::ConfirmStandstill(stopped)));
             }
             if encoder.survey.is_none() {
                 let ready = encoder.is_stopped() && encoder.session.is_ready();

@@ -70,7 +70,7 @@ pub fn device_error_text(error: &Error) -> Text {
         Error::Motion { number, .. } => parameter_text("hd_said.motion", *number),
         Error::Moving { drive } => TEXTS.text("hd_said.moving").with("drive", drive.get()),
         Error::NotHiperdrive { product } => TEXTS.text("hd_said.other_device").with("says", product),
-        Error::NotTaken { number, wanted, reads } => {
+        Error::NotAccepted { number, wanted, reads } => {
             parameter_text("hd_said.not_taken", *number).with("wanted", wanted).with("reads", reads)
         }
         Error::NetworkNotTaken { attribute } => TEXTS.text("hd_said.network_not_taken").with("attribute", attribute),

@@ -91,7 +91,7 @@ fn errors_show_cause_and_remedy() {
         Error::Motion { number: number(104), name: "target position" },
         Error::Moving { drive: ONE },
         Error::NotHiperdrive { product: "1769-L16ER".to_owned() },
-        Error::NotTaken { number: number(198), wanted: 100, reads: 128 },
+        Error::NotAccepted { number: number(198), wanted: 100, reads: 128 },
         Error::NetworkNotTaken { attribute: 5 },
         Error::Busy { reads: 1, milliseconds: 2000 },
         Error::Changed { item: "158".to_owned() },

@@ -33,7 +33,7 @@ impl Master<'_> {
     /// longer waiting times until the encoder has accepted the value.
     ///
     /// # Errors
-    /// Returns [`Error::NotTaken`] with the name `item` if the value is not accepted, or an error of
+    /// Returns [`Error::NotAccepted`] with the name `item` if the value is not accepted, or an error of
     /// [`send_setting`](Self::send_setting).
     pub(in crate::devices::interbus::procedures) fn set_and_verify(
         &mut self,
@@ -50,7 +50,7 @@ impl Master<'_> {
                 return Ok(());
             }
         }
-        Err(Error::NotTaken { item: item(), wanted: wanted.get(), reads: reads.get() })
+        Err(Error::NotAccepted { item: item(), wanted: wanted.get(), reads: reads.get() })
     }
 
     fn try_send_setting(&mut self, command: Command, tried: u32) -> Result<(), Error> {

@@ -57,7 +57,7 @@ impl Master<'_> {
     ///
     /// # Errors
     /// Returns [`Error::ModeNotRestored`] with the cause if the encoder cannot be returned to operation.
-    pub fn end_foreign_operation(&mut self) -> Result<StartupMode, Error> {
+    pub fn end_interrupted_operation(&mut self) -> Result<StartupMode, Error> {
         let ended = self.run_uncancellable(|master| {
             master.clear_run_command()?;
             let was_set = !matches!(Reply::parse(master.input), Reply::Run { .. });
@@ -71,7 +71,7 @@ impl Master<'_> {
             let mode = master.read_startup_mode()?;
             master.found = Some(mode);
             if was_set {
-                master.note_foreign_store()?;
+                master.record_interrupted_store()?;
             }
             master.resume(mode)?;
             master.return_to_original_mode()?;

@@ -97,7 +97,7 @@ impl Master<'_> {
     }
 
     /// Records that the return to operation stored settings made by another program.
-    pub(super) fn note_foreign_store(&mut self) -> Result<(), Error> {
+    pub(super) fn record_interrupted_store(&mut self) -> Result<(), Error> {
         if self.notes.journal.is_some() {
             self.serial_number()?;
             self.notes.left += 1;

@@ -35,7 +35,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
             .with("input", format_word(*input))
             .with("swapped", format_word(*swapped)),
         CheckFinding::Runs(input) => TEXTS.text("ib_check.runs").with("word", format_word(*input)),
-        CheckFinding::Stray(input) => TEXTS.text("ib_check.stray").with("word", format_word(*input)),
+        CheckFinding::StrayBits(input) => TEXTS.text("ib_check.stray").with("word", format_word(*input)),
         CheckFinding::Error(error) => TEXTS
             .text("ib_check.error")
             .with("word", format_word(Reply::Error(*error).emit()))

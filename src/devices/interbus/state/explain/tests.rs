@@ -81,7 +81,7 @@ fn encoder_errors_name_remedy() {
         (Error::NotSelectable { mode: StartupMode::K2 }, vec!["K2"]),
         (Error::UnknownMode { mode: StartupMode::Unknown(value(85)) }, vec!["85"]),
         (Error::Moving { from: 100, to: 180 }, vec!["100", "180"]),
-        (Error::NotTaken { item: "steps".to_owned(), wanted: 255, reads: 256 }, vec!["steps", "255", "256"]),
+        (Error::NotAccepted { item: "steps".to_owned(), wanted: 255, reads: 256 }, vec!["steps", "255", "256"]),
         (Error::Changed { item: "shift".to_owned() }, vec!["shift"]),
         (
             Error::ModeNotRestored {

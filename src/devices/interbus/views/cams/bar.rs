@@ -92,7 +92,7 @@ fn program_menu_ui(
         entry(ui, theme, &word, |ui| {
             text_entry(ui, &mut view.by, 80.0, &word, "-100");
             if labelled_button(ui, icons::CHECK, &translate(theme, "ib_cams.rotate")).clicked() {
-                match forms::offset(&view.by) {
+                match forms::parse_offset(&view.by) {
                     Ok(by) => {
                         view.refused = None;
                         put(Edit::Rotate { program, by });

@@ -6,7 +6,7 @@ use crate::app::Action;
 use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
 use crate::devices::interbus::state::cams::{Chart, VisibleRange as Stretch};
-use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, Preview, TEXTS};
+use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, OutputComparison, TEXTS};
 use crate::devices::interbus::views::translate;
 use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
 use crate::ui::controls::{card_with_trailing, icon_button, name, paragraph};
@@ -103,8 +103,8 @@ pub(super) fn card_ui(
     }
 }
 
-fn output_comparison_ui(ui: &mut Ui, theme: &Theme, preview: &Preview) {
-    let Preview { same, other, last, .. } = preview;
+fn output_comparison_ui(ui: &mut Ui, theme: &Theme, preview: &OutputComparison) {
+    let OutputComparison { same, other, last, .. } = preview;
     let Some(last) = last else {
         if *same > 0 {
             let text = TEXTS.text("ib_cams.agree").with("words", same);

@@ -114,7 +114,7 @@ fn row_ui(
         let word = theme.format_text(&labels::edge_name(lane, edge));
         cell_ui(ui, NUMBER_WIDTH, |ui| {
             committed_entry(ui, draft, &shown, NUMBER_WIDTH - ENTRY_MARGIN, &word, |text| {
-                let to = forms::position(text, &encoder.scale, chart.range)?;
+                let to = forms::parse_position(text, &encoder.scale, chart.range)?;
                 put(match lane.edges {
                     Some(_) => Edit::Edge { program, cam, edge, to },
                     // The other edge has the same position until the user enters it.

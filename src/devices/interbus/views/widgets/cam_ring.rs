@@ -66,7 +66,7 @@ impl Dial {
     }
 
     /// Returns the cam whose circle contains a screen point.
-    fn cam(self, place: Pos2) -> Option<CamNumber> {
+    fn cam_at(self, place: Pos2) -> Option<CamNumber> {
         let from_outside = (self.radius - place.distance(self.middle)) / self.circle_distance();
         if (0.0..Program::CAMS as f32).contains(&from_outside) { CamNumber::new(from_outside as u8) } else { None }
     }
@@ -127,7 +127,7 @@ impl Ring<'_> {
         let sense = if self.model.movable { Sense::CLICK | Sense::DRAG } else { Sense::CLICK };
         let response = self.ui.interact(rect, self.base.with("disc"), sense);
         let under = |place: Pos2| {
-            let lane = self.model.chart.lane_of(self.dial.cam(place)?)?;
+            let lane = self.model.chart.lane_of(self.dial.cam_at(place)?)?;
             let position = Value::from_word(self.dial.position(place) as u32);
             lane.edges.filter(|cam| cam.is_on(position)).map(|_| DragTarget::Whole(lane.cam))
         };
@@ -140,7 +140,7 @@ impl Ring<'_> {
             self.ui.set_cursor_icon(if response.dragged() { CursorIcon::Grabbing } else { CursorIcon::Grab });
         }
         let event = hold.and_then(|hold| self.apply_drag(&response, hold, drag));
-        let clicked = response.clicked().then(|| response.interact_pointer_pos().and_then(|at| self.dial.cam(at)));
+        let clicked = response.clicked().then(|| response.interact_pointer_pos().and_then(|at| self.dial.cam_at(at)));
         if let Some(hold) = hovered.and_then(under).filter(|_| drag.is_none()) {
             self.model.show_tooltip(self.theme, response, hold);
         }

@@ -212,7 +212,7 @@ pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
         own.on_hover_text(theme.format_text(&layout.bit_text(bit)));
     }
     for (group, words) in layout.bit_groups().into_iter().zip(&values) {
-        name(ui, theme, layout, &cells, group);
+        draw_group_name(ui, theme, layout, &cells, group);
         let Some(run) =
             cells.range_rects(group.high, group.low).into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))
         else {
@@ -261,7 +261,7 @@ fn word_bit(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, bit: u8, rect: Rect
 }
 
 /// Draws a bracket below a group, with its name if that fits.
-fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid, group: Group) {
+fn draw_group_name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid, group: Group) {
     let painter = ui.painter();
     let ink = group.kind.display_colour(theme);
     let runs = cells.range_rects(group.high, group.low);

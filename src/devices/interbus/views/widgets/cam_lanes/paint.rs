@@ -40,7 +40,7 @@ impl LanePainter<'_> {
             self.cam(&within, lane);
             self.draw_compared_cam(&within, lane.cam);
         }
-        self.position();
+        self.draw_position();
         if let Some(drag) = drag {
             self.paint_drag_target(&drag);
         }
@@ -153,7 +153,7 @@ impl LanePainter<'_> {
     }
 
     /// Draws a line through all lanes at the encoder position.
-    fn position(&self) {
+    fn draw_position(&self) {
         let Some(position) = self.model.position.filter(|position| *position < self.model.chart.range) else { return };
         let place = self.place;
         let x = place.x(f64::from(position) + 0.5);
