@@ -98,7 +98,7 @@ fn thousand_recordings(families: &Families) {
         };
         let members = search.classes.first().map(|class| class.members.as_slice()).unwrap_or_default();
         first += usize::from(members.iter().any(|member| reads(&member.layout)));
-        let tick = search.doubt.is_none();
+        let tick = search.uncertainty.is_none();
         ticks += usize::from(tick);
         if tick && !members.first().is_some_and(|member| reads(&member.layout)) {
             wrong += 1;

@@ -236,7 +236,7 @@ fn words_of_an_adapter_are_plotted_live() {
     let mut desk = connected("sim:?ssi=ahm36,code=gray&rpm=60");
     let own = encoder(&desk);
     assert_eq!(own.designer.family().unwrap().key, "ahm36", "what the virtual encoder sends");
-    assert_eq!(own.identity.as_ref().unwrap().asking.clocks, 27);
+    assert_eq!(own.identity.as_ref().unwrap().clock_settings.clocks, 27);
     command(&mut desk, DeviceCommand::Poll(Some(Duration::from_millis(1))));
     desk.until("words stream", |studio| studio.ssi().unwrap().record.position_count() > 500);
     let own = encoder(&desk);
@@ -248,7 +248,7 @@ fn words_of_an_adapter_are_plotted_live() {
     act(&mut desk, Ssi::Enter(Field::Singleturn, FieldInput::Number(12)));
     assert!(encoder(&desk).record.position_count() >= before);
     desk.until("the layout does not fit", |studio| {
-        studio.ssi().unwrap().record.finding_counts().finding_counts().iter().any(|noted| noted.stands)
+        studio.ssi().unwrap().record.finding_counts().finding_counts().iter().any(|noted| noted.is_active)
     });
     command(&mut desk, DeviceCommand::Poll(None));
 }
@@ -258,11 +258,11 @@ fn another_number_of_clocks_is_sent_to_the_adapter() {
     let mut desk = connected("sim:?ssi=atm60,code=gray&rpm=6");
     edit(&mut desk, Edit::Family("ahm36".to_owned()));
     desk.until("the adapter is told", |studio| {
-        studio.ssi().unwrap().identity.as_ref().is_some_and(|own| own.asking.clocks == 27)
+        studio.ssi().unwrap().identity.as_ref().is_some_and(|own| own.clock_settings.clocks == 27)
     });
     act(&mut desk, Ssi::SetClocks(Some(30)));
     desk.until("the adapter is told", |studio| {
-        studio.ssi().unwrap().identity.as_ref().is_some_and(|own| own.asking.clocks == 30)
+        studio.ssi().unwrap().identity.as_ref().is_some_and(|own| own.clock_settings.clocks == 30)
     });
     command(&mut desk, DeviceCommand::ReadPosition);
     desk.until("a word is read", |studio| studio.ssi().unwrap().last().is_some_and(|seen| seen.clocks == 30));
@@ -279,11 +279,15 @@ fn a_layout_found_live_can_be_adopted() {
     desk.until("enough is read", |studio| studio.ssi().unwrap().record.count(33) >= 700);
     command(&mut desk, DeviceCommand::Poll(None));
     act(&mut desk, Ssi::Find);
-    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
-    let SearchState::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
+    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().search, SearchState::Found { .. }));
+    let SearchState::Found { search, .. } = &encoder(&desk).search else { panic!() };
     // The shaft did not pass the end of the 4096 turns, so the result is uncertain. The number of remaining classes
     // depends on the angle by which the shaft has turned in the meantime.
-    assert!(matches!(search.doubt, Some(SearchUncertainty::Open | SearchUncertainty::Close)), "{:?}", search.doubt);
+    assert!(
+        matches!(search.uncertainty, Some(SearchUncertainty::Open | SearchUncertainty::Close)),
+        "{:?}",
+        search.uncertainty
+    );
     let is_afm60 = |member: &LayoutProposal| member.family.as_ref().is_some_and(|(key, _)| key == "afm60");
     let (class, member) = search
         .classes
@@ -301,10 +305,10 @@ fn a_layout_found_live_can_be_adopted() {
     desk.until("they are written", |_| path.exists());
     act(&mut desk, Ssi::ForgetSearch);
     act(&mut desk, Ssi::FindIn(path));
-    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
+    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().search, SearchState::Found { .. }));
     let nowhere = desk.outside.path("nowhere.txt");
     act(&mut desk, Ssi::FindIn(nowhere));
-    desk.until("it is told", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Failed(_)));
+    desk.until("it is told", |studio| matches!(studio.ssi().unwrap().search, SearchState::Failed(_)));
 }
 
 #[test]

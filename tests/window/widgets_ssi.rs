@@ -86,7 +86,7 @@ fn frames_of_a_file_are_listed_and_tried() {
     std::fs::write(&path, "000110110010011111011101100\n".repeat(20)).unwrap();
     screen.act(Action::device(id, Ssi::Enter(Field::Code, FieldInput::Choice(1))));
     screen.act(Action::device(id, Ssi::FindIn(path)));
-    screen.until("it is searched", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
+    screen.until("it is searched", |studio| matches!(studio.ssi().unwrap().search, SearchState::Found { .. }));
     screen.click("page.find");
     let row = "    2  0x0D93EEC    4778587         291     10843";
     assert!(screen.shows(row));

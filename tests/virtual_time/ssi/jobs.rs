@@ -14,8 +14,8 @@ fn hello(stand: &mut Stand) -> Identity {
     }
 }
 
-fn set(stand: &mut Stand, asking: ClockSettings) -> Result<Identity, Error> {
-    stand.session.run_inline(SsiJob::Set(asking)).map(|output| match output {
+fn set(stand: &mut Stand, clock_settings: ClockSettings) -> Result<Identity, Error> {
+    stand.session.run_inline(SsiJob::Set(clock_settings)).map(|output| match output {
         SsiOutput::Set(identity) => *identity,
         other => panic!("{other:?}"),
     })
@@ -30,7 +30,7 @@ fn hello_reports_adapter_and_word_settings() {
     let identity = hello(&mut stand);
     assert_eq!((identity.hello.name.as_str(), identity.hello.firmware.as_str()), ("virtual adapter", "1.0"));
     assert!(identity.hello.capabilities.contains(Capabilities::SSI));
-    assert_eq!(identity.asking, ClockSettings { clocks: 25, clock_hz: 700_000, pause_us: 200 });
+    assert_eq!(identity.clock_settings, ClockSettings { clocks: 25, clock_hz: 700_000, pause_us: 200 });
     // The nearest clock below is 60 MHz divided by 86.
     assert_eq!(identity.clock_hz, 697_674);
     // The encoder takes 300 mW at 12 V.
@@ -73,18 +73,18 @@ fn reads_word_with_requested_clocks() {
 fn rejected_setting_keeps_previous_one() {
     let mut stand = Stand::quick("rpm=60");
     assert_eq!(stand.read().clocks, 25);
-    for asking in [
+    for clock_settings in [
         ClockSettings { clocks: 0, ..QUICK },
         ClockSettings { clocks: 65, ..QUICK },
         ClockSettings { clock_hz: 1000, ..QUICK },
     ] {
-        let error = set(&mut stand, asking).unwrap_err();
+        let error = set(&mut stand, clock_settings).unwrap_err();
         assert!(
             matches!(error, Error::Adapter(AdapterError::Refused { operation: Operation::SsiConfig, .. })),
             "{error}"
         );
         let words = stand.read();
-        assert_eq!((words.clocks, words.clock_hz), (25, 1_500_000), "{asking:?}");
+        assert_eq!((words.clocks, words.clock_hz), (25, 1_500_000), "{clock_settings:?}");
     }
 }
 

@@ -98,8 +98,8 @@ fn changed_settings_apply_to_running_stream() {
     stand.session.set_sample_interval(Some(FAST));
     check(&stand.samples(Duration::from_millis(100)));
     for clocks in [13, 25, 40] {
-        let asking = ClockSettings { clocks, ..QUICK };
-        stand.session.run_inline(SsiJob::Set(asking)).unwrap();
+        let clock_settings = ClockSettings { clocks, ..QUICK };
+        stand.session.run_inline(SsiJob::Set(clock_settings)).unwrap();
         let runs = stand.samples(Duration::from_millis(100));
         assert!(runs[0].is_stream_start() && runs.iter().all(|run| run.clocks == clocks && run.lost == 0));
         let widest = runs.iter().flat_map(|run| &run.words).max().unwrap();

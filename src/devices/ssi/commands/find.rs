@@ -9,7 +9,7 @@ use super::source;
 use crate::cli::output::{Lines, Output, count};
 use crate::cli::runner::to_failure;
 use crate::cli::{Result, Success};
-use crate::devices::ssi::protocol::{self, Class, Families, Search};
+use crate::devices::ssi::protocol::{self, Families, LayoutClass, Search};
 use crate::devices::ssi::state::Frames;
 use crate::devices::ssi::state::explain;
 
@@ -34,7 +34,7 @@ pub(super) fn find(output: &Output, SsiFindArgs { file, clocks }: &SsiFindArgs) 
     let search = protocol::find(&frames, clocks, &families);
     output.show(&json(&search, &families), &text(&search, &families))?;
     if search.classes.is_empty() {
-        return Err(to_failure(&explain::uncertainty_text(search.doubt)));
+        return Err(to_failure(&explain::uncertainty_text(search.uncertainty)));
     }
     Ok(Success::Completed)
 }
@@ -57,8 +57,8 @@ fn json(search: &Search, families: &Families) -> Json {
     json!({
         "frames": search.frames,
         "layouts": layouts,
-        "ambiguous": search.doubt.is_some(),
-        "next": next_motion(search).filter(|_| search.doubt.is_some()),
+        "ambiguous": search.uncertainty.is_some(),
+        "next": next_motion(search).filter(|_| search.uncertainty.is_some()),
     })
 }
 
@@ -80,17 +80,17 @@ fn text(search: &Search, families: &Families) -> String {
             lines.add_line("  the same here", same);
         }
     }
-    let verdict = explain::uncertainty_text(search.doubt).terminal_text();
+    let verdict = explain::uncertainty_text(search.uncertainty).terminal_text();
     let next = next_motion(search).map_or_else(String::new, |next| next + "\n");
     format!("{}{verdict}\n{next}", lines.text())
 }
 
 /// Returns the most probable layout of a class as a value for `--layout`.
-fn spec_text(class: &Class, families: &Families) -> String {
+fn spec_text(class: &LayoutClass, families: &Families) -> String {
     class.members.first().map_or_else(String::new, |member| member.spec_text(families))
 }
 
-fn evidence_text(class: &Class) -> String {
+fn evidence_text(class: &LayoutClass) -> String {
     let frame = class.members.first().map(|member| explain::layout_summary(&member.layout).terminal_text());
     let evidence = explain::evidence_for(&class.evidence).terminal_text();
     frame.into_iter().chain([evidence]).collect::<Vec<_>>().join("; ")
@@ -98,10 +98,10 @@ fn evidence_text(class: &Class) -> String {
 
 /// Returns the motion that would distinguish the remaining layouts, or `None` if the result is certain.
 fn next_motion(search: &Search) -> Option<String> {
-    let doubt = search.doubt.filter(|doubt| *doubt != protocol::SearchUncertainty::Open);
-    let doubt = doubt.map(|doubt| explain::uncertainty_text(Some(doubt)).terminal_text());
+    let uncertainty = search.uncertainty.filter(|uncertainty| *uncertainty != protocol::SearchUncertainty::Open);
+    let uncertainty = uncertainty.map(|uncertainty| explain::uncertainty_text(Some(uncertainty)).terminal_text());
     let open = search.classes.first().into_iter().flat_map(|class| &class.open);
     let open = open.map(|open| explain::open_question_text(*open).terminal_text());
-    let all: Vec<String> = doubt.into_iter().chain(open).collect();
+    let all: Vec<String> = uncertainty.into_iter().chain(open).collect();
     (!all.is_empty()).then(|| all.join(" "))
 }

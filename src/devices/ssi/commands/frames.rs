@@ -105,7 +105,7 @@ fn fields(layout: &Layout, frame: u64) -> String {
             Role::Multiturn(_) => "MT".to_owned(),
             Role::Singleturn(_) => "ST".to_owned(),
             Role::Position(_) => "P".to_owned(),
-            Role::Again(_) => "again".to_owned(),
+            Role::Repetition(_) => "again".to_owned(),
             Role::Error(_) | Role::Parity => layout.role_name(cell.role),
         };
         let bit = if cell.bit { '1' } else { '0' };

@@ -81,7 +81,7 @@ fn from_file(output: &Output, spec: &str, families: &Families) -> Result<Selecte
         (Some(key), None) => {
             output.print_message(&format!("{spec} names the unknown family {key:?}, so its times are not known."));
         }
-        (_, Some(family)) => show_differences_from_family(output, family, &profile),
+        (_, Some(family)) => print_frame_remarks(output, family, &profile),
         (None, None) => {}
     }
     let times = family.map(|family| family.times);
@@ -92,7 +92,7 @@ fn from_file(output: &Output, spec: &str, families: &Families) -> Result<Selecte
 }
 
 /// Prints remarks on the profile's frame, or a message if no settings of its family result in this frame.
-fn show_differences_from_family(output: &Output, family: &Family, profile: &SsiProfile) {
+fn print_frame_remarks(output: &Output, family: &Family, profile: &SsiProfile) {
     let settings = family.settings_for_frame(&profile.descriptor);
     match settings.and_then(|settings| settings.resolve(family).ok()) {
         Some(resolved) => print_advice(output, &resolved),

@@ -24,7 +24,7 @@ impl CliDevice for Ssi {
     const COMMANDS: &'static dyn DeviceCommands = &SsiCommands;
 
     fn prepare_context(session: &mut Session<Self>, _given: &TypeMap) -> ClockSettings {
-        session.station().asking
+        session.station().clock_settings
     }
 
     fn describe_step(_: &JobStep) -> String {
@@ -40,16 +40,16 @@ pub(super) fn open_runner(common: &CommonArgs, output: &Output, chosen: &Selecte
     let mut runner = Runner::open(common)?;
     let names = |name: &str| common.link.as_ref().is_some_and(|url| url.query.get(name).is_some());
     let (own, reading) = (runner.context, chosen.profile.reading);
-    let asking = ClockSettings {
+    let clock_settings = ClockSettings {
         clocks: chosen.layout.clock_count(),
         clock_hz: if names("clock") { own.clock_hz } else { reading.clock_hz },
         pause_us: if names("pause") { own.pause_us } else { reading.pause_us },
     };
-    let identity = result_of!(runner.run(SsiJob::Set(asking))?, SsiOutput::Set(identity) => identity);
+    let identity = result_of!(runner.run(SsiJob::Set(clock_settings))?, SsiOutput::Set(identity) => identity);
     if let Some(times) = &chosen.times {
         let reads = ReadConditions {
             clock_hz: identity.clock_hz.into(),
-            pause: std::time::Duration::from_micros(asking.pause_us.into()),
+            pause: std::time::Duration::from_micros(clock_settings.pause_us.into()),
             ..chosen.profile.read_conditions()
         };
         for warning in times.calculate_timing(&reads).warnings {

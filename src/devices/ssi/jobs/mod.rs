@@ -87,8 +87,8 @@ impl Session<Ssi> {
         Session::from_device(Ssi { wire, station, motor, streamed_us: None }, clock, store, is_virtual)
     }
 
-    pub fn request_settings(&mut self, asking: ClockSettings) {
-        self.device.station.asking = asking;
+    pub fn request_settings(&mut self, clock_settings: ClockSettings) {
+        self.device.station.clock_settings = clock_settings;
     }
 
     pub fn station(&self) -> &Station {
@@ -121,7 +121,7 @@ impl Device for Ssi {
         let mut master = self.create_master(context);
         Ok(match job {
             SsiJob::Hello => SsiOutput::Hello(Box::new(master.identify()?)),
-            SsiJob::Set(asking) => SsiOutput::Set(Box::new(master.apply_settings(asking)?)),
+            SsiJob::Set(clock_settings) => SsiOutput::Set(Box::new(master.apply_settings(clock_settings)?)),
             SsiJob::Read => SsiOutput::Read(master.read_word()?),
             SsiJob::Check(layout) => {
                 let progress = &mut |done, total| tell(JobReport::Progress(Progress { done, total, step: JobStep }));

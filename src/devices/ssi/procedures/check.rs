@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use super::{Error, Identity, Master};
 use crate::analysis::check;
-use crate::devices::ssi::protocol::{BitMeaning, Flags, FrameFinding as Said, Layout};
+use crate::devices::ssi::protocol::{BitMeaning, Flags, FrameFinding, Layout};
 
 pub use crate::analysis::check::Verdict;
 
@@ -45,8 +45,8 @@ pub enum CheckFinding {
         different: usize,
     },
     /// A finding about `count` of the words.
-    Said {
-        finding: Said,
+    FindingInWords {
+        finding: FrameFinding,
         count: u64,
     },
     Fits,
@@ -82,7 +82,7 @@ pub fn check_encoder(
 }
 
 fn check_words(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResult> {
-    let mut counted: Vec<(Said, u64)> = Vec::new();
+    let mut counted: Vec<(FrameFinding, u64)> = Vec::new();
     let mut positions = Vec::new();
     for word in words {
         let reading = layout.decode(*word);
@@ -98,20 +98,22 @@ fn check_words(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiSt
     }
     let different = words.iter().collect::<BTreeSet<_>>().len();
     let taken = CheckFinding::Words { taken: words.len() as u64, different };
-    let among = |wanted: fn(&Said) -> bool| {
+    let among = |wanted: fn(&FrameFinding) -> bool| {
         let wanted = counted.iter().filter(move |(what, _)| wanted(what));
-        wanted.map(|(what, count)| CheckFinding::Said { finding: what.clone(), count: *count })
+        wanted.map(|(what, count)| CheckFinding::FindingInWords { finding: what.clone(), count: *count })
     };
-    let verdict = |wanted: fn(&Said) -> bool| {
+    let verdict = |wanted: fn(&FrameFinding) -> bool| {
         let worst = counted.iter().filter(|(what, _)| wanted(what)).map(|(what, _)| match what.meaning() {
             BitMeaning::Invalid => Verdict::Bad,
             BitMeaning::Warning => Verdict::Attention,
         });
         worst.max().unwrap_or(Verdict::Good)
     };
-    let is_stuck = |what: &Said| matches!(what, Said::StuckHigh { .. } | Said::StuckLow { .. });
-    let is_of_the_form = |what: &Said| matches!(what, Said::Code | Said::Padding | Said::Parity | Said::Repeat);
-    let is_error = |what: &Said| matches!(what, Said::Error { .. } | Said::Pattern { .. });
+    let is_stuck = |what: &FrameFinding| matches!(what, FrameFinding::StuckHigh { .. } | FrameFinding::StuckLow { .. });
+    let is_of_the_form = |what: &FrameFinding| {
+        matches!(what, FrameFinding::Code | FrameFinding::Padding | FrameFinding::Parity | FrameFinding::Repeat)
+    };
+    let is_error = |what: &FrameFinding| matches!(what, FrameFinding::Error { .. } | FrameFinding::Pattern { .. });
     let or = |findings: Vec<CheckFinding>, none: CheckFinding| if findings.is_empty() { vec![none] } else { findings };
     // A wrong layout is a fault, even if its findings are only warnings.
     let form = verdict(is_of_the_form);
@@ -139,13 +141,13 @@ fn check_words(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiSt
 }
 
 fn check_adapter(identity: &Identity) -> SsiStepResult {
-    let Identity { hello, asking, clock_hz, .. } = identity;
-    let verdict = if *clock_hz == asking.clock_hz { Verdict::Good } else { Verdict::Attention };
+    let Identity { hello, clock_settings, clock_hz, .. } = identity;
+    let verdict = if *clock_hz == clock_settings.clock_hz { Verdict::Good } else { Verdict::Attention };
     let who = CheckFinding::Adapter(hello.name.clone(), hello.firmware.clone());
     SsiStepResult {
         step: CheckStep::Adapter,
         verdict,
-        findings: vec![who, CheckFinding::Clock { asked: asking.clock_hz, got: *clock_hz }],
+        findings: vec![who, CheckFinding::Clock { asked: clock_settings.clock_hz, got: *clock_hz }],
     }
 }
 
@@ -209,7 +211,7 @@ mod tests {
             name: "bench".to_owned(),
             serial: "7".to_owned(),
         };
-        Identity { hello, asking: ClockSettings::default(), clock_hz, supply }
+        Identity { hello, clock_settings: ClockSettings::default(), clock_hz, supply }
     }
 
     fn verdicts(lines: &[SsiStepResult]) -> Vec<Verdict> {
@@ -239,7 +241,7 @@ mod tests {
         let words = [0x2A5B << 1, 0x2A5C << 1, 0x2A5F << 1];
         let lines = check_words(&identity(400_000, None), &layout("ahs36,st=12"), &words);
         assert_eq!(lines[3].verdict, Bad);
-        assert_eq!(lines[3].findings, [CheckFinding::Said { finding: Said::Padding, count: 2 }]);
+        assert_eq!(lines[3].findings, [CheckFinding::FindingInWords { finding: FrameFinding::Padding, count: 2 }]);
         assert_eq!(check_words(&identity(400_000, None), &layout("ahs36"), &words)[3].findings, [CheckFinding::Fits]);
     }
 

@@ -47,19 +47,19 @@ impl<'a> Master<'a> {
         }
         self.switch_on()?;
         let clock_hz = self.set_clocks(hello.max_clock_hz)?;
-        Ok(Identity { hello, asking: self.station.asking, clock_hz, supply: self.station.supply })
+        Ok(Identity { hello, clock_settings: self.station.clock_settings, clock_hz, supply: self.station.supply })
     }
 
     /// Changes the settings for reading SSI words.
     ///
     /// # Errors
     /// Returns any error that [`identify`](Self::identify) returns. In this case, the previous settings stay in effect.
-    pub fn apply_settings(&mut self, asking: ClockSettings) -> Result<Identity, Error> {
-        let before = std::mem::replace(&mut self.station.asking, asking);
-        if before != asking {
+    pub fn apply_settings(&mut self, clock_settings: ClockSettings) -> Result<Identity, Error> {
+        let before = std::mem::replace(&mut self.station.clock_settings, clock_settings);
+        if before != clock_settings {
             self.station.asked = 0;
         }
-        self.identify().inspect_err(|_| self.station.asking = before)
+        self.identify().inspect_err(|_| self.station.clock_settings = before)
     }
 
     /// Reads a single SSI word.
@@ -102,7 +102,8 @@ impl<'a> Master<'a> {
             self.identify()?;
             self.begin_stream(streamed)?;
         }
-        let (asking, clock_hz) = self.station.set.unwrap_or((self.station.asking, self.station.asking.clock_hz));
+        let (clock_settings, clock_hz) =
+            self.station.set.unwrap_or((self.station.clock_settings, self.station.clock_settings.clock_hz));
         loop {
             let until = self.now() + CANCEL_CHECK_INTERVAL;
             let Station { line: state, adapter, flow, .. } = &mut *self.station;
@@ -115,7 +116,7 @@ impl<'a> Master<'a> {
             if let Some(portion) = portion
                 && let StreamData::Ssi(data) = &portion.data
             {
-                return Ok(Words::run(&portion, data, asking, clock_hz, period_us));
+                return Ok(Words::run(&portion, data, clock_settings, clock_hz, period_us));
             }
         }
     }
@@ -176,11 +177,11 @@ impl<'a> Master<'a> {
     /// Sends the settings for reading SSI words to the adapter if they have changed. The clock is limited to `fastest`.
     /// Returns the actual clock frequency in hertz.
     fn set_clocks(&mut self, fastest: u32) -> Result<u32, Error> {
-        let asking = self.station.asking;
-        if let Some((_, clock_hz)) = self.station.set.filter(|(own, _)| *own == asking) {
+        let clock_settings = self.station.clock_settings;
+        if let Some((_, clock_hz)) = self.station.set.filter(|(own, _)| *own == clock_settings) {
             return Ok(clock_hz);
         }
-        let ClockSettings { clocks, clock_hz, pause_us } = asking;
+        let ClockSettings { clocks, clock_hz, pause_us } = clock_settings;
         let clock_hz = clock_hz.min(fastest);
         let request = Request::SsiConfig { clocks, clock_hz, pause_us, flags: SsiFlags::FALLING_EDGE };
         self.station.set = None;
@@ -188,15 +189,15 @@ impl<'a> Master<'a> {
         let Reply::SsiConfig { clock_hz } = answered.reply else {
             return Err(unexpected_reply(&request, &answered.reply));
         };
-        self.station.set = Some((asking, clock_hz));
+        self.station.set = Some((clock_settings, clock_hz));
         Ok(clock_hz)
     }
 
     fn read_configured_word(&mut self) -> Result<Words, Error> {
-        let Identity { asking, clock_hz, .. } = self.identify()?;
+        let Identity { clock_settings, clock_hz, .. } = self.identify()?;
         let taken = self.with_retries(Self::read_single_word);
         let (word, at) = taken.map_err(|error| self.handle_possible_reset(error))?;
-        Ok(Words::single(at, word, asking, clock_hz))
+        Ok(Words::single(at, word, clock_settings, clock_hz))
     }
 
     fn read_single_word(&mut self) -> Result<(u64, Moment), Failure> {

@@ -51,7 +51,7 @@ impl Default for ClockSettings {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     pub hello: Hello,
-    pub asking: ClockSettings,
+    pub clock_settings: ClockSettings,
     /// Actual clock frequency in hertz, as set by the adapter.
     pub clock_hz: u32,
     pub supply: Option<Supply>,
@@ -61,7 +61,7 @@ pub struct Identity {
 pub struct Station {
     pub line: LineState,
     pub adapter: AdapterState,
-    pub asking: ClockSettings,
+    pub clock_settings: ClockSettings,
     /// Encoder supply that the adapter switches on, if requested.
     pub supply: Option<Supply>,
     /// Settings sent to the adapter, and the actual clock frequency in hertz. `None` if the adapter is not configured
@@ -101,7 +101,7 @@ impl Station {
         Station {
             line: LineState::new(margin),
             adapter: AdapterState::default(),
-            asking: ClockSettings::default(),
+            clock_settings: ClockSettings::default(),
             supply: None,
             set: None,
             flow: None,
@@ -117,7 +117,7 @@ impl Station {
     pub fn from_query(query: &UrlQuery, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         let mut station = Station::new(link.margin.unwrap_or(margin));
-        (station.asking.clock_hz, station.asking.pause_us) = (link.clock_hz, link.pause_us);
+        (station.clock_settings.clock_hz, station.clock_settings.pause_us) = (link.clock_hz, link.pause_us);
         station.supply = link.millivolt.map(|millivolt| Supply { millivolt, measured: None });
         station.adapter.set_supply_after_session(link.after);
         Ok(station)
@@ -153,8 +153,8 @@ impl Station {
 
 impl fmt::Display for Station {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let clock_hz = self.set.map_or(self.asking.clock_hz, |(_, clock_hz)| clock_hz);
-        write!(f, "SSI of {} clocks at {clock_hz} Hz", self.asking.clocks)
+        let clock_hz = self.set.map_or(self.clock_settings.clock_hz, |(_, clock_hz)| clock_hz);
+        write!(f, "SSI of {} clocks at {clock_hz} Hz", self.clock_settings.clocks)
     }
 }
 
@@ -170,12 +170,12 @@ mod tests {
     fn parses_line_settings() {
         let usual = station("").unwrap();
         assert_eq!(
-            (usual.asking, usual.supply),
+            (usual.clock_settings, usual.supply),
             (ClockSettings { clocks: 25, clock_hz: 400_000, pause_us: 200 }, None)
         );
         assert_eq!(usual.line.margin, Duration::from_millis(100));
         let own = station("margin=5&clock=1500000&pause=30&voltage=24").unwrap();
-        assert_eq!(own.asking, ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 30 });
+        assert_eq!(own.clock_settings, ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 30 });
         assert_eq!(own.supply, Some(Supply { millivolt: 24_000, measured: None }));
         assert_eq!(
             (own.line.margin, own.to_string()),

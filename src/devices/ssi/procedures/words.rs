@@ -30,13 +30,13 @@ pub struct Words {
 }
 
 impl Words {
-    pub(super) fn single(at: Moment, word: u64, asking: ClockSettings, clock_hz: u32) -> Self {
+    pub(super) fn single(at: Moment, word: u64, clock_settings: ClockSettings, clock_hz: u32) -> Self {
         Words {
             first: 0,
             at,
             period_ns: 0,
             lost: 0,
-            clocks: asking.clocks,
+            clocks: clock_settings.clocks,
             words: vec![word],
             clock_hz,
             is_limited: false,
@@ -44,7 +44,13 @@ impl Words {
     }
 
     /// Converts a packet of streamed words. `wished_us` is the requested interval in microseconds.
-    pub(super) fn run(portion: &Chunk, data: &SsiData, asking: ClockSettings, clock_hz: u32, wished_us: u32) -> Self {
+    pub(super) fn run(
+        portion: &Chunk,
+        data: &SsiData,
+        clock_settings: ClockSettings,
+        clock_hz: u32,
+        wished_us: u32,
+    ) -> Self {
         let Chunk { first, time, period_ns, lost, .. } = *portion;
         Words {
             first,
@@ -52,7 +58,7 @@ impl Words {
             at: Moment::from_elapsed(Duration::from_nanos(time.as_nanoseconds().max(0).unsigned_abs())),
             period_ns,
             lost,
-            clocks: asking.clocks,
+            clocks: clock_settings.clocks,
             words: data.values.clone(),
             clock_hz,
             is_limited: period_ns > i64::from(wished_us) * 1000,
@@ -86,13 +92,13 @@ mod tests {
         let data = SsiData { first_index: 7, t0_us: 0, period_us: 50, lost: 0, width: 4, values: vec![1, 0x1FF_FFFF] };
         let time = SampleTime::from_nanoseconds(3_000_000);
         let portion = Chunk { first: 7, time, period_ns: 50_000, lost: 2, data: StreamData::Ssi(data.clone()) };
-        let asking = ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 25 };
-        let run = Words::run(&portion, &data, asking, 1_500_000, 50);
+        let clock_settings = ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 25 };
+        let run = Words::run(&portion, &data, clock_settings, 1_500_000, 50);
         let at = |us| Moment::from_elapsed(Duration::from_micros(us));
         assert_eq!(run.iter_with_times().collect::<Vec<_>>(), [(at(3000), 1), (at(3050), 0x1FF_FFFF)]);
         assert_eq!((run.is_stream_start(), run.is_streamed(), run.is_limited, run.lost), (false, true, false, 2));
-        assert!(Words::run(&portion, &data, asking, 1_500_000, 49).is_limited);
-        let lone = Words::single(at(9), 5, asking, 1_000_000);
+        assert!(Words::run(&portion, &data, clock_settings, 1_500_000, 49).is_limited);
+        let lone = Words::single(at(9), 5, clock_settings, 1_000_000);
         assert_eq!(lone.iter_with_times().collect::<Vec<_>>(), [(at(9), 5)]);
         assert_eq!((lone.is_stream_start(), lone.is_streamed()), (true, false));
     }

@@ -21,7 +21,7 @@ pub enum Role {
     /// The bit is the parity bit.
     Parity,
     /// Repetition of the bit sent at this earlier clock.
-    Again(u8),
+    Repetition(u8),
 }
 
 /// A bit of a frame, with its clock and role.
@@ -121,7 +121,7 @@ impl Layout {
         }
         if let Some(repeat) = descriptor.repeat {
             for clock in 1..=word {
-                set_role(&mut roles, clock + word + repeat.gap, Role::Again(clock));
+                set_role(&mut roles, clock + word + repeat.gap, Role::Repetition(clock));
             }
         }
         roles

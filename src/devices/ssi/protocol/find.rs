@@ -55,9 +55,9 @@ pub struct Search {
     pub different: usize,
     /// Reason why the best result is uncertain, or `None` if every bit is explained and no other class fits equally
     /// well.
-    pub doubt: Option<SearchUncertainty>,
+    pub uncertainty: Option<SearchUncertainty>,
     /// Classes of possible layouts, best first. The list may be empty.
-    pub classes: Vec<Class>,
+    pub classes: Vec<LayoutClass>,
 }
 
 /// The reason why the result of a search is uncertain.
@@ -81,7 +81,7 @@ pub enum SearchUncertainty {
 
 /// A class of layouts that the recorded frames cannot distinguish.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Class {
+pub struct LayoutClass {
     /// Layouts in the class, most probable first. Factory settings come before changed ones, and usual widths before
     /// unusual ones.
     pub members: Vec<LayoutProposal>,
@@ -122,9 +122,9 @@ pub struct ClassEvidence {
     /// Number of frames that are consistent with the frames next to them.
     pub explained: usize,
     /// Median distance between consecutive frames in steps of the lowest bit.
-    pub steps_a_frame: i64,
+    pub steps_per_frame: i64,
     /// Bits of information per frame that cannot be predicted from the previous frames.
-    pub bits_a_frame: f64,
+    pub bits_per_frame: f64,
     /// Number of frames whose position jumps relative to the previous frame.
     pub jumps: usize,
     /// Number of frames in which a constant bit has another value or the code word is invalid.
@@ -147,14 +147,14 @@ pub enum OpenQuestion {
         to: u8,
     },
     /// The end of the range is unknown. Turn the shaft until the position wraps.
-    PassAnEnd,
+    ReachRangeEnd,
     /// Swapped wires look the same as reversed counting. Turn the shaft clockwise and check whether the position
     /// increases.
     Direction,
     /// The lowest bit of the position is unknown. Turn the shaft at a different and uneven speed.
     OtherSpeed,
     /// The number of steps is unknown. Turn the shaft slowly across the end of the range.
-    PassTheEnd {
+    CrossRangeEnd {
         /// Minimum number of steps that fits the frames.
         least: u32,
         /// Maximum number of steps that fits the frames.
@@ -184,7 +184,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     let newest = frames.get(frames.len().saturating_sub(MAX_FRAMES)..).unwrap_or_default();
     let seen = FrameSet::new(newest, clocks);
     let different = seen.distinct_count();
-    let search = |doubt, classes| Search { frames: frames.len(), different, doubt, classes };
+    let search = |uncertainty, classes| Search { frames: frames.len(), different, uncertainty, classes };
     if let Some(high) = seen.stuck_level().filter(|_| !newest.is_empty()) {
         return search(Some(SearchUncertainty::Stuck { high }), Vec::new());
     }
@@ -235,8 +235,8 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         group.bits += WEIGHT_BITS * group.members.first().map_or(0.0, |member| member.weight);
     }
     groups.sort_by(|a, b| a.bits.total_cmp(&b.bits));
-    let doubt = verdict::search_uncertainty(&words, &groups);
-    search(doubt, verdict::merge_classes(&words, groups))
+    let uncertainty = verdict::search_uncertainty(&words, &groups);
+    search(uncertainty, verdict::merge_classes(&words, groups))
 }
 
 /// Returns whether two interpretations of the frames result in the same motion. It may be reversed, or scaled by a

@@ -25,7 +25,7 @@ pub struct CountedFinding {
     /// Time of the last frame with the finding.
     pub last: SampleTime,
     /// Whether the newest frame has the finding.
-    pub stands: bool,
+    pub is_active: bool,
 }
 
 impl FindingCounts {
@@ -53,20 +53,20 @@ impl FindingCounts {
                     count: 0,
                     first: at,
                     last: at,
-                    stands: false,
+                    is_active: false,
                 });
                 self.noted.len() - 1
             });
             now.push(index);
             let Some(noted) = self.noted.get_mut(index) else { continue };
             noted.last = at;
-            noted.count += u64::from(!noted.stands || is_single_transfer_finding(&finding));
-            if !noted.stands {
+            noted.count += u64::from(!noted.is_active || is_single_transfer_finding(&finding));
+            if !noted.is_active {
                 begun.push(finding);
             }
         }
         for (index, noted) in self.noted.iter_mut().enumerate() {
-            noted.stands = now.contains(&index);
+            noted.is_active = now.contains(&index);
         }
         self.before = (reading.flags, now);
         begun
@@ -80,7 +80,7 @@ impl FindingCounts {
     /// Ends all current findings, because names in the layout have changed. Findings in the next frame count as new
     /// occurrences.
     pub fn rename(&mut self) {
-        self.noted.iter_mut().for_each(|noted| noted.stands = false);
+        self.noted.iter_mut().for_each(|noted| noted.is_active = false);
         self.before = (Flags::NONE, Vec::new());
     }
 
@@ -121,7 +121,7 @@ mod tests {
         };
         let milliseconds = |time: SampleTime| time.as_nanoseconds() / 1_000_000;
         let row = |noted: &CountedFinding| {
-            (name(&noted.finding), noted.count, milliseconds(noted.first), milliseconds(noted.last), noted.stands)
+            (name(&noted.finding), noted.count, milliseconds(noted.first), milliseconds(noted.last), noted.is_active)
         };
         tally.finding_counts().iter().map(row).collect()
     }

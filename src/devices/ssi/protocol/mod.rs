@@ -36,7 +36,7 @@ pub use family::{
     Alignment, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, ResolvedFrame, SettingAdvice,
     SettingName, Settings, SettingsError, Signal, StepLimits,
 };
-pub use find::{Class, ClassEvidence, LayoutProposal, OpenQuestion, Search, SearchUncertainty, find};
+pub use find::{ClassEvidence, LayoutClass, LayoutProposal, OpenQuestion, Search, SearchUncertainty, find};
 pub use finding_counts::{CountedFinding, FindingCounts};
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]

@@ -63,7 +63,7 @@ impl Encoder {
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
             SsiAction::FindIn(path) => self.find_in_file(path, services),
-            SsiAction::ForgetSearch => self.hunt = SearchState::Nothing,
+            SsiAction::ForgetSearch => self.search = SearchState::Nothing,
             SsiAction::Take(class, member) => self.apply_search_result(class, member),
             SsiAction::ForgetErrors => self.record.reset_tally(),
             SsiAction::AskExport(format, language) => {
@@ -137,7 +137,7 @@ impl Encoder {
         let clocks = self.clock_count();
         let frames = self.record.latest_words(clocks);
         if frames.is_empty() {
-            self.hunt = SearchState::Failed(TEXTS.text("ssi_find.nothing_read"));
+            self.search = SearchState::Failed(TEXTS.text("ssi_find.nothing_read"));
             return;
         }
         self.find(services, move || {
@@ -154,7 +154,7 @@ impl Encoder {
     fn find(&mut self, services: &mut Services, frames: impl FnOnce() -> Result<Frames, Text> + Send + 'static) {
         self.searches = self.searches.wrapping_add(1);
         let number = self.searches;
-        self.hunt = SearchState::Running(number);
+        self.search = SearchState::Running(number);
         let (session, families) = (self.session.id, families(services));
         services.tasks.run("find", move || {
             let result = frames().map(|Frames { origin, clocks, mut frames, left_out, .. }| {
@@ -162,13 +162,13 @@ impl Encoder {
                 let search = Box::new(find(&frames, clocks, &families));
                 SearchState::Found { origin, clocks, left_out, frames, search }
             });
-            let hunt = Box::new(result.unwrap_or_else(SearchState::Failed));
-            StudioAction::Done(StudioDone::device(session, TaskResult::Found { number, hunt }))
+            let search = Box::new(result.unwrap_or_else(SearchState::Failed));
+            StudioAction::Done(StudioDone::device(session, TaskResult::Found { number, search }))
         });
     }
 
     fn apply_search_result(&mut self, class: usize, member: usize) {
-        let SearchState::Found { search, .. } = &self.hunt else { return };
+        let SearchState::Found { search, .. } = &self.search else { return };
         let Some(proposal) = search.classes.get(class).and_then(|class| class.members.get(member)) else { return };
         let mut profile = self.edited_profile();
         profile.family = proposal.family.as_ref().map(|(key, _)| key.clone());

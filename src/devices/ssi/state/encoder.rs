@@ -7,9 +7,9 @@ use super::design::{Design, Edit, LayoutDesigner};
 use super::record::{ReceivedWord, Record, WordStream};
 use super::search::SearchState;
 use super::trial::{Decoded, TrialFrame};
+use crate::app::PendingEdits;
 use crate::app::check::CheckLine;
 use crate::app::session::{Phase, Session, Source};
-use crate::app::{PendingEdits, Text};
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::procedures::{ClockSettings, Identity};
 use crate::devices::ssi::profile::SsiProfile;
@@ -24,7 +24,7 @@ pub struct Encoder {
     /// Whether the last word read is displayed in place of the trial frame.
     pub(super) follows: bool,
     pub record: Record,
-    pub hunt: SearchState,
+    pub search: SearchState,
     pub(super) searches: u32,
     /// Identity of the adapter and its settings for reading words, once known.
     pub identity: Option<Identity>,
@@ -45,7 +45,7 @@ impl Encoder {
             designer,
             trial,
             follows: true,
-            hunt: SearchState::default(),
+            search: SearchState::default(),
             searches: 0,
             identity: None,
             check: None,
@@ -148,11 +148,6 @@ impl Encoder {
     /// Returns whether the layout belongs to a profile rather than to a link.
     pub fn is_profile(&self) -> bool {
         !matches!(self.session.source, Source::Link(_))
-    }
-
-    /// Returns the reason why the last change to the layout was rejected, if any.
-    pub fn layout_rejection(&self) -> Option<&Text> {
-        self.designer.problem()
     }
 }
 

@@ -59,11 +59,11 @@ impl Kind for Ssi {
 impl Encoder {
     /// Sends the reading settings to the adapter if they differ from those last sent.
     fn send_reading_settings(&mut self, services: &mut Services) {
-        let asking = self.query_settings();
+        let clock_settings = self.query_settings();
         // The adapter must be identified and idle. Settings that it rejected are not sent again.
-        if self.identity.is_some() && self.session.is_ready() && self.requested != Some(asking) {
-            self.requested = Some(asking);
-            self.submit(SsiJob::Set(asking), services);
+        if self.identity.is_some() && self.session.is_ready() && self.requested != Some(clock_settings) {
+            self.requested = Some(clock_settings);
+            self.submit(SsiJob::Set(clock_settings), services);
         }
     }
 
@@ -110,7 +110,7 @@ impl SessionEvents for Encoder {
     fn handle_finished_job(&mut self, output: SsiOutput, services: &mut Services) {
         match output {
             SsiOutput::Hello(identity) => {
-                self.requested = Some(identity.asking);
+                self.requested = Some(identity.clock_settings);
                 self.accept_identity(*identity, services);
                 self.refresh_word(services);
             }

@@ -162,10 +162,10 @@ pub fn open_question_text(open: OpenQuestion) -> Text {
             TEXTS.text("ssi_find.turn_farther_one").with("clock", from)
         }
         OpenQuestion::TurnFarther { from, to } => TEXTS.text("ssi_find.turn_farther").with("from", from).with("to", to),
-        OpenQuestion::PassAnEnd => TEXTS.text("ssi_find.pass_the_end"),
+        OpenQuestion::ReachRangeEnd => TEXTS.text("ssi_find.pass_the_end"),
         OpenQuestion::Direction => TEXTS.text("ssi_find.direction"),
         OpenQuestion::OtherSpeed => TEXTS.text("ssi_find.other_speed"),
-        OpenQuestion::PassTheEnd { least, most } => {
+        OpenQuestion::CrossRangeEnd { least, most } => {
             TEXTS.text("ssi_find.steps").with("least", least).with("most", most)
         }
         OpenQuestion::Unexplained { clock } => TEXTS.text("ssi_find.unexplained").with("clock", clock),
@@ -175,8 +175,8 @@ pub fn open_question_text(open: OpenQuestion) -> Text {
 }
 
 /// Returns a message that the best layout is certain, or the reason why it is not.
-pub fn uncertainty_text(doubt: Option<SearchUncertainty>) -> Text {
-    TEXTS.text(match doubt {
+pub fn uncertainty_text(uncertainty: Option<SearchUncertainty>) -> Text {
+    TEXTS.text(match uncertainty {
         None => "ssi_find.sure",
         Some(SearchUncertainty::Standing) => "ssi_find.standing",
         Some(SearchUncertainty::Stuck { high: true }) => "ssi.stuck_high",
@@ -190,7 +190,7 @@ pub fn uncertainty_text(doubt: Option<SearchUncertainty>) -> Text {
 pub fn evidence_for(evidence: &ClassEvidence) -> Text {
     TEXTS
         .text("ssi_find.evidence")
-        .with("steps", evidence.steps_a_frame)
+        .with("steps", evidence.steps_per_frame)
         .with("jumps", evidence.jumps)
         .with("misfits", evidence.misfits)
         .with("bits", evidence.bits_seen)

@@ -44,6 +44,6 @@ use std::path::PathBuf;
 use crate::store::FileError;
 
 pub enum TaskResult {
-    Found { number: u32, hunt: Box<SearchState> },
+    Found { number: u32, search: Box<SearchState> },
     Written(PathBuf, Result<(), FileError>),
 }

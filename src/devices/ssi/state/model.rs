@@ -24,8 +24,8 @@ impl DeviceModel for Encoder {
     type TaskResult = TaskResult;
 
     fn prepare_session(&self, _world: &StudioEnvironment) -> PrepareFn<Ssi> {
-        let asking = self.query_settings();
-        Box::new(move |session| session.request_settings(asking))
+        let clock_settings = self.query_settings();
+        Box::new(move |session| session.request_settings(clock_settings))
     }
 
     fn connect(&mut self, opened: OpenedConnection<Ssi>, services: &mut Services) {
@@ -46,9 +46,9 @@ impl DeviceModel for Encoder {
 
     fn handle_result(&mut self, done: TaskResult, services: &mut Services) {
         match done {
-            TaskResult::Found { number, hunt } => {
-                if self.hunt == SearchState::Running(number) {
-                    self.hunt = *hunt;
+            TaskResult::Found { number, search } => {
+                if self.search == SearchState::Running(number) {
+                    self.search = *search;
                 }
             }
             TaskResult::Written(path, Ok(())) => {

@@ -28,7 +28,7 @@ pub struct Record {
     held: usize,
     tally: FindingCounts,
     /// Time up to which findings are hidden, if any.
-    forgotten: Option<Moment>,
+    hidden_until: Option<Moment>,
     last: Option<ReceivedWord>,
     stream: Option<WordStream>,
     lost: u64,
@@ -68,7 +68,7 @@ impl Record {
             track: DeviceRecorder::default(),
             meaning: position_scales(&layout),
             tally: FindingCounts::default(),
-            forgotten: None,
+            hidden_until: None,
             layout,
             kept: VecDeque::new(),
             held: 0,
@@ -81,7 +81,7 @@ impl Record {
     pub(super) fn begin_session(&mut self, began: &Zoned) {
         self.track.begin_session(began);
         self.kept.clear();
-        (self.held, self.stream, self.last, self.forgotten) = (0, None, None, None);
+        (self.held, self.stream, self.last, self.hidden_until) = (0, None, None, None);
     }
 
     /// Adds new words, before which `dropped` words were lost.
@@ -120,7 +120,7 @@ impl Record {
                 continue;
             }
             let reading = self.layout.decode(word);
-            if self.forgotten.is_none_or(|until| at > until) {
+            if self.hidden_until.is_none_or(|until| at > until) {
                 self.tally.count_findings(&self.layout, reading, SampleTime::from(at));
             }
             let is_bad = !self.layout.is_valid(reading);
@@ -207,7 +207,7 @@ impl Record {
     /// Hides all previous findings, even if the words are decoded again.
     pub(super) fn reset_tally(&mut self) {
         self.tally.reset();
-        self.forgotten = self.last.as_ref().map(|last| last.at);
+        self.hidden_until = self.last.as_ref().map(|last| last.at);
     }
 
     pub fn last(&self) -> Option<&ReceivedWord> {

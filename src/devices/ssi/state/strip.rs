@@ -91,7 +91,7 @@ pub enum Handle {
 pub struct CellState {
     pub bit: bool,
     /// Effect on the position if the bit is an active error bit, or a 1 that should be 0.
-    pub tells: Option<BitMeaning>,
+    pub meaning: Option<BitMeaning>,
 }
 
 impl Strip {
@@ -119,7 +119,7 @@ impl Strip {
             Role::Position(_) => Kind::Position,
             Role::Error(index) => Kind::Error(index),
             Role::Parity => Kind::Parity,
-            Role::Again(_) => Kind::Again,
+            Role::Repetition(_) => Kind::Again,
         };
         // In a frame without a repetition, all zeros after the position are of the same kind.
         let kind = |at: usize, role: Role| match kind(at, role) {
@@ -185,7 +185,7 @@ impl Strip {
         let cells = self.layout.to_cells(frame).into_iter();
         cells
             .map(|cell| {
-                let tells = match cell.role {
+                let meaning = match cell.role {
                     Role::Error(index) if flags.contains(Flags::error(index)) => {
                         descriptor.errors.get(index).map(|bit| bit.meaning)
                     }
@@ -194,10 +194,10 @@ impl Strip {
                         Some(BitMeaning::Warning)
                     }
                     Role::Parity if flags.contains(Flags::PARITY) => Some(BitMeaning::Invalid),
-                    Role::Again(clock) if self.bit(frame, clock) != cell.bit => Some(BitMeaning::Invalid),
+                    Role::Repetition(clock) if self.bit(frame, clock) != cell.bit => Some(BitMeaning::Invalid),
                     _ => None,
                 };
-                CellState { bit: cell.bit, tells }
+                CellState { bit: cell.bit, meaning }
             })
             .collect()
     }

@@ -54,15 +54,19 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
         ui.add_space(theme.space.inside);
         row(ui, theme, &theme.translate("encoder_card.firmware"), theme.monospace(&hello.firmware));
         row(ui, theme, &theme.translate("encoder_card.serial"), theme.monospace(&hello.serial));
-        let asking = &identity.asking;
+        let clock_settings = &identity.clock_settings;
         let text = TEXTS
             .text("ssi_adapter.asks")
-            .with("clocks", asking.clocks)
+            .with("clocks", clock_settings.clocks)
             .with_number("khz", f64::from(identity.clock_hz) / 1000.0, 0)
-            .with("pause", asking.pause_us);
+            .with("pause", clock_settings.pause_us);
         row(ui, theme, &translate(theme, "ssi_adapter.reads"), theme.format_text(&text));
-        if identity.clock_hz != asking.clock_hz {
-            let text = TEXTS.text("ssi_adapter.other_clock").with_number("khz", f64::from(asking.clock_hz) / 1000.0, 0);
+        if identity.clock_hz != clock_settings.clock_hz {
+            let text = TEXTS.text("ssi_adapter.other_clock").with_number(
+                "khz",
+                f64::from(clock_settings.clock_hz) / 1000.0,
+                0,
+            );
             paragraph(ui, RichText::new(theme.format_text(&text)).color(theme.palette.warn));
         }
         let supply = identity.supply.map(|supply| match supply.measured {

@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 
 use super::frames;
 use crate::app::{Action, Text};
-use crate::devices::ssi::protocol::{Class, FrameDescriptor, LayoutProposal, Search, SearchUncertainty};
+use crate::devices::ssi::protocol::{FrameDescriptor, LayoutClass, LayoutProposal, Search, SearchUncertainty};
 use crate::devices::ssi::state::explain;
 use crate::devices::ssi::state::{Encoder, Origin, SearchState, SsiAction as Ssi, TEXTS, read_clocks};
 use crate::devices::ssi::views::translate;
@@ -35,7 +35,7 @@ pub(super) fn page_ui(
 ) {
     source(ui, theme, encoder, view, actions);
     theme.add_gap(ui);
-    match &encoder.hunt {
+    match &encoder.search {
         SearchState::Nothing => {}
         SearchState::Running(_) => {
             ui.horizontal(|ui| {
@@ -96,7 +96,7 @@ fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState,
             if enabled_button(ui, words > 0, icons::FLOPPY_DISK, &translate(theme, "ssi_find.save")).clicked() {
                 ask(Ssi::AskSaveFrames);
             }
-            let running = matches!(encoder.hunt, SearchState::Running(_));
+            let running = matches!(encoder.search, SearchState::Running(_));
             let find = primary_button(
                 ui,
                 theme,
@@ -130,7 +130,7 @@ fn search_results_ui(
         .with("different", search.different)
         .with_text("source", source);
     paragraph(ui, theme.label(theme.format_text(&text)));
-    let (icon, colour) = match search.doubt {
+    let (icon, colour) = match search.uncertainty {
         None => (icons::CHECK_CIRCLE, theme.palette.good),
         Some(SearchUncertainty::Open) => (icons::QUESTION, theme.palette.accent),
         Some(SearchUncertainty::Stuck { .. }) => (icons::X_CIRCLE, theme.palette.bad),
@@ -140,7 +140,7 @@ fn search_results_ui(
     };
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
-        paragraph(ui, theme.format_text(&explain::uncertainty_text(search.doubt)));
+        paragraph(ui, theme.format_text(&explain::uncertainty_text(search.uncertainty)));
     });
     for (number, class) in search.classes.iter().take(CLASSES).enumerate() {
         ui.add_space(theme.space.between);
@@ -152,13 +152,13 @@ fn class_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
-    (number, class): (usize, &Class),
+    (number, class): (usize, &LayoutClass),
     view: &mut FindUiState,
     actions: &mut Vec<Action>,
 ) {
     let id = encoder.session.id;
     let evidence = &class.evidence;
-    let rank = TEXTS.text("ssi_find.rank").with("number", number + 1).with_number("bits", evidence.bits_a_frame, 2);
+    let rank = TEXTS.text("ssi_find.rank").with("number", number + 1).with_number("bits", evidence.bits_per_frame, 2);
     let aside = |ui: &mut Ui| {
         ui.label(theme.caption(theme.format_text(&rank)));
     };

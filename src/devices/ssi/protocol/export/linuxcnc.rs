@@ -80,7 +80,7 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     let mut fields: Vec<(BitField, u8)> = Vec::new();
     for role in layout.clock_roles().into_iter().rev() {
         let field = match role {
-            Role::Zero | Role::Again(_) => BitField::Padding,
+            Role::Zero | Role::Repetition(_) => BitField::Padding,
             Role::Multiturn(_) | Role::Singleturn(_) | Role::Position(_) => BitField::Position,
             Role::Error(index) => {
                 BitField::Bit(descriptor.errors.get(index).map_or("error", |bit| &bit.name).to_owned())

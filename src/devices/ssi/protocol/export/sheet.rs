@@ -34,7 +34,7 @@ impl BitLocations {
                 Role::Multiturn(_) => turns.push(bit),
                 Role::Singleturn(_) => steps.push(bit),
                 Role::Error(_) | Role::Parity => others.push((bit, role_name(layout, role, say))),
-                Role::Position(_) | Role::Zero | Role::Again(_) => {}
+                Role::Position(_) | Role::Zero | Role::Repetition(_) => {}
             }
             if matches!(role, Role::Multiturn(_) | Role::Singleturn(_) | Role::Position(_)) {
                 position.push(bit);

@@ -22,7 +22,7 @@ fn role_colour(role: Role) -> &'static str {
         Role::Singleturn(_) | Role::Position(_) => BITS,
         Role::Error(_) => "#ffb8b0",
         Role::Parity => "#d5c4f7",
-        Role::Again(_) => "#d9e8d0",
+        Role::Repetition(_) => "#d9e8d0",
     }
 }
 
@@ -34,7 +34,7 @@ fn family(role: Role) -> &'static str {
         Role::Position(_) => "P",
         Role::Error(_) => "E",
         Role::Parity => "PAR",
-        Role::Again(_) => "=",
+        Role::Repetition(_) => "=",
     }
 }
 

@@ -17,7 +17,7 @@ impl Layout {
             Role::Position(bit) => format!("P{bit}"),
             Role::Error(index) => self.descriptor().errors.get(index).map_or_else(String::new, |bit| bit.name.clone()),
             Role::Parity => "parity".to_owned(),
-            Role::Again(clock) => format!("= {clock}"),
+            Role::Repetition(clock) => format!("= {clock}"),
         }
     }
 }

@@ -15,14 +15,14 @@ fn layout(text: &str) -> Layout {
 }
 
 /// Returns 2000 frames of a shaft that turns slowly and not quite evenly, starting at a quarter of the range.
-fn turning(layout: &Layout, steps_a_frame: f64) -> Vec<u64> {
+fn turning(layout: &Layout, steps_per_frame: f64) -> Vec<u64> {
     let mut rng = Rng::with_seed(7);
     let last = layout.position_code().last_position();
     let round = u128::from(last) + 1;
     let start = last / 4;
     let frames = (0..2000).map(|index| {
         let trembling = rng.f64() * 1.2 - 0.6;
-        let moved = (f64::from(index) * steps_a_frame + trembling).round() as i128;
+        let moved = (f64::from(index) * steps_per_frame + trembling).round() as i128;
         let position = (i128::from(start) + moved).rem_euclid(round as i128) as u64;
         layout.encode(position, Flags::NONE).unwrap()
     });
@@ -47,9 +47,9 @@ fn every_family_class_ranks_first() {
             // If the shaft does not pass the end of the range, it is unknown whether higher bits belong to the
             // position.
             assert!(
-                matches!(search.doubt, None | Some(SearchUncertainty::Open)),
+                matches!(search.uncertainty, None | Some(SearchUncertainty::Open)),
                 "{text} at {speed}: {:?}",
-                search.doubt
+                search.uncertainty
             );
             let first = &search.classes[0];
             let named =
@@ -78,7 +78,7 @@ fn finds_settings() {
     for text in settings {
         let truth = layout(text);
         let search = find(&turning(&truth, 1.3), truth.clock_count(), &families);
-        assert_eq!(search.doubt, Some(SearchUncertainty::Open), "{text}");
+        assert_eq!(search.uncertainty, Some(SearchUncertainty::Open), "{text}");
         let first = &search.classes[0];
         assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &truth)), "{text}");
     }
@@ -109,7 +109,7 @@ fn resting_shaft_yields_no_layout() {
     for family in families.iter() {
         let truth = layout(&family.key);
         let search = find(&turning(&truth, 0.0), truth.clock_count(), &families);
-        assert_eq!(search.doubt, Some(SearchUncertainty::Standing), "{}", family.key);
+        assert_eq!(search.uncertainty, Some(SearchUncertainty::Standing), "{}", family.key);
         assert_eq!(search.classes, []);
     }
 }
@@ -119,10 +119,10 @@ fn noise_and_stuck_lines_yield_no_layout() {
     let families = Families::built_in();
     let mut rng = Rng::with_seed(3);
     let noise: Vec<u64> = (0..2000).map(|_| rng.u64(..)).collect();
-    assert_eq!(find(&noise, 25, &families).doubt, Some(SearchUncertainty::Nothing));
-    assert_eq!(find(&[0; 100], 25, &families).doubt, Some(SearchUncertainty::Stuck { high: false }));
-    assert_eq!(find(&[0x1FF_FFFF; 100], 25, &families).doubt, Some(SearchUncertainty::Stuck { high: true }));
-    assert_eq!(find(&[], 25, &families).doubt, Some(SearchUncertainty::Standing));
+    assert_eq!(find(&noise, 25, &families).uncertainty, Some(SearchUncertainty::Nothing));
+    assert_eq!(find(&[0; 100], 25, &families).uncertainty, Some(SearchUncertainty::Stuck { high: false }));
+    assert_eq!(find(&[0x1FF_FFFF; 100], 25, &families).uncertainty, Some(SearchUncertainty::Stuck { high: true }));
+    assert_eq!(find(&[], 25, &families).uncertainty, Some(SearchUncertainty::Standing));
 }
 
 /// Frames without a family are recognised, both Gray excess that passes the end of the range and a frame with a parity
@@ -141,7 +141,7 @@ fn finds_encoders_without_family() {
     .unwrap();
     let search = find(&turning(&excess, 0.7), 12, &families);
     assert_eq!(
-        (search.doubt, search.classes[0].members[0].layout.position_code().last_position()),
+        (search.uncertainty, search.classes[0].members[0].layout.position_code().last_position()),
         (None, 359),
         "{search:?}"
     );
@@ -150,7 +150,7 @@ fn finds_encoders_without_family() {
     let with_parity =
         Layout::new(FrameDescriptor { clocks: 21, parity: Some(parity), ..FrameDescriptor::binary(0, 20) }).unwrap();
     let search = find(&turning(&with_parity, 2.7), 21, &families);
-    assert_eq!(search.doubt, Some(SearchUncertainty::Open));
+    assert_eq!(search.uncertainty, Some(SearchUncertainty::Open));
     assert_eq!(search.classes[0].members[0].layout.descriptor().parity, Some(parity));
 }
 
@@ -168,7 +168,7 @@ fn disturbed_frames_do_not_hide_layout() {
     let search = find(&frames, 27, &Families::built_in());
     let first = &search.classes[0];
     // The disturbed bit is a turn bit that otherwise never changes.
-    assert_eq!((search.doubt, first.evidence.misfits), (Some(SearchUncertainty::Open), 40));
+    assert_eq!((search.uncertainty, first.evidence.misfits), (Some(SearchUncertainty::Open), 40));
     assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &truth)));
 }
 
@@ -222,7 +222,7 @@ fn recognizes_independent_recordings() {
         let (clocks, frames, meant) = recording(text);
         let search = find(&frames, clocks, &families);
         let class = &search.classes[0];
-        assert_eq!(search.doubt.is_none(), tick, "{name}: {:?}", search.doubt);
+        assert_eq!(search.uncertainty.is_none(), tick, "{name}: {:?}", search.uncertainty);
         let in_class = class.members.iter().any(|member| reads(member, &frames, &meant));
         println!("{name}: in the first class: {in_class}, {:?}", class.open);
         first += usize::from(in_class);
@@ -242,7 +242,7 @@ fn confirmed_layouts_are_correct() {
     for seed in 0..40 {
         let recording = recordings::Recording::of(seed);
         let search = find(&recording.frames, recording.clocks, &families);
-        if search.doubt.is_none() {
+        if search.uncertainty.is_none() {
             ticks += 1;
             let member = &search.classes[0].members[0];
             assert!(reads(member, &recording.frames, &recording.meant), "{}", recording.what);

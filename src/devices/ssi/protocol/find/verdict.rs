@@ -5,7 +5,7 @@ use super::candidates::{LayoutCandidate, has_only_even_steps};
 use super::frame_set::FrameSet;
 use super::probe::TrialReading;
 use super::reading::FrameNumbers;
-use super::{CLASSES, Class, ClassEvidence, Group, LayoutProposal, OpenQuestion, SearchUncertainty, WEIGHT_BITS};
+use super::{CLASSES, ClassEvidence, Group, LayoutClass, LayoutProposal, OpenQuestion, SearchUncertainty, WEIGHT_BITS};
 use crate::devices::ssi::protocol::range::Range;
 
 /// Minimum lead of the best class over the next one, in bits.
@@ -68,12 +68,12 @@ fn unproven_properties(words: &FrameSet, group: &Group) -> Vec<OpenQuestion> {
     // before the position does not belong to it.
     match constant_run.filter(|(from, _)| !read.closed || *from > reading.first) {
         Some((from, to)) => open.push(OpenQuestion::TurnFarther { from, to }),
-        None if !read.closed => open.push(OpenQuestion::PassAnEnd),
+        None if !read.closed => open.push(OpenQuestion::ReachRangeEnd),
         None => {}
     }
     if let Some((least, most)) = step_count_bounds(read).filter(|(least, most)| least != most && read.closed) {
         let small = |steps: u64| u32::try_from(steps).unwrap_or(u32::MAX);
-        open.push(OpenQuestion::PassTheEnd { least: small(least), most: small(most) });
+        open.push(OpenQuestion::CrossRangeEnd { least: small(least), most: small(most) });
     }
     if has_only_even_steps(read) || !has_varied_steps(read) {
         open.push(OpenQuestion::OtherSpeed);
@@ -88,7 +88,7 @@ fn unproven_properties(words: &FrameSet, group: &Group) -> Vec<OpenQuestion> {
         open.push(OpenQuestion::Direction);
     }
     if open.is_empty() && differ(|one, other| one.positions != other.positions) {
-        open.push(OpenQuestion::PassAnEnd);
+        open.push(OpenQuestion::ReachRangeEnd);
     }
     open
 }
@@ -122,7 +122,7 @@ pub(super) fn has_varied_steps(read: &FrameNumbers) -> bool {
     other * 50 >= all
 }
 
-pub(super) fn merge_classes(words: &FrameSet, groups: Vec<Group>) -> Vec<Class> {
+pub(super) fn merge_classes(words: &FrameSet, groups: Vec<Group>) -> Vec<LayoutClass> {
     let mut last = 1.0_f64;
     let mut classes = Vec::new();
     for group in groups.into_iter().take(CLASSES) {
@@ -131,7 +131,7 @@ pub(super) fn merge_classes(words: &FrameSet, groups: Vec<Group>) -> Vec<Class> 
         let open = open_questions(words, &group);
         let members = group.members.into_iter().take(MEMBERS);
         let members = members.map(|LayoutCandidate { family, layout, .. }| LayoutProposal { family, layout }).collect();
-        classes.push(Class { members, evidence, open });
+        classes.push(LayoutClass { members, evidence, open });
     }
     classes
 }
@@ -149,8 +149,8 @@ fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> ClassEvidence {
     ClassEvidence {
         score: (fit.clamp(0.0, 1.0) * explained as f64 / frames.max(1) as f64).min(most),
         explained,
-        steps_a_frame: read.motion.median,
-        bits_a_frame: read.bits / frames.max(1) as f64,
+        steps_per_frame: read.motion.median,
+        bits_per_frame: read.bits / frames.max(1) as f64,
         jumps: read.motion.jumps,
         misfits,
         bits_seen: read.reading.width(),

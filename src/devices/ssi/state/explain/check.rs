@@ -41,7 +41,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::Words { taken, different } => {
             TEXTS.text("ssi_check.words").with("taken", taken).with("different", different)
         }
-        CheckFinding::Said { finding: what, count } => {
+        CheckFinding::FindingInWords { finding: what, count } => {
             TEXTS.text("ssi_check.said").with("count", count).with_text("what", said(what))
         }
         CheckFinding::Fits => TEXTS.text("ssi_check.fits"),

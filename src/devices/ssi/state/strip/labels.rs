@@ -22,7 +22,7 @@ pub fn cell_text(strip: &Strip, clock: u8) -> Text {
             Some(Role::Position(bit)) => count("ssi.strip_position_bit", bit, Kind::Position),
             Some(Role::Error(index)) => error(strip, index),
             Some(Role::Parity) => parity(strip),
-            Some(Role::Again(clock)) => TEXTS.text("ssi.strip_again_bit").with("clock", clock),
+            Some(Role::Repetition(clock)) => TEXTS.text("ssi.strip_again_bit").with("clock", clock),
             Some(Role::Zero) | None => TEXTS.text("ssi.strip_zero_bit"),
         },
     )

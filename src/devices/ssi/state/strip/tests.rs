@@ -250,8 +250,9 @@ fn cells_show_decoded_values() {
     let strip = family("afs60", &Settings { singleturn: Some(13), clocks: Some(18), ..Settings::default() });
     // The position is 1234h, ERRSI is active, and clock 18 carries a 1 although it should always be 0.
     let shown = strip.cell_states(0x91A2 << 2 | 1);
-    let tells: Vec<_> = (1..).zip(&shown).filter_map(|(clock, cell)| cell.tells.map(|tells| (clock, tells))).collect();
-    assert_eq!(tells, [(15, BitMeaning::Invalid), (18, BitMeaning::Warning)]);
+    let meaning: Vec<_> =
+        (1..).zip(&shown).filter_map(|(clock, cell)| cell.meaning.map(|meaning| (clock, meaning))).collect();
+    assert_eq!(meaning, [(15, BitMeaning::Invalid), (18, BitMeaning::Warning)]);
     let bits: String = shown.iter().map(|cell| if cell.bit { '1' } else { '0' }).collect();
     assert_eq!(bits, "100100011010001001");
 }

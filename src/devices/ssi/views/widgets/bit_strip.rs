@@ -216,7 +216,7 @@ impl StripContext<'_> {
 }
 
 fn common_meaning(cells: &[CellState], clocks: std::ops::RangeInclusive<u8>) -> Option<BitMeaning> {
-    let own = clocks.filter_map(|clock| cells.get(usize::from(clock.checked_sub(1)?))?.tells);
+    let own = clocks.filter_map(|clock| cells.get(usize::from(clock.checked_sub(1)?))?.meaning);
     own.min_by_key(|meaning| *meaning == BitMeaning::Warning)
 }
 

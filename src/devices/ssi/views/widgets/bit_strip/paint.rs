@@ -59,7 +59,7 @@ impl StripContext<'_> {
         let (theme, painter) = (self.theme, self.ui.painter());
         let cell = self.rows.cell_rect(clock);
         let shown = self.cell_state_at(clock);
-        let cell_meaning = shown.and_then(|cell| cell.tells);
+        let cell_meaning = shown.and_then(|cell| cell.meaning);
         let blank = self.bit_number(clock).map_or_else(String::new, |bit| bit.to_string());
         let ink =
             cell_meaning.map_or_else(|| display_colour(theme, field.kind), |meaning| meaning_colour(theme, meaning));
