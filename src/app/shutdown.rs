@@ -89,7 +89,7 @@ impl ClosingWorker for StreamEnd {
 }
 
 pub(crate) fn is_same_connection(one: &LinkUrl, other: &LinkUrl) -> bool {
-    one.wire() == other.wire() && one.wire() != Wire::Inside
+    one.wire() == other.wire() && one.wire() != Wire::InProcess
 }
 
 impl Services {

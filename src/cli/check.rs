@@ -59,7 +59,7 @@ fn line_quality(quality: &LineQuality) -> Json {
         "replies": quality.replies,
         "retries": quality.retries,
         "damaged": quality.damaged,
-        "silent": quality.silent,
+        "silent": quality.unanswered,
         "late": quality.late,
         "answer_ms_median": milliseconds(50),
         "answer_ms_p99": milliseconds(99),

@@ -57,15 +57,15 @@ impl From<LinkError> for LineError {
 pub(crate) struct SerialLine<'a> {
     pub(crate) ctx: Ctx<'a>,
     /// Time during which unanswered requests are repeated, or `None` for the default.
-    pub(crate) patience: Option<Duration>,
-    shielded: bool,
+    pub(crate) retry_time: Option<Duration>,
+    ignores_cancellation: bool,
     /// Skipped bytes, or `None` if they are not being recorded.
-    passed: Option<Vec<u8>>,
+    recorded_bytes: Option<Vec<u8>>,
 }
 
 impl<'a> SerialLine<'a> {
     pub(crate) fn new(ctx: Ctx<'a>) -> Self {
-        SerialLine { ctx, patience: None, shielded: false, passed: None }
+        SerialLine { ctx, retry_time: None, ignores_cancellation: false, recorded_bytes: None }
     }
 
     pub(crate) fn now(&self) -> Moment {
@@ -73,13 +73,13 @@ impl<'a> SerialLine<'a> {
     }
 
     /// Sets whether cancellation is ignored, and returns the previous setting.
-    pub(crate) fn ignore_cancellation(&mut self, shielded: bool) -> bool {
-        std::mem::replace(&mut self.shielded, shielded)
+    pub(crate) fn ignore_cancellation(&mut self, ignore: bool) -> bool {
+        std::mem::replace(&mut self.ignores_cancellation, ignore)
     }
 
     /// Returns [`LineError::Cancelled`] if the user has cancelled.
     pub(crate) fn check_cancel(&self) -> Result<(), LineError> {
-        if !self.shielded && self.ctx.cancel.is_requested() { Err(LineError::Cancelled) } else { Ok(()) }
+        if !self.ignores_cancellation && self.ctx.cancel.is_requested() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
     /// Waits for the given duration. Returns [`LineError::Cancelled`] if the user cancels.
@@ -109,7 +109,11 @@ impl<'a> SerialLine<'a> {
 
     /// Begins a transaction. Returns [`LineError::Cancelled`] if the user has cancelled.
     pub(crate) fn start(&mut self) -> Result<(), LineError> {
-        if !self.shielded && self.ctx.cancel.stops_transaction() { Err(LineError::Cancelled) } else { Ok(()) }
+        if !self.ignores_cancellation && self.ctx.cancel.stops_transaction() {
+            Err(LineError::Cancelled)
+        } else {
+            Ok(())
+        }
     }
 
     /// Begins an exchange, and skips bytes that arrived before it. After such bytes, the line must be silent for
@@ -152,18 +156,18 @@ impl<'a> SerialLine<'a> {
 
     /// Starts recording skipped bytes, which are not part of a reply.
     pub(crate) fn record_late_bytes(&mut self) {
-        self.passed = Some(Vec::new());
+        self.recorded_bytes = Some(Vec::new());
     }
 
     /// Stops recording, and returns the recorded bytes.
     pub(crate) fn take_late_bytes(&mut self) -> Vec<u8> {
-        self.passed.take().unwrap_or_default()
+        self.recorded_bytes.take().unwrap_or_default()
     }
 
     /// Skips bytes that are not part of a reply. During recording, the first [`MAX_KEPT_BYTES`] bytes are kept.
     pub(crate) fn skip_bytes(&mut self, bytes: &[u8]) {
-        if let Some(passed) = &mut self.passed {
-            passed.extend(bytes.iter().take(MAX_KEPT_BYTES.saturating_sub(passed.len())));
+        if let Some(recorded) = &mut self.recorded_bytes {
+            recorded.extend(bytes.iter().take(MAX_KEPT_BYTES.saturating_sub(recorded.len())));
         }
     }
 
@@ -181,11 +185,11 @@ impl<'a> SerialLine<'a> {
         let now = self.now();
         state.damaged += 1;
         // The first attempt counts as well. At 600 bit/s, it alone may take three seconds.
-        let since = *state.troubled_since.get_or_insert(now - longest);
+        let since = *state.failing_since.get_or_insert(now - longest);
         let next_end = (now + longest).duration_since(since);
-        let again = match self.patience {
+        let again = match self.retry_time {
             None => tries < MAX_ATTEMPTS && next_end < RETRY_TIMEOUT,
-            Some(patience) => next_end < patience,
+            Some(retry_time) => next_end < retry_time,
         };
         state.quality.retries += u64::from(again);
         again
@@ -203,7 +207,7 @@ impl<'a> SerialLine<'a> {
         quiet: Duration,
     ) -> Result<(), LineError> {
         // A device that is expected to be silent for a long time is polled at short intervals.
-        let doublings = tries.min(if self.patience.is_some() { 1 } else { 8 });
+        let doublings = tries.min(if self.retry_time.is_some() { 1 } else { 8 });
         let patience = state.margin.saturating_mul(1 << doublings).min(LONGEST_MARGIN);
         let end = self.now() + patience;
         let mut late = Vec::new();

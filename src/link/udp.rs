@@ -48,7 +48,7 @@ impl DatagramPort for UdpPort {
             fail(LinkErrorKind::Unreachable("cyclic data need an address of IP version 4".to_owned()))
         })?;
         let unreachable = |error: io::Error| fail(LinkErrorKind::Unreachable(error.to_string()));
-        let local = leads_to(target).map_err(unreachable)?;
+        let local = local_address_for(target).map_err(unreachable)?;
         let socket = UdpSocket::bind((local, 0)).map_err(unreachable)?;
         let port = socket.local_addr().map_err(unreachable)?.port();
         let (sender, heard) = bounded(MAX_WAITING_PACKETS);
@@ -70,7 +70,7 @@ impl DatagramPort for UdpPort {
 }
 
 /// Returns the local address from which the target can be reached.
-fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
+fn local_address_for(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
     // Connecting a UDP socket does not send anything, but selects the network interface.
     socket.connect(target)?;

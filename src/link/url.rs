@@ -75,7 +75,7 @@ pub struct LinkUrl {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire<'a> {
     /// A virtual device in this process, which needs no external resource.
-    Inside,
+    InProcess,
     /// Path or name of a serial port.
     Port(&'a str),
     /// Host and TCP port, as in the link.
@@ -185,7 +185,7 @@ impl LinkUrl {
     pub fn wire(&self) -> Wire<'_> {
         let target = self.target.as_str();
         match (self.scheme, target.strip_prefix("tcp:")) {
-            (LinkScheme::Sim, _) => Wire::Inside,
+            (LinkScheme::Sim, _) => Wire::InProcess,
             (LinkScheme::Replay, _) => Wire::File(target),
             (LinkScheme::Tcp | LinkScheme::Modbus | LinkScheme::Enip, _) => Wire::Host(target),
             (LinkScheme::Bridge, Some(host)) => Wire::Host(host),
@@ -198,7 +198,7 @@ impl LinkUrl {
             return Err(UrlError::Parameter(self.target.clone()));
         }
         let is_there = match self.wire() {
-            Wire::Inside => true,
+            Wire::InProcess => true,
             Wire::Port(name) | Wire::File(name) => !name.is_empty(),
             Wire::Host(host) => match host.rsplit_once(':') {
                 Some((host, port)) if !host.is_empty() && !port.is_empty() => {
@@ -371,7 +371,7 @@ mod tests {
         assert_eq!(wire("bridge:/dev/ttyACM0?clock=1"), wire("serial:/dev/ttyACM0"));
         assert_eq!(wire("bridge:tcp:[::1]:4001"), wire("tcp:[::1]:4001"));
         assert_eq!(wire("replay:/dev/ttyACM0"), "File(\"/dev/ttyACM0\")");
-        assert_eq!(wire("sim:"), "Inside");
+        assert_eq!(wire("sim:"), "InProcess");
     }
 
     #[test]

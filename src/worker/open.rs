@@ -61,7 +61,7 @@ pub fn open_byte_stream(
     simulated: impl FnOnce() -> Result<Box<dyn ByteLink>, OpenError>,
 ) -> Result<Box<dyn ByteLink>, OpenError> {
     Ok(match url.wire() {
-        Wire::Inside => simulated()?,
+        Wire::InProcess => simulated()?,
         Wire::Port(path) if url.scheme == LinkScheme::Bridge => {
             Box::new(SerialLink::open_adapter(path, format, clock.clone())?)
         }

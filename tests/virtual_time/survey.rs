@@ -103,7 +103,7 @@ fn unreadable_field_leaves_others_usable() {
         assert!(seen.position.is_some() && seen.counter == Some(0), "{label}");
         let quality = &seen.line;
         assert!(quality.has_errors() && quality.retries > 0, "{label}: {quality:?}");
-        assert_eq!((quality.damaged > 0, quality.silent > 0), (is_broken, !is_broken), "{label}: {quality:?}");
+        assert_eq!((quality.damaged > 0, quality.unanswered > 0), (is_broken, !is_broken), "{label}: {quality:?}");
         // The device check completes, and names the field and the quality of the line.
         let lines = check(&mut desk);
         let of = |step| lines.iter().find(|line| line.step == step).unwrap();

@@ -15,7 +15,7 @@ pub struct LineQuality {
     /// Number of damaged replies, and of requests that the device reported as damaged.
     pub damaged: u64,
     /// Number of requests without a reply.
-    pub silent: u64,
+    pub unanswered: u64,
     /// Number of replies that arrived too late.
     pub late: u64,
     /// Most recent reply times, each from the first byte of a request to the first byte of its reply.
@@ -32,7 +32,7 @@ impl LineQuality {
 
     /// Returns the numbers of retries, damaged replies, unanswered requests and late replies.
     pub fn counts(&self) -> [u64; 4] {
-        [self.retries, self.damaged, self.silent, self.late]
+        [self.retries, self.damaged, self.unanswered, self.late]
     }
 
     /// Returns the given percentile of the most recent reply times, or `None` without replies.

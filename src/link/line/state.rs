@@ -26,7 +26,7 @@ pub struct LineState {
     pub quality: LineQuality,
     pub(crate) quiet_until: Moment,
     /// Start of the first failed attempt since the last valid reply, if any.
-    pub(super) troubled_since: Option<Moment>,
+    pub(super) failing_since: Option<Moment>,
     /// Time of the first unanswered request, if any.
     pub(super) outstanding_since: Option<Moment>,
     pub(super) last_sent: Moment,
@@ -40,7 +40,7 @@ impl LineState {
             damaged: 0,
             quality: LineQuality::default(),
             quiet_until: Moment::START,
-            troubled_since: None,
+            failing_since: None,
             outstanding_since: None,
             last_sent: Moment::START,
         }
@@ -48,11 +48,11 @@ impl LineState {
 
     /// Returns whether the last exchange failed.
     pub fn has_errors(&self) -> bool {
-        self.troubled_since.is_some()
+        self.failing_since.is_some()
     }
 
     pub(crate) fn begin_job(&mut self) {
-        self.troubled_since = None;
+        self.failing_since = None;
         self.outstanding_since = None;
     }
 
@@ -72,7 +72,7 @@ impl LineState {
     }
 
     pub(crate) fn clear_error(&mut self) {
-        self.troubled_since = None;
+        self.failing_since = None;
     }
 
     /// Raises the margin to 1.5 times the sum of the margin and `lateness`, up to [`LONGEST_MARGIN`].

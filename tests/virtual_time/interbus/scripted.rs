@@ -136,8 +136,8 @@ impl ProcessData for Script {
         Ok(())
     }
 
-    fn ignore_cancellation(&mut self, shielded: bool) -> bool {
-        shielded
+    fn ignore_cancellation(&mut self, ignore: bool) -> bool {
+        ignore
     }
 }
 

@@ -301,7 +301,7 @@ impl Adapter<'_, '_> {
             self.line.receive(deadline, &mut portion).map_err(LineError::Link)?;
             if portion.is_empty() {
                 self.state.damaged += 1;
-                self.state.quality.silent += 1;
+                self.state.quality.unanswered += 1;
                 return Ok(None);
             }
             self.adapter.has_received_bytes = true;

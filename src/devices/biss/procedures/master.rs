@@ -95,15 +95,15 @@ impl<'a> Master<'a> {
     }
 
     /// Sets whether cancellation is ignored. Returns the previous setting.
-    pub(super) fn ignore_cancellation(&mut self, shielded: bool) -> bool {
-        self.line.ignore_cancellation(shielded)
+    pub(super) fn ignore_cancellation(&mut self, ignore: bool) -> bool {
+        self.line.ignore_cancellation(ignore)
     }
 
     /// Runs `work`, which may retry reads for up to `patience` while the encoder is silent.
     pub fn with_reply_timeout<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
-        let before = self.line.patience.replace(patience);
+        let before = self.line.retry_time.replace(patience);
         let result = work(self);
-        self.line.patience = before;
+        self.line.retry_time = before;
         result
     }
 
@@ -303,7 +303,7 @@ impl<'a> Master<'a> {
         self.station.noisy |= matches!(trouble, ExchangeError::Damage(_));
         let quality = &mut self.station.line.quality;
         match trouble {
-            ExchangeError::Silence { .. } => quality.silent += 1,
+            ExchangeError::Silence { .. } => quality.unanswered += 1,
             ExchangeError::Damage(_) | ExchangeError::NoFrame(_) => quality.damaged += 1,
         }
         let longest = match self.station.transport {
@@ -329,7 +329,7 @@ impl<'a> Master<'a> {
     /// Returns whether this register stays silent although the bank selection register replies. Both are read
     /// repeatedly. The test is skipped while the encoder may be silent for a long time.
     fn is_only_this_register_silent(&mut self, address: RegisterAddress) -> Result<bool, Error> {
-        if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
+        if address == RegisterAddress::BANK_SELECT || self.line.retry_time.is_some() {
             return Ok(false);
         }
         for _ in 0..MAX_MISSING_REPLIES {

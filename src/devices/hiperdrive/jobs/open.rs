@@ -41,7 +41,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenErro
             let port = Box::new(UdpPort::new(target, clock.clone()));
             DeviceConnection { wire, port: Some(port), station, target: None }
         }
-        Wire::Inside => open_virtual(&config, station, clock.clone()),
+        Wire::InProcess => open_virtual(&config, station, clock.clone()),
     };
     Ok(Session::for_target(way, clock, store))
 }

@@ -304,7 +304,7 @@ impl<'a> Master<'a> {
                 Err(trouble) => trouble,
             };
             match &trouble {
-                ExchangeError::Silence => self.station.line.quality.silent += 1,
+                ExchangeError::Silence => self.station.line.quality.unanswered += 1,
                 ExchangeError::Damage(_) => self.station.line.quality.damaged += 1,
                 ExchangeError::Status(_) => {}
             }

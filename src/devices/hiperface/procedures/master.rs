@@ -189,7 +189,7 @@ impl<'a> Master<'a> {
     ) -> Result<(), Error> {
         let quality = &mut self.station.line.quality;
         match &trouble {
-            ExchangeFailure::Silence { .. } => quality.silent += 1,
+            ExchangeFailure::Silence { .. } => quality.unanswered += 1,
             ExchangeFailure::Damage(ReplyDamage::Late) => quality.late += 1,
             ExchangeFailure::Damage(_) => quality.damaged += 1,
         }

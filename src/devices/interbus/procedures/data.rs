@@ -34,5 +34,5 @@ pub trait ProcessData {
     fn wait(&mut self, duration: Duration) -> Result<(), Error>;
 
     /// Sets whether cancellation is ignored. Returns the previous setting.
-    fn ignore_cancellation(&mut self, shielded: bool) -> bool;
+    fn ignore_cancellation(&mut self, ignore: bool) -> bool;
 }

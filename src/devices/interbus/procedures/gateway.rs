@@ -90,7 +90,7 @@ impl<'a> Gateway<'a> {
             };
             self.state.line.damaged += 1;
             match trouble {
-                ExchangeError::Silence => self.state.line.quality.silent += 1,
+                ExchangeError::Silence => self.state.line.quality.unanswered += 1,
                 ExchangeError::Damage(_) => self.state.line.quality.damaged += 1,
                 ExchangeError::Exception(_) => {}
             }
@@ -315,8 +315,8 @@ impl ProcessData for Gateway<'_> {
         Ok(self.line.wait(duration)?)
     }
 
-    fn ignore_cancellation(&mut self, shielded: bool) -> bool {
-        self.line.ignore_cancellation(shielded)
+    fn ignore_cancellation(&mut self, ignore: bool) -> bool {
+        self.line.ignore_cancellation(ignore)
     }
 }
 
