@@ -18,7 +18,7 @@ const HEADING: Style = Style { face: Face::Strong, size: 9.5, colour: TEXT };
 const SIGNATURE: Style = Style { face: Face::Text, size: 8.0, colour: MUTED };
 
 /// Width of the label in a label–value pair in points (45 mm).
-const LABELS: f32 = 127.6;
+const LABEL_WIDTH: f32 = 127.6;
 /// Distance between a label and its value in points (4 mm).
 const LABEL_GAP: f32 = 11.3;
 /// Vertical distance between two label–value pairs, in points.
@@ -26,11 +26,11 @@ const FACT_GAP: f32 = 2.5;
 /// Maximum number of lines in a label–value pair that is kept on one page.
 const KEPT_LINES: usize = 6;
 /// Maximum line length of a paragraph, in points.
-const MEASURE: f32 = 425.2;
+const MAX_LINE_LENGTH: f32 = 425.2;
 /// Size of a drawing unit in points, unless the drawing would be wider than the page.
 const DRAWING_UNIT: f32 = 0.75;
 /// Height of the space above a signature line, in points.
-const SIGNATURE_ROOM: f32 = 45.0;
+const SIGNATURE_SPACE: f32 = 45.0;
 /// Maximum height and width of a logo, in points.
 const LOGO: (f32, f32) = (31.0, 142.0);
 
@@ -78,19 +78,19 @@ impl Flow<'_> {
 
     fn place_fact(&mut self, fact: &Fact) {
         let style = cell_style(fact.style);
-        let labels = self.lines(LABEL, &fact.label, LABELS);
-        let values = self.lines(style, &fact.value, WIDTH - LABELS - LABEL_GAP);
+        let labels = self.lines(LABEL, &fact.label, LABEL_WIDTH);
+        let values = self.lines(style, &fact.value, WIDTH - LABEL_WIDTH - LABEL_GAP);
         let count = labels.len().max(values.len());
         let lower = (BODY.size - style.size) * 1.05;
         // Keep a short label–value pair on one page.
-        self.ensure(count.min(KEPT_LINES) as f32 * BODY.line_height() + FACT_GAP);
+        self.ensure_space(count.min(KEPT_LINES) as f32 * BODY.line_height() + FACT_GAP);
         for number in 0..count {
-            self.ensure(BODY.line_height());
+            self.ensure_space(BODY.line_height());
             if let Some(line) = labels.get(number) {
                 self.text_at(MARGIN, self.y, LABEL, line);
             }
             if let Some(line) = values.get(number) {
-                self.text_at(MARGIN + LABELS + LABEL_GAP, self.y + lower, style, line);
+                self.text_at(MARGIN + LABEL_WIDTH + LABEL_GAP, self.y + lower, style, line);
             }
             self.y += BODY.line_height();
         }
@@ -100,8 +100,8 @@ impl Flow<'_> {
     fn place_section(&mut self, section: &Section) {
         let own = SECTION.line_height() + 10.0;
         let lead = own + self.lead_height(&section.blocks);
-        self.ensure(22.0 + lead);
-        self.skip(22.0);
+        self.ensure_space(22.0 + lead);
+        self.add_space(22.0);
         for line in self.lines(SECTION, &section.title, WIDTH) {
             self.text_at(MARGIN, self.y, SECTION, line);
             self.y += SECTION.line_height();
@@ -112,9 +112,9 @@ impl Flow<'_> {
         let mut rest = section.blocks.as_slice();
         while let [block, after @ ..] = rest {
             if let Block::Heading(text) = block {
-                self.ensure(HEADING.line_height() + 17.0 + self.lead_height(after));
+                self.ensure_space(HEADING.line_height() + 17.0 + self.lead_height(after));
                 if !std::ptr::eq(rest, section.blocks.as_slice()) {
-                    self.skip(8.0);
+                    self.add_space(8.0);
                 }
                 self.text_at(MARGIN, self.y, HEADING, text);
                 self.y += HEADING.line_height() + 4.0;
@@ -140,13 +140,13 @@ impl Flow<'_> {
     }
 
     fn paragraph_height(&self, text: &str) -> f32 {
-        self.lines(BODY, text, MEASURE).len() as f32 * BODY.line_height() + 5.7
+        self.lines(BODY, text, MAX_LINE_LENGTH).len() as f32 * BODY.line_height() + 5.7
     }
 
     fn place_block(&mut self, block: &Block) {
         match block {
             Block::Heading(_) => {}
-            Block::Paragraph(text) => self.place_paragraph(text, BODY, MEASURE),
+            Block::Paragraph(text) => self.place_paragraph(text, BODY, MAX_LINE_LENGTH),
             Block::Facts(facts) => {
                 facts.iter().for_each(|fact| self.place_fact(fact));
                 self.y += 4.0;
@@ -154,7 +154,7 @@ impl Flow<'_> {
             Block::Table(table) => TableLayout::new(self, table).place(self),
             Block::Drawing(drawing) => {
                 let height = drawing_height(drawing);
-                self.ensure(height);
+                self.ensure_space(height);
                 let scale = drawing_scale(drawing);
                 self.push(PageMark::Drawing { x: MARGIN, y: self.y, scale, drawing: drawing.clone() });
                 self.y += height;
@@ -164,9 +164,9 @@ impl Flow<'_> {
 
     fn place_paragraph(&mut self, text: &str, style: Style, width: f32) {
         let lines = self.lines(style, text, width);
-        self.ensure(lines.len().min(2) as f32 * style.line_height());
+        self.ensure_space(lines.len().min(2) as f32 * style.line_height());
         for line in lines {
-            self.ensure(style.line_height());
+            self.ensure_space(style.line_height());
             self.text_at(MARGIN, self.y, style, line);
             self.y += style.line_height();
         }
@@ -176,10 +176,10 @@ impl Flow<'_> {
     fn place_footer(&mut self, report: &Report) {
         let labels = &report.labels;
         let lines = self.lines(LABEL, &labels.no_certificate, WIDTH).len() as f32;
-        self.ensure(25.0 + lines * LABEL.line_height() + SIGNATURE_ROOM + 2.0 * SIGNATURE.line_height());
-        self.skip(25.0);
+        self.ensure_space(25.0 + lines * LABEL.line_height() + SIGNATURE_SPACE + 2.0 * SIGNATURE.line_height());
+        self.add_space(25.0);
         self.place_paragraph(&labels.no_certificate, LABEL, WIDTH);
-        self.y += SIGNATURE_ROOM;
+        self.y += SIGNATURE_SPACE;
         let count = labels.signatures.len().max(1) as f32;
         let (gap, mut x) = (22.7, MARGIN);
         let width = (WIDTH - gap * (count - 1.0)) / count;

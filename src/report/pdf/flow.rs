@@ -45,7 +45,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Returns the remaining height of the page.
-    pub(super) fn room(&self) -> f32 {
+    pub(super) fn remaining_height(&self) -> f32 {
         END - self.y
     }
 
@@ -60,14 +60,14 @@ impl<'a> Flow<'a> {
     }
 
     /// Begins a new page unless the current one has enough space.
-    pub(super) fn ensure(&mut self, height: f32) {
-        if height > self.room() && !self.is_page_empty() {
+    pub(super) fn ensure_space(&mut self, height: f32) {
+        if height > self.remaining_height() && !self.is_page_empty() {
             self.break_page();
         }
     }
 
     /// Adds vertical space, except at the top of a page.
-    pub(super) fn skip(&mut self, distance: f32) {
+    pub(super) fn add_space(&mut self, distance: f32) {
         if !self.is_page_empty() {
             self.y += distance;
         }

@@ -11,7 +11,7 @@ const GAP: f32 = 9.0;
 /// Distance between the text of a row and its rules, in points.
 const PADDING: f32 = 2.4;
 /// Digits whose width is the minimum width of a column with code.
-const LEAST_DIGITS: &str = "0000000";
+const MIN_CODE_WIDTH_DIGITS: &str = "0000000";
 const GOOD: Colour = [0x0b, 0x7a, 0x52];
 const WARNING: Colour = [0xa9, 0x4b, 0x06];
 const BAD: Colour = [0xc6, 0x28, 0x28];
@@ -38,18 +38,18 @@ impl<'a> TableLayout<'a> {
     }
 
     pub(super) fn place(&self, flow: &mut Flow<'_>) {
-        flow.ensure(self.lead_height(flow));
+        flow.ensure_space(self.lead_height(flow));
         self.place_heading(flow);
         for row in &self.table.rows {
             let mut lines = self.row_lines(flow, row);
-            if row_height(&lines) > flow.room() {
+            if row_height(&lines) > flow.remaining_height() {
                 flow.break_page();
                 self.place_heading(flow);
             }
             // Only a row that is higher than a page is split.
-            while row_height(&lines) > flow.room() {
-                let fits =
-                    ((flow.room() - 2.0 * PADDING) / cell_style(CellStyle::Text).line_height()).max(1.0) as usize;
+            while row_height(&lines) > flow.remaining_height() {
+                let fits = ((flow.remaining_height() - 2.0 * PADDING) / cell_style(CellStyle::Text).line_height())
+                    .max(1.0) as usize;
                 let rest = lines.iter_mut().map(|cell| cell.split_off(fits.min(cell.len()))).collect();
                 self.place_row(flow, row, &lines);
                 lines = rest;
@@ -155,7 +155,7 @@ fn column_widths(flow: &Flow<'_>, table: &Table) -> Vec<f32> {
                 CellStyle::Short | CellStyle::Number => (widest.max(heading), widest.max(heading)),
                 CellStyle::Text => (longest.max(heading).min(available / 3.0), widest.max(whole)),
                 CellStyle::Code => {
-                    let least = flow.width(style, LEAST_DIGITS).max(longest.min(available / 6.0));
+                    let least = flow.width(style, MIN_CODE_WIDTH_DIGITS).max(longest.min(available / 6.0));
                     (least.max(heading).min(widest.max(heading)), widest.max(whole))
                 }
             }
