@@ -1,6 +1,8 @@
 //! The kinds of devices and the tools that a program supports. They are passed to the studio, which does not depend on
 //! any particular one.
 
+use std::fmt;
+
 use super::devices::DeviceKind;
 use super::logbook::LOGBOOK_TAB;
 use super::tab::Tab;
@@ -14,6 +16,12 @@ pub struct KindRegistry {
     pub formats: ProfileFormats,
     devices: &'static [&'static dyn DeviceKind],
     tools: &'static [&'static dyn ToolKind],
+}
+
+impl fmt::Debug for KindRegistry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.devices.iter().map(|kind| kind.keyword())).finish()
+    }
 }
 
 impl KindRegistry {

@@ -124,6 +124,12 @@ fn undo_names_its_entry() {
     for line in [format!("    undoes: entry {write} of 20"), format!("    undone by: entry {undo} of 20")] {
         assert_eq!(text.matches(&line).count(), 1, "{line}: {text}");
     }
+    let file = device.bench.file("r.html");
+    assert_eq!(device.run(&["report", "hiperface", "-o", &file, "--language", "en"]).status, Some(0));
+    let report = device.bench.read("r.html");
+    for mark in ["Undoes the write of 20", "Undone on 20"] {
+        assert_eq!(report.matches(mark).count(), 1, "{mark}");
+    }
     // With the undo undone, the values of the write are in the device again.
     assert_eq!(device.undo(&undo).status, Some(0));
     assert_eq!(links(&write), (Value::Null, Value::Null));

@@ -150,7 +150,7 @@ fn an_undo_refuses_a_value_that_has_changed_since() {
         assert!(screen.shows(&screen.say("undo.changed")));
         screen.check_language();
     }
-    assert!(screen.shows("field:0@0: expected 58, found 59."));
+    assert!(screen.shows("Data field 0, byte 0x00: expected 58, found 59."));
     assert!(!screen.has_button("review.write"));
 }
 

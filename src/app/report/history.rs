@@ -9,7 +9,9 @@ use crate::analysis::check::CycleCount;
 use crate::app::explain;
 use crate::app::{KindRegistry, Text, entry_kind_text, outcome_text};
 use crate::report::{Block, CellStyle, Mark, Section, Table, sha256_hex};
-use crate::store::{DeviceKey, Entry, EntryFilter, EntryKind, Logbook, LogbookError, Outcome, Store, read_file};
+use crate::store::{
+    DeviceKey, Entry, EntryFilter, EntryKind, LinkedEntry, Logbook, LogbookError, Outcome, Store, read_file,
+};
 use crate::worker::commit::known_cycles;
 
 /// Maximum number of entries in a report.
@@ -170,7 +172,7 @@ fn description(entry: &Entry) -> String {
     }
 }
 
-/// Describes an entry by its kind, its user and, for an incomplete write, the result.
+/// Describes an entry by its kind, its user, the undo that belongs to it and, for an incomplete write, the result.
 fn entry_summary(context: &ReportContext<'_>, entry: &Entry, names_virtual: bool) -> String {
     let kind = context.localize(entry_kind_text(entry.kind));
     let kind = if names_virtual && entry.device.is_virtual {
@@ -180,6 +182,9 @@ fn entry_summary(context: &ReportContext<'_>, entry: &Entry, names_virtual: bool
     };
     let is_done = entry.conclusion.as_ref().is_some_and(|end| end.outcome == Outcome::Done);
     let result = outcome_text(entry).filter(|_| !is_done).map(|text| context.localize(text));
-    let parts = [Some(kind), result, entry.origin.user.clone()];
+    let link = |id, link: LinkedEntry| context.localize(Text::new(id).with("time", time(link.at)));
+    let undoes = entry.undoes.map(|own| link("undo.undoes", own));
+    let undone_by = entry.undone_by.map(|own| link("undo.undone_by", own));
+    let parts = [Some(kind), result, undoes, undone_by, entry.origin.user.clone()];
     parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
 }

@@ -6,6 +6,7 @@ use jiff::tz::TimeZone;
 
 use crate::app::Text;
 use crate::app::explain::{literal_text, redo_text, truncated_list};
+use crate::app::kinds::KindRegistry;
 use crate::profile::{Body, ChangedSince, KeptItem, UndoneWrite};
 use crate::store::{Entry, EntryUid};
 use crate::worker::commit::PlannedWrite;
@@ -19,6 +20,10 @@ pub struct UndoneEntry {
     /// Local time of an earlier undo of the entry, if any.
     undone_at: Option<String>,
     write: UndoneWrite,
+    device_kind: String,
+    kinds: KindRegistry,
+    /// Names in the manual of those items that are addresses.
+    manual_names: Vec<(String, String)>,
 }
 
 impl UndoneEntry {
@@ -26,10 +31,12 @@ impl UndoneEntry {
     ///
     /// # Errors
     /// Returns one message per item if no item can be undone.
-    pub(in crate::app) fn new(entry: &Entry, backup: &mut Body) -> Result<Self, Vec<Text>> {
+    pub(in crate::app) fn new(entry: &Entry, backup: &mut Body, kinds: KindRegistry) -> Result<Self, Vec<Text>> {
         let write = UndoneWrite::new(&entry.items, backup);
         let undone_at = entry.undone_by.map(|own| minutes(own.at));
-        let undone = UndoneEntry { uid: entry.uid.clone(), at: minutes(entry.at), undone_at, write };
+        let manual_names = entry.items.iter().filter_map(|own| Some((own.item.clone(), own.name.clone()?))).collect();
+        let (uid, at, device_kind) = (entry.uid.clone(), minutes(entry.at), entry.device.kind.clone());
+        let undone = UndoneEntry { uid, at, undone_at, write, device_kind, kinds, manual_names };
         if undone.write.has_effect() { Ok(undone) } else { Err(undone.kept_texts()) }
     }
 
@@ -56,8 +63,10 @@ impl UndoneEntry {
 
     /// Describes each item that is not undone, and what to do instead.
     fn kept_texts(&self) -> Vec<Text> {
-        let kept =
-            |own: &KeptItem| Text::new("undo.kept").with("item", &own.item).with_text("instead", redo_text(&own.redo));
+        let kept = |own: &KeptItem| {
+            let name = self.item_name(&own.item);
+            Text::new("undo.kept").with_text("item", name).with_text("instead", redo_text(&own.redo))
+        };
         truncated_list(self.write.kept(), kept)
     }
 
@@ -67,22 +76,27 @@ impl UndoneEntry {
         let planned = prepared.plan().ops.iter().flat_map(|op| prepared.changed_items(op));
         let changed = self.write.changed_since(planned);
         let first = self.already_undone().into_iter().chain([Text::new("undo.changed")]);
-        let texts = first.chain(truncated_list(&changed, changed_text));
+        let texts = first.chain(truncated_list(&changed, |own| self.changed_text(own)));
         (!changed.is_empty()).then(|| texts.collect())
+    }
+
+    fn changed_text(&self, changed: &ChangedSince) -> Text {
+        let value = |value: &Option<String>| match value {
+            Some(value) => literal_text(value),
+            None => Text::new("undo.no_value"),
+        };
+        Text::new("undo.changed_value")
+            .with_text("item", self.item_name(&changed.item))
+            .with_text("expected", value(&changed.expected))
+            .with_text("found", value(&changed.found))
+    }
+
+    fn item_name(&self, item: &str) -> Text {
+        let manual_name = self.manual_names.iter().find(|(own, _)| own == item).map(|(_, name)| name.as_str());
+        self.kinds.item_name(&self.device_kind, item, manual_name)
     }
 }
 
 fn minutes(at: Timestamp) -> String {
     at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M").to_string()
-}
-
-fn changed_text(changed: &ChangedSince) -> Text {
-    let value = |value: &Option<String>| match value {
-        Some(value) => literal_text(value),
-        None => Text::new("undo.no_value"),
-    };
-    Text::new("undo.changed_value")
-        .with("item", &changed.item)
-        .with_text("expected", value(&changed.expected))
-        .with_text("found", value(&changed.found))
 }

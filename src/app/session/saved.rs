@@ -64,7 +64,7 @@ pub trait HasProfile: HasMemory {
     /// # Errors
     /// Returns an error if the backup belongs to another kind of device.
     fn undo(&mut self, entry: &Entry, mut backup: Body, services: &mut Services) -> Result<(), ProfileError> {
-        match UndoneEntry::new(entry, &mut backup) {
+        match UndoneEntry::new(entry, &mut backup, services.world.kinds) {
             Ok(undone) => self.plan_undo(Self::restore_change(backup)?, undone, services),
             Err(texts) => services.notify(Severity::Error, texts, Some(&self.session().name())),
         }

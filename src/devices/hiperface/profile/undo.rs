@@ -1,6 +1,6 @@
 //! Undoes a write: splits changes into single bytes, and gives instructions for items that the backup cannot restore.
 
-use super::{HiperfaceProfile, Item};
+use super::{FieldRange, HiperfaceProfile, Item};
 use crate::devices::hiperface::protocol::DataFieldStatus;
 use crate::profile::{ChangedItem, Redo, single_bytes};
 
@@ -10,7 +10,8 @@ pub(super) fn single_values(item: &ChangedItem) -> Vec<ChangedItem> {
     match item.item.parse() {
         Ok(Item::Field(_)) if item.old.is_none() => Vec::new(),
         Ok(Item::Field(range)) => {
-            single_bytes(item, |at| format!("field:{}@{}", range.field, range.start.saturating_add(at)))
+            let byte = |at| FieldRange { start: range.start.saturating_add(at), count: Some(1), ..range };
+            single_bytes(item, |at| byte(at).to_string())
         }
         Ok(Item::Status(_)) => {
             let existing = |value: &Option<String>| {
