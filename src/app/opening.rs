@@ -155,7 +155,7 @@ impl Studio {
         }
     }
 
-    /// Starts an attempt to open a link for a session. Results of earlier attempts are ignored from now on.
+    /// Starts an attempt to open a link for a session. Results of earlier attempts are then ignored.
     fn start_open_attempt(&mut self, id: SessionId, url: LinkUrl, is_sole_master: bool) {
         let attempt = self.next_number();
         self.release_tool_connections(&url);

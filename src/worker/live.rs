@@ -36,7 +36,7 @@ impl LiveRequests {
         (LiveRequests { requests, sampling: CancelToken::default(), changed }, changes)
     }
 
-    /// Sets the job that a stop cancels from now on.
+    /// Sets the job that the next stop cancels.
     pub(super) fn set_job_cancel(&self, cancel: CancelToken) {
         self.lock().job = cancel;
     }

@@ -32,7 +32,7 @@ pub(crate) struct Tap {
     pub(crate) sent: Vec<Vec<u8>>,
     /// Number of the frame, counted from 0, from which the link is lost.
     pub(crate) lost_from: Option<usize>,
-    /// Number of the first frame that does not reach the encoder any more.
+    /// Number of the first frame that no longer reaches the encoder.
     pub(crate) deaf_from: Option<usize>,
     /// Number of the first frame that no longer receives a reply.
     pub(crate) mute_from: Option<usize>,

@@ -18,7 +18,7 @@ const OWN: &str = "(schema: 1, device: \"hiperface\",\n\
     fields: [(number: 0, status: 0xC8, bytes: [\"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"])], // end\n)\n";
 
 /// Ctrl+S writes the open file. If others have changed it, both versions are shown side by side, in both languages, and
-/// each button does what it says (issue 22.25).
+/// each button has the labelled effect (issue 22.25).
 #[test]
 fn both_versions_are_shown_side_by_side() {
     let outside = Outside::new("");

@@ -24,7 +24,7 @@ pub enum Warning {
     AfterReset(Item),
     /// The time-out is disabled (186 = 255), so this program will refuse to move the drive.
     NoTimeout(DriveNumber),
-    /// Parameter 152 (Requested) becomes 0, so that the drive cannot be moved over the bus any more.
+    /// Parameter 152 (Requested) becomes 0, so that the drive can no longer be moved over the bus.
     NotRequested(DriveNumber),
     /// The address switch of the device overrides the setting.
     SwitchDecides(AddressSwitch),

@@ -171,7 +171,7 @@ pub enum ActionEnd {
 }
 
 impl ActionEnd {
-    /// Returns whether the action failed, rather than being completed, stopped or replaced.
+    /// Returns whether an action that had begun failed, rather than being completed, stopped or replaced.
     pub(super) const fn is_failure(self) -> bool {
         !matches!(
             self,
