@@ -15,6 +15,7 @@ use encoder_studio::devices::interbus::state::InterbusAction as Interbus;
 use encoder_studio::profile::{Body, ProfileDocument};
 use encoder_studio::store::Store;
 use encoder_studio::ui::{Window, install_fonts};
+use std::io::ErrorKind;
 use std::time::Duration;
 
 use super::desk::{Desk, program};
@@ -87,8 +88,13 @@ fn hides_secret_parameter() {
             match entry.is_dir() {
                 true => folders.push(entry),
                 false => {
+                    let content = match std::fs::read(&entry) {
+                        // A temporary file that was renamed meanwhile, because it is complete.
+                        Err(error) if error.kind() == ErrorKind::NotFound => continue,
+                        content => content.unwrap(),
+                    };
                     files += 1;
-                    let text = String::from_utf8_lossy(&std::fs::read(&entry).unwrap()).into_owned();
+                    let text = String::from_utf8_lossy(&content);
                     assert!(!text.contains("4711"), "{}", entry.display());
                 }
             }
