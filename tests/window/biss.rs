@@ -17,7 +17,7 @@ use crate::screen::Screen;
 use crate::support::{Desk, asks_for_drive};
 
 #[test]
-fn the_virtual_encoder_is_read_over_either_interface() {
+fn reads_virtual_encoder_over_both_interfaces() {
     for (link, has_bits) in [("sim:", false), ("sim:?bridge=on", true)] {
         let desk = open(link);
         let encoder = encoder(&desk);
@@ -36,7 +36,7 @@ fn the_virtual_encoder_is_read_over_either_interface() {
 }
 
 #[test]
-fn a_link_of_only_one_kind_opens_in_its_tab() {
+fn unambiguous_link_opens_in_its_tab() {
     let cases = [
         (crate::tabs::HIPERFACE, "sim:?bridge=on", crate::tabs::BISS),
         (crate::tabs::HIPERFACE, "serial:/dev/nowhere?order=low-first", crate::tabs::BISS),
@@ -55,7 +55,7 @@ fn a_link_of_only_one_kind_opens_in_its_tab() {
 
 /// A link opens in the tab where it was last used, so a BiSS encoder is not opened as a HIPERFACE encoder.
 #[test]
-fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
+fn known_link_opens_in_previous_tab() {
     let (port, adapter) = ("serial:/dev/nowhere", "bridge:/dev/nowhere");
     let cases: [(Tab, &[Tab], &str, Tab); 9] = [
         (crate::tabs::HIPERFACE, &[], port, crate::tabs::HIPERFACE),
@@ -85,7 +85,7 @@ fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
 /// The encoder's status bits mark a position as invalid. The configuration pin transmits no status bits with a
 /// position, so they are read from the registers.
 #[test]
-fn a_position_is_marked_over_either_interface() {
+fn marks_position_over_both_interfaces() {
     for link in ["sim:", "sim:?bridge=on"] {
         assert_eq!(encoder(&open(link)).position_mark(), None, "{link}");
     }
@@ -95,7 +95,7 @@ fn a_position_is_marked_over_either_interface() {
 }
 
 #[test]
-fn every_frame_is_shown_with_its_meaning() {
+fn shows_meaning_of_every_frame() {
     for link in ["sim:", "sim:?bridge=on"] {
         let desk = open(link);
         let lines = encoder(&desk).session.trace.lines();
@@ -105,7 +105,7 @@ fn every_frame_is_shown_with_its_meaning() {
 }
 
 #[test]
-fn a_bank_is_read_once_when_it_becomes_visible() {
+fn reads_visible_bank_once() {
     let mut desk = open("sim:?bridge=on");
     let bank = encoder(&desk).table.position(Some(0x24)).unwrap();
     assert!(encoder(&desk).should_read_bank(&encoder(&desk).table.groups()[bank]));
@@ -120,7 +120,7 @@ fn a_bank_is_read_once_when_it_becomes_visible() {
 }
 
 #[test]
-fn data_areas_are_not_read_while_the_shaft_turns() {
+fn does_not_read_data_while_turning() {
     let mut desk = open("sim:?bridge=on&rpm=300");
     ask(&mut desk, Biss::ReadArea(0x24));
     desk.until("it is refused", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
@@ -135,7 +135,7 @@ fn data_areas_are_not_read_while_the_shaft_turns() {
 }
 
 #[test]
-fn a_register_is_watched_with_the_position() {
+fn watches_register_with_position() {
     let mut desk = open("sim:?bridge=on&rpm=60");
     let description = encoder(&desk).description.clone().unwrap();
     let temperature = description.register_with_role(Role::Temperature).unwrap().clone();
@@ -155,7 +155,7 @@ fn a_register_is_watched_with_the_position() {
 }
 
 #[test]
-fn a_link_opens_in_the_requesting_tab() {
+fn link_opens_in_requesting_tab() {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::BISS));
     desk.connect(Connect::Open);
@@ -173,7 +173,7 @@ fn a_link_opens_in_the_requesting_tab() {
 }
 
 #[test]
-fn clicking_a_bank_shows_and_reads_it() {
+fn click_shows_and_reads_bank() {
     let mut screen = Screen::opened_in(crate::tabs::BISS, "sim:?bridge=on", [1440.0, 900.0]);
     screen.until("it is read", is_read);
     screen.click("page.registers");

@@ -23,7 +23,7 @@ fn edit(desk: &mut Desk) {
 }
 
 #[test]
-fn edits_of_one_encoder_are_never_planned_for_another() {
+fn edits_stay_with_their_encoder() {
     let served = ServedDevice::new("serial=1");
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());
@@ -46,7 +46,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
 
 /// Without edits, the notice reports only that the plan was discarded.
 #[test]
-fn a_plan_for_one_encoder_is_discarded_for_another_with_a_notice() {
+fn exchanged_encoder_discards_plan() {
     let served = ServedDevice::new("serial=1");
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());
@@ -60,7 +60,7 @@ fn a_plan_for_one_encoder_is_discarded_for_another_with_a_notice() {
 }
 
 #[test]
-fn a_wire_is_used_by_the_encoder_or_the_scope() {
+fn encoder_and_scope_share_no_wire() {
     let served = ServedDevice::new("rpm=6");
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());
@@ -78,7 +78,7 @@ fn a_wire_is_used_by_the_encoder_or_the_scope() {
 }
 
 #[test]
-fn an_adapter_does_not_take_the_wire_from_a_write() {
+fn adapter_does_not_interrupt_write() {
     let served = ServedDevice::new("rpm=0");
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());

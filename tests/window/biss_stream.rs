@@ -47,7 +47,7 @@ fn check(encoder: &Encoder, seconds: f64) {
 }
 
 #[test]
-fn a_stream_is_recorded_without_loss_and_ends_on_request() {
+fn records_stream_without_loss() {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::BISS));
     desk.studio.start_with(Some(LINK.parse().unwrap()), None);
@@ -77,7 +77,7 @@ fn a_stream_is_recorded_without_loss_and_ends_on_request() {
 }
 
 #[test]
-fn the_window_shows_a_stream_without_loss() {
+fn window_shows_stream_without_loss() {
     let outside = Outside::new("");
     let mut studio = outside.studio();
     studio.handle_action(Action::ShowTab(crate::tabs::BISS));

@@ -50,7 +50,7 @@ fn until_asked(desk: &mut Desk, task: OperatorTask, ready: bool) {
 }
 
 #[test]
-fn three_bytes_of_one_bank_need_three_writes_and_one_save() {
+fn three_bytes_take_one_save() {
     for link in ["sim:?bridge=on", "sim:"] {
         let mut desk = open(link);
         ask(&mut desk, Biss::ReadBank(Some(0x24)));
@@ -95,7 +95,7 @@ fn three_bytes_of_one_bank_need_three_writes_and_one_save() {
 }
 
 #[test]
-fn another_filter_is_selected_after_a_review() {
+fn selects_filter_after_review() {
     let mut desk = open("sim:?bridge=on");
     plan(&mut desk, Change::SelectFilter(PositionFilter::Dynamic));
     write(&mut desk);
@@ -115,7 +115,7 @@ fn turn_of(studio: &Studio) -> Option<OperatorTask> {
 }
 
 #[test]
-fn a_calibration_is_guided_step_by_step() {
+fn guides_calibration_step_by_step() {
     let mut desk = open("sim:?bridge=on&calibration=0.2");
     plan(&mut desk, calibration());
     write(&mut desk);
@@ -143,7 +143,7 @@ fn a_calibration_is_guided_step_by_step() {
 }
 
 #[test]
-fn stopping_a_procedure_returns_the_encoder_to_operation() {
+fn stopped_procedure_returns_to_operation() {
     let mut desk = open("sim:?bridge=on&rpm=-500");
     plan(&mut desk, calibration());
     write(&mut desk);
@@ -173,7 +173,7 @@ fn stopping_a_procedure_returns_the_encoder_to_operation() {
 }
 
 #[test]
-fn the_live_panel_shows_that_it_waits_for_a_job() {
+fn live_panel_waits_for_job() {
     let outside = Outside::new("");
     let mut studio = outside.studio();
     studio.handle_action(Action::ShowTab(crate::tabs::BISS));
@@ -199,7 +199,7 @@ fn the_live_panel_shows_that_it_waits_for_a_job() {
 }
 
 #[test]
-fn a_motor_that_needs_this_encoder_is_refused() {
+fn rejects_motor_using_this_encoder() {
     let mut desk = open("sim:?bridge=on");
     let run = MountingSteps { calibrate: true, ..MountingSteps::default() };
     ask(&mut desk, Biss::Plan(Box::new(Change::Guided { run, motor: MotorSource::ThisEncoder })));
@@ -210,7 +210,7 @@ fn a_motor_that_needs_this_encoder_is_refused() {
 }
 
 #[test]
-fn the_position_is_preset_at_standstill() {
+fn presets_position_at_standstill() {
     let mut desk = open("sim:?bridge=on");
     let value = PresetValue::new(0x8000, 7);
     plan(&mut desk, Change::Preset { value, parts: Some(PresetParts::Both) });

@@ -23,7 +23,7 @@ fn pipe(path: &Path) {
 }
 
 #[test]
-fn a_hanging_link_blocks_nothing() {
+fn hung_link_does_not_block() {
     let mut desk = Desk::fresh("");
     desk.open(HANGING);
     desk.settle();
@@ -45,7 +45,7 @@ fn a_hanging_link_blocks_nothing() {
 }
 
 #[test]
-fn opening_can_be_cancelled_and_a_late_result_is_dropped() {
+fn cancelled_opening_drops_late_result() {
     for stop in [|| Action::Stop, || Action::Escape] {
         let mut desk = Desk::fresh("");
         desk.open(SLOW);
@@ -64,7 +64,7 @@ fn opening_can_be_cancelled_and_a_late_result_is_dropped() {
 }
 
 #[test]
-fn a_search_on_a_hanging_link_can_be_cancelled() {
+fn can_cancel_search_on_hung_link() {
     let mut desk = Desk::fresh("");
     let hanging = LinkForm::from_url(&HANGING.parse().unwrap());
     desk.connect(Connect::Open);
@@ -88,7 +88,7 @@ fn a_search_on_a_hanging_link_can_be_cancelled() {
 
 #[cfg(unix)]
 #[test]
-fn a_hanging_disk_blocks_nothing() {
+fn hung_disk_does_not_block() {
     let mut desk = Desk::new_form("");
     let (profile, types) = (desk.outside.path("pipe.ron"), desk.outside.store().device_file("hiperface"));
     pipe(&profile);
@@ -107,7 +107,7 @@ fn a_hanging_disk_blocks_nothing() {
 /// The disk neither saves the settings nor reports an error. Closing waits only for a limited time.
 #[cfg(unix)]
 #[test]
-fn a_hanging_disk_does_not_keep_the_window_open() {
+fn hung_disk_does_not_delay_closing() {
     let mut desk = Desk::new_form("");
     let settings = desk.outside.store().settings_path();
     desk.until("the settings are kept", |_| settings.exists());
@@ -125,7 +125,7 @@ fn a_hanging_disk_does_not_keep_the_window_open() {
 /// The disk does not even respond to the search for a draft. Closing the window waits only for a limited time.
 #[cfg(unix)]
 #[test]
-fn a_hanging_draft_does_not_keep_the_window_open() {
+fn hung_draft_does_not_delay_closing() {
     let mut desk = Desk::fresh("");
     pipe(&desk.outside.path("data/drafts/hiperface-virtual/37-GB0450179.ron"));
     desk.studio.start_with(None, None);
@@ -139,7 +139,7 @@ fn a_hanging_draft_does_not_keep_the_window_open() {
 
 #[cfg(unix)]
 #[test]
-fn hanging_settings_do_not_delay_the_start() {
+fn hung_settings_do_not_delay_start() {
     let desk = Desk::fresh("");
     pipe(&desk.outside.store().settings_path());
     let mut desk = desk.crash();
@@ -149,7 +149,7 @@ fn hanging_settings_do_not_delay_the_start() {
 }
 
 #[test]
-fn an_unwritable_folder_is_reported() {
+fn reports_unwritable_folder() {
     let mut desk = Desk::new_form("");
     desk.ask(Hiperface::Save(desk.outside.path("no/such/folder/mine.ron")));
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
@@ -171,7 +171,7 @@ fn refused(desk: &mut Desk) -> &'static str {
 }
 
 #[test]
-fn without_a_backup_nothing_is_written() {
+fn writes_nothing_without_backup() {
     let mut desk = Desk::new_form("");
     fs::create_dir_all(desk.outside.path("data")).unwrap();
     fs::write(desk.outside.path("data/backups"), "a file in the way").unwrap();
@@ -182,7 +182,7 @@ fn without_a_backup_nothing_is_written() {
 /// Without the logbook, the number of write cycles is unknown. A write then requires a permission, which is available
 /// only in the review (issue 22.4).
 #[test]
-fn without_a_logbook_a_write_needs_a_permission_and_warns() {
+fn write_without_logbook_needs_permission() {
     let mut desk = Desk::new_form("");
     let logbook = desk.outside.store().logbook_path();
     // The logbook exists because the connection is already recorded.
@@ -211,7 +211,7 @@ fn without_polling(condition: impl Fn() -> bool) {
 }
 
 #[test]
-fn unread_samples_and_frames_are_counted_and_the_newest_kept() {
+fn keeps_newest_unread_samples_and_frames() {
     let mut desk = Desk::new_form("rpm=60");
     let wire = desk.wire();
     desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
@@ -231,7 +231,7 @@ fn unread_samples_and_frames_are_counted_and_the_newest_kept() {
 /// second. This test is stricter: ten times, a full second of frames (1,000 readings of two frames each) has to wait
 /// (issue 26).
 #[test]
-fn two_thousand_frames_a_second_are_all_in_the_trace() {
+fn traces_2000_frames_per_second() {
     let mut desk = Desk::new_form("rpm=60");
     let wire = desk.wire();
     let (before, frames) = (wire.count(0x42), desk.encoder().session.trace.next_number());
@@ -259,7 +259,7 @@ fn two_thousand_frames_a_second_are_all_in_the_trace() {
 }
 
 #[test]
-fn the_end_of_an_unwatched_search_is_not_lost() {
+fn background_search_reports_its_end() {
     let mut desk = Desk::fresh("encoders=8");
     let wire = desk.wire();
     desk.connect(Connect::Open);

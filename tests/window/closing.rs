@@ -10,7 +10,7 @@ use encoder_studio::store::{DeviceKey, Logbook, Outcome};
 use crate::support::Desk;
 
 #[test]
-fn the_window_closes_if_nothing_would_be_lost() {
+fn closes_window_without_losses() {
     let mut desk = Desk::new_form("");
     assert!(!desk.studio.can_close());
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(5))));
@@ -20,7 +20,7 @@ fn the_window_closes_if_nothing_would_be_lost() {
 }
 
 #[test]
-fn a_write_ends_at_a_safe_point_before_closing() {
+fn write_ends_safely_before_closing() {
     let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.put(0, 2, b"Y");
@@ -49,7 +49,7 @@ fn a_write_ends_at_a_safe_point_before_closing() {
 }
 
 #[test]
-fn escape_stops_first_then_closes_the_dialog_then_the_review() {
+fn escape_stops_before_closing_dialog_and_review() {
     let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -72,7 +72,7 @@ fn escape_stops_first_then_closes_the_dialog_then_the_review() {
 }
 
 #[test]
-fn closing_the_review_cancels_planning() {
+fn closing_review_cancels_planning() {
     let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.wire().hold_at(0x56, 1);
@@ -87,7 +87,7 @@ fn closing_the_review_cancels_planning() {
 }
 
 #[test]
-fn a_writing_review_stays_open_until_the_end() {
+fn review_stays_open_while_writing() {
     let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -105,7 +105,7 @@ fn a_writing_review_stays_open_until_the_end() {
 }
 
 #[test]
-fn closing_a_reading_session_ends_its_job() {
+fn closing_session_ends_read_job() {
     let mut desk = Desk::new_form("");
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);

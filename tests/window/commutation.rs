@@ -75,7 +75,7 @@ impl Desk {
 }
 
 #[test]
-fn nothing_is_read_before_the_checklist_is_complete() {
+fn reads_nothing_before_checklist_is_complete() {
     let mut desk = Desk::new_form(AT_REST);
     let before = desk.wire().sent();
     for (change, why) in [
@@ -101,7 +101,7 @@ fn nothing_is_read_before_the_checklist_is_complete() {
 }
 
 #[test]
-fn a_complete_run_stores_the_offset_in_the_encoder() {
+fn complete_run_stores_offset() {
     let mut desk = Desk::new_form(AT_REST);
     desk.prepare();
     // The readings take place while the position is polled.
@@ -151,7 +151,7 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
 
 /// The user types a fine position of 339.02 with 1024 periods and 4 pole pairs (reference, section 5).
 #[test]
-fn a_typed_position_yields_the_offset_of_the_reference() {
+fn typed_position_yields_reference_offset() {
     let mut desk = Desk::fresh("");
     desk.open("serial:/dev/nothing");
     desk.until("it is told", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
@@ -182,7 +182,7 @@ fn a_typed_position_yields_the_offset_of_the_reference() {
 }
 
 #[test]
-fn positions_too_far_apart_are_refused() {
+fn rejects_positions_too_far_apart() {
     let mut desk = Desk::new_form("");
     desk.prepare();
     // Half a period is 1.40625° of the shaft at 128 periods per turn, and 5.625° electrical with four pole pairs.
@@ -201,7 +201,7 @@ fn positions_too_far_apart_are_refused() {
 }
 
 #[test]
-fn the_second_vector_reveals_wiring_faults() {
+fn second_vector_reveals_wiring_faults() {
     let mut desk = Desk::new_form("");
     desk.prepare();
     desk.edit(|form| form.address = "0".to_owned());
@@ -239,7 +239,7 @@ fn the_second_vector_reveals_wiring_faults() {
 }
 
 #[test]
-fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
+fn method_2_sets_position_in_phase() {
     let mut desk = Desk::new_form(AT_REST);
     desk.prepare();
     desk.read(VectorSlot::OneSide);
@@ -265,7 +265,7 @@ fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
 
 /// With 16 periods and 5 pole pairs, a step is 112.5° electrical. With 128 and 4, it is 14° (reference, section 5).
 #[test]
-fn method_2_is_refused_if_its_step_is_too_large() {
+fn method_2_rejects_large_step() {
     let mut desk = Desk::new_form(AT_REST);
     desk.prepare();
     desk.type_in(VectorSlot::OneSide, "3.47");
@@ -299,7 +299,7 @@ fn method_2_is_refused_if_its_step_is_too_large() {
 }
 
 #[test]
-fn a_moving_shaft_is_refused_at_its_entry() {
+fn rejects_moving_shaft_at_entry() {
     let mut desk = Desk::new_form("rpm=60");
     desk.prepare();
     desk.read(VectorSlot::OneSide);
@@ -311,7 +311,7 @@ fn a_moving_shaft_is_refused_at_its_entry() {
 }
 
 #[test]
-fn a_position_out_of_phase_is_reported() {
+fn reports_position_out_of_phase() {
     // The position word is shifted by exactly half a period against the sine and cosine signals.
     let mut desk = Desk::new_form("position=8");
     desk.prepare();
@@ -341,7 +341,7 @@ fn a_position_out_of_phase_is_reported() {
 }
 
 #[test]
-fn readings_survive_a_lost_cable_but_not_another_encoder() {
+fn readings_survive_lost_cable() {
     let mut desk = Desk::at_port(AT_REST);
     desk.prepare();
     desk.read(VectorSlot::OneSide);
@@ -368,7 +368,7 @@ fn readings_survive_a_lost_cable_but_not_another_encoder() {
 }
 
 #[test]
-fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
+fn profile_saves_offset_as_mounting_value() {
     let mut desk = Desk::new_form("");
     let path = desk.outside.path("mine.ron");
     desk.ask(Hiperface::Save(path.clone()));
@@ -409,7 +409,7 @@ fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
 }
 
 #[test]
-fn a_linear_encoder_has_no_pole_pairs() {
+fn linear_encoder_has_no_pole_pairs() {
     let mut desk = Desk::new_form("type=0x90");
     desk.prepare();
     desk.type_in(VectorSlot::OneSide, "3.5");

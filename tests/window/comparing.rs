@@ -68,7 +68,7 @@ fn bytes(bytes: &[u8]) -> Option<ItemValue> {
 }
 
 #[test]
-fn a_comparison_lists_what_differs_and_writes_nothing() {
+fn comparison_lists_differences_only() {
     let (mut desk, path) = with_changed_profile();
     let session = desk.studio.selected_device().unwrap().id();
     let requests = desk.wire().count(0x4A);
@@ -98,7 +98,7 @@ fn a_comparison_lists_what_differs_and_writes_nothing() {
 }
 
 #[test]
-fn two_files_are_compared_without_a_device() {
+fn compares_files_offline() {
     let mut desk = Desk::fresh("");
     let profiles = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/ssi");
     let (left, right) = (file(&profiles.join("ahm36.ron")), file(&profiles.join("afs60s.ron")));
@@ -109,7 +109,7 @@ fn two_files_are_compared_without_a_device() {
 }
 
 #[test]
-fn a_write_of_the_logbook_is_a_moment_to_compare_with() {
+fn compares_with_logbook_entry() {
     let (mut desk, _) = with_changed_profile();
     desk.put(0, 0, b"Y");
     desk.write();
@@ -130,7 +130,7 @@ fn a_write_of_the_logbook_is_a_moment_to_compare_with() {
 
 /// Single items are copied from the left side into the edits on the right, with the item names of `read` (issue 30).
 #[test]
-fn values_are_taken_over_into_the_edits_of_every_kind() {
+fn copies_values_into_edits() {
     for case in CASES {
         let mut desk = case.desk();
         case.read_all(&mut desk);
@@ -168,7 +168,7 @@ fn values_are_taken_over_into_the_edits_of_every_kind() {
 
 /// Items have names that are more readable than their keywords, in both languages.
 #[test]
-fn items_of_every_kind_have_names() {
+fn items_have_names() {
     for case in CASES {
         let mut desk = case.desk();
         case.read_all(&mut desk);
@@ -193,7 +193,7 @@ fn items_of_every_kind_have_names() {
 }
 
 #[test]
-fn what_cannot_be_taken_over_names_the_reason() {
+fn uncopyable_value_names_reason() {
     let (mut desk, path) = with_changed_profile();
     desk.command(compare_with(&path));
     desk.until("it is compared", is_compared);
@@ -205,7 +205,7 @@ fn what_cannot_be_taken_over_names_the_reason() {
 }
 
 #[test]
-fn a_profile_that_is_chosen_to_be_restored_is_reviewed_first() {
+fn restore_is_reviewed_first() {
     let (mut desk, path) = with_changed_profile();
     let session = desk.studio.selected_device().unwrap().id();
     desk.command(DeviceCommand::AskRestore);
@@ -219,7 +219,7 @@ fn a_profile_that_is_chosen_to_be_restored_is_reviewed_first() {
 }
 
 #[test]
-fn incomparable_captures_are_reported_with_a_reason() {
+fn incomparable_capture_names_reason() {
     let (mut desk, _) = with_changed_profile();
     let profiles = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
     desk.command(compare_with(&profiles.join("interbus/scaled-encoder.ron")));
@@ -235,7 +235,7 @@ fn incomparable_captures_are_reported_with_a_reason() {
 }
 
 #[test]
-fn the_comparison_is_drawn_with_its_way_to_the_review() {
+fn comparison_leads_to_review() {
     let (desk, path) = with_changed_profile();
     let Desk { outside, studio, .. } = desk;
     let mut screen = Screen::of(outside, studio, [1024.0, 640.0]);

@@ -35,7 +35,7 @@ fn edit(desk: &mut Desk, change: impl FnOnce(&mut LinkForm)) {
 /// silent since it read the encoder at power-up. After "yes" or "not sure", nothing is opened, searched or polled
 /// (issue 22.30).
 #[test]
-fn the_user_must_rule_out_a_drive_before_the_first_byte() {
+fn asks_about_drive_before_first_byte() {
     let links = [format!("serial:{PORT}"), format!("tcp:{}", SERVERS[0].0)];
     for link in links {
         let mut desk = Desk::fresh("");
@@ -70,7 +70,7 @@ fn the_user_must_rule_out_a_drive_before_the_first_byte() {
 /// A search also asks about a drive before its first byte. The encoder it finds is opened without asking again (issue
 /// 22.30).
 #[test]
-fn a_search_asks_about_a_drive_before_its_first_byte() {
+fn search_asks_about_drive_before_first_byte() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     edit(&mut desk, |form| (form.kind, form.port) = (LinkKind::Serial, PORT.to_owned()));
@@ -94,7 +94,7 @@ fn a_search_asks_about_a_drive_before_its_first_byte() {
 type Slip = fn(&mut LinkForm);
 
 #[test]
-fn invalid_entries_are_refused_with_a_message() {
+fn rejects_invalid_entries() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     let cases: [(Slip, &str); 9] = [
@@ -126,7 +126,7 @@ fn invalid_entries_are_refused_with_a_message() {
 }
 
 #[test]
-fn each_kind_shows_a_valid_example_link() {
+fn example_links_are_valid() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     for (device, scheme) in [
@@ -149,7 +149,7 @@ fn each_kind_shows_a_valid_example_link() {
 
 /// A typed link updates the form, and the form updates the link. A link that is invalid for this device is reported.
 #[test]
-fn a_link_can_be_typed_or_pasted() {
+fn accepts_typed_and_pasted_links() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     let wrong = [
@@ -196,7 +196,7 @@ fn a_link_can_be_typed_or_pasted() {
 }
 
 #[test]
-fn a_recording_is_chosen_from_a_list_of_files() {
+fn offers_recordings_as_file_list() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     edit(&mut desk, |form| form.kind = LinkKind::Replay);
@@ -211,7 +211,7 @@ fn a_recording_is_chosen_from_a_list_of_files() {
 }
 
 #[test]
-fn the_dialog_starts_with_the_last_used_link() {
+fn dialog_starts_with_last_used_link() {
     let mut desk = Desk::fresh("address=0x43");
     let link = format!("serial:{PORT}?address=0x43");
     desk.open(&link);
@@ -250,7 +250,7 @@ fn searching(hold: Option<usize>) -> Desk {
 }
 
 #[test]
-fn all_answering_encoders_are_found_and_one_is_chosen() {
+fn finds_all_encoders_and_chooses_one() {
     let mut desk = searching(None);
     assert!(search(&desk).is_running() && desk.studio.can_stop());
     desk.until("the search is over", |studio| !studio.can_stop());
@@ -269,7 +269,7 @@ fn all_answering_encoders_are_found_and_one_is_chosen() {
 }
 
 #[test]
-fn a_search_lists_results_while_running_and_can_be_stopped() {
+fn search_lists_results_while_running() {
     for stop in [|| Action::Connect(Connect::StopSearch), || Action::Stop, || Action::Escape] {
         let mut desk = searching(None);
         let wire = desk.wire();
@@ -289,7 +289,7 @@ fn a_search_lists_results_while_running_and_can_be_stopped() {
 }
 
 #[test]
-fn a_search_without_results_names_possible_causes() {
+fn empty_search_names_possible_causes() {
     let mut desk = Desk::fresh("fault=silent-after:0");
     desk.connect(Connect::Open);
     edit(&mut desk, |form| (form.kind, form.port) = (LinkKind::Serial, PORT.to_owned()));
@@ -305,7 +305,7 @@ fn a_search_without_results_names_possible_causes() {
 }
 
 #[test]
-fn closing_the_dialog_ends_its_search() {
+fn closing_dialog_ends_search() {
     let mut desk = searching(Some(5));
     let wire = desk.wire();
     desk.until("the line is held", |_| wire.is_held());
@@ -317,7 +317,7 @@ fn closing_the_dialog_ends_its_search() {
 }
 
 #[test]
-fn a_search_on_an_open_wire_closes_it_first() {
+fn search_closes_open_wire_first() {
     let mut desk = Desk::at_port("");
     let link = format!("serial:{PORT}");
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(2))));
@@ -350,7 +350,7 @@ fn a_search_on_an_open_wire_closes_it_first() {
 
 /// A link with an invalid or missing parameter opens the tab of a device kind that uses its scheme.
 #[test]
-fn an_invalid_link_is_reported_by_the_kind_of_its_scheme() {
+fn link_error_comes_from_scheme_owner() {
     for (link, tab) in [
         ("bridge:/dev/nothing?clok=1", crate::tabs::BISS),
         ("bridge:/dev/nothing?mt=12", crate::tabs::BISS),
@@ -366,7 +366,7 @@ fn an_invalid_link_is_reported_by_the_kind_of_its_scheme() {
 
 /// A late answer applies only to the search that asked, and not to a dialog opened later.
 #[test]
-fn a_late_answer_about_another_master_starts_no_search() {
+fn late_answer_starts_no_search() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     desk.connect(Connect::Use("serial:/dev/nothing".to_owned()));

@@ -61,7 +61,7 @@ fn undone_edits_leave_no_draft() {
 }
 
 #[test]
-fn an_unreadable_draft_is_reported() {
+fn reports_unreadable_draft() {
     let desk = connected();
     let path = desk.outside.path(DRAFT);
     fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -72,7 +72,7 @@ fn an_unreadable_draft_is_reported() {
 }
 
 #[test]
-fn an_unwritable_draft_is_reported_once() {
+fn reports_unwritable_draft_once() {
     let mut desk = connected();
     fs::create_dir_all(desk.outside.path("data")).unwrap();
     fs::write(desk.outside.path("data/drafts"), "a file in the way").unwrap();
@@ -88,7 +88,7 @@ fn an_unwritable_draft_is_reported_once() {
 
 /// The notice about restored edits disappears when they are written. The result is in the review and in the log.
 #[test]
-fn a_write_ends_the_notice_of_restored_edits() {
+fn write_clears_restored_edits_notice() {
     let mut desk = connected();
     NOVO.edit(&mut desk, &[7]);
     until_kept(&mut desk);
@@ -102,7 +102,7 @@ fn a_write_ends_the_notice_of_restored_edits() {
 
 /// Once a profile has been saved, its file contains the edits, so its draft is removed.
 #[test]
-fn saving_a_profile_removes_its_draft() {
+fn saving_profile_removes_draft() {
     let mut desk = connected();
     let path = desk.outside.path("mine.ron");
     NOVO.save(&mut desk, &path);
@@ -135,7 +135,7 @@ fn saving_a_profile_removes_its_draft() {
 
 /// A second window with the same encoder neither adopts nor overwrites the first one's draft.
 #[test]
-fn a_draft_has_one_owner() {
+fn draft_has_one_owner() {
     let mut desk = connected();
     NOVO.edit(&mut desk, &[7]);
     until_kept(&mut desk);
@@ -160,7 +160,7 @@ fn a_draft_has_one_owner() {
 
 #[cfg(unix)]
 #[test]
-fn two_paths_to_a_file_open_one_session() {
+fn two_paths_open_one_session() {
     let mut desk = connected();
     let path = desk.outside.path("mine.ron");
     NOVO.save(&mut desk, &path);
@@ -175,7 +175,7 @@ fn two_paths_to_a_file_open_one_session() {
 }
 
 #[test]
-fn another_type_with_the_same_serial_number_has_a_separate_draft() {
+fn drafts_differ_by_type() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
@@ -193,7 +193,7 @@ fn another_type_with_the_same_serial_number_has_a_separate_draft() {
 }
 
 #[test]
-fn a_missing_serial_number_prevents_drafts_with_one_notice() {
+fn missing_serial_number_prevents_drafts() {
     let mut desk = Desk::at_port("serial= ");
     assert_eq!(desk.encoder().identity.as_ref().unwrap().serial.serial_number, "");
     desk.put(0, 0, b"X");

@@ -84,7 +84,7 @@ fn settle(screen: &mut Screen) {
 /// An idle window requests no frames. Previously, the release of keys requested a new frame in every frame, even when
 /// no keys were held (issue 22.32).
 #[test]
-fn nothing_is_drawn_while_nothing_changes() {
+fn draws_nothing_while_idle() {
     for (what, begin) in SITUATIONS {
         let mut screen = edited();
         begin(&mut screen);
@@ -103,7 +103,7 @@ fn nothing_is_drawn_while_nothing_changes() {
 
 /// Without a device, the window is drawn only when something changes, on every tab (issue 22.32).
 #[test]
-fn a_window_without_a_device_is_drawn_when_something_changes() {
+fn redraws_changes_without_device() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SIZE);
     for tab in [
         crate::tabs::HIPERFACE,
@@ -129,7 +129,7 @@ fn a_window_without_a_device_is_drawn_when_something_changes() {
 
 /// With a device that is not polled, the window is drawn only when something changes (issue 22.32).
 #[test]
-fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
+fn redraws_changes_without_polling() {
     type Ready = fn(&Studio) -> bool;
     let kinds: [(Tab, &str, Ready); 3] = [
         (crate::tabs::BISS, "sim:?bridge=on", |studio| studio.biss().is_some_and(|own| own.survey.is_some())),
@@ -158,7 +158,7 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
 
 /// Live values are drawn only as often as they change, with any dialog open and even in the background (issue 22.32).
 #[test]
-fn live_values_in_a_background_window_keep_the_frame_rate() {
+fn background_window_keeps_frame_rate() {
     let mut screen = in_hand();
     for (what, begin) in [SITUATIONS[0], SITUATIONS[1], SITUATIONS[2]] {
         begin(&mut screen);

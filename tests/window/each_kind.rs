@@ -276,7 +276,7 @@ fn until_kept(desk: &mut Desk) {
 }
 
 #[test]
-fn edits_survive_a_crash_until_they_are_written() {
+fn edits_survive_crash() {
     for case in CASES {
         let mut desk = case.desk();
         case.edit(&mut desk, &[0x5A, 0x5B]);
@@ -293,7 +293,7 @@ fn edits_survive_a_crash_until_they_are_written() {
 }
 
 #[test]
-fn edits_survive_a_pulled_cable_and_are_not_written_to_another_encoder() {
+fn edits_survive_pulled_cable() {
     for case in CASES {
         let mut desk = case.desk();
         let wire = case.wire(&desk);
@@ -326,7 +326,7 @@ fn edits_survive_a_pulled_cable_and_are_not_written_to_another_encoder() {
 }
 
 #[test]
-fn a_cable_pulled_during_a_write_leaves_a_report_and_the_edits() {
+fn cable_pulled_during_write_keeps_edits() {
     for case in CASES {
         let mut desk = case.desk();
         let wire = case.wire(&desk);
@@ -370,7 +370,7 @@ fn closing_with_edits_asks_first() {
 }
 
 #[test]
-fn a_write_ends_at_a_safe_point_before_the_window_closes() {
+fn write_ends_safely_before_closing() {
     for case in CASES {
         let mut desk = case.desk();
         let wire = case.wire(&desk);
@@ -389,7 +389,7 @@ fn a_write_ends_at_a_safe_point_before_the_window_closes() {
 }
 
 #[test]
-fn escape_stops_a_running_job_before_closing_anything() {
+fn escape_stops_job_before_closing() {
     for case in CASES {
         let mut desk = case.desk();
         let wire = case.wire(&desk);
@@ -413,7 +413,7 @@ fn edited<F: FormModel>(dialog: &Dialog) -> Connect {
 }
 
 #[test]
-fn every_kind_of_link_opens_its_device_typed_or_from_the_form() {
+fn link_opens_device_typed_or_from_form() {
     let links = [
         (crate::tabs::HIPERFACE, "sim:".to_owned()),
         (crate::tabs::HIPERFACE, format!("serial:{PORT}")),
@@ -467,7 +467,7 @@ fn every_kind_of_link_opens_its_device_typed_or_from_the_form() {
 /// A profile of another type with the same serial number is rejected unless the user permits it explicitly. The review
 /// then shows both types (issue 22.9).
 #[test]
-fn another_type_of_device_needs_a_separate_permission() {
+fn other_type_needs_permission() {
     for case in CASES {
         let Some((entry, value)) = case.other_type() else { continue };
         let mut desk = case.desk();
@@ -496,7 +496,7 @@ fn another_type_of_device_needs_a_separate_permission() {
 /// Data that were read can still be saved after the connection is lost. A profile needs all data: if some are missing,
 /// they are named and nothing is saved (issue 22.14).
 #[test]
-fn read_values_can_be_saved_after_the_line_is_lost() {
+fn saves_values_after_line_loss() {
     for case in CASES {
         let mut desk = case.desk();
         // Data that are not read on connection.

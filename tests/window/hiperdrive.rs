@@ -138,7 +138,7 @@ fn connecting_reads_everything_and_writes_nothing() {
 }
 
 #[test]
-fn the_selected_drive_is_polled_and_recorded() {
+fn polls_and_records_selected_drive() {
     let mut desk = read("sim:?hub=4&drives=1,0,1");
     desk.until("it is recorded", |studio| studio.hiperdrive().unwrap().record.last().is_some());
     let three = DriveNumber::new(3).unwrap();
@@ -152,7 +152,7 @@ fn the_selected_drive_is_polled_and_recorded() {
 }
 
 #[test]
-fn an_edit_is_reviewed_written_and_read_back() {
+fn writes_edit_after_review() {
     let mut desk = read("sim:");
     edit(&mut desk, Edit::Set(number(166), 351));
     assert_eq!(unit(&desk).refusal.as_ref().unwrap().id(), "hd_said.out_of_range");
@@ -168,7 +168,7 @@ fn an_edit_is_reviewed_written_and_read_back() {
 }
 
 #[test]
-fn limits_that_exclude_the_position_are_marked_and_not_written() {
+fn limits_excluding_position_are_not_written() {
     let mut desk = read("sim:");
     edit(&mut desk, Edit::Limits { drive: ONE, lower: 65_536, upper: 131_072 });
     assert!(
@@ -192,7 +192,7 @@ fn limits_that_exclude_the_position_are_marked_and_not_written() {
 }
 
 #[test]
-fn pitch_and_unit_are_remembered() {
+fn remembers_pitch_and_unit() {
     let mut desk = read("sim:");
     assert_eq!(unit(&desk).ruler(ONE).available_units().count(), 3, "no millimetres without a spindle");
     let pitch = Length { nanometres: 4_000_000 };
@@ -214,7 +214,7 @@ fn pitch_and_unit_are_remembered() {
 }
 
 #[test]
-fn another_scaling_locks_motion_until_the_limits_are_confirmed() {
+fn new_scaling_locks_motion() {
     let mut desk = read("sim:");
     let hundredths = PositionScale::new(400, 256).unwrap();
     edit(&mut desk, Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::InPlace });
@@ -239,7 +239,7 @@ fn another_scaling_locks_motion_until_the_limits_are_confirmed() {
 }
 
 #[test]
-fn without_control_no_motion_is_requested() {
+fn requests_no_motion_without_control() {
     let mut desk = read("sim:");
     for motor in
         [MotorCommand::Lead(TargetState::Enabled), MotorCommand::Move { target: 64 }, MotorCommand::Step { by: 64 }]
@@ -252,7 +252,7 @@ fn without_control_no_motion_is_requested() {
 }
 
 #[test]
-fn a_discovered_device_fills_the_form() {
+fn discovered_device_fills_form() {
     let mut outside = crate::support::Outside::new("");
     outside.found =
         vec![found([10, 0, 0, 9], 2222, 1, "a switch"), found([10, 0, 0, 7], 44818, VENDOR, "HIPERDRIVE HUB-4")];
@@ -277,7 +277,7 @@ fn a_discovered_device_fills_the_form() {
 
 /// An HDA30 has 512 turns in each direction: 33 554 432 steps, or 204 800 at 400 steps per turn (reference, section 5).
 #[test]
-fn limits_may_span_the_full_range_of_the_drive() {
+fn limits_may_span_full_range() {
     let mut desk = read("sim:");
     let range = |desk: &Desk| {
         let rows = unit(desk).rows(Some(ONE));

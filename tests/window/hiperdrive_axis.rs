@@ -28,7 +28,7 @@ use crate::support::Desk;
 use bench::*;
 
 #[test]
-fn a_new_drive_is_set_up_in_millimetres_and_survives_a_power_cycle() {
+fn millimetre_setup_survives_power_cycle() {
     let mut desk = until_saved(FRESH, 1);
     assert_eq!(unit(&desk).session.cycles, Some(encoder_studio::worker::commit::CycleCount::complete(1)));
     let limits = unit(&desk).limits(DriveNumber::FIRST).unwrap();
@@ -49,7 +49,7 @@ fn a_new_drive_is_set_up_in_millimetres_and_survives_a_power_cycle() {
 }
 
 #[test]
-fn nothing_moves_before_the_limits_are_confirmed() {
+fn moves_nothing_before_limits_are_confirmed() {
     let mut desk = at_jog_step();
     run(&mut desk, Run::Next);
     assert_eq!(axis(&desk).step(), AxisStep::Confirm);
@@ -67,7 +67,7 @@ fn nothing_moves_before_the_limits_are_confirmed() {
 /// A confirmation applies to the limits shown when the user pressed the button, even if the window learns at that
 /// moment that they are outdated.
 #[test]
-fn limits_changed_since_they_were_shown_are_not_confirmed() {
+fn does_not_confirm_outdated_limits() {
     let mut desk = at_jog_step();
     run(&mut desk, Run::Press(AxisButton::Confirm));
     // The run starts again from the beginning, so that no lock blocks the confirmation.
@@ -102,7 +102,7 @@ fn limits_changed_since_they_were_shown_are_not_confirmed() {
 }
 
 #[test]
-fn cancelling_stops_the_drive_and_saves_nothing() {
+fn cancelling_stops_drive_without_saving() {
     let mut desk = confirmed();
     let press = MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false };
     held_until(&mut desk, press, "it moves", HiperdriveDevice::is_moving);
@@ -129,7 +129,7 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
 /// A recall (parameter 47 = −2) affects only the adapter. The drive keeps its scale and limits, and no text claims
 /// otherwise (issue 21.6 d).
 #[test]
-fn a_recall_does_not_change_the_drive() {
+fn recall_does_not_change_drive() {
     let mut desk = confirmed();
     act(&mut desk, Hiperdrive::Plan(Box::new(Change::Do(Service::Recall))));
     write(&mut desk);
@@ -142,7 +142,7 @@ fn a_recall_does_not_change_the_drive() {
 
 /// The set-up and the Motion page have separate speed and torque settings for their jog pads (issue 21.6 a).
 #[test]
-fn the_jog_pads_of_the_setup_have_a_separate_effort() {
+fn setup_jog_pads_have_separate_effort() {
     let mut desk = new_form("sim:");
     let percent = |value| Percent::new(value).unwrap();
     let chosen = SpeedTorque { speed: percent(80), torque: percent(100) };
@@ -169,7 +169,7 @@ fn the_jog_pads_of_the_setup_have_a_separate_effort() {
 /// A typed spindle pitch is not used until the user completes the step. Text that is not confirmed is not remembered
 /// (issue 21.6 f).
 #[test]
-fn a_pitch_applies_only_after_confirmation() {
+fn pitch_applies_after_confirmation() {
     let mut desk = new_form("sim:");
     assert_eq!((axis(&desk).entries().pitch.as_str(), unit(&desk).spindle_pitch(unit(&desk).drive())), ("", None));
     next(&mut desk, AxisStep::Scale);
@@ -188,7 +188,7 @@ fn a_pitch_applies_only_after_confirmation() {
 
 /// A new run reports the changes left by an interrupted one, even after a restart of the program (issue 21.6 h).
 #[test]
-fn a_new_run_lists_changes_left_by_an_aborted_one() {
+fn new_run_lists_aborted_changes() {
     let mut desk = at_jog_step();
     let differences = |desk: &Desk| labels::differences(&seen(desk)).map(|own| own.to_string_in(Language::English));
     let told = differences(&desk).unwrap();
@@ -215,7 +215,7 @@ fn a_new_run_lists_changes_left_by_an_aborted_one() {
 /// A reconnection is not mistaken for a power cycle. Only a changed value that was never saved proves a restart
 /// (issue 21.6 e).
 #[test]
-fn a_reconnection_is_not_a_power_cycle() {
+fn reconnection_is_no_power_cycle() {
     let mut desk = until_saved("sim:?requested=0&timeout=250", 1);
     step_with_write(&mut desk);
     assert_eq!(number(&desk, 182), 1001);
@@ -253,7 +253,7 @@ fn a_reconnection_is_not_a_power_cycle() {
 /// A fault during the test step is reported with its code, prevents motion, and can be acknowledged in that step (issue
 /// 21.6 g).
 #[test]
-fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
+fn can_acknowledge_test_fault() {
     let mut desk = at_test_step(FRESH, 1, false);
     go(&mut desk, TestTarget::Lower, |own| own.state(own.drive()) == Some(State::Moving));
     let drive = unit(&desk).drive();
@@ -292,7 +292,7 @@ fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
 
 /// The result is saved as text, in millimetres, in a file that the user chooses (issue 21.6 j).
 #[test]
-fn the_result_is_saved_as_a_report() {
+fn saves_result_as_report() {
     let mut desk = confirmed();
     run(&mut desk, Run::Cancel);
     run(&mut desk, Run::AskReport);
@@ -317,7 +317,7 @@ fn the_result_is_saved_as_a_report() {
 /// The complete run works on a hub drive even if each write is first rejected and then interrupted by a lost connection
 /// (issue 21.6).
 #[test]
-fn a_hub_drive_is_set_up_despite_refusals_and_lost_lines() {
+fn sets_up_hub_drive_despite_failures() {
     let desk = until_saved_with("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3, true);
     let three = DriveNumber::new(3).unwrap();
     assert_eq!(unit(&desk).drive(), three);
@@ -329,7 +329,7 @@ fn a_hub_drive_is_set_up_despite_refusals_and_lost_lines() {
 /// The last step on a hub drive reports its end correctly even if its write is rejected and then interrupted before the
 /// supply is switched off (issue 21.6).
 #[test]
-fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
+fn checks_hub_power_cycle_despite_failures() {
     let mut desk = until_saved("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3);
     assert_eq!(unit(&desk).axis_report(Language::English), None, "it goes on");
     step_with_writes(&mut desk, 182, true);
@@ -365,7 +365,7 @@ fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
 }
 
 #[test]
-fn a_write_without_consent_leaves_the_step_unchanged() {
+fn write_without_consent_keeps_step() {
     let mut desk = new_form(FRESH);
     run(&mut desk, Run::Press(AxisButton::Do));
     desk.until("the plan is there", |studio| {

@@ -45,7 +45,7 @@ fn until_released(desk: &Desk) {
 /// Without edits, closing the window asks no question. It waits for the drive to stop, and nothing moves afterwards
 /// (issue 21.1).
 #[test]
-fn a_closing_window_releases_the_drives_first() {
+fn closing_window_releases_drives_first() {
     for (closes, action) in [("closed", Action::Close), ("ended by the system", Action::Quit)] {
         let mut desk = moving();
         desk.act(action);
@@ -63,7 +63,7 @@ fn a_closing_window_releases_the_drives_first() {
 
 /// The question about unsaved edits appears after the stop, and nothing resumes if the answer is no (issue 21.1).
 #[test]
-fn the_close_question_follows_the_stop_and_nothing_resumes() {
+fn stops_drives_before_close_question() {
     let mut desk = moving();
     edit(&mut desk, Edit::Set(number(24), 7));
     desk.act(Action::Close);
@@ -91,7 +91,7 @@ fn the_close_question_follows_the_stop_and_nothing_resumes() {
 
 /// A termination signal closes the window without a question (issue 21.1).
 #[test]
-fn a_signal_closes_without_asking() {
+fn signal_closes_without_asking() {
     let mut desk = moving();
     edit(&mut desk, Edit::Set(number(24), 7));
     desk.act(Action::Close);
@@ -104,7 +104,7 @@ fn a_signal_closes_without_asking() {
 
 /// Drives are released even if the window is not updated, such as when the display hangs (issue 21.1).
 #[test]
-fn drives_are_released_without_the_window() {
+fn releases_drives_without_window() {
     let desk = moving();
     let brakes = desk.studio.drive_stop_handles();
     assert!(!brakes.is_done() && !brakes.has_begun());
@@ -117,7 +117,7 @@ fn drives_are_released_without_the_window() {
 /// Closing a session stops its own drive and does not affect motion in other sessions. Closing the window waits for the
 /// closed session (issue 21.1).
 #[test]
-fn closing_a_session_stops_its_motion() {
+fn closing_session_stops_motion() {
     let mut desk = in_control("sim:");
     let run = MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
     drive_until(
@@ -143,7 +143,7 @@ fn closing_a_session_stops_its_motion() {
 
 /// Once control has been given up, closing the window does not have to wait (issue 21.1).
 #[test]
-fn a_window_without_control_closes_immediately() {
+fn window_without_control_closes_immediately() {
     let mut desk = in_control("sim:");
     act(&mut desk, Hiperdrive::Give);
     desk.until("it is given", |studio| {

@@ -36,7 +36,7 @@ fn is_open(studio: &Studio) -> bool {
 }
 
 #[test]
-fn lost_control_shows_the_reason_until_taken_again() {
+fn lost_control_shows_reason() {
     let mut desk = in_control("sim:");
     // Nothing is requested from the device, and the loss is still reported.
     command(&mut desk, DeviceCommand::Poll(None));
@@ -66,7 +66,7 @@ fn lost_control_shows_the_reason_until_taken_again() {
 }
 
 #[test]
-fn limits_set_by_another_master_under_control_are_read_and_applied() {
+fn applies_limits_set_by_another_master() {
     let mut desk = in_control("sim:");
     set(&desk, 160, 65_536);
     desk.until("they are read", |studio| {
@@ -81,7 +81,7 @@ fn limits_set_by_another_master_under_control_are_read_and_applied() {
 /// A reference set by another master must be read, because everything based on the old reference becomes invalid (issue
 /// 21.6).
 #[test]
-fn a_reference_set_by_another_master_under_control_is_read() {
+fn reads_reference_set_by_another_master() {
     let mut desk = in_control("sim:");
     set(&desk, 198, 6400);
     desk.until("it is read", |studio| {
@@ -93,7 +93,7 @@ fn a_reference_set_by_another_master_under_control_is_read() {
 }
 
 #[test]
-fn a_scale_set_by_another_master_locks_motion_until_limits_are_confirmed() {
+fn scale_by_another_master_locks_motion() {
     let mut desk = in_control("sim:");
     // 400 steps per turn instead of 65536.
     set(&desk, 154, 400);
@@ -131,7 +131,7 @@ fn a_scale_set_by_another_master_locks_motion_until_limits_are_confirmed() {
 }
 
 #[test]
-fn a_scale_found_changed_by_a_save_locks_motion() {
+fn scale_change_found_by_save_locks_motion() {
     let mut desk = read("sim:");
     set(&desk, 154, 100);
     assert!(unit(&desk).moves.unconfirmed_drives().is_empty());
@@ -142,7 +142,7 @@ fn a_scale_found_changed_by_a_save_locks_motion() {
 }
 
 #[test]
-fn nothing_moves_until_everything_is_read_again_under_control() {
+fn moves_nothing_until_everything_is_reread() {
     let mut desk = read("sim:");
     act(&mut desk, Hiperdrive::Take);
     desk.until("the connection is open", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
@@ -155,7 +155,7 @@ fn nothing_moves_until_everything_is_read_again_under_control() {
 /// 4096 steps are a sixteenth of a turn (reference, section 4). Such a move ends with status 3E37h, or the same with
 /// the acknowledge bit inverted (section 9).
 #[test]
-fn the_table_shows_live_values_of_the_drive() {
+fn table_shows_live_values() {
     let mut desk = in_control("sim:");
     let shown = |desk: &Desk, of: u16| {
         let rows = unit(desk).rows(Some(ONE));
@@ -181,7 +181,7 @@ fn the_table_shows_live_values_of_the_drive() {
 }
 
 #[test]
-fn reports_from_before_a_loss_are_discarded() {
+fn discards_reports_from_before_loss() {
     let mut desk = in_control("sim:");
     set_off(&mut desk);
     fall_silent(&desk);
@@ -199,7 +199,7 @@ fn reports_from_before_a_loss_are_discarded() {
 }
 
 #[test]
-fn escape_does_not_end_polling_of_drives() {
+fn escape_does_not_end_polling() {
     let mut desk = in_control("sim:");
     assert!(unit(&desk).session.is_polling());
     desk.connect(connect::ConnectAction::Open);
@@ -214,7 +214,7 @@ fn escape_does_not_end_polling_of_drives() {
 }
 
 #[test]
-fn stop_does_not_end_readings_needed_for_control() {
+fn stop_does_not_end_required_readings() {
     let mut desk = read("sim:");
     act(&mut desk, Hiperdrive::Take);
     desk.until("the connection is open", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
@@ -237,7 +237,7 @@ fn stop_does_not_end_readings_needed_for_control() {
 }
 
 #[test]
-fn without_control_a_reading_can_be_stopped_and_missing_values_are_named() {
+fn stopped_reading_names_missing_values() {
     // The replies are delayed so much that STOP comes before the first of them.
     let mut desk = in_control("sim:?fault=delay:15");
     act(&mut desk, Hiperdrive::Axis(Run::Begin));
@@ -256,7 +256,7 @@ fn without_control_a_reading_can_be_stopped_and_missing_values_are_named() {
 }
 
 #[test]
-fn values_unread_under_control_are_read_after_giving_it_up() {
+fn reads_missing_values_after_giving_up_control() {
     let mut desk = read("sim:");
     set(&desk, 160, 65_536);
     act(&mut desk, Hiperdrive::Take);
@@ -273,7 +273,7 @@ fn values_unread_under_control_are_read_after_giving_it_up() {
 }
 
 #[test]
-fn positions_read_before_a_reconnect_are_discarded() {
+fn discards_positions_from_before_reconnect() {
     let mut desk = in_control("sim:");
     command(&mut desk, DeviceCommand::Reconnect);
     desk.until("it is connected", |studio| studio.hiperdrive().unwrap().session.live_session().is_some());

@@ -33,7 +33,7 @@ fn moves(studio: &Studio, drive: DriveNumber) -> bool {
 
 /// One drive's speed, torque and *Endless* setting do not apply to another drive (issue 21.7).
 #[test]
-fn settings_of_one_drive_do_not_apply_to_another() {
+fn settings_apply_to_one_drive() {
     let mut desk = in_control(HUB);
     let slow = SpeedTorque { speed: percent(7), torque: percent(50) };
     drive(&mut desk, MotorCommand::MoveEffort(slow));
@@ -62,7 +62,7 @@ fn settings_of_one_drive_do_not_apply_to_another() {
 
 /// A second motion is rejected with a message and does not end a running one, on any drive (issue 21.7).
 #[test]
-fn a_second_motion_waits_for_the_end_of_the_first() {
+fn second_motion_waits_for_first() {
     let mut desk = in_control(HUB);
     until_free(&mut desk, ONE);
     // The second request comes before the drive itself has reported its motion.
@@ -112,7 +112,7 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
 
 /// A request to another drive does not discard a paused move (issue 21.7).
 #[test]
-fn a_paused_job_is_not_discarded_by_another_drive() {
+fn other_drive_keeps_paused_job() {
     let mut desk = in_control(HUB);
     until_free(&mut desk, ONE);
     let seen = while_it_moves(&mut desk, |desk| {
@@ -140,7 +140,7 @@ fn a_paused_job_is_not_discarded_by_another_drive() {
 
 /// Messages include the drive number on a hub. An adapter has only one drive, which needs no number (issue 21.7).
 #[test]
-fn messages_name_the_drive() {
+fn messages_name_drive() {
     for (link, own, named) in [(HUB, two(), Some("drive 2")), ("sim:", ONE, None)] {
         let mut desk = in_control(link);
         act(&mut desk, Hiperdrive::SelectDrive(own));
@@ -162,7 +162,7 @@ fn messages_name_the_drive() {
 
 /// The speed and torque sent for the running move are shown separately from those set meanwhile (issue 21.7).
 #[test]
-fn the_pending_speed_is_shown_apart_from_the_sent_one() {
+fn shows_pending_and_sent_speed() {
     let mut desk = in_control("sim:");
     until_free(&mut desk, ONE);
     let (before, after) = (
@@ -245,7 +245,7 @@ fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: i
 
 /// Text typed for one drive stays with that drive (issue 21.7).
 #[test]
-fn typed_values_are_kept_per_drive() {
+fn keeps_typed_values_per_drive() {
     let mut screen = on_screen();
     target(&screen).focus();
     screen.steps();
@@ -265,7 +265,7 @@ fn has_entry(screen: &Screen, text: &str) -> bool {
 
 /// Each button that selects a drive shows that drive's state, whichever drive is selected (issue 21.7).
 #[test]
-fn drive_buttons_show_the_drive_states() {
+fn drive_buttons_show_states() {
     let mut screen = on_screen();
     let says = |screen: &Screen, words: &str| screen.harness.query_by_label(words).is_some();
     let shown = while_it_moves_on(
@@ -286,7 +286,7 @@ fn drive_buttons_show_the_drive_states() {
 
 /// A speed typed during a motion is marked as not sent (issue 21.7).
 #[test]
-fn a_speed_typed_during_a_motion_is_marked_as_not_sent() {
+fn marks_unsent_speed_during_motion() {
     let mut screen = on_screen();
     let slower = MotorCommand::MoveEffort(SpeedTorque { speed: percent(20), ..SpeedTorque::DEFAULT_MOVE });
     let waits = "sent: 25 %";

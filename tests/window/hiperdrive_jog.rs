@@ -66,7 +66,7 @@ fn what_is_needed(screen: &Screen) -> Rect {
 /// The pads, the state and the travel bar are visible together: at 1280 × 800 with the trace open, and at 1024 × 640
 /// after at most one scroll (issue 26.2).
 #[test]
-fn pads_state_and_travel_are_seen_together() {
+fn shows_pads_state_and_travel_together() {
     let needed = what_is_needed(&in_control_on_screen("sim:", [1280.0, 800.0]));
     assert!(needed.top() > 48.0 && needed.bottom() <= 800.0 - BELOW, "{needed:?}");
     let needed = what_is_needed(&in_control_on_screen("sim:", [1024.0, 640.0]));
@@ -76,7 +76,7 @@ fn pads_state_and_travel_are_seen_together() {
 
 /// Tab moves on from a speed preset that was clicked (issue 26).
 #[test]
-fn tab_continues_after_a_clicked_preset() {
+fn tab_continues_after_clicked_preset() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 800.0]);
     preset(&screen, "50").click();
     screen.steps();
@@ -88,7 +88,7 @@ fn tab_continues_after_a_clicked_preset() {
 /// A preset sets the speed but does not start a motion. It also replaces typed text, even if that is not a percentage
 /// (issue 26.2).
 #[test]
-fn a_preset_sets_the_speed_and_begins_nothing() {
+fn preset_sets_speed_without_moving() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 900.0]);
     let speed = |screen: &Screen| screen.studio().hiperdrive().unwrap().moves.jog_speed_torque(ONE).speed.get();
     assert_eq!(speed(&screen), 10);
@@ -114,7 +114,7 @@ fn a_preset_sets_the_speed_and_begins_nothing() {
 
 /// The jog speed is 10 % after every connection, not only after a program start (issue 26.2).
 #[test]
-fn every_connection_begins_slowly() {
+fn every_connection_starts_slowly() {
     let mut desk = in_control("sim:");
     let fast = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
     drive(&mut desk, MotorCommand::JogEffort(fast));
@@ -129,7 +129,7 @@ fn every_connection_begins_slowly() {
 /// The travel bar shows the limits, the position and the target in the user's unit. If the position is outside the
 /// limits, it shows the way back (issue 26.2).
 #[test]
-fn the_travel_bar_names_the_way_back_in() {
+fn travel_bar_names_way_back() {
     let inside = in_control_on_screen("sim:?position=65536", [1280.0, 800.0]);
     let said = travel_text(&inside);
     assert!(said.contains("65536 steps") && said.contains("-33488896 steps … 33488896 steps"), "{said}");

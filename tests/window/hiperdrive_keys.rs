@@ -81,7 +81,7 @@ fn on_pad() -> Screen {
 /// The key is pressed in another window and still held when this window gets the keyboard focus. Before the fix, the
 /// drive ran in 8 of 8 attempts (issue 21.2).
 #[test]
-fn a_key_held_in_another_window_moves_nothing_when_focus_returns() {
+fn key_held_elsewhere_moves_nothing() {
     for key in [Key::Space, Key::Enter] {
         let mut screen = on_pad();
         leave(&mut screen, Key::A);
@@ -99,7 +99,7 @@ fn a_key_held_in_another_window_moves_nothing_when_focus_returns() {
 
 /// When the window loses the keyboard focus, the jog ends. It must not restart while the key is held (issue 21.2).
 #[test]
-fn a_jog_ended_by_a_window_change_does_not_restart() {
+fn window_change_ends_jog_for_good() {
     let mut screen = on_pad();
     down(&mut screen, Key::Space);
     assert!(is_held(&screen));
@@ -123,7 +123,7 @@ fn a_jog_ended_by_a_window_change_does_not_restart() {
 /// A held key presses a button that starts a motion only once. A key that was held in another window must not press it
 /// at all (issue 21.2).
 #[test]
-fn a_key_repeat_presses_no_button() {
+fn key_repeat_presses_no_button() {
     let mut screen = in_hand();
     let step = |screen: &mut Screen| screen.button("hd_run.forth").focus();
     step(&mut screen);
@@ -145,7 +145,7 @@ fn a_key_repeat_presses_no_button() {
 /// A key held on a speed preset sets the speed once and moves nothing. Its repeats press no pad when the focus moves on
 /// (issue 26).
 #[test]
-fn a_key_held_on_a_speed_preset_moves_nothing() {
+fn key_held_on_preset_moves_nothing() {
     for key in [Key::Enter, Key::Space] {
         let mut screen = in_hand();
         let label = format!("{}: 100 %", screen.say("hd_jog.speed"));
@@ -168,7 +168,7 @@ fn a_key_held_on_a_speed_preset_moves_nothing() {
 /// Some systems repeat a key as a release followed by a press. Even if the two arrive in frames that are far apart,
 /// they start no motion (issue 21.2).
 #[test]
-fn a_key_repeat_split_over_two_frames_moves_nothing() {
+fn split_key_repeat_moves_nothing() {
     let split = |screen: &mut Screen, key| {
         for _ in 0..8 {
             picture(screen, [event(key, false)]);
@@ -220,7 +220,7 @@ fn space_stops_motion_with_any_focus() {
 
 /// In a text entry, Space types a space and also stops a moving drive (issue 21.2).
 #[test]
-fn space_in_a_text_entry_is_typed_and_stops_motion() {
+fn space_in_text_entry_stops_motion() {
     for moves in [false, true] {
         let mut screen = if moves { moving() } else { in_hand() };
         let label = screen.say("hd_move.target");
@@ -242,7 +242,7 @@ fn space_in_a_text_entry_is_typed_and_stops_motion() {
 
 /// Any key pressed while the pointer holds a pad ends the motion and has no other effect (issue 21.2).
 #[test]
-fn any_key_during_a_pointer_jog_stops() {
+fn any_key_stops_pointer_jog() {
     let mut screen = in_hand();
     for key in [Key::Space, Key::Enter, Key::F1, Key::A] {
         // Enter would press this button.
@@ -266,7 +266,7 @@ fn any_key_during_a_pointer_jog_stops() {
 
 /// The write button accepts a key only if it was released while the review was open (issue 22.29).
 #[test]
-fn a_review_accepts_a_key_only_after_its_release() {
+fn review_accepts_key_after_release() {
     let mut screen = in_hand();
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));
@@ -286,7 +286,7 @@ fn a_review_accepts_a_key_only_after_its_release() {
 /// A barcode scanner sends Enter within milliseconds of the last digit, in the same frame or the next. Even with the
 /// focus on *Write*, nothing is written (issue 22.29).
 #[test]
-fn a_barcode_scanner_writes_nothing() {
+fn barcode_scanner_writes_nothing() {
     let mut screen = in_hand();
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));

@@ -68,7 +68,7 @@ fn until_standstill(desk: &Desk) {
 }
 
 #[test]
-fn a_jog_turns_the_drive_while_it_is_held() {
+fn held_jog_turns_drive() {
     let mut desk = in_control("sim:");
     assert!(!desk.studio.is_moving() && unit(&desk).may_move(ONE).is_ok());
     assert_eq!(unit(&desk).moves.jog_speed_torque(ONE), SpeedTorque::DEFAULT_JOG);
@@ -91,7 +91,7 @@ fn a_jog_turns_the_drive_while_it_is_held() {
 }
 
 #[test]
-fn a_jog_that_is_not_refreshed_ends_by_itself() {
+fn stale_jog_ends() {
     let mut desk = in_control("sim:");
     jog(&mut desk);
     let before = desk.notice_count("hd_end.stale");
@@ -105,7 +105,7 @@ fn a_jog_that_is_not_refreshed_ends_by_itself() {
 }
 
 #[test]
-fn a_frozen_window_stops_motion() {
+fn frozen_window_stops_motion() {
     let mut desk = in_control("sim:");
     set_off(&mut desk);
     until_standstill(&desk);
@@ -113,7 +113,7 @@ fn a_frozen_window_stops_motion() {
 }
 
 #[test]
-fn hiding_the_jog_pad_ends_a_jog_immediately() {
+fn hiding_jog_pad_ends_jog() {
     type Cover = fn(&mut Desk);
     let covers: [(&str, Cover); 14] = [
         ("focus", |desk| desk.act(Action::ReleaseMotion)),
@@ -164,7 +164,7 @@ fn hiding_the_jog_pad_ends_a_jog_immediately() {
 }
 
 #[test]
-fn a_move_continues_in_another_tab_and_ends_with_stop() {
+fn move_continues_in_another_tab() {
     let mut desk = in_control("sim:");
     let goes_on = while_it_moves(&mut desk, |desk| {
         desk.act(Action::ShowTab(crate::tabs::BISS));
@@ -183,7 +183,7 @@ fn a_move_continues_in_another_tab_and_ends_with_stop() {
 }
 
 #[test]
-fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
+fn rejects_target_beyond_limits() {
     let mut desk = in_control("sim:");
     let effort = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
     drive(&mut desk, MotorCommand::MoveEffort(effort));
@@ -226,7 +226,7 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
 
 /// A turn has 65,536 steps by default. At 25 % of 35 rpm (parameter 166), 35 turns take 4 minutes.
 #[test]
-fn distance_and_duration_of_a_move_are_estimated() {
+fn estimates_distance_and_duration() {
     let desk = in_control("sim:");
     assert_eq!(unit(&desk).actual_values(ONE).unwrap().position, 0);
     let estimate = unit(&desk).move_estimate(35 * 65_536).unwrap();
@@ -238,7 +238,7 @@ fn distance_and_duration_of_a_move_are_estimated() {
 }
 
 #[test]
-fn states_can_be_requested_and_a_fault_acknowledged() {
+fn requests_states_and_acknowledges_fault() {
     let mut desk = in_control("sim:");
     assert_eq!(unit(&desk).reachable_states(ONE), [State::Ready]);
     drive_until(
@@ -269,7 +269,7 @@ fn states_can_be_requested_and_a_fault_acknowledged() {
 }
 
 #[test]
-fn locks_name_a_remedy() {
+fn locks_name_remedy() {
     let mut desk = in_control("sim:?hub=4&drives=1");
     assert_eq!(unit(&desk).moves.motion_locks(ONE), [MotionLock::NotRequested], "as a hub comes from the factory");
     drive(&mut desk, MotorCommand::Step { by: 64 });
@@ -282,7 +282,7 @@ fn locks_name_a_remedy() {
 }
 
 #[test]
-fn a_run_ends_immediately_when_its_panel_is_hidden() {
+fn hiding_panel_ends_run() {
     let mut desk = in_control("sim:");
     let run = MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
     drive_until(&mut desk, |_| run, "it runs", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
@@ -292,7 +292,7 @@ fn a_run_ends_immediately_when_its_panel_is_hidden() {
 }
 
 #[test]
-fn limits_set_by_another_master_are_read_before_any_motion() {
+fn reads_limits_before_motion() {
     let mut desk = read("sim:");
     let target = unit(&desk).target.clone().unwrap();
     let set = |number_: u16, value: i64| {
@@ -315,7 +315,7 @@ fn limits_set_by_another_master_are_read_before_any_motion() {
 /// The pad that leads further out is blocked and shows the reason. The user can permit it for one press at a time, at
 /// 10 % speed and 25 % torque (issue 21.4).
 #[test]
-fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
+fn enables_only_inward_pad_from_outside() {
     let mut desk = in_control("sim:?position=33488896&defect=runs-on");
     let target = unit(&desk).target.clone().unwrap();
     target.with_station(|station| station.drive(ONE).unwrap().turn_by_hand(Moment::default(), 20_000.0));
@@ -362,7 +362,7 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
 /// Only status bit 15 reports a position outside the limits, so the way back is unknown. Nothing moves unless the user
 /// permits a pad for one press (issue 21.4).
 #[test]
-fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
+fn bit_15_alone_blocks_both_pads() {
     let mut desk = in_control("sim:?defect=says-outside");
     desk.until("what it says is known", |studio| {
         let own = studio.hiperdrive().unwrap();

@@ -40,7 +40,7 @@ fn until_recorded(desk: &mut Desk, more: u64) {
 
 /// Each drive of a hub keeps its own recording while another drive is selected (issue 21.12).
 #[test]
-fn each_drive_of_a_hub_has_a_recording() {
+fn each_hub_drive_has_recording() {
     let mut desk = read("sim:?hub=4&drives=1,0,1");
     let three = DriveNumber::new(3).unwrap();
     until_recorded(&mut desk, 3);
@@ -59,7 +59,7 @@ fn each_drive_of_a_hub_has_a_recording() {
 
 /// A recording survives changes of the unit, the pitch and the scale (issue 21.12).
 #[test]
-fn a_recording_survives_unit_and_scale_changes() {
+fn recording_survives_unit_and_scale_changes() {
     let mut desk = read("sim:");
     until_recorded(&mut desk, 3);
     let before = positions(&desk);
@@ -86,7 +86,7 @@ fn a_recording_survives_unit_and_scale_changes() {
 
 /// One drive's exported table is complete even if another drive is selected during the export (issue 21.12).
 #[test]
-fn a_table_is_exported_while_another_drive_is_shown() {
+fn exports_table_while_showing_another_drive() {
     let mut desk = read("sim:?hub=4&drives=1,0,1");
     until_recorded(&mut desk, 5);
     let path = desk.outside.path("table.csv");

@@ -24,7 +24,7 @@ fn studio(outside: &Outside, remote: &Arc<AtomicBool>) -> Studio {
 }
 
 #[test]
-fn a_jog_ends_when_the_session_becomes_remote() {
+fn remote_session_ends_jog() {
     let remote = Arc::new(AtomicBool::default());
     let outside = Outside::new("");
     let mut desk = Desk { studio: studio(&outside, &remote), outside };
@@ -56,7 +56,7 @@ fn a_jog_ends_when_the_session_becomes_remote() {
 }
 
 #[test]
-fn the_panel_shows_why_the_jog_is_locked() {
+fn panel_explains_locked_jog() {
     let (outside, remote) = (Outside::new(""), Arc::new(AtomicBool::new(true)));
     let studio = studio(&outside, &remote);
     let mut screen = Screen::of(outside, studio, [1280.0, 800.0]);

@@ -38,7 +38,7 @@ fn set(desk: &Desk, of: u16, value: i64) {
 }
 
 #[test]
-fn limits_under_control_are_read_at_any_polling_rate() {
+fn reads_limits_at_any_polling_rate() {
     for pace in [None, Some(Duration::from_secs(3600))] {
         let mut desk = in_control("sim:");
         command(&mut desk, DeviceCommand::Poll(pace));
@@ -61,7 +61,7 @@ fn limits_under_control_are_read_at_any_polling_rate() {
 }
 
 #[test]
-fn a_newly_selected_drive_moves_only_with_freshly_read_limits() {
+fn selected_drive_needs_fresh_limits() {
     let mut desk = in_control("sim:?hub=4&drives=1,1&requested=1");
     assert!(unit(&desk).may_move(two()).is_ok());
     set(&desk, 260, 65_536);
@@ -133,7 +133,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
 }
 
 #[test]
-fn unreadable_limits_stop_motion_until_readable() {
+fn unreadable_limits_stop_motion() {
     let (mut desk, bad) = over_a_bad_stream();
     set_off(&mut desk);
     bad.store(true, Ordering::SeqCst);
@@ -163,7 +163,7 @@ fn has_rules_notice(studio: &Studio) -> bool {
 }
 
 #[test]
-fn the_notice_of_unreadable_limits_ends_with_control() {
+fn unreadable_limits_notice_ends_with_control() {
     let (mut desk, bad) = over_a_bad_stream();
     bad.store(true, Ordering::SeqCst);
     desk.until("that is told", has_rules_notice);
@@ -189,7 +189,7 @@ fn has_fault_notice(studio: &Studio) -> bool {
 
 /// Drive 1 failed while it moved, and drive 2 failed earlier. The notice about drive 1 must stay when drive 2 recovers.
 #[test]
-fn a_fault_notice_does_not_end_with_another_drives_recovery() {
+fn other_drive_recovery_keeps_fault_notice() {
     let mut desk = in_control("sim:?hub=4&drives=1,1&requested=1");
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(two()).is_ok());
@@ -218,7 +218,7 @@ fn a_fault_notice_does_not_end_with_another_drives_recovery() {
 
 /// A reading of all states that began before the fault must not end the notice of the fault.
 #[test]
-fn a_reading_from_before_a_fault_does_not_end_its_notice() {
+fn earlier_reading_keeps_fault_notice() {
     let mut desk = in_control("sim:?hub=4&drives=1,1,1,1&requested=1");
     for _ in 0..3 {
         set_off(&mut desk);
@@ -241,7 +241,7 @@ fn a_reading_from_before_a_fault_does_not_end_its_notice() {
 
 /// Even if a drive is locked for two reasons, its limits are confirmed in only one place.
 #[test]
-fn limits_are_confirmed_in_one_place() {
+fn confirms_limits_in_one_place() {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
     let is_ready = |studio: &Studio, open: bool| {
         let own = studio.hiperdrive();

@@ -23,7 +23,7 @@ fn effort(speed: u8, torque: u8) -> SpeedTorque {
 /// A run has its own speed and torque, which start as low as those of a jog. Previously, it used those of a move, which
 /// start at 25 % speed and 100 % torque (issue 26).
 #[test]
-fn a_run_has_its_own_speed_and_torque() {
+fn run_has_own_speed_and_torque() {
     let mut desk = in_control("sim:");
     drive(&mut desk, MotorCommand::MoveEffort(effort(90, 80)));
     assert_eq!(unit(&desk).moves.run_speed_torque(ONE), effort(10, 25), "slow, as a jog");
@@ -54,7 +54,7 @@ fn shows(screen: &Screen, words: &str) -> bool {
 
 /// The endless run card always shows the condition and names the parameters that do not meet it (issue 26).
 #[test]
-fn the_condition_of_an_endless_run_is_on_its_card() {
+fn card_shows_endless_run_condition() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 1400.0]);
     let condition = screen.say("hd_run.condition");
     assert!(shows(&screen, &condition));

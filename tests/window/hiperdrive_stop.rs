@@ -106,7 +106,7 @@ fn stopped_by_a_press() -> (Screen, Pos2) {
 }
 
 #[test]
-fn a_click_that_stops_a_drive_stops_nothing_else() {
+fn stopping_click_stops_nothing_else() {
     let (mut screen, place) = stopped_by_a_press();
     // Two frames of a quarter of a second each are still a click.
     screen.harness.step();
@@ -121,7 +121,7 @@ fn a_click_that_stops_a_drive_stops_nothing_else() {
 }
 
 #[test]
-fn a_quick_second_click_stops_nothing_else() {
+fn quick_second_click_stops_nothing_else() {
     let (mut screen, place) = stopped_by_a_press();
     for pressed in [false, true, false] {
         pointer(&mut screen, place, pressed);
@@ -132,7 +132,7 @@ fn a_quick_second_click_stops_nothing_else() {
 }
 
 #[test]
-fn held_or_repeated_escape_stops_only_the_motion() {
+fn held_escape_stops_only_motion() {
     for is_held in [true, false] {
         let mut screen = moving();
         // A move continues under a dialog, which the next Esc would close.
@@ -157,7 +157,7 @@ fn held_or_repeated_escape_stops_only_the_motion() {
 }
 
 #[test]
-fn a_click_after_the_page_stop_stops_nothing_else() {
+fn click_after_page_stop_stops_nothing_else() {
     let mut screen = moving();
     let [above, page] = places(&screen, "hd_bar.stop")[..] else { panic!() };
     screen.harness.hover_at(page);
@@ -178,7 +178,7 @@ fn a_click_after_the_page_stop_stops_nothing_else() {
 
 /// The pause button resumes a paused move. A quick second click must not resume it, but a later one does.
 #[test]
-fn a_quick_second_click_on_pause_does_not_resume() {
+fn quick_second_pause_click_does_not_resume() {
     let mut screen = moving();
     let motion = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone();
     let phase = || motion.snapshot().drives[0].phase;
@@ -210,7 +210,7 @@ fn a_quick_second_click_on_pause_does_not_resume() {
 
 /// Esc stops a motion even with a modifier key held.
 #[test]
-fn escape_with_a_modifier_stops() {
+fn escape_with_modifier_stops() {
     for modifiers in [Modifiers::CTRL, Modifiers::ALT, Modifiers::SHIFT] {
         let mut screen = moving();
         screen.harness.key_press_modifiers(modifiers, Key::Escape);
@@ -223,7 +223,7 @@ fn escape_with_a_modifier_stops() {
 
 /// Esc is held down when a motion starts. Its key repeat stops the motion.
 #[test]
-fn held_escape_stops_a_newly_started_motion() {
+fn held_escape_stops_new_motion() {
     let mut screen = in_hand();
     screen.harness.key_down(Key::Escape);
     screen.steps();
@@ -250,7 +250,7 @@ fn moved_by_another_master() -> Screen {
 
 /// Esc cannot stop the other master's motion, so it closes the open dialog.
 #[test]
-fn escape_closes_dialogs_while_another_master_moves_a_drive() {
+fn escape_closes_dialogs_during_other_masters_motion() {
     let mut screen = moved_by_another_master();
     screen.key(Key::F1);
     screen.key(Key::Escape);
@@ -261,7 +261,7 @@ fn escape_closes_dialogs_while_another_master_moves_a_drive() {
 
 /// STOP is disabled because it cannot stop the drive. A click on it does not end polling either.
 #[test]
-fn stop_is_disabled_while_only_another_master_moves_a_drive() {
+fn stop_ignores_motion_by_another_master() {
     let mut screen = moved_by_another_master();
     let is_disabled = |screen: &Screen| {
         let label = screen.say("hd_bar.stop");
@@ -284,7 +284,7 @@ fn stop_is_disabled_while_only_another_master_moves_a_drive() {
 
 /// The action cannot apply to a device of this kind. It is reported, and the motion stops (issue 23).
 #[test]
-fn an_action_of_another_kind_is_reported_and_stops_motion() {
+fn misdirected_action_stops_motion() {
     let mut screen = moving();
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, encoder_studio::devices::ssi::state::SsiAction::Check));

@@ -97,7 +97,7 @@ fn write(desk: &mut Desk) -> String {
 }
 
 #[test]
-fn a_virtual_encoder_is_read_automatically() {
+fn reads_virtual_encoder_automatically() {
     let mut desk = read(CAMS);
     // Leaving a program may store it, so each of the eight programs counts (issue 22.3).
     desk.until("stores are counted", |studio| {
@@ -111,7 +111,7 @@ fn a_virtual_encoder_is_read_automatically() {
 }
 
 #[test]
-fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
+fn edits_take_fewest_stores() {
     let mut desk = read(CAMS);
     edit(&mut desk, Edit::Gear { steps: 7200, revolutions: 2 });
     edit(&mut desk, Edit::Cam { program: program(2), cam: cam(5), start: 7000, stop: 40, on: true });
@@ -138,7 +138,7 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
 /// The plot shows positions within the range, like the values next to it. A turn of the shaft is the whole range (issue
 /// 26).
 #[test]
-fn the_plot_shows_the_position_of_the_rows() {
+fn plot_matches_row_positions() {
     let mut desk = read("sim:?steps=3600&revolutions=1&rpm=60");
     command(&mut desk, DeviceCommand::Poll(Some(Duration::from_millis(1))));
     let shown = |studio: &Studio| {
@@ -159,7 +159,7 @@ fn the_plot_shows_the_position_of_the_rows() {
 }
 
 #[test]
-fn the_mode_of_an_encoder_can_be_selected() {
+fn selects_encoder_mode() {
     let mut desk = read(CAMS);
     act(&mut desk, Interbus::Select(StartupMode::Cams(program(1))));
     desk.until("outputs come", |studio| {
@@ -187,7 +187,7 @@ fn the_mode_of_an_encoder_can_be_selected() {
 }
 
 #[test]
-fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
+fn asks_for_standstill_before_disturbing_machine() {
     let mut desk = connected(&format!("modbus:{GATE}"));
     desk.until("a word has come", |studio| {
         studio.interbus().is_some_and(|own| own.record.last().is_some() && own.session.is_ready())
@@ -224,7 +224,7 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
 }
 
 #[test]
-fn a_pasted_table_is_previewed_with_the_rounding_of_each_edge() {
+fn previews_rounding_of_pasted_edges() {
     let mut desk = read(CAMS);
     // The machine has 360 degrees over 3600 steps, so a tenth of a degree is a step.
     act(&mut desk, Interbus::SetScale(Scale::in_degrees(3600.0, 0).unwrap()));

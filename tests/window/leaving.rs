@@ -29,7 +29,7 @@ fn closed_while_writing(mut desk: Desk) -> Desk {
 }
 
 #[test]
-fn a_write_of_a_closed_session_is_awaited_and_reported() {
+fn awaits_write_of_closed_session() {
     let mut desk = closed_while_writing(Desk::at_port(""));
     desk.act(Action::Close);
     desk.settle();
@@ -43,7 +43,7 @@ fn a_write_of_a_closed_session_is_awaited_and_reported() {
 }
 
 #[test]
-fn a_wire_is_reopened_only_after_its_write_has_ended() {
+fn reopens_wire_after_write() {
     let mut desk = closed_while_writing(Desk::at_port(""));
     let sent = desk.wire().sent();
     desk.open(&format!("serial:{PORT}"));
@@ -59,7 +59,7 @@ fn a_wire_is_reopened_only_after_its_write_has_ended() {
 /// completes only when the test reads it.
 #[cfg(unix)]
 #[test]
-fn the_draft_of_a_closed_session_is_awaited() {
+fn awaits_draft_of_closed_session() {
     let mut desk = Desk::new_form("");
     let draft = desk.outside.path("data/drafts/hiperface-virtual/37-GB0450179.ron");
     std::fs::create_dir_all(draft.parent().unwrap()).unwrap();
@@ -77,7 +77,7 @@ fn the_draft_of_a_closed_session_is_awaited() {
 
 /// A link must not be used if it opens only after a later attempt has connected.
 #[test]
-fn a_link_from_an_earlier_attempt_is_not_used() {
+fn discards_link_from_earlier_attempt() {
     let mut desk = Desk::fresh("");
     desk.outside.patience.job = Duration::from_millis(50);
     desk.studio = desk.outside.studio();
@@ -96,7 +96,7 @@ fn a_link_from_an_earlier_attempt_is_not_used() {
 }
 
 #[test]
-fn a_session_with_a_dead_thread_is_lost_with_its_job() {
+fn dead_thread_loses_session_and_job() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.wire().kill();
@@ -120,7 +120,7 @@ fn a_session_with_a_dead_thread_is_lost_with_its_job() {
 }
 
 #[test]
-fn closing_waits_briefly_for_a_job_and_longer_for_a_write() {
+fn closing_waits_longer_for_write_than_job() {
     let mut desk = Desk::impatient("");
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);

@@ -50,7 +50,7 @@ fn first_entry_time(screen: &Screen) -> String {
 }
 
 #[test]
-fn a_write_is_shown_with_old_and_new_values_and_its_backup() {
+fn shows_values_and_backup_of_write() {
     let mut screen = after_a_write();
     assert!(!screen.has_button("backups_card.restore"), "no entry is selected");
     select_first_entry(&mut screen);
@@ -68,7 +68,7 @@ fn a_write_is_shown_with_old_and_new_values_and_its_backup() {
 
 /// A write is undone as on the command line, but with a review on the device page (issue 30).
 #[test]
-fn a_write_is_undone_after_a_review() {
+fn undoes_write_after_review() {
     let mut screen = after_a_write();
     select_first_entry(&mut screen);
     screen.click("undo.button");
@@ -86,7 +86,7 @@ fn a_write_is_undone_after_a_review() {
 
 /// The entries of an undo and of the undone write contain links to each other (issue 30).
 #[test]
-fn an_undo_and_its_write_lead_to_each_other() {
+fn links_undo_and_write() {
     let mut screen = after_a_write();
     select_first_entry(&mut screen);
     let link = |id, entry: &Entry| {
@@ -130,7 +130,7 @@ fn an_undo_and_its_write_lead_to_each_other() {
 
 /// If values have changed since the write, the undo lists them and cannot be written (issue 30).
 #[test]
-fn an_undo_refuses_a_value_that_has_changed_since() {
+fn undo_rejects_changed_value() {
     let mut screen = after_a_write();
     let first = recorded_entries(&screen)[0].clone();
     screen.ask(HiperfaceAction::Put { field: 0, address: 0, bytes: vec![0x59] });
@@ -156,7 +156,7 @@ fn an_undo_refuses_a_value_that_has_changed_since() {
 
 /// An undo is not available without the device, or for an entry that wrote nothing (issue 30).
 #[test]
-fn an_undo_requires_the_device_and_a_write() {
+fn undo_requires_device_and_write() {
     let mut screen = after_a_write();
     let [write, connected] = recorded_entries(&screen).try_into().unwrap();
     let why = |screen: &Screen, entry: &Entry| {
@@ -179,7 +179,7 @@ fn an_undo_requires_the_device_and_a_write() {
 
 /// A missing backup is listed with the name of the computer that made the write (issue 30).
 #[test]
-fn the_bench_of_a_missing_backup_is_named() {
+fn missing_backup_names_bench() {
     let mut screen = after_a_write();
     let path = screen.outside.store().logbook_path();
     let moved = "UPDATE event SET bench = 'bench 7', backup = '/data/of bench 7/backup.ron' WHERE what = 'write'";
@@ -201,7 +201,7 @@ fn the_bench_of_a_missing_backup_is_named() {
 
 /// The first reading is not delayed while another program uses the logbook for a long time (issue 30).
 #[test]
-fn a_logbook_in_use_does_not_delay_the_first_reading() {
+fn busy_logbook_does_not_delay_reading() {
     let outside = crate::support::Outside::new("");
     let path = outside.store().logbook_path();
     drop(Logbook::open(&path).unwrap());
@@ -224,7 +224,7 @@ fn recorded_entries(screen: &Screen) -> Vec<Entry> {
 }
 
 #[test]
-fn a_note_is_added_to_the_device_of_the_selected_entry() {
+fn adds_note_to_device_of_entry() {
     let mut screen = after_a_write();
     select_first_entry(&mut screen);
     assert!(!screen.is_enabled("logbook.add_note"), "the note is empty");
@@ -244,7 +244,7 @@ fn a_note_is_added_to_the_device_of_the_selected_entry() {
 }
 
 #[test]
-fn entries_are_searched_and_the_filter_survives_another_tab() {
+fn filter_survives_tab_change() {
     let mut screen = after_a_write();
     let other = DeviceKey::new("biss", "6129", "7", false);
     let mut logbook = Logbook::open(&screen.outside.store().logbook_path()).unwrap();
@@ -270,7 +270,7 @@ fn entries_are_searched_and_the_filter_survives_another_tab() {
 /// A profile saved in the window is recorded like one saved by a command, and its entry can be found by the asset
 /// (issue 26).
 #[test]
-fn a_saved_profile_is_recorded_and_found_by_its_asset() {
+fn finds_saved_profile_by_asset() {
     let mut screen = after_a_write();
     assert!(!screen.shows(&screen.say("logbook.all_assets")), "there is no asset to choose");
     screen.command(DeviceCommand::Assign("Achse 7".parse().unwrap()));
@@ -304,7 +304,7 @@ fn a_saved_profile_is_recorded_and_found_by_its_asset() {
 }
 
 #[test]
-fn a_damaged_logbook_is_kept_and_a_new_one_is_begun() {
+fn corrupt_logbook_is_kept_and_replaced() {
     let outside = crate::support::Outside::new("");
     let path = outside.store().logbook_path();
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();

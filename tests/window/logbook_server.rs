@@ -23,7 +23,7 @@ fn is_away(studio: &Studio) -> bool {
 }
 
 #[test]
-fn the_server_is_entered_tested_and_saved() {
+fn enters_tests_and_saves_server() {
     let mut screen = Screen::new_form(SIZE);
     screen.act(Action::ShowTab(LOGBOOK_TAB));
     screen.until("the logbook is read", |studio| studio.logbook().matches().is_some());
@@ -62,7 +62,7 @@ fn the_server_is_entered_tested_and_saved() {
 }
 
 #[test]
-fn escape_closes_the_form() {
+fn escape_closes_form() {
     let mut screen = Screen::new_form(SIZE);
     screen.act(Action::Server(ServerAction::Open));
     assert!(screen.has_button("server_form.save"));

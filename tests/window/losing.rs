@@ -43,7 +43,7 @@ fn with_a_profile(desk: &mut Desk) {
 }
 
 #[test]
-fn a_stopped_restore_reports_progress_and_can_be_completed() {
+fn can_complete_stopped_restore() {
     let mut desk = Desk::new_form("");
     with_a_profile(&mut desk);
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
@@ -89,7 +89,7 @@ fn a_stopped_restore_reports_progress_and_can_be_completed() {
 }
 
 #[test]
-fn a_cable_pulled_during_a_write_leaves_a_report_and_the_edits() {
+fn cable_pulled_during_write_keeps_edits() {
     let mut desk = Desk::at_port("");
     for (address, byte) in [(0, b'a'), (2, b'b'), (4, b'c')] {
         desk.put(0, address, &[byte]);
@@ -116,7 +116,7 @@ fn a_cable_pulled_during_a_write_leaves_a_report_and_the_edits() {
 }
 
 #[test]
-fn a_cable_pulled_while_reading_is_reported_once() {
+fn reports_cable_pulled_while_reading_once() {
     let mut desk = Desk::at_port("");
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);
@@ -134,7 +134,7 @@ fn a_cable_pulled_while_reading_is_reported_once() {
 
 /// Another encoder on the same cable does not receive the edits. They return with the encoder for which they were made.
 #[test]
-fn edits_return_only_with_their_own_encoder() {
+fn edits_return_with_own_encoder() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
@@ -172,7 +172,7 @@ fn serial(studio: &Studio) -> Option<&str> {
 
 /// The encoder behind a connected adapter is replaced, which does not break the link.
 #[test]
-fn an_encoder_swapped_behind_the_adapter_is_detected_before_planning() {
+fn detects_swapped_encoder_before_planning() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
@@ -188,7 +188,7 @@ fn an_encoder_swapped_behind_the_adapter_is_detected_before_planning() {
 
 /// Without edits, the notice reports only that the plan was discarded.
 #[test]
-fn a_plan_for_a_swapped_encoder_is_discarded_with_a_notice() {
+fn swapped_encoder_discards_plan() {
     let mut desk = Desk::at_port("");
     desk.wire().exchange("serial=OTHER0001");
     desk.ask(Hiperface::Plan(Change::ShiftPosition { steps: 12 }));
@@ -200,7 +200,7 @@ fn a_plan_for_a_swapped_encoder_is_discarded_with_a_notice() {
 
 /// If the reading after a reconnection is stopped, the encoder is not identified and does not receive the edits.
 #[test]
-fn a_stopped_reading_offers_no_edits_to_another_encoder() {
+fn stopped_reading_offers_no_edits() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
@@ -223,7 +223,7 @@ fn a_stopped_reading_offers_no_edits_to_another_encoder() {
 }
 
 #[test]
-fn a_new_address_is_used_by_this_and_the_next_session() {
+fn new_address_persists_across_sessions() {
     let mut desk = Desk::at_port("");
     let address = encoder_studio::devices::hiperface::state::forms::address("41").unwrap();
     desk.ask(Hiperface::Plan(Change::SetAddress(address)));
@@ -245,7 +245,7 @@ fn a_new_address_is_used_by_this_and_the_next_session() {
 
 /// The cable is disconnected after the address was changed and before it is read back. The new address is used.
 #[test]
-fn a_change_by_an_interrupted_write_is_followed() {
+fn follows_change_by_interrupted_write() {
     let mut desk = Desk::at_port("");
     let address = encoder_studio::devices::hiperface::state::forms::address("41").unwrap();
     desk.ask(Hiperface::Plan(Change::SetAddress(address)));
@@ -268,7 +268,7 @@ fn a_change_by_an_interrupted_write_is_followed() {
 }
 
 #[test]
-fn changed_settings_are_followed_after_the_restart() {
+fn follows_changed_settings_after_restart() {
     let mut desk = Desk::at_port("");
     let stored = desk.encoder().identity.as_ref().unwrap().label.settings;
     let format = CharacterFormat { baud: Baud::new(19_200).unwrap(), parity: Parity::Odd };
@@ -308,7 +308,7 @@ fn changed_settings_are_followed_after_the_restart() {
 
 /// An open link without replies counts neither as connected nor as lost.
 #[test]
-fn a_silent_encoder_is_not_shown_as_connected() {
+fn silent_encoder_is_not_connected() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.wire().exchange("fault=silent-after:0");
@@ -344,7 +344,7 @@ fn a_silent_encoder_is_not_shown_as_connected() {
 }
 
 #[test]
-fn access_codes_are_not_sent_to_another_encoder() {
+fn other_encoder_receives_no_access_codes() {
     let mut desk = Desk::at_port("codes=0:9D");
     let code = encoder_studio::devices::hiperface::state::forms::access_code("9D").unwrap();
     desk.ask(Hiperface::UseCode { number: AccessCodeNumber::ZERO, code });
@@ -361,7 +361,7 @@ fn access_codes_are_not_sent_to_another_encoder() {
 }
 
 #[test]
-fn reconnecting_during_a_write_is_refused() {
+fn rejects_reconnecting_during_write() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -378,7 +378,7 @@ fn reconnecting_during_a_write_is_refused() {
 }
 
 #[test]
-fn reconnecting_while_reading_ends_the_job() {
+fn reconnecting_ends_read_job() {
     let mut desk = Desk::at_port("");
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);
@@ -391,7 +391,7 @@ fn reconnecting_while_reading_ends_the_job() {
 }
 
 #[test]
-fn live_values_continue_around_a_job_and_end_with_the_cable() {
+fn live_values_continue_around_job() {
     let mut desk = Desk::at_port("rpm=60");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     assert!(desk.studio.is_live() && desk.studio.can_stop());
@@ -418,7 +418,7 @@ fn live_values_continue_around_a_job_and_end_with_the_cable() {
 
 /// A late failure belongs to the earlier polling and does not end the new one.
 #[test]
-fn a_late_failure_does_not_affect_newer_live_values() {
+fn late_failure_keeps_newer_live_values() {
     let mut desk = Desk::at_port("");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     desk.until("samples come", |studio| studio.hiperface().unwrap().record.position_count() > 3);

@@ -38,7 +38,7 @@ fn assert_nothing_moved(before: &[(Role, String, Rect)], after: &[(Role, String,
 }
 
 #[test]
-fn a_refused_target_moves_nothing() {
+fn rejected_target_shifts_no_layout() {
     // The window is so high that the button can be reached without scrolling.
     for size in SIZES.map(|[width, height]| [width, height * 2.0]) {
         let mut screen = in_control_on_screen("sim:", size);
@@ -59,7 +59,7 @@ fn a_refused_target_moves_nothing() {
 }
 
 #[test]
-fn cams_beyond_the_range_move_nothing_on_the_other_pages() {
+fn out_of_range_cams_shift_no_layout() {
     for size in SIZES {
         let link = "sim:?steps=3600&revolutions=1&cams=demo";
         let mut screen = Screen::opened_in(crate::tabs::INTERBUS, link, size);

@@ -54,7 +54,7 @@ fn too_high(screen: &mut Screen, bar: f32) -> Vec<String> {
 }
 
 #[test]
-fn no_page_needs_more_than_one_scroll() {
+fn pages_need_at_most_one_scroll() {
     let mut found = too_high(&mut Screen::new_form(SIZE), 0.0);
     type Case = (Tab, f32, fn(&Studio) -> bool);
     let cases: [Case; 4] = [

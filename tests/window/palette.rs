@@ -34,7 +34,7 @@ fn find_and_choose(screen: &mut Screen, text: &str) {
 }
 
 #[test]
-fn pages_devices_and_settings_are_found_by_name() {
+fn finds_pages_devices_and_settings() {
     let mut screen = Screen::new_form(SIZE);
     find_and_choose(&mut screen, "memo");
     assert!(!is_open(&screen));
@@ -50,7 +50,7 @@ fn pages_devices_and_settings_are_found_by_name() {
 
 /// A page is found by its German name in an English window, and by its English name in a German window.
 #[test]
-fn names_are_found_in_both_languages() {
+fn finds_names_in_both_languages() {
     let mut screen = Screen::new_form(SIZE);
     find_and_choose(&mut screen, "kommutierung");
     assert!(screen.has_button("commutation.read_one"), "the page Commutation is open");
@@ -60,7 +60,7 @@ fn names_are_found_in_both_languages() {
 }
 
 #[test]
-fn actions_of_the_shown_device_are_executed() {
+fn executes_actions_of_shown_device() {
     let mut screen = Screen::new_form(SIZE);
     let before = screen.outside.wire(PORT).count(0x56);
     find_and_choose(&mut screen, "read again");
@@ -100,7 +100,7 @@ fn arrows_select_and_escape_closes() {
 }
 
 #[test]
-fn a_dialog_keeps_the_palette_closed() {
+fn dialog_keeps_palette_closed() {
     let mut screen = Screen::new_form(SIZE);
     screen.click("shell.connect");
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::K);

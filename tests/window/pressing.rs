@@ -94,7 +94,7 @@ fn notices_and_progress_do_not_move_buttons() {
 
 /// A notice appears or disappears between the press and the release (issue 21.7).
 #[test]
-fn a_click_counts_despite_layout_changes_during_it() {
+fn click_survives_layout_changes() {
     for comes in [true, false] {
         let mut screen = Screen::new_form(SIZE);
         if !comes {
@@ -121,7 +121,7 @@ fn a_click_counts_despite_layout_changes_during_it() {
 /// A button of the review has the keyboard focus while the plan is made. When the plan is complete, no button has it
 /// (issue 22.29).
 #[test]
-fn a_review_becoming_ready_ignores_a_key_pressed_before() {
+fn ready_review_ignores_earlier_key() {
     let mut screen = Screen::opened(Outside::new(""), Some(&format!("serial:{PORT}")), SIZE);
     ready(&mut screen);
     screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });

@@ -32,7 +32,7 @@ fn open(desk: &mut Desk, path: &std::path::Path) {
 }
 
 #[test]
-fn a_saved_profile_matches_the_encoder() {
+fn saved_profile_matches_encoder() {
     let (desk, path) = saved();
     let profile = ProfileDocument::parse(&read_text(&path).unwrap(), program().studio.formats)
         .unwrap()
@@ -46,7 +46,7 @@ fn a_saved_profile_matches_the_encoder() {
 }
 
 #[test]
-fn a_profile_of_a_locked_encoder_lists_missing_values() {
+fn locked_encoder_profile_lists_missing_values() {
     let mut desk = Desk::at_port("codes=0:9D");
     let path = desk.outside.path("locked.ron");
     desk.ask(Hiperface::Save(path.clone()));
@@ -76,7 +76,7 @@ fn a_profile_of_a_locked_encoder_lists_missing_values() {
 }
 
 #[test]
-fn saving_suggests_a_file_named_after_the_encoder() {
+fn suggests_file_named_after_encoder() {
     let mut desk = Desk::new_form("");
     desk.command(DeviceCommand::AskSave);
     let suggested = "SKM36-GB0450179.ron".into();
@@ -92,7 +92,7 @@ fn saving_suggests_a_file_named_after_the_encoder() {
 
 /// A save requested during another one is rejected. The first one still goes to its own file.
 #[test]
-fn a_refused_save_does_not_redirect_another() {
+fn rejected_save_does_not_redirect_another() {
     let mut desk = Desk::new_form("");
     let (first, second) = (desk.outside.path("first.ron"), desk.outside.path("second.ron"));
     desk.wire().hold_at(0x4A, 1);
@@ -107,7 +107,7 @@ fn a_refused_save_does_not_redirect_another() {
 }
 
 #[test]
-fn an_unreadable_profile_is_reported_and_not_changed() {
+fn unreadable_profile_stays_unchanged() {
     let mut desk = Desk::new_form("");
     let path = desk.outside.path("broken.ron");
     for (content, id) in
@@ -129,7 +129,7 @@ fn an_unreadable_profile_is_reported_and_not_changed() {
 
 /// Saving would lose the parts of a newer schema that are unknown to this version (issue 22.17).
 #[test]
-fn a_profile_of_a_newer_schema_is_neither_saved_nor_written() {
+fn newer_schema_is_read_only() {
     let (mut desk, path) = saved();
     let encoder = desk.encoder().session.id;
     let newer = read_text(&path).unwrap().replace("schema: 1", "schema: 9");
@@ -146,7 +146,7 @@ fn a_profile_of_a_newer_schema_is_neither_saved_nor_written() {
 }
 
 #[test]
-fn a_reloaded_profile_keeps_its_edits() {
+fn reloaded_profile_keeps_edits() {
     let (mut desk, path) = saved();
     open(&mut desk, &path);
     assert_eq!(desk.encoder().session.name(), "mine.ron");
@@ -178,7 +178,7 @@ fn a_reloaded_profile_keeps_its_edits() {
 }
 
 #[test]
-fn an_open_profile_ignores_its_own_write_protection() {
+fn open_profile_ignores_own_write_protection() {
     let mut desk = Desk::fresh("");
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperface");
     let path = desk.outside.path("ready-made.ron");
@@ -191,7 +191,7 @@ fn an_open_profile_ignores_its_own_write_protection() {
 }
 
 #[test]
-fn a_profile_is_restored_to_another_encoder_only_with_permission() {
+fn other_encoder_needs_permission() {
     let (mut desk, path) = saved();
     refused_by_another(&mut desk, &path, &[(0, b"X")]);
     let mut options = desk.review().options().unwrap();
@@ -246,7 +246,7 @@ fn allow_another(desk: &mut Desk) {
 /// The review lists the values that depend on the mounting and must be set up again: before the write, at its end, and
 /// after an interruption (issue 22.7).
 #[test]
-fn values_of_another_mounting_are_named_until_the_end() {
+fn keeps_naming_values_of_other_mounting() {
     let (mut desk, path) = saved();
     onto_another(&mut desk, &path);
     let before = sheet(&desk);
@@ -280,7 +280,7 @@ fn values_of_another_mounting_are_named_until_the_end() {
 
 /// The review asks about bytes of unknown meaning and by default leaves them unchanged (issue 22.8).
 #[test]
-fn the_review_asks_about_bytes_of_unknown_meaning() {
+fn review_asks_about_unknown_bytes() {
     let (mut desk, path) = saved();
     onto_another(&mut desk, &path);
     let [question] = &sheet(&desk).questions[..] else { panic!() };
@@ -301,7 +301,7 @@ fn the_review_asks_about_bytes_of_unknown_meaning() {
 
 /// The review names the other encoder type, which requires an explicit permission (issue 22.9).
 #[test]
-fn another_type_of_encoder_needs_a_separate_permission() {
+fn other_type_needs_permission() {
     let (mut desk, path) = saved();
     refused_by_another(&mut desk, &path, &[(0, b"X")]);
     desk.toggle(Permit::OtherDevice);
@@ -315,7 +315,7 @@ fn another_type_of_encoder_needs_a_separate_permission() {
 
 /// The file states that the values are not current (issue 22.14).
 #[test]
-fn read_values_can_be_saved_after_the_line_is_lost() {
+fn saves_values_after_line_loss() {
     let mut desk = Desk::at_port("");
     let fields = desk.encoder().staged.device().to_vec();
     desk.put(0, 0, b"X");
@@ -343,7 +343,7 @@ fn read_values_can_be_saved_after_the_line_is_lost() {
 
 /// The user types the path of an existing file.
 #[test]
-fn an_existing_file_is_replaced_only_after_confirmation() {
+fn confirms_replacing_existing_file() {
     let mut desk = Desk::new_form("");
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("kept.ron");
@@ -370,7 +370,7 @@ fn an_existing_file_is_replaced_only_after_confirmation() {
 
 /// While the window is open, a relative path always refers to the same file, however it was entered (issue 22.24).
 #[test]
-fn a_relative_path_is_saved_to_the_same_file() {
+fn relative_path_saves_to_same_file() {
     let (mut desk, path) = saved();
     let (work, home) = (desk.outside.path("work"), desk.outside.path("home"));
     for folder in [&work, &home] {
@@ -404,7 +404,7 @@ fn a_relative_path_is_saved_to_the_same_file() {
 
 /// At the next start, the link refers to the same recording, whatever the current folder (issue 22.24).
 #[test]
-fn a_link_to_a_recording_is_remembered_with_its_full_path() {
+fn remembers_full_path_of_recording() {
     let mut desk = Desk::fresh("");
     desk.open("replay:monday.trace");
     let expected = format!("replay:{}", desk.outside.path("work").join("monday.trace").display());

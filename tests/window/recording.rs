@@ -42,7 +42,7 @@ fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
 
 /// At the end of the range of 4096 turns, position and speed would jump without unwrapping.
 #[test]
-fn a_wrap_at_the_end_of_the_range_is_no_spike() {
+fn range_wrap_is_no_spike() {
     let mut desk = Desk::new_form("rpm=600&position=16600000");
     desk.command(FAST);
     desk.until("the range has ended", |studio| {
@@ -57,7 +57,7 @@ fn a_wrap_at_the_end_of_the_range_is_no_spike() {
 }
 
 #[test]
-fn a_linear_encoder_is_recorded_in_millimetres() {
+fn records_linear_encoder_in_millimetres() {
     let mut desk = Desk::new_form("type=0x90");
     desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 5);
@@ -69,7 +69,7 @@ fn a_linear_encoder_is_recorded_in_millimetres() {
 }
 
 #[test]
-fn a_pulled_cable_leaves_a_gap_and_loses_nothing() {
+fn pulled_cable_leaves_gap() {
     let mut desk = Desk::at_port("rpm=60");
     desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 20);
@@ -93,7 +93,7 @@ fn a_pulled_cable_leaves_a_gap_and_loses_nothing() {
 }
 
 #[test]
-fn another_encoder_starts_another_recording() {
+fn another_encoder_starts_new_recording() {
     let mut desk = Desk::at_port("rpm=60");
     desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 20);
@@ -108,7 +108,7 @@ fn another_encoder_starts_another_recording() {
 }
 
 #[test]
-fn the_recording_is_saved_as_a_table() {
+fn saves_recording_as_table() {
     let mut desk = Desk::new_form("rpm=60");
     let desk_of = own(&desk);
     desk.act(Action::Recorder(desk_of, recorder::RecorderAction::Clear));
@@ -144,7 +144,7 @@ fn the_recording_is_saved_as_a_table() {
 }
 
 #[test]
-fn a_snapshot_is_saved() {
+fn saves_snapshot() {
     let mut desk = Desk::new_form("");
     let picture = Picture::new(1, 1, vec![1, 2, 3]).unwrap();
     desk.act(Action::AskPicture(picture));
@@ -156,7 +156,7 @@ fn a_snapshot_is_saved() {
 }
 
 #[test]
-fn watched_values_are_recorded_with_the_position() {
+fn records_watched_values_with_position() {
     let mut desk = Desk::new_form("rpm=60&temperature=37");
     for what in [WatchedQuantity::Analogue(0x48), WatchedQuantity::Analogue(0x07), WatchedQuantity::Counter] {
         desk.ask(Hiperface::Watch(what, true));
@@ -181,7 +181,7 @@ fn watched_values_are_recorded_with_the_position() {
 }
 
 #[test]
-fn reading_a_position_while_polling_disturbs_nothing() {
+fn single_reading_does_not_disturb_polling() {
     let mut desk = Desk::new_form("rpm=600");
     desk.command(FAST);
     for round in 1..=5 {
@@ -200,7 +200,7 @@ fn reading_a_position_while_polling_disturbs_nothing() {
 
 /// Closing a session discards its recording, so the window asks first if it is at least two minutes long (issue 21.12).
 #[test]
-fn closing_a_session_with_minutes_of_recording_asks_first() {
+fn asks_before_closing_long_recording() {
     let mut desk = Desk::new_form("");
     let id = desk.encoder().session.id;
     desk.command(FAST);

@@ -24,7 +24,7 @@ fn restarted(desk: Desk) -> Desk {
 }
 
 #[test]
-fn theme_language_layout_and_links_are_remembered() {
+fn remembers_theme_language_layout_and_links() {
     let mut desk = Desk::new_form("");
     let first = (desk.studio.settings.theme, desk.studio.settings.language);
     assert_eq!(first, (ColorScheme::Dark, Language::English));
@@ -52,7 +52,7 @@ fn theme_language_layout_and_links_are_remembered() {
 }
 
 #[test]
-fn a_link_that_did_not_open_is_not_remembered() {
+fn does_not_remember_failed_link() {
     let mut desk = Desk::fresh("");
     desk.open("serial:/dev/nothing");
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
@@ -61,7 +61,7 @@ fn a_link_that_did_not_open_is_not_remembered() {
 }
 
 #[test]
-fn broken_settings_are_reported_and_kept_until_a_change() {
+fn keeps_broken_settings_until_change() {
     for broken in [b"(theme: Mauve, language: German)".as_slice(), b"\xFF\xFE", b""] {
         let desk = Desk::fresh("");
         let path = desk.outside.store().settings_path();
@@ -87,7 +87,7 @@ fn broken_settings_are_reported_and_kept_until_a_change() {
 }
 
 #[test]
-fn unreadable_settings_are_not_overwritten() {
+fn does_not_overwrite_unreadable_settings() {
     let desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
     fs::create_dir_all(&path).unwrap();
@@ -103,7 +103,7 @@ fn unreadable_settings_are_not_overwritten() {
 /// Settings loaded late apply, except for those that the user has changed in the meantime.
 #[cfg(unix)]
 #[test]
-fn settings_that_load_late_apply_and_are_not_overwritten() {
+fn late_settings_apply() {
     let desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
     let mut settings = Settings::initial(encoder_studio::kinds::program().studio);
@@ -126,7 +126,7 @@ fn settings_that_load_late_apply_and_are_not_overwritten() {
 }
 
 #[test]
-fn the_access_codes_of_a_virtual_encoder_are_not_remembered() {
+fn does_not_remember_virtual_access_codes() {
     let mut desk = Desk::fresh("codes=0:9D");
     desk.open("sim:?codes=0:9D&margin=21");
     desk.until_read();
@@ -137,7 +137,7 @@ fn the_access_codes_of_a_virtual_encoder_are_not_remembered() {
 }
 
 #[test]
-fn unwritable_settings_are_reported_once() {
+fn reports_unwritable_settings_once() {
     let mut desk = Desk::fresh("");
     fs::write(desk.outside.path("config"), "a file in the way").unwrap();
     for theme in [ColorScheme::Light, ColorScheme::Dark, ColorScheme::Light] {

@@ -45,7 +45,7 @@ fn report(desk: &mut Desk, path: &Path) {
 }
 
 #[test]
-fn the_window_and_the_command_line_make_the_same_report() {
+fn window_and_command_line_reports_match() {
     for (language, word) in [(Language::English, "en"), (Language::German, "de")] {
         let mut desk = Desk::new_form("");
         desk.act(Action::SetLanguage(language));
@@ -73,7 +73,7 @@ fn the_window_and_the_command_line_make_the_same_report() {
 }
 
 #[test]
-fn a_report_of_a_device_shows_what_was_read() {
+fn device_report_shows_read_values() {
     let mut desk = Desk::new_form("");
     let requests = desk.wire().count(0x4A);
     let path = desk.outside.path("device.html");
@@ -108,7 +108,7 @@ fn report_of_command(desk: &Desk, language: &str, subject: &Path) -> String {
 }
 
 #[test]
-fn a_capture_has_the_same_report_in_the_window_and_on_the_command_line() {
+fn window_and_command_line_capture_reports_match() {
     let mut desk = Desk::fresh("");
     let owner = RecorderOwner::Tool(tabs::SIGNALS);
     let own = desk.outside.path("capture.html");
@@ -139,7 +139,7 @@ fn a_capture_has_the_same_report_in_the_window_and_on_the_command_line() {
 
 /// The report contains results from the session that are not part of any profile (issue 30).
 #[test]
-fn a_report_of_a_device_contains_the_results_of_the_session() {
+fn device_report_contains_session_results() {
     let mut desk = Desk::new_form("");
     desk.ask(Hiperface::Check { restart: false });
     desk.until("it is checked", |studio| studio.hiperface().unwrap().check.is_some());
@@ -165,7 +165,7 @@ fn a_report_of_a_device_contains_the_results_of_the_session() {
 
 /// The company shown in reports can also be set in the window (issue 30).
 #[test]
-fn the_company_is_set_in_a_form() {
+fn form_sets_company() {
     let mut screen = Screen::new_form([1024.0, 640.0]);
     screen.act(Action::Company(CompanyAction::Open));
     for language in [Language::German, Language::English] {
@@ -206,7 +206,7 @@ fn the_company_is_set_in_a_form() {
 }
 
 #[test]
-fn a_report_that_cannot_be_made_names_the_reason() {
+fn failed_report_names_reason() {
     let mut desk = Desk::new_form("");
     let question = ask(&mut desk);
     desk.act(Action::Chosen(question, desk.outside.path("report.txt")));

@@ -61,7 +61,7 @@ fn is_asked(studio: &Studio) -> bool {
 
 /// Saving writes the open file without asking. Saving to another file asks for its path (issue 22.25).
 #[test]
-fn saving_writes_the_open_file_and_save_as_asks_for_another() {
+fn save_writes_open_file() {
     let (mut desk, path) = opened(OWN);
     desk.put(0, 0, b"X");
     save(&mut desk);
@@ -82,7 +82,7 @@ fn saving_writes_the_open_file_and_save_as_asks_for_another() {
 /// The file has been changed in an editor. It is not replaced without a question, and each answer does what its label
 /// says (issue 22.25).
 #[test]
-fn saving_over_a_changed_file_asks_first() {
+fn asks_before_overwriting_changed_file() {
     let theirs = OWN.replace("as wired", "as rewired").replace("01 02", "AA 02").replace("// end", "// theirs");
     let begun = || {
         let (mut desk, path) = opened(OWN);
@@ -143,7 +143,7 @@ fn saving_over_a_changed_file_asks_first() {
 /// Changes to comments alone are not a difference, and are kept. A deleted file is written again, and an invalid one is
 /// reported (issue 22.25).
 #[test]
-fn only_changed_values_count_as_a_difference() {
+fn only_changed_values_differ() {
     let (mut desk, path) = opened(OWN);
     let commented = OWN.replace("// the motor", "// the motor of axis 2");
     fs::write(&path, &commented).unwrap();
@@ -183,7 +183,7 @@ fn only_changed_values_count_as_a_difference() {
 
 /// Before saving, the window lists the comments that would be lost (issue 22.26).
 #[test]
-fn saving_asks_before_losing_comments() {
+fn asks_before_losing_comments() {
     let rows = "\"00 01 02 03 04 05 06 07\", // name plate\r\n\"08 09 0A 0B 0C 0D 0E 0F\"";
     let text = OWN.replace("\"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"", rows);
     let (mut desk, path) = opened(&text);
@@ -206,7 +206,7 @@ fn saving_asks_before_losing_comments() {
 
 /// A byte order mark at the start of the file is kept (issue 22.26).
 #[test]
-fn a_byte_order_mark_is_kept() {
+fn keeps_byte_order_mark() {
     let (mut desk, path) = opened(&format!("\u{FEFF}{OWN}"));
     desk.put(0, 0, b"X");
     save(&mut desk);
@@ -216,7 +216,7 @@ fn a_byte_order_mark_is_kept() {
 
 /// A save dismisses earlier notices about its own document, but not about others (issue 22.28).
 #[test]
-fn a_save_dismisses_the_notices_of_its_document() {
+fn save_dismisses_document_notices() {
     let (mut desk, path) = opened(OWN);
     desk.put(0, 0, b"X");
     desk.until_kept();
@@ -253,7 +253,7 @@ fn a_save_dismisses_the_notices_of_its_document() {
 /// A measuring range that ends below a cam is reported on every page, and again when the profile is saved (issue
 /// 22.28).
 #[test]
-fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
+fn reports_cams_beyond_smaller_range() {
     let mut desk = Desk::fresh("");
     let path = desk.outside.path("cams.ron");
     let text = "(schema: 1, device: \"interbus\",\n\
@@ -283,7 +283,7 @@ fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
 /// Changes that others make to a closed file are kept when the edits are restored, for layouts, parameters and cams
 /// alike, and also when the open file is reloaded (issue 22.27).
 #[test]
-fn restored_edits_keep_changes_by_others() {
+fn restored_edits_keep_external_changes() {
     let ssi = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
     let drive = "(schema: 1, device: \"hiperdrive\",\n  drives: [(number: 1, parameters: {\n    166: 50,\n    186: 5,\n  })],\n)\n";
     let cams = "(schema: 1, device: \"interbus\",\n\
@@ -334,7 +334,7 @@ fn restored_edits_keep_changes_by_others() {
 
 /// Edits that are invalid together with the changes made by others are dropped with a notice (issue 22.27).
 #[test]
-fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
+fn drops_obsolete_restored_edits() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
     let theirs = text.replace("multiturn: 12, singleturn: 12", "steps: 3600");
     let mut desk = Desk::fresh("");
@@ -360,7 +360,7 @@ fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
 
 /// A draft of an earlier version contains the complete layout (issue 22.27).
 #[test]
-fn a_draft_of_a_complete_layout_still_opens() {
+fn complete_layout_draft_still_opens() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
     let (mut desk, path) = opened(text);
     let id = desk.studio.selected_device().unwrap().id();

@@ -43,7 +43,7 @@ fn choose(screen: &mut Screen, unit: &'static str) {
 
 /// The virtual SKM36 has 4096 steps per turn: 10,240 steps are two turns and 180°, or 900°.
 #[test]
-fn a_position_can_be_entered_in_every_unit() {
+fn accepts_position_in_every_unit() {
     let mut screen = setup();
     type_into(&mut screen, "position_card.wanted", "10240");
     assert!(screen.shows("10240 steps\nturn 2, 180.000°"));
@@ -62,7 +62,7 @@ fn a_position_can_be_entered_in_every_unit() {
 /// The review states the position in turns and degrees, and the access code. The card states that a restore does not
 /// include the position.
 #[test]
-fn the_review_of_a_position_names_turns_and_the_access_code() {
+fn position_review_names_turns_and_code() {
     let mut screen = setup();
     assert!(screen.shows(&screen.say("position_card.not_restored")));
     type_into(&mut screen, "position_card.wanted", "10240");

@@ -34,7 +34,7 @@ fn places(screen: &Screen, ids: &[&'static str]) -> Vec<Rect> {
 }
 
 #[test]
-fn the_lower_panel_is_one_line_until_it_is_opened_and_is_remembered() {
+fn remembers_lower_panel_state() {
     let mut screen = Screen::new_form(LARGE);
     let trace = screen.say("panel.trace");
     let is_open = |screen: &Screen| screen.harness.query_all_by_label(&trace).next().is_some();
@@ -60,7 +60,7 @@ fn the_lower_panel_is_one_line_until_it_is_opened_and_is_remembered() {
 }
 
 #[test]
-fn clickable_widgets_do_not_move_when_a_message_or_a_job_appears() {
+fn messages_and_jobs_shift_no_widgets() {
     for size in [LARGE, SMALL] {
         let mut screen = Screen::new_form(size);
         screen.click("page.memory");
@@ -105,7 +105,7 @@ fn clickable_widgets_do_not_move_when_a_message_or_a_job_appears() {
 }
 
 #[test]
-fn live_values_start_by_themselves_on_virtual_devices_and_confirmed_lines() {
+fn live_values_start_automatically() {
     for (link, starts) in [
         (None, true),
         (Some(format!("serial:{PORT}")), true),
@@ -129,7 +129,7 @@ fn live_values_start_by_themselves_on_virtual_devices_and_confirmed_lines() {
 }
 
 #[test]
-fn live_values_that_were_stopped_stay_so_at_the_next_start() {
+fn stopped_live_values_stay_stopped() {
     let mut desk = usual("", None);
     desk.until("it starts", is_live);
     // STOP applies only for now, while the button in the panel changes the setting.
@@ -155,7 +155,7 @@ fn live_values_that_were_stopped_stay_so_at_the_next_start() {
 
 /// Live values that start automatically only send requests for the position.
 #[test]
-fn live_values_that_start_by_themselves_only_read() {
+fn automatic_live_values_only_read() {
     let mut desk = usual("", None);
     desk.until("it starts", is_live);
     let wire = desk.wire();
@@ -167,7 +167,7 @@ fn live_values_that_start_by_themselves_only_read() {
 }
 
 #[test]
-fn a_pause_names_its_job_and_moves_nothing() {
+fn pause_names_job_without_layout_shift() {
     let mut screen = Screen::new_form(LARGE);
     screen.click("live.start");
     let ids = ["live.pause", "live.hide_plot"];
@@ -188,7 +188,7 @@ fn a_pause_names_its_job_and_moves_nothing() {
 }
 
 #[test]
-fn live_narrows_to_values_alone_and_remembers_it() {
+fn remembers_narrow_live_panel() {
     let mut screen = Screen::new_form(LARGE);
     let wide = screen.button("live.start").rect().left();
     screen.click("live.hide_plot");
@@ -200,7 +200,7 @@ fn live_narrows_to_values_alone_and_remembers_it() {
 }
 
 #[test]
-fn the_last_frames_stay_visible_while_new_ones_arrive() {
+fn last_frames_stay_visible() {
     use egui_kittest::kittest::Queryable;
     let mut screen = Screen::new_form(SMALL);
     screen.act(Action::OpenLowerPanel(true));
@@ -237,7 +237,7 @@ fn the_last_frames_stay_visible_while_new_ones_arrive() {
 }
 
 #[test]
-fn the_trace_is_searched_and_paused() {
+fn searches_and_pauses_trace() {
     use egui_kittest::kittest::Queryable;
     let mut screen = Screen::new_form(LARGE);
     screen.act(Action::OpenLowerPanel(true));
@@ -283,7 +283,7 @@ fn the_trace_is_searched_and_paused() {
 
 /// A clicked frame is shown with all of its bytes next to the list. The arrow keys select its neighbours.
 #[test]
-fn a_selected_frame_is_shown_with_its_bytes() {
+fn shows_bytes_of_selected_frame() {
     use egui_kittest::kittest::Queryable;
     let mut screen = Screen::new_form(LARGE);
     screen.act(Action::OpenLowerPanel(true));
@@ -318,7 +318,7 @@ fn a_selected_frame_is_shown_with_its_bytes() {
 
 /// A saved trace contains the frames in the list, in the format read by `replay:`.
 #[test]
-fn the_trace_is_saved_as_a_recording() {
+fn saves_trace_as_recording() {
     let mut desk = usual("", Some("sim:"));
     desk.until("it is read", |studio| studio.selected_device().is_some_and(|own| !own.trace().lines().is_empty()));
     let session = desk.studio.selected_device().unwrap().id();
@@ -336,7 +336,7 @@ fn the_trace_is_saved_as_a_recording() {
 
 /// While the window asks for a path, the dialog is on top, and the key for the lower panel has no effect.
 #[test]
-fn the_key_of_the_lower_panel_waits_for_dialogs() {
+fn lower_panel_key_waits_for_dialogs() {
     let mut screen = Screen::new_form(SMALL);
     screen.act(Action::TypePath(FileQuestion::Open));
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::T);

@@ -61,7 +61,7 @@ fn shown(studio: &Studio) -> Option<&Origin> {
 }
 
 #[test]
-fn a_capture_can_be_opened_without_a_session() {
+fn opens_capture_without_session() {
     let mut desk = Desk::fresh("");
     assert!(desk.studio.hiperface().is_none());
     let path = desk.file("circle.CSV", &circle(4));
@@ -88,7 +88,7 @@ fn a_capture_can_be_opened_without_a_session() {
 }
 
 #[test]
-fn the_examples_are_judged_as_named() {
+fn examples_match_their_names() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
@@ -117,7 +117,7 @@ fn is_amplitude(what: &FindingKind) -> bool {
 }
 
 #[test]
-fn an_unreadable_table_names_the_row_and_keeps_the_view() {
+fn unreadable_table_names_row() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
@@ -154,7 +154,7 @@ fn an_unreadable_table_names_the_row_and_keeps_the_view() {
 }
 
 #[test]
-fn detected_columns_can_be_overridden_and_detected_again() {
+fn overrides_detected_columns() {
     let mut desk = Desk::fresh("");
     let path = desk.file("columns.csv", "a;b;c;d;e\n0;1;2,5;3;2,5\n1;2;2,5;4;2,5\n2;1;2,5;5;2,5\n");
     desk.open_capture(&path);
@@ -192,7 +192,7 @@ fn detected_columns_can_be_overridden_and_detected_again() {
 }
 
 #[test]
-fn data_without_an_ellipse_is_shown_and_refused_with_a_reason() {
+fn rejects_data_without_ellipse() {
     let mut desk = Desk::fresh("");
     let quarter: String = circle(1).lines().take(20).fold(String::new(), |text, line| text + line + "\n");
     for (name, text, told) in [
@@ -211,7 +211,7 @@ fn data_without_an_ellipse_is_shown_and_refused_with_a_reason() {
 }
 
 #[test]
-fn reading_can_be_cancelled_and_a_stale_capture_is_dropped() {
+fn drops_stale_capture() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
@@ -243,7 +243,7 @@ fn reading_can_be_cancelled_and_a_stale_capture_is_dropped() {
 }
 
 #[test]
-fn periods_are_clamped_to_their_range() {
+fn clamps_periods_to_range() {
     let mut desk = Desk { studio: Outside::new("").studio(), outside: Outside::new("") };
     for (wanted, taken) in [(0, 1), (512, 512), (u32::MAX, 65_536)] {
         desk.signals(Signals::SetPeriods(wanted));
@@ -252,7 +252,7 @@ fn periods_are_clamped_to_their_range() {
 }
 
 #[test]
-fn a_kept_capture_stays_while_others_are_opened() {
+fn kept_capture_stays() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Keep);
     assert!(desk.studio.signals().compared_result().is_none(), "there is nothing to keep");
@@ -288,7 +288,7 @@ impl Desk {
 }
 
 #[test]
-fn the_virtual_encoder_is_measured_repeatedly_with_its_settings() {
+fn measures_virtual_encoder_repeatedly() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Set(Quantity::Periods, 512.0));
     desk.source(SourceAction::Start);
@@ -319,7 +319,7 @@ fn is_good(findings: &[DiagnosisFinding]) -> bool {
 }
 
 #[test]
-fn holding_freezes_the_measurement_and_stopping_ends_it() {
+fn hold_freezes_measurement() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Start);
     desk.until_live("it is measured", |own| own.ellipse.offset_cosine_v.abs() < 1e-3);
@@ -351,7 +351,7 @@ fn holding_freezes_the_measurement_and_stopping_ends_it() {
 }
 
 #[test]
-fn a_setting_out_of_range_is_refused_and_changes_nothing() {
+fn out_of_range_setting_changes_nothing() {
     let mut desk = Desk::fresh("");
     for value in [3.0, -1.0, f64::NAN, f64::INFINITY] {
         desk.source(SourceAction::Set(Quantity::Amplitude, value));
@@ -367,7 +367,7 @@ fn a_setting_out_of_range_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn a_window_that_is_not_drawn_counts_lost_samples() {
+fn hidden_window_counts_lost_samples() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Set(Quantity::Rate, 1_000_000.0));
     // A test build needs too long to measure 200 ms at the full rate.
@@ -384,7 +384,7 @@ fn a_window_that_is_not_drawn_counts_lost_samples() {
 }
 
 #[test]
-fn a_file_replaces_the_virtual_encoder() {
+fn file_replaces_virtual_encoder() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Start);
     desk.until_live("it is measured", |_| true);
@@ -399,7 +399,7 @@ fn a_file_replaces_the_virtual_encoder() {
 }
 
 #[test]
-fn the_scope_shows_captures_and_live_signals_and_exports_a_readable_table() {
+fn scope_shows_and_exports_signals() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
@@ -433,7 +433,7 @@ fn the_scope_shows_captures_and_live_signals_and_exports_a_readable_table() {
 }
 
 #[test]
-fn findings_worse_than_the_kept_capture_are_reported() {
+fn reports_findings_worse_than_kept_capture() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Start);
     desk.until_live("it is measured", |_| true);

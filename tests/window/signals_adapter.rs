@@ -30,7 +30,7 @@ fn recorded(studio: &Studio) -> (u64, usize) {
 
 /// The adapter samples an encoder with 0.5 V and 1024 periods that makes one turn in ten seconds.
 #[test]
-fn the_virtual_adapter_is_measured_like_a_capture() {
+fn measures_virtual_adapter_like_capture() {
     let mut desk = Desk::fresh("");
     begin(&mut desk, "sim:?bridge=on&rpm=6", 50_000);
     let measured = |studio: &Studio| studio.signals().measurement().is_some_and(|own| own.analysis.is_ok());
@@ -56,7 +56,7 @@ fn the_virtual_adapter_is_measured_like_a_capture() {
 }
 
 #[test]
-fn a_network_adapter_streams_without_a_gap_and_is_stopped() {
+fn network_adapter_streams_without_gaps() {
     let served = ServedDevice::new("rpm=60");
     let mut desk = Desk::fresh("");
     for round in 1..=3 {
@@ -72,7 +72,7 @@ fn a_network_adapter_streams_without_a_gap_and_is_stopped() {
 }
 
 #[test]
-fn a_closing_window_stops_the_adapter_first() {
+fn closing_window_stops_adapter_first() {
     let served = ServedDevice::new("rpm=60");
     let mut desk = Desk::fresh("");
     begin(&mut desk, &served.link(), 20_000);
@@ -83,7 +83,7 @@ fn a_closing_window_stops_the_adapter_first() {
 }
 
 #[test]
-fn a_lost_connection_is_reported_and_can_be_restarted() {
+fn can_restart_lost_connection() {
     let served = ServedDevice::new("rpm=60");
     let mut desk = Desk::fresh("");
     begin(&mut desk, &served.link(), 20_000);
@@ -98,7 +98,7 @@ fn a_lost_connection_is_reported_and_can_be_restarted() {
 }
 
 #[test]
-fn link_errors_are_shown_at_the_link_entry() {
+fn shows_link_errors_at_link_entry() {
     for (link, problem, asked) in [
         ("", "adapter.link", false),
         ("sim:?bridge=off", "adapter.link", false),
@@ -123,7 +123,7 @@ fn link_errors_are_shown_at_the_link_entry() {
 }
 
 #[test]
-fn a_valid_adapter_link_is_remembered_and_an_invalid_one_is_not() {
+fn remembers_only_valid_adapter_links() {
     let mut desk = Desk::fresh("");
     begin(&mut desk, "sim:?rpm=60", 10_000);
     begin(&mut desk, "serial:/dev/ttyUSB0", 10_000);
@@ -137,7 +137,7 @@ fn a_valid_adapter_link_is_remembered_and_an_invalid_one_is_not() {
 /// The encoder supply is switched only as the user chooses. With `supply=switched`, the virtual adapter switches it on
 /// only on command. 0.3 W at 8 V are 37 mA.
 #[test]
-fn the_encoder_is_supplied_only_as_chosen() {
+fn supplies_encoder_only_as_chosen() {
     let mut desk = Desk::fresh("");
     let amplitude = |studio: &Studio| {
         let recorder = studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap();
@@ -158,7 +158,7 @@ fn the_encoder_is_supplied_only_as_chosen() {
 }
 
 #[test]
-fn a_source_keeps_running_until_a_valid_one_replaces_it() {
+fn source_runs_until_validly_replaced() {
     let mut desk = Desk::fresh("");
     begin(&mut desk, "sim:?rpm=6", 10_000);
     desk.until("samples come", |studio| recorded(studio).0 > 100);
@@ -179,7 +179,7 @@ fn a_source_keeps_running_until_a_valid_one_replaces_it() {
 }
 
 #[test]
-fn the_adapter_is_chosen_started_held_and_stopped() {
+fn starts_holds_and_stops_adapter() {
     for size in [[1280.0, 800.0], [1024.0, 640.0], [960.0, 540.0]] {
         let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
         screen.act(Action::ShowTab(crate::tabs::SIGNALS));

@@ -52,7 +52,7 @@ fn reference_and_periods_yield_dnl_and_inl() {
 }
 
 #[test]
-fn the_virtual_encoder_has_a_reference() {
+fn virtual_encoder_has_reference() {
     let mut desk = Desk::fresh("");
     // 0.2 s at 600 rpm are two revolutions.
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Periods, 64.0)));
@@ -67,7 +67,7 @@ fn the_virtual_encoder_has_a_reference() {
 }
 
 #[test]
-fn both_positions_are_shown_and_the_offset_is_adopted() {
+fn shows_positions_and_adopts_offset() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), [1280.0, 1400.0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     let path = screen.outside.path("reference.csv");

@@ -35,7 +35,7 @@ impl Screen {
 /// According to section 1 of the reference, 512 periods at 12 000/min are 102.4 kHz, with a lag of 16.825° after 10 kΩ
 /// and 47 pF.
 #[test]
-fn the_input_circuit_is_computed_while_typing() {
+fn computes_input_circuit_while_typing() {
     let mut screen = Screen::calculator("page.input_circuit");
     screen.retype("input.periods", "512");
     screen.retype("input.speed", "12000");
@@ -58,7 +58,7 @@ fn the_input_circuit_is_computed_while_typing() {
 
 /// Number entries use the decimal separator of the language, even after the language is changed (issue 26).
 #[test]
-fn entries_are_shown_with_the_decimal_sign_of_the_language() {
+fn entries_use_localized_decimal_sign() {
     let mut screen = Screen::calculator("page.synchronise");
     let phase = |screen: &Screen| {
         let label = screen.say("synchronise.phase");
@@ -76,7 +76,7 @@ fn entries_are_shown_with_the_decimal_sign_of_the_language() {
 /// According to section 4 of the reference, A = 2A5Fh and φ = 0.02 are 339.02 of 1024 periods. A fifth of a period
 /// further, φ is half a period off.
 #[test]
-fn absolute_and_analog_positions_are_synchronised_while_typing() {
+fn synchronises_positions_while_typing() {
     let mut screen = Screen::calculator("page.synchronise");
     let value = |screen: &Screen| {
         let label = screen.say("synchronise.ring");
@@ -107,7 +107,7 @@ fn absolute_and_analog_positions_are_synchronised_while_typing() {
 
 /// The virtual SKM36 at step 24 has counts of 409 and 511, as in its own signals.
 #[test]
-fn both_positions_are_read_from_the_selected_encoder() {
+fn reads_positions_from_selected_encoder() {
     let mut screen = Screen::opened(Outside::new("position=3224"), None, TALL);
     screen.until("the encoder is read", |studio| {
         studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
@@ -130,7 +130,7 @@ fn both_positions_are_read_from_the_selected_encoder() {
 }
 
 #[test]
-fn a_turning_shaft_yields_no_reading() {
+fn turning_shaft_yields_no_reading() {
     let mut desk = Desk::new_form("rpm=60");
     desk.ask(Hiperface::ReadRest);
     desk.until("it is told", |studio| studio.signals().synchronise().problem.is_some());

@@ -19,7 +19,7 @@ fn recorded(studio: &Studio) -> (u64, Vec<u64>) {
 }
 
 #[test]
-fn time_on_hold_is_a_gap_in_the_scope() {
+fn hold_leaves_gap_in_scope() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Source(SourceAction::Start));
     desk.until("samples come", |studio| recorded(studio).0 > 1_000);
@@ -37,7 +37,7 @@ fn time_on_hold_is_a_gap_in_the_scope() {
 /// Until the user enters the periods per turn, there is no speed and no error in seconds of arc. The periods of the
 /// virtual encoder do not apply to a capture (issue 22.13).
 #[test]
-fn periods_are_not_assumed() {
+fn does_not_assume_periods() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until("it is measured", |studio| {
@@ -62,7 +62,7 @@ fn periods_are_not_assumed() {
 }
 
 #[test]
-fn periods_of_a_stopped_source_apply_to_its_measurement() {
+fn stopped_source_accepts_periods() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Source(SourceAction::Start));
     desk.until("it is measured", |studio| studio.signals().measurement().is_some());
@@ -81,7 +81,7 @@ fn periods_of_a_stopped_source_apply_to_its_measurement() {
 }
 
 #[test]
-fn lost_samples_are_shown_until_the_next_start() {
+fn shows_lost_samples_until_next_start() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Rate, 1_000_000.0)));
     desk.signals(Signals::Source(SourceAction::Start));
@@ -97,7 +97,7 @@ fn lost_samples_are_shown_until_the_next_start() {
 }
 
 #[test]
-fn a_file_being_read_does_not_replace_a_newer_source() {
+fn late_file_does_not_replace_newer_source() {
     let mut desk = Desk::fresh("");
     let path = desk.outside.path("large.csv");
     std::fs::write(&path, circle(2_000)).unwrap();
@@ -114,7 +114,7 @@ fn a_file_being_read_does_not_replace_a_newer_source() {
 }
 
 #[test]
-fn a_kept_capture_keeps_no_samples() {
+fn kept_capture_keeps_no_samples() {
     let mut desk = Desk::fresh("");
     let path = desk.outside.path("large.csv");
     std::fs::write(&path, circle(1_500)).unwrap();
@@ -130,7 +130,7 @@ fn a_kept_capture_keeps_no_samples() {
 }
 
 #[test]
-fn a_kept_capture_is_judged_by_the_selected_limits() {
+fn selected_limits_judge_kept_capture() {
     let mut desk = Desk::fresh("");
     // 0.84 V is too low for HIPERFACE, but good for AFS/AFM60.
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 0.42)));

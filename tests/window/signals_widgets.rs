@@ -36,7 +36,7 @@ impl Screen {
 }
 
 #[test]
-fn every_page_is_drawn_at_every_size_with_a_capture_and_without() {
+fn draws_every_page_at_every_size() {
     for size in SIZES {
         let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
         screen.act(Action::ShowTab(crate::tabs::SIGNALS));
@@ -61,7 +61,7 @@ fn every_page_is_drawn_at_every_size_with_a_capture_and_without() {
 }
 
 #[test]
-fn the_tab_opens_by_key_and_click_and_loads_an_example() {
+fn opens_tab_and_loads_example() {
     let mut screen = Screen::new_form(SIZES[0]);
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Num6);
     screen.steps();
@@ -82,7 +82,7 @@ fn the_tab_opens_by_key_and_click_and_loads_an_example() {
 }
 
 #[test]
-fn the_figure_has_an_accessible_value_and_a_corrected_view() {
+fn figure_has_accessible_value() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(ExampleCapture::WithErrors));
@@ -103,7 +103,7 @@ fn the_figure_has_an_accessible_value_and_a_corrected_view() {
 
 /// An error while reading a capture is shown on every page of the tab (issue 22.14).
 #[test]
-fn a_failed_capture_is_shown_on_every_page() {
+fn every_page_shows_failed_capture() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     let path = screen.outside.path("broken.csv");
@@ -117,7 +117,7 @@ fn a_failed_capture_is_shown_on_every_page() {
 }
 
 #[test]
-fn invalid_periods_are_refused_with_a_message() {
+fn rejects_invalid_periods() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(ExampleCapture::Healthy));
@@ -146,7 +146,7 @@ fn invalid_periods_are_refused_with_a_message() {
 }
 
 #[test]
-fn a_capture_is_kept_and_compared_in_two_columns() {
+fn compares_kept_capture_in_columns() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(ExampleCapture::WithErrors));
@@ -166,7 +166,7 @@ fn a_capture_is_kept_and_compared_in_two_columns() {
 }
 
 #[test]
-fn a_pair_of_voltages_is_converted_exactly_and_by_table() {
+fn converts_voltages_exactly_and_by_table() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(ExampleCapture::Healthy));
@@ -177,7 +177,7 @@ fn a_pair_of_voltages_is_converted_exactly_and_by_table() {
 }
 
 #[test]
-fn the_virtual_encoder_is_started_set_held_and_stopped() {
+fn starts_holds_and_stops_virtual_encoder() {
     for size in SIZES {
         let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
         screen.act(Action::ShowTab(crate::tabs::SIGNALS));

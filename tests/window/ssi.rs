@@ -61,7 +61,7 @@ fn field(desk: &Desk, wanted: Field) -> Option<Entry> {
 }
 
 #[test]
-fn a_layout_needs_no_device() {
+fn layout_needs_no_device() {
     let mut desk = layout();
     let own = encoder(&desk);
     assert!(matches!(own.session.source, Source::New { .. }));
@@ -94,7 +94,7 @@ fn a_layout_needs_no_device() {
 }
 
 #[test]
-fn impossible_layouts_are_refused_and_change_nothing() {
+fn impossible_layouts_change_nothing() {
     let mut desk = layout();
     let before = encoder(&desk).design().clone();
     let refused = |desk: &mut Desk, field, input, id: &str| {
@@ -121,7 +121,7 @@ fn impossible_layouts_are_refused_and_change_nothing() {
 }
 
 #[test]
-fn a_frame_edited_by_hand_can_return_to_its_family() {
+fn custom_frame_can_return_to_family() {
     let mut desk = layout();
     edit(&mut desk, Edit::Family("atm60".to_owned()));
     assert!(encoder(&desk).design().settings.is_some());
@@ -150,7 +150,7 @@ fn a_frame_edited_by_hand_can_return_to_its_family() {
 }
 
 #[test]
-fn a_layout_is_saved_opened_and_survives_a_crash() {
+fn layout_survives_crash() {
     let mut desk = layout();
     act(&mut desk, Ssi::Enter(Field::Singleturn, FieldInput::Number(12)));
     wish(&mut desk, DeviceCommand::AskSave);
@@ -178,7 +178,7 @@ fn a_layout_is_saved_opened_and_survives_a_crash() {
 /// The data sheet and the table are in the language of the window. C and structured text are programs, so they are not
 /// translated. The terms for TM PosInput are those of its German manual.
 #[test]
-fn exports_are_in_the_language_of_the_window() {
+fn exports_use_window_language() {
     let mut desk = layout();
     act(&mut desk, Ssi::Enter(Field::Code, FieldInput::Choice(1)));
     let german = |format| encoder(&desk).designer.export(format, Language::German).unwrap();
@@ -204,7 +204,7 @@ fn exports_are_in_the_language_of_the_window() {
 }
 
 #[test]
-fn every_export_is_written() {
+fn writes_every_export() {
     let mut desk = layout();
     for format in ExportFormat::ALL {
         act(&mut desk, Ssi::AskExport(format, Language::German));
@@ -232,7 +232,7 @@ fn every_export_is_written() {
 }
 
 #[test]
-fn words_of_an_adapter_are_plotted_live() {
+fn plots_adapter_words_live() {
     let mut desk = connected("sim:?ssi=ahm36,code=gray&rpm=60");
     let own = encoder(&desk);
     assert_eq!(own.designer.family().unwrap().key, "ahm36", "what the virtual encoder sends");
@@ -254,7 +254,7 @@ fn words_of_an_adapter_are_plotted_live() {
 }
 
 #[test]
-fn another_number_of_clocks_is_sent_to_the_adapter() {
+fn sends_changed_clock_count_to_adapter() {
     let mut desk = connected("sim:?ssi=atm60,code=gray&rpm=6");
     edit(&mut desk, Edit::Family("ahm36".to_owned()));
     desk.until("the adapter is told", |studio| {
@@ -270,7 +270,7 @@ fn another_number_of_clocks_is_sent_to_the_adapter() {
 }
 
 #[test]
-fn a_layout_found_live_can_be_adopted() {
+fn adopts_layout_found_live() {
     let mut desk = connected("sim:?ssi=afm60,code=gray&rpm=60");
     edit(&mut desk, Edit::Free);
     let clocks = encoder(&desk).clock_count();
@@ -312,7 +312,7 @@ fn a_layout_found_live_can_be_adopted() {
 }
 
 #[test]
-fn a_layout_of_a_profile_is_used_for_an_encoder() {
+fn uses_profile_layout_for_encoder() {
     let mut desk = connected("sim:?ssi=ahm36&rpm=6");
     let live = encoder(&desk).session.id;
     desk.act(Action::New(crate::tabs::SSI));
@@ -328,7 +328,7 @@ fn a_layout_of_a_profile_is_used_for_an_encoder() {
 }
 
 #[test]
-fn each_new_layout_has_a_separate_name_and_draft() {
+fn new_layouts_have_separate_names_and_drafts() {
     let mut desk = layout();
     edit(&mut desk, Edit::Family("ttk70".to_owned()));
     desk.act(Action::New(crate::tabs::SSI));
@@ -349,7 +349,7 @@ fn each_new_layout_has_a_separate_name_and_draft() {
 }
 
 #[test]
-fn another_link_to_the_same_wire_changes_the_reading_settings() {
+fn second_link_changes_reading_settings() {
     let mut desk = layout();
     let reading = |desk: &Desk| {
         let reading = &encoder(desk).design().profile.reading;
@@ -366,7 +366,7 @@ fn another_link_to_the_same_wire_changes_the_reading_settings() {
 }
 
 #[test]
-fn an_encoder_is_named_after_its_family() {
+fn encoder_is_named_after_family() {
     let mut desk = connected("sim:?ssi=ahm36");
     let before = encoder(&desk).session.name();
     edit(&mut desk, Edit::Family("ttk70".to_owned()));
@@ -376,7 +376,7 @@ fn an_encoder_is_named_after_its_family() {
 }
 
 #[test]
-fn an_adapter_without_ssi_is_reported() {
+fn reports_adapter_without_ssi() {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::SSI));
     desk.open("sim:?version=2");
@@ -388,7 +388,7 @@ fn an_adapter_without_ssi_is_reported() {
 }
 
 #[test]
-fn the_device_check_reports_faults() {
+fn device_check_reports_faults() {
     let verdicts = |link: &str| {
         let mut desk = connected(link);
         act(&mut desk, Ssi::Check);
@@ -401,7 +401,7 @@ fn the_device_check_reports_faults() {
 }
 
 #[test]
-fn the_virtual_encoder_sends_the_edited_layout() {
+fn virtual_encoder_sends_edited_layout() {
     let mut desk = connected("sim:?ssi=afs60&rpm=6");
     assert_eq!(encoder(&desk).link_for_layout(), None);
     edit(&mut desk, Edit::Family("ahm36".to_owned()));
@@ -423,7 +423,7 @@ fn the_virtual_encoder_sends_the_edited_layout() {
 
 /// The error bit of a 12-bit AHS36 is on clock 15, or follows the position on clock 13 (reference, section 8).
 #[test]
-fn dragging_a_boundary_changes_the_family_settings() {
+fn dragged_boundary_changes_family_settings() {
     let mut desk = layout();
     edit(&mut desk, Edit::Family("ahs36".to_owned()));
     act(&mut desk, Ssi::Move(Handle::StepsEnd, 12));
@@ -439,7 +439,7 @@ fn dragging_a_boundary_changes_the_family_settings() {
 }
 
 #[test]
-fn user_families_are_loaded_and_broken_ones_reported() {
+fn loads_user_families_and_reports_broken_ones() {
     let mut desk = Desk::fresh("");
     let folder = desk.outside.store().device_folder("ssi");
     std::fs::create_dir_all(&folder).unwrap();

@@ -12,7 +12,7 @@ use encoder_studio::link::{Direction, LinkUrl};
 use crate::support::{Desk, OTHER_PORT};
 
 #[test]
-fn the_studio_starts_with_the_virtual_encoder_and_no_polling() {
+fn starts_with_virtual_encoder_without_polling() {
     let desk = Desk::new_form("");
     let encoder = desk.encoder();
     assert_eq!(encoder.session.phase, Phase::Connected);
@@ -32,7 +32,7 @@ fn the_studio_starts_with_the_virtual_encoder_and_no_polling() {
 }
 
 #[test]
-fn nothing_is_sent_without_a_request() {
+fn sends_nothing_without_request() {
     let mut desk = Desk::new_form("");
     let (sent, frames) = (desk.wire().sent(), desk.encoder().session.trace.lines().len());
     assert_eq!(
@@ -49,14 +49,14 @@ fn nothing_is_sent_without_a_request() {
 }
 
 #[test]
-fn every_frame_is_shown_with_its_meaning() {
+fn shows_meaning_of_every_frame() {
     let desk = Desk::new_form("");
     let lines = desk.encoder().session.trace.lines();
     assert!(lines.iter().all(|line| !line.bytes.is_empty() && !line.meaning.is_empty()), "{lines:?}");
 }
 
 #[test]
-fn each_read_is_a_job_that_succeeds() {
+fn each_read_succeeds() {
     let mut desk = Desk::new_form("");
     let jobs = desk.studio.services.jobs().len();
     let id = desk.encoder().session.id;
@@ -80,7 +80,7 @@ fn each_read_is_a_job_that_succeeds() {
 }
 
 #[test]
-fn a_missing_value_is_a_result_and_not_a_warning() {
+fn missing_value_is_no_warning() {
     let mut desk = Desk::new_form("");
     desk.ask(Hiperface::ReadAnalogue(0x07));
     desk.until_ready();
@@ -89,7 +89,7 @@ fn a_missing_value_is_a_result_and_not_a_warning() {
 }
 
 #[test]
-fn a_restart_triggers_a_fresh_reading() {
+fn restart_triggers_fresh_reading() {
     let mut desk = Desk::new_form("");
     let surveys = desk.wire().count(0x52);
     desk.ask(Hiperface::Reset);
@@ -101,7 +101,7 @@ fn a_restart_triggers_a_fresh_reading() {
 }
 
 #[test]
-fn a_second_job_is_refused_with_a_message() {
+fn rejects_second_job() {
     let mut desk = Desk::new_form("");
     desk.wire().hold_at(0x50, 1);
     desk.ask(Hiperface::ReadStatus);
@@ -113,7 +113,7 @@ fn a_second_job_is_refused_with_a_message() {
 }
 
 #[test]
-fn two_encoders_are_shown_one_at_a_time() {
+fn shows_one_encoder_at_a_time() {
     let mut desk = Desk::new_form("");
     let first = desk.encoder().session.id;
     desk.open(&format!("serial:{OTHER_PORT}"));

@@ -84,7 +84,7 @@ fn is_locked(desk: &Desk) -> bool {
 
 /// Settings are merged by key, so each window's changes survive, however often the windows write in turn (issue 21.11).
 #[test]
-fn changes_of_each_window_survive_the_others_write() {
+fn concurrent_changes_survive() {
     let (mut first, mut second) = two();
     first.act(Action::SetTheme(ColorScheme::Light));
     first.studio.settings.use_link(crate::tabs::HIPERFACE, "tcp:first:1");
@@ -109,7 +109,7 @@ fn changes_of_each_window_survive_the_others_write() {
 /// neither reads nor writes anything. They are also locked in a window opened later, whatever the others write (issue
 /// 21.11).
 #[test]
-fn limits_marked_by_another_window_are_locked() {
+fn other_window_locks_limits() {
     let (mut first, mut second) = two();
     let mut bystander = first.outside.studio();
     let path = first.outside.store().settings_path();
@@ -134,7 +134,7 @@ fn limits_marked_by_another_window_are_locked() {
 /// Limits are confirmed only for the window in which the user does so. Another window keeps its lock, and marks the
 /// limits again if the scale changes again (issue 21.11).
 #[test]
-fn limits_are_confirmed_in_each_window() {
+fn confirms_limits_in_each_window() {
     let (mut first, mut second) = two();
     with_drives(&mut first);
     with_drives(&mut second);
@@ -164,7 +164,7 @@ fn limits_are_confirmed_in_each_window() {
 /// A value typed for a drive stays in its window, and is saved together with the values from the other window (issue
 /// 21.11).
 #[test]
-fn values_typed_for_a_drive_stay_in_their_window() {
+fn typed_values_stay_in_their_window() {
     let (mut first, mut second) = two();
     with_drives(&mut first);
     with_drives(&mut second);
@@ -234,7 +234,7 @@ fn concurrent_processes_lose_no_settings() {
 }
 
 #[test]
-#[ignore = "run in a process of its own by `a_killed_process_leaves_a_complete_file_and_no_lock`"]
+#[ignore = "run in a process of its own by `killed_process_leaves_complete_file`"]
 fn process_writing_forever() {
     let (mut studio, name) = studio_of_process();
     for number in 0_u32.. {
@@ -246,7 +246,7 @@ fn process_writing_forever() {
 
 /// The process is killed at a random moment while it writes (issue 21.11).
 #[test]
-fn a_killed_process_leaves_a_complete_file_and_no_lock() {
+fn killed_process_leaves_complete_file() {
     let mut desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
     for round in 0..8_u64 {

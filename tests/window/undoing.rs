@@ -50,7 +50,7 @@ fn plan(desk: &mut Desk, action: impl FnOnce(encoder_studio::app::SessionId) -> 
 const EXACTLY: &str = "The logbook can undo this write exactly.";
 
 #[test]
-fn a_write_of_each_kind_is_undone_as_announced() {
+fn undo_matches_announcement() {
     for case in CASES.into_iter().filter(|case| case.tab != tabs::NOVEL) {
         let mut desk = case.desk();
         case.edit(&mut desk, &[0x5A]);
@@ -75,7 +75,7 @@ fn a_write_of_each_kind_is_undone_as_announced() {
 }
 
 #[test]
-fn a_review_tells_beforehand_what_can_be_undone() {
+fn review_announces_undo() {
     let mut desk = case_of(tabs::HIPERFACE).desk();
     let hiperface = |change: HiperfaceChange| move |id| Action::device(id, Hiperface::Plan(change));
     case_of(tabs::HIPERFACE).edit(&mut desk, &[0x5A]);
@@ -101,7 +101,7 @@ fn a_review_tells_beforehand_what_can_be_undone() {
 }
 
 #[test]
-fn a_review_of_a_procedure_says_what_remains_to_be_done() {
+fn procedure_review_lists_remaining_steps() {
     let mut desk = case_of(tabs::BISS).desk();
     let run = MountingSteps { calibrate: true, ..MountingSteps::default() };
     let change = BissChange::Guided { run, motor: MotorSource::Other };

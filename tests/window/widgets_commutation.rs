@@ -34,7 +34,7 @@ impl Screen {
 }
 
 #[test]
-fn the_page_works_by_clicks_and_keys() {
+fn page_works_by_clicks_and_keys() {
     let mut screen = Screen::new_form(TALL);
     screen.click("page.commutation");
     assert!(!screen.is_enabled("commutation.read_one") && !screen.is_enabled("commutation.store"));
@@ -75,7 +75,7 @@ fn the_page_works_by_clicks_and_keys() {
 }
 
 #[test]
-fn entry_errors_are_shown_next_to_the_entry() {
+fn shows_errors_next_to_entry() {
     let mut screen = Screen::new_form(TALL);
     screen.click("page.commutation");
     let numbers = [

@@ -51,7 +51,7 @@ impl Screen {
 }
 
 #[test]
-fn clicking_leds_sets_the_observed_states() {
+fn clicking_leds_sets_observed_states() {
     let mut screen = page("sim:", "page.diagnosis");
     assert!(screen.shows("All requested drives are connected, and no others. No drive has an error."));
     screen.press(Role::RadioButton, "Device: Bus adapter");
@@ -70,7 +70,7 @@ fn clicking_leds_sets_the_observed_states() {
 }
 
 #[test]
-fn an_address_is_typed_checked_and_written() {
+fn checks_and_writes_typed_address() {
     let mut screen = page("sim:", "page.device");
     assert!(screen.shows("from a DHCP server") && !screen.is_enabled("hd_net.write"));
     screen.press(Role::RadioButton, "Address source: stored");
@@ -108,7 +108,7 @@ fn an_address_is_typed_checked_and_written() {
 }
 
 #[test]
-fn axis_setup_names_missing_steps_in_the_language() {
+fn axis_setup_names_missing_steps() {
     let mut screen = page("sim:?requested=0", "page.axis");
     screen.check_language();
     screen.click("hd_axis.begin");
@@ -129,7 +129,7 @@ fn axis_setup_names_missing_steps_in_the_language() {
 /// The limits keep their physical positions. A spindle with a pitch of 4 mm and steps of 0.01 mm has 400 steps per
 /// turn, and 511 turns in each direction are 2044 mm, or 204400 steps (reference, section 5).
 #[test]
-fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
+fn pitch_and_resolution_set_scale() {
     let mut screen = page("sim:", "page.parameters");
     screen.press(Role::RadioButton, "Show: Scaling");
     assert!(!screen.is_enabled("hd_scale.set"), "without a pitch there is no scale");
@@ -174,7 +174,7 @@ fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
 /// The user types a number into the table. An invalid one stays in its row with the reason, even after other rows were
 /// shown.
 #[test]
-fn parameters_can_be_typed_into_their_table() {
+fn accepts_typed_parameters() {
     let mut screen = page("sim:?hub=4&drives=1,0,1", "page.parameters");
     let row =
         |screen: &Screen, label: &str| screen.harness.query_by_role_and_label(Role::Row, label).map(|own| own.rect());
@@ -228,7 +228,7 @@ fn parameters_can_be_typed_into_their_table() {
 
 /// A second click that was meant for the previous step must not leave the new one.
 #[test]
-fn a_step_is_shown_before_it_can_be_left() {
+fn shows_step_before_leaving() {
     let mut screen = page("sim:", "page.axis");
     screen.click("hd_axis.begin");
     screen.steps();
@@ -244,7 +244,7 @@ fn a_step_is_shown_before_it_can_be_left() {
 
 /// A dialog blocks the controls below it, but not STOP.
 #[test]
-fn stop_is_reachable_over_a_dialog() {
+fn stop_is_reachable_over_dialog() {
     let mut screen = page("sim:", "page.motion");
     let id = screen.studio().hiperdrive().unwrap().session.id;
     let act = |screen: &mut Screen, action| screen.act(Action::device(id, action));
@@ -264,7 +264,7 @@ fn stop_is_reachable_over_a_dialog() {
 
 /// Whatever the drive reports, no clickable control moves, and the step stays until the user leaves it (issue 21.6 i).
 #[test]
-fn the_layout_of_a_step_does_not_shift() {
+fn step_layout_does_not_shift() {
     let mut screen = page("sim:", "page.axis");
     let advance = |screen: &mut Screen, step: AxisStep| {
         screen.click("hd_axis.next");

@@ -19,7 +19,7 @@ fn next_picture(screen: &Screen) -> Duration {
 }
 
 #[test]
-fn an_idle_window_requests_no_frame() {
+fn idle_window_requests_no_frame() {
     let mut screen = Screen::new_form(SIZE);
     for page in encoder_studio::kinds::program().tabs.page_text_ids(crate::tabs::HIPERFACE) {
         screen.click(page);
@@ -35,7 +35,7 @@ fn an_idle_window_requests_no_frame() {
 }
 
 #[test]
-fn results_from_a_thread_wake_the_window() {
+fn thread_results_wake_window() {
     let mut screen = Screen::new_form(SIZE);
     let wakes = screen.outside.wakes.clone();
     let before = wakes.load(std::sync::atomic::Ordering::SeqCst);
@@ -60,7 +60,7 @@ fn f5_reloads() {
 }
 
 #[test]
-fn control_enter_without_edits_is_reported() {
+fn reports_control_enter_without_edits() {
     let mut screen = Screen::new_form(SIZE);
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
     screen.steps();
@@ -69,7 +69,7 @@ fn control_enter_without_edits_is_reported() {
 }
 
 #[test]
-fn the_system_close_button_asks_before_losing_edits() {
+fn close_button_asks_before_losing_edits() {
     let mut screen = Screen::new_form(SIZE);
     screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
     let viewport = screen.harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();

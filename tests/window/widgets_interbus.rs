@@ -61,7 +61,7 @@ impl Screen {
 }
 
 #[test]
-fn an_edge_is_moved_in_the_chart_and_typed_in_the_table() {
+fn edits_edge_in_chart_and_table() {
     let mut screen = page();
     let (start, stop) = screen.cam(2);
     assert_eq!(screen.edge_values("Cam 2: start"), (start.to_string(), start.to_string()));
@@ -83,7 +83,7 @@ fn an_edge_is_moved_in_the_chart_and_typed_in_the_table() {
 }
 
 #[test]
-fn a_drag_is_one_undo_step() {
+fn drag_is_one_undo_step() {
     let mut screen = page();
     let before = screen.cam(0);
     let from = screen.of_role(Role::Slider, "Cam 0: stop").rect().center();
@@ -105,7 +105,7 @@ fn a_drag_is_one_undo_step() {
 }
 
 #[test]
-fn a_pasted_table_is_previewed_before_it_is_accepted() {
+fn previews_pasted_table() {
     let mut screen = page();
     let before = screen.cam(0);
     let text = "name;start;stop\nfeed;100;200\nglue;300;350\nglue;700;750\n";
@@ -127,7 +127,7 @@ fn a_pasted_table_is_previewed_before_it_is_accepted() {
 }
 
 #[test]
-fn conflicts_and_out_of_range_cams_are_marked_in_their_lanes() {
+fn marks_conflicting_and_out_of_range_cams() {
     let mut screen = page();
     for number in [1, 2] {
         screen.edit_cams(Edit::Name { program: program(), cam: cam(number), name: "glue".to_owned() });
@@ -151,7 +151,7 @@ fn conflicts_and_out_of_range_cams_are_marked_in_their_lanes() {
 }
 
 #[test]
-fn the_ring_edits_the_same_cams() {
+fn ring_edits_same_cams() {
     let mut screen = page();
     screen.click("ib_cams.ring");
     let (start, stop) = screen.cam(3);

@@ -49,14 +49,14 @@ fn check_every_page(screen: &mut Screen, size: [f32; 2]) {
 }
 
 #[test]
-fn every_page_is_drawn_with_the_virtual_encoder() {
+fn draws_pages_with_virtual_encoder() {
     for size in [LARGE, SMALL] {
         check_every_page(&mut Screen::new_form(size), size);
     }
 }
 
 #[test]
-fn every_page_is_drawn_with_a_virtual_biss_encoder() {
+fn draws_pages_with_virtual_biss_encoder() {
     for (link, size) in [("sim:?bridge=on", LARGE), ("sim:?errors=0x12&temperature=120", SMALL)] {
         let mut screen = Screen::opened_in(crate::tabs::BISS, link, size);
         screen.until("it is read", |studio| {
@@ -69,7 +69,7 @@ fn every_page_is_drawn_with_a_virtual_biss_encoder() {
 /// Values written in mode 04 but never saved are reported above the registers and the data, with a button that returns
 /// to operation (issue 22.15).
 #[test]
-fn unsaved_registers_are_reported_with_a_remedy() {
+fn unsaved_registers_name_remedy() {
     let outside = Outside::new("");
     outside.wire(KIT).enter(&[("0x6B", 0x2A), ("0x6A", 0x04), ("0x00:0x1A", 0x02), ("0x24:0x10", 0x5A)]);
     let mut studio = outside.studio();
@@ -99,7 +99,7 @@ fn unsaved_registers_are_reported_with_a_remedy() {
 
 /// If an encoder rejects a position request, the Live panel shows a message and fits into a small window.
 #[test]
-fn a_refused_position_keeps_the_panel_within_the_window() {
+fn rejected_position_keeps_panel_in_window() {
     let mut screen = Screen::opened(Outside::new("temperature=140&rpm=9000"), None, SMALL);
     screen
         .until("the encoder is read", |studio| studio.hiperface().is_some_and(|own| own.record.is_position_refused()));
@@ -110,7 +110,7 @@ fn a_refused_position_keeps_the_panel_within_the_window() {
 }
 
 #[test]
-fn every_page_is_drawn_with_a_virtual_ssi_encoder() {
+fn draws_pages_with_virtual_ssi_encoder() {
     for (link, size) in [("sim:?ssi=afm60,code=gray&rpm=6", LARGE), ("sim:?ssi=kh53&ssi-error=overspeed-or-gap", SMALL)]
     {
         let mut screen = Screen::opened_in(crate::tabs::SSI, link, size);
@@ -123,7 +123,7 @@ fn every_page_is_drawn_with_a_virtual_ssi_encoder() {
 }
 
 #[test]
-fn every_page_is_drawn_with_a_virtual_interbus_encoder() {
+fn draws_pages_with_virtual_interbus_encoder() {
     for (link, size) in [("sim:?steps=3600&revolutions=1&cams=demo&rpm=6", LARGE), ("sim:?program=3&cams=demo", SMALL)]
     {
         let mut screen = Screen::opened_in(crate::tabs::INTERBUS, link, size);
@@ -138,14 +138,14 @@ fn every_page_is_drawn_with_a_virtual_interbus_encoder() {
 }
 
 #[test]
-fn every_page_is_drawn_before_standstill_is_confirmed() {
+fn draws_pages_before_standstill_confirmation() {
     let mut screen = Screen::opened_in(crate::tabs::INTERBUS, &format!("modbus:{GATE}"), SMALL);
     screen.until("a word is read", |studio| studio.interbus().is_some_and(|own| own.record.last().is_some()));
     check_every_page(&mut screen, SMALL);
 }
 
 #[test]
-fn every_page_of_an_ssi_layout_is_drawn() {
+fn draws_pages_of_ssi_layout() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SMALL);
     screen.act(Action::ShowTab(crate::tabs::SSI));
     check_every_page(&mut screen, SMALL);
@@ -166,14 +166,14 @@ fn every_page_of_an_ssi_layout_is_drawn() {
 }
 
 #[test]
-fn every_page_is_drawn_with_a_missing_biss_encoder() {
+fn draws_pages_with_missing_biss_encoder() {
     let mut screen = Screen::opened_in(crate::tabs::BISS, "serial:/dev/nothing", SMALL);
     screen.until("it is told", |studio| studio.biss().is_some_and(|own| matches!(own.session.phase, Phase::Lost(_))));
     check_every_page(&mut screen, SMALL);
 }
 
 #[test]
-fn every_page_is_drawn_with_nothing_connected() {
+fn draws_pages_without_device() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SMALL);
     screen.until("it is told", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
     check_every_page(&mut screen, SMALL);
@@ -186,14 +186,14 @@ fn every_page_is_drawn_with_nothing_connected() {
 }
 
 #[test]
-fn every_page_is_drawn_while_a_link_opens() {
+fn draws_pages_while_link_opens() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SMALL);
     check_every_page(&mut screen, SMALL);
     assert!(screen.shows(&screen.say("shell.opening")));
 }
 
 #[test]
-fn every_page_is_drawn_with_all_values_of_an_encoder() {
+fn draws_pages_with_all_values() {
     let mut screen = Screen::opened(Outside::new("model=sel37&rpm=60"), None, LARGE);
     let ready = |studio: &encoder_studio::app::Studio| {
         studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
@@ -216,7 +216,7 @@ fn every_page_is_drawn_with_all_values_of_an_encoder() {
 }
 
 #[test]
-fn every_page_of_a_profile_is_drawn() {
+fn draws_pages_of_profile() {
     let outside = Outside::new("");
     let mut screen = Screen::opened(outside, Some(&format!("serial:{PORT}")), SMALL);
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperface");
@@ -229,7 +229,7 @@ fn every_page_of_a_profile_is_drawn() {
 }
 
 #[test]
-fn the_connect_dialog_opens_by_click_and_closes_with_escape() {
+fn escape_closes_connect_dialog() {
     for size in [LARGE, SMALL] {
         let mut screen = Screen::new_form(size);
         screen.click("shell.connect");
@@ -264,7 +264,7 @@ fn the_connect_dialog_opens_by_click_and_closes_with_escape() {
 }
 
 #[test]
-fn a_search_is_started_and_a_result_chosen_by_click() {
+fn clicks_start_search_and_choose_result() {
     let mut screen = Screen::opened(Outside::new("address=0x44"), None, LARGE);
     screen.act(Action::Connect(Connect::Open));
     screen.act(Action::Connect(Connect::Use(format!("serial:{PORT}"))));
@@ -281,7 +281,7 @@ fn a_search_is_started_and_a_result_chosen_by_click() {
 }
 
 #[test]
-fn f1_opens_help_and_escape_closes_it() {
+fn f1_opens_and_escape_closes_help() {
     let mut screen = Screen::new_form(SMALL);
     for (page, help) in encoder_studio::kinds::program().tabs.page_text_ids(crate::tabs::HIPERFACE).into_iter().zip([
         "help.encoder",
@@ -304,7 +304,7 @@ fn f1_opens_help_and_escape_closes_it() {
 }
 
 #[test]
-fn language_and_theme_change_with_one_click() {
+fn one_click_changes_language_and_theme() {
     let mut screen = Screen::new_form(LARGE);
     let pages = encoder_studio::kinds::program().tabs.page_text_ids(crate::tabs::HIPERFACE);
     let english: Vec<String> = pages.iter().map(|page| screen.say(page)).collect();
@@ -324,7 +324,7 @@ fn language_and_theme_change_with_one_click() {
 
 /// The system has no file dialogs.
 #[test]
-fn a_path_can_be_typed_without_a_file_dialog() {
+fn accepts_typed_path_without_file_dialog() {
     let mut screen = Screen::new_form(SMALL);
     let session = screen.encoder().session.id;
     for question in [FileQuestion::Open, FileQuestion::Save { session, suggested: "x.ron".into() }] {

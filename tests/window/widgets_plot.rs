@@ -58,7 +58,7 @@ fn drag(screen: &mut Screen, button: PointerButton, from: Pos2, to: Pos2) {
 }
 
 #[test]
-fn the_plot_pauses_and_continues() {
+fn plot_pauses_and_continues() {
     let mut screen = recorded();
     assert!(recorder(&screen).follows_newest());
     screen.click("recorder.pause");
@@ -75,7 +75,7 @@ fn the_plot_pauses_and_continues() {
 }
 
 #[test]
-fn dragging_zooms_into_a_box_and_a_double_click_shows_all() {
+fn drag_zooms_and_double_click_resets() {
     let mut screen = recorded();
     screen.click("recorder.fit");
     let (whole_from, whole_to) = recorder(&screen).window_bounds();
@@ -117,7 +117,7 @@ fn switch_cursors(screen: &mut Screen) {
 }
 
 #[test]
-fn cursors_are_shown_dragged_and_read() {
+fn shows_drags_and_reads_cursors() {
     let mut screen = recorded();
     screen.click("recorder.fit");
     switch_cursors(&mut screen);
@@ -144,7 +144,7 @@ fn cursors_are_shown_dragged_and_read() {
 }
 
 #[test]
-fn lines_can_be_hidden_and_shown_in_other_units() {
+fn hides_lines_and_changes_units() {
     let mut screen = recorded();
     screen.click("recorder.lines");
     let speed = screen.say("recorder.speed");
@@ -162,7 +162,7 @@ fn lines_can_be_hidden_and_shown_in_other_units() {
 }
 
 #[test]
-fn a_trigger_can_be_set_armed_and_switched_off() {
+fn sets_arms_and_disables_trigger() {
     let mut screen = recorded();
     for (level, works) in [("high", false), ("", false), ("1e999", false), ("250,5", true)] {
         screen.click("recorder.trigger");
@@ -197,7 +197,7 @@ fn a_trigger_can_be_set_armed_and_switched_off() {
 }
 
 #[test]
-fn the_plot_can_be_enlarged_and_restored() {
+fn enlarges_and_restores_plot() {
     let mut screen = recorded();
     let small = chart(&screen).width();
     screen.click("recorder.large");
@@ -210,7 +210,7 @@ fn the_plot_can_be_enlarged_and_restored() {
 }
 
 #[test]
-fn the_keyboard_moves_and_zooms() {
+fn keyboard_pans_and_zooms() {
     let mut screen = recorded();
     screen.click("recorder.fit");
     let whole = recorder(&screen).window_length();
@@ -231,7 +231,7 @@ fn the_keyboard_moves_and_zooms() {
 }
 
 #[test]
-fn a_table_can_be_exported_from_the_menu() {
+fn menu_exports_table() {
     let mut screen = recorded();
     let of = Of::Device(screen.encoder().session.id);
     screen.click("recorder.export");

@@ -20,7 +20,7 @@ const OWN: &str = "(schema: 1, device: \"hiperface\",\n\
 /// Ctrl+S writes the open file. If others have changed it, both versions are shown side by side, in both languages, and
 /// each button has the labelled effect (issue 22.25).
 #[test]
-fn both_versions_are_shown_side_by_side() {
+fn shows_versions_side_by_side() {
     let outside = Outside::new("");
     let path = outside.path("own.ron");
     fs::write(&path, OWN).unwrap();

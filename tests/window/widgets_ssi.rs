@@ -20,7 +20,7 @@ fn layout() -> Screen {
 }
 
 #[test]
-fn a_moved_boundary_is_undone_by_key() {
+fn key_undoes_moved_boundary() {
     let mut screen = layout();
     let dirty = |screen: &Screen| screen.studio().ssi().unwrap().is_dirty();
     let boundary = screen.say("ssi.strip_split");
@@ -35,7 +35,7 @@ fn a_moved_boundary_is_undone_by_key() {
 }
 
 #[test]
-fn words_arriving_while_typing_do_not_replace_the_typed_text() {
+fn incoming_words_keep_typed_text() {
     let mut screen = Screen::opened_in(crate::tabs::SSI, "sim:?ssi=afs60&rpm=6", SIZE);
     screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.is_showing_live()));
     let id = screen.studio().ssi().unwrap().session.id;
@@ -60,7 +60,7 @@ fn words_arriving_while_typing_do_not_replace_the_typed_text() {
 
 /// A picture is drawn without showing its source, and text is shown as text.
 #[test]
-fn exports_are_shown_in_their_format() {
+fn shows_exports_in_their_format() {
     let mut screen = layout();
     screen.click("page.export");
     assert!(screen.shows("Frame length"), "the settings sheet");
@@ -78,7 +78,7 @@ fn exports_are_shown_in_their_format() {
 /// Frames from a file are listed and decoded with the layout, and a click loads a frame into the editor. They are
 /// frames of an AHM36 in Gray code (reference, section 8).
 #[test]
-fn frames_of_a_file_are_listed_and_tried() {
+fn lists_and_tries_frames_from_file() {
     let mut screen = layout();
     let id = screen.studio().ssi().unwrap().session.id;
     let folder = tempfile::tempdir().unwrap();
@@ -97,7 +97,7 @@ fn frames_of_a_file_are_listed_and_tried() {
 
 /// The strip, the position and the bits are visible without scrolling at 1280 × 800.
 #[test]
-fn the_frame_page_fits_the_window() {
+fn frame_page_fits_window() {
     let screen = layout();
     for (role, id) in [
         (Role::Slider, "ssi_layout.title"),

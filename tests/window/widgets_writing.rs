@@ -26,7 +26,7 @@ fn type_bytes(screen: &mut Screen, digits: &str) {
 }
 
 #[test]
-fn a_byte_is_typed_reviewed_written_and_read_back() {
+fn types_reviews_and_writes_byte() {
     let mut screen = Screen::new_form(SIZE);
     screen.click("page.memory");
     assert!(!screen.is_enabled("memory.review"), "nothing is edited");
@@ -61,7 +61,7 @@ fn a_byte_is_typed_reviewed_written_and_read_back() {
 }
 
 #[test]
-fn the_review_is_closed_with_escape_and_writes_nothing() {
+fn escape_closes_review_without_writing() {
     let mut screen = Screen::new_form(SIZE);
     type_bytes(&mut screen, "58");
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
@@ -83,7 +83,7 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
 /// Previously, Enter was ignored right after another key, even if that was Ctrl. Ctrl+Enter therefore did nothing in
 /// the hex editor, which is not a text entry (issue 26).
 #[test]
-fn ctrl_and_enter_pressed_together_open_the_review() {
+fn ctrl_enter_opens_review() {
     let mut screen = Screen::new_form(SIZE);
     type_bytes(&mut screen, "58");
     for _ in 0..8 {
@@ -100,7 +100,7 @@ fn ctrl_and_enter_pressed_together_open_the_review() {
 
 /// A write that needs a permission cannot be started without it (issue 22.4).
 #[test]
-fn without_a_logbook_the_write_button_needs_a_permission() {
+fn write_button_without_logbook_needs_permission() {
     let mut screen = Screen::new_form(SIZE);
     let logbook = screen.outside.store().logbook_path();
     // The logbook exists because the connection is already recorded.
@@ -118,7 +118,7 @@ fn without_a_logbook_the_write_button_needs_a_permission() {
 }
 
 #[test]
-fn actions_a_field_does_not_allow_are_disabled() {
+fn disables_actions_disallowed_by_field() {
     let mut screen = Screen::new_form(SIZE);
     screen.click("page.memory");
     assert!(screen.is_enabled("memory.delete"), "it is the last");
@@ -146,7 +146,7 @@ fn actions_a_field_does_not_allow_are_disabled() {
 }
 
 #[test]
-fn stop_is_enabled_only_while_a_job_runs() {
+fn enables_stop_only_during_job() {
     let mut screen = Screen::new_form(SIZE);
     assert!(!screen.is_enabled("shell.stop"));
     screen.outside.wire(PORT).hold_at(0x46, 1);
@@ -166,7 +166,7 @@ fn stop_is_enabled_only_while_a_job_runs() {
 }
 
 #[test]
-fn a_restore_can_be_stopped_by_click() {
+fn click_stops_restore() {
     let mut screen = Screen::new_form(SIZE);
     for address in [0, 2, 4] {
         let edit = Hiperface::Put { field: 0, address, bytes: vec![0] };
@@ -195,7 +195,7 @@ fn a_restore_can_be_stopped_by_click() {
 }
 
 #[test]
-fn a_pulled_cable_offers_to_reconnect_and_keeps_the_edits() {
+fn pulled_cable_offers_reconnect() {
     let mut screen = Screen::opened(Outside::new(""), Some(&format!("serial:{PORT}")), SIZE);
     screen.until("it is read", |studio| {
         studio.hiperface().is_some_and(|own| own.session.is_ready() && own.identity.is_some())
@@ -213,7 +213,7 @@ fn a_pulled_cable_offers_to_reconnect_and_keeps_the_edits() {
 }
 
 #[test]
-fn closing_with_edits_asks_and_can_be_declined() {
+fn can_decline_closing_with_edits() {
     let mut screen = Screen::new_form(SIZE);
     type_bytes(&mut screen, "58");
     screen.act(Action::Close);
@@ -226,7 +226,7 @@ fn closing_with_edits_asks_and_can_be_declined() {
 }
 
 #[test]
-fn a_notice_stays_until_dismissed() {
+fn notice_stays_until_dismissed() {
     let mut screen = Screen::new_form(SIZE);
     screen.act(Action::Open(screen.outside.path("none.ron")));
     screen.until("it is told", |studio| studio.services.log.current().is_some());

@@ -20,7 +20,7 @@ use crate::texts;
 const RATED: usize = 19;
 
 #[test]
-fn a_byte_is_edited_reviewed_written_and_read_back() {
+fn edits_reviews_and_writes_byte() {
     let mut desk = Desk::new_form("");
     desk.put(0, RATED, &[0x23]);
     let staged = &desk.encoder().staged;
@@ -52,7 +52,7 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
 }
 
 #[test]
-fn a_device_is_assigned_to_an_asset() {
+fn assigns_device_to_asset() {
     let mut desk = Desk::new_form("");
     assert_eq!(desk.encoder().session.asset, None);
     desk.command(DeviceCommand::Assign("Achse 7".parse().unwrap()));
@@ -64,7 +64,7 @@ fn a_device_is_assigned_to_an_asset() {
 }
 
 #[test]
-fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
+fn write_leaves_backup_and_logbook_entry() {
     let mut desk = Desk::new_form("");
     desk.put(0, RATED, &[0x23]);
     desk.write();
@@ -100,7 +100,7 @@ fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
 }
 
 #[test]
-fn nothing_is_written_without_consent() {
+fn writes_nothing_without_consent() {
     let mut desk = Desk::new_form("");
     let before = desk.wire().field(0);
     desk.put(0, 0, b"X");
@@ -136,7 +136,7 @@ fn write_pressed_twice_writes_once() {
 }
 
 #[test]
-fn equal_bytes_are_not_written() {
+fn does_not_write_equal_bytes() {
     let mut desk = Desk::new_form("");
     desk.command(DeviceCommand::Review);
     assert_eq!(desk.notice_ids(Severity::Note).last(), Some(&"session.nothing_edited"));
@@ -150,7 +150,7 @@ fn equal_bytes_are_not_written() {
 }
 
 #[test]
-fn edits_made_after_planning_are_not_written() {
+fn does_not_write_edits_after_planning() {
     let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -163,7 +163,7 @@ fn edits_made_after_planning_are_not_written() {
 }
 
 #[test]
-fn an_encoder_changed_since_the_plan_is_not_written() {
+fn does_not_write_encoder_changed_since_plan() {
     let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -177,7 +177,7 @@ fn an_encoder_changed_since_the_plan_is_not_written() {
 }
 
 #[test]
-fn consent_covers_only_the_plan_that_was_shown() {
+fn consent_covers_only_shown_plan() {
     let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -197,7 +197,7 @@ fn consent_covers_only_the_plan_that_was_shown() {
 }
 
 #[test]
-fn an_earlier_forced_write_does_not_force_another_plan() {
+fn forced_write_does_not_force_next_plan() {
     let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.write();
@@ -214,7 +214,7 @@ fn an_earlier_forced_write_does_not_force_another_plan() {
 }
 
 #[test]
-fn changes_that_would_discard_edits_are_refused() {
+fn rejects_changes_that_discard_edits() {
     let mut desk = Desk::new_form("");
     desk.put(0, 20, b"X");
     let (memory, first) = (desk.encoder().identity.as_ref().unwrap().memory.unwrap(), desk.encoder().field(0).unwrap());
@@ -233,7 +233,7 @@ fn changes_that_would_discard_edits_are_refused() {
 }
 
 #[test]
-fn a_field_with_an_unknown_access_code_is_not_changed() {
+fn field_with_unknown_code_stays_unchanged() {
     let mut desk = Desk::at_port("codes=0:9D");
     let why = crate::texts::text("rules.code_unknown").with("field", 0).with("number", AccessCodeNumber::ZERO);
     let small = FieldSize::from_bytes(16).unwrap();
@@ -251,7 +251,7 @@ fn a_field_with_an_unknown_access_code_is_not_changed() {
 }
 
 #[test]
-fn an_access_code_is_checked_and_never_shown() {
+fn checks_and_hides_access_code() {
     let mut desk = Desk::at_port("codes=0:9D");
     for (code, id) in [("1C", "session.code_wrong"), ("9D", "session.code_fits")] {
         let code = forms::access_code(code).unwrap();
@@ -268,7 +268,7 @@ fn an_access_code_is_checked_and_never_shown() {
 
 /// Lists and backups requested before the encoder was replaced are dropped when they arrive.
 #[test]
-fn late_results_for_another_encoder_are_dropped() {
+fn drops_late_results_for_another_encoder() {
     let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.write();
@@ -336,7 +336,7 @@ fn refused(desk: &mut Desk, change: Change) -> Text {
 }
 
 #[test]
-fn changes_against_the_field_rules_are_refused_with_a_reason() {
+fn rejects_changes_against_field_rules() {
     let mut desk = with_two_fields();
     let memory = desk.encoder().identity.as_ref().unwrap().memory.unwrap();
     let first = desk.encoder().field(0).unwrap().clone();
@@ -359,7 +359,7 @@ fn changes_against_the_field_rules_are_refused_with_a_reason() {
 }
 
 #[test]
-fn a_field_exceeding_the_memory_is_refused() {
+fn rejects_field_exceeding_memory() {
     let mut desk = Desk::new_form("");
     // 112 blocks minus two for the name plate: 13 fields of 128 bytes leave six blocks.
     let size = FieldSize::from_bytes(128).unwrap();
@@ -375,7 +375,7 @@ fn a_field_exceeding_the_memory_is_refused() {
 }
 
 #[test]
-fn a_write_protected_field_cannot_be_edited() {
+fn write_protected_field_cannot_be_edited() {
     let mut desk = Desk::new_form("");
     change(&mut desk, Change::LockField { number: 0, lock: true });
     desk.put(0, 0, b"X");
@@ -387,7 +387,7 @@ fn a_write_protected_field_cannot_be_edited() {
 }
 
 #[test]
-fn an_edit_outside_a_field_is_refused_with_a_reason() {
+fn rejects_edit_outside_field() {
     let mut desk = Desk::new_form("");
     desk.put(0, 31, &[1, 2]);
     desk.put(3, 0, &[1]);
@@ -398,7 +398,7 @@ fn an_edit_outside_a_field_is_refused_with_a_reason() {
 }
 
 #[test]
-fn a_protected_field_opens_with_its_code_and_keeps_edits_after_losing_it() {
+fn protected_field_opens_with_code() {
     let mut desk = Desk::at_port("codes=0:9D");
     assert_eq!(desk.encoder().field(0).unwrap().bytes, None);
     desk.put(0, 0, b"X");

@@ -24,7 +24,7 @@ fn set_by_another(desk: &Desk) {
 
 /// The position jumps at standstill, and everything based on the reference becomes invalid (issue 21.6 c).
 #[test]
-fn a_reference_changed_by_another_master_is_detected() {
+fn detects_reference_change_by_another_master() {
     let mut desk = other_mode_text();
     assert_eq!(axis(&desk).invalidated_step(), None);
     set_by_another(&desk);
@@ -38,7 +38,7 @@ fn a_reference_changed_by_another_master_is_detected() {
 /// While the connection was lost, the axis may also have been moved. The change is therefore reported without stating a
 /// cause (issue 21.6 c).
 #[test]
-fn a_position_change_while_disconnected_is_reported() {
+fn reports_position_change_while_disconnected() {
     let mut desk = other_mode_text();
     let target = unit(&desk).target.clone().unwrap();
     target.set_faults(&"silent-after:0".parse().unwrap());
