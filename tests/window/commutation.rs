@@ -107,7 +107,7 @@ fn complete_run_stores_offset() {
     // The readings take place while the position is polled.
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::ZERO)));
     desk.read(VectorSlot::OneSide);
-    let reading = *desk.encoder().commutation.reading_of(VectorSlot::OneSide).unwrap();
+    let reading = *desk.encoder().commutation.reading_at(VectorSlot::OneSide).unwrap();
     // (409 − 511.5) · 5/1023 V and (511 − 511.5) · 5/1023 V give φ = 0.749 223 64. The middle of step 24 is 0.525 steps
     // further.
     assert!((reading.fine_periods - 100.749_223_64).abs() < 1e-8, "{reading:?}");
@@ -259,7 +259,7 @@ fn method_2_sets_position_in_phase() {
     desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.encoder().position_set, Some((3224, 120)));
-    assert_eq!(desk.encoder().commutation.reading_of(VectorSlot::OneSide), None, "that was another zero");
+    assert_eq!(desk.encoder().commutation.reading_at(VectorSlot::OneSide), None, "that was another zero");
     assert_eq!(desk.offset(), Err("commutation.no_reading"));
 }
 
@@ -304,7 +304,7 @@ fn rejects_moving_shaft_at_entry() {
     desk.prepare();
     desk.read(VectorSlot::OneSide);
     assert_eq!(desk.why_not(), Some("encoder.moving"));
-    assert!(desk.encoder().commutation.reading_of(VectorSlot::OneSide).is_none());
+    assert!(desk.encoder().commutation.reading_at(VectorSlot::OneSide).is_none());
     assert!(desk.notice_ids(Severity::Error).contains(&"encoder.moving"), "and stands in the log");
     desk.edit(|_| {});
     assert_eq!(desk.why_not(), None);
@@ -332,11 +332,11 @@ fn reports_position_out_of_phase() {
     desk.until_written();
     desk.ask(Hiperface::CloseReview);
     desk.read(VectorSlot::OneSide);
-    let kind = desk.encoder().commutation.reading_of(VectorSlot::OneSide).unwrap().kind;
+    let kind = desk.encoder().commutation.reading_at(VectorSlot::OneSide).unwrap().kind;
     assert!(matches!(kind, PositionKind::Fine { verdict: Verdict::Warn, .. }), "{kind:?}");
     desk.edit(|form| form.source = Source::Absolute);
     desk.read(VectorSlot::OtherSide);
-    let reading = desk.encoder().commutation.reading_of(VectorSlot::OtherSide).unwrap();
+    let reading = desk.encoder().commutation.reading_at(VectorSlot::OtherSide).unwrap();
     assert_eq!((reading.fine_periods, reading.kind), (20.5 / 32.0, PositionKind::Absolute));
 }
 
@@ -349,7 +349,7 @@ fn readings_survive_lost_cable() {
     desk.assist(Assistant::Read(VectorSlot::OtherSide));
     desk.until("it is lost", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
     assert_eq!(desk.encoder().commutation.pending_slot(), None);
-    assert!(desk.encoder().commutation.reading_of(VectorSlot::OneSide).is_some());
+    assert!(desk.encoder().commutation.reading_at(VectorSlot::OneSide).is_some());
     desk.assist(Assistant::Read(VectorSlot::OtherSide));
     assert_eq!(desk.why_not(), Some("commutation.not_ready"));
     desk.wire().plug();
@@ -364,7 +364,7 @@ fn readings_survive_lost_cable() {
     desk.command(DeviceCommand::Reconnect);
     desk.until_read();
     assert_eq!(desk.encoder().commutation.form, Form::default(), "nothing of it is for this one");
-    assert!(desk.encoder().commutation.reading_of(VectorSlot::OneSide).is_none());
+    assert!(desk.encoder().commutation.reading_at(VectorSlot::OneSide).is_none());
 }
 
 #[test]

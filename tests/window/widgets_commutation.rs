@@ -49,7 +49,7 @@ fn page_works_by_clicks_and_keys() {
     let read = |slot| {
         move |studio: &encoder_studio::app::Studio| {
             let encoder = studio.hiperface().unwrap();
-            encoder.session.is_ready() && encoder.commutation.reading_of(slot).is_some()
+            encoder.session.is_ready() && encoder.commutation.reading_at(slot).is_some()
         }
     };
     screen.until("one side is read", read(VectorSlot::OneSide));
@@ -57,7 +57,7 @@ fn page_works_by_clicks_and_keys() {
     screen.click("commutation.read_other");
     screen.until("the other side is read", read(VectorSlot::OtherSide));
     let second = format!("{} · {}", screen.say("commutation.in_second"), screen.say("commutation.fine"));
-    let there = screen.encoder().commutation.reading_of(VectorSlot::OneSide).unwrap().fine_periods + 8.0;
+    let there = screen.encoder().commutation.reading_at(VectorSlot::OneSide).unwrap().fine_periods + 8.0;
     screen.fill_in(&second, &format!("{there:.5}"));
     screen.click("commutation.use_second");
     assert!(screen.encoder().commutation.is_confirmed(screen.encoder().geometry()));

@@ -46,7 +46,7 @@ pub(super) fn parse_code(text: &str) -> Option<AccessCode> {
 }
 
 /// Returns the access codes from the environment, followed by those from the command line.
-pub(super) fn given_codes(option: &AccessCodeArgs) -> Result<InitialAccessCodes> {
+pub(super) fn collect_access_codes(option: &AccessCodeArgs) -> Result<InitialAccessCodes> {
     let mut codes = Vec::new();
     if let Ok(text) = std::env::var("ENCODER_STUDIO_CODES") {
         for code in text.split(',').filter(|code| !code.trim().is_empty()) {

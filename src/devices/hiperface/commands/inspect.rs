@@ -45,7 +45,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output, find: &FindArgs) -> Res
     let options = FindOptions { one_encoder: find.one_encoder, power_cycle };
     match runner.run(HiperfaceJob::Find(options))? {
         HiperfaceOutput::Found(EncoderSearchResult::Searched { found, complete }) => {
-            show_found(output, &found)?;
+            show_found_encoders(output, &found)?;
             if !complete {
                 return Err(Failure::Failed(vec![
                     "Cancelled: the search is incomplete, so there may be more encoders.".to_owned(),
@@ -68,7 +68,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output, find: &FindArgs) -> Res
     }
 }
 
-fn show_found(output: &Output, found: &[FoundEncoder]) -> Result<()> {
+fn show_found_encoders(output: &Output, found: &[FoundEncoder]) -> Result<()> {
     let types = EncoderTypes::built_in();
     let name = |found: &FoundEncoder| {
         types.find(found.label.encoder_type).map_or("unknown type".to_owned(), |row| row.name.clone())

@@ -68,7 +68,7 @@ impl DeviceCommands for HiperfaceCommands {
     }
 
     fn add_given(&self, options: &KindOptions, given: TypeMap) -> Result<TypeMap> {
-        Ok(given.with_value(codes::given_codes(&options.read()?)?))
+        Ok(given.with_value(codes::collect_access_codes(&options.read()?)?))
     }
 
     fn refused_option(&self, option: &str) -> Option<String> {

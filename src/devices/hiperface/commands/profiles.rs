@@ -52,7 +52,7 @@ impl ProfileCommands for HiperfaceCommands {
             output.print_message(&explain::other_type(types).terminal_text());
         }
         check_copy_decisions(output, &prepared, restore.dry_run)?;
-        if let Some(text) = explain::undeleted_fields_text(&prepared.created_left) {
+        if let Some(text) = explain::remaining_fields_text(&prepared.created_left) {
             output.print_message(&text.terminal_text());
         }
         for item in prepared.missing.iter().filter(|item| restore.must_report(&item.to_string())) {

@@ -37,7 +37,7 @@ impl CliDevice for Hiperface {
         if let DeviceMessage::CodesLost(count) = remark {
             write_stderr(&format!("{}\n", explain::unanswered_codes(*count).terminal_text()));
         }
-        for code in codes_in_message(remark) {
+        for code in message_codes(remark) {
             let kind = if code.is_warning() { "warning" } else { "error" };
             write_stderr(&format!("encoder {kind}: {code}\n"));
         }
@@ -49,10 +49,10 @@ impl CliDevice for Hiperface {
 }
 
 pub(super) fn reported_codes(runner: &Runner) -> Vec<StatusCode> {
-    runner.remarks.iter().flat_map(codes_in_message).copied().collect()
+    runner.remarks.iter().flat_map(message_codes).copied().collect()
 }
 
-fn codes_in_message(remark: &DeviceMessage) -> &[StatusCode] {
+fn message_codes(remark: &DeviceMessage) -> &[StatusCode] {
     match remark {
         DeviceMessage::Codes(codes) => codes,
         DeviceMessage::CodesLost(_) | DeviceMessage::Found(_) | DeviceMessage::Line(_) => &[],

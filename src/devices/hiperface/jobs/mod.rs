@@ -80,7 +80,7 @@ impl Hiperface {
     /// minute.
     fn record_sampled_codes(&mut self, context: &mut SessionContext) {
         let codes = self.station.take_unlogged_codes();
-        if !codes.is_empty() && self.status.mark_and_check_new(&codes, context.clock.now()) {
+        if !codes.is_empty() && self.status.insert_codes(&codes, context.clock.now()) {
             self.store_codes(context, &codes);
         }
     }

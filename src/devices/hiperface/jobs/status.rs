@@ -19,7 +19,7 @@ pub(super) struct RecentStatusCodes(Vec<(StatusCode, Moment)>);
 impl RecentStatusCodes {
     /// Returns whether any of these codes is new, that is, not recorded within the last minute. Marks all of them as
     /// recorded.
-    pub(super) fn mark_and_check_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
+    pub(super) fn insert_codes(&mut self, codes: &[StatusCode], now: Moment) -> bool {
         self.0.retain(|(_, kept)| now.duration_since(*kept) < REPEAT_INTERVAL);
         let mut is_new = false;
         for code in codes {
@@ -58,10 +58,10 @@ mod tests {
         let mut keeper = RecentStatusCodes::default();
         let at = |seconds| Moment::default() + Duration::from_secs(seconds);
         let (hot, fast) = (StatusCode::TEMPERATURE, StatusCode::TOO_FAST);
-        assert!(keeper.mark_and_check_new(&[hot], at(0)));
-        assert!(!keeper.mark_and_check_new(&[hot], at(59)));
-        assert!(keeper.mark_and_check_new(&[hot, fast], at(59)), "another one came");
-        assert!(keeper.mark_and_check_new(&[hot], at(60)));
-        assert!(!keeper.mark_and_check_new(&[fast, hot], at(100)));
+        assert!(keeper.insert_codes(&[hot], at(0)));
+        assert!(!keeper.insert_codes(&[hot], at(59)));
+        assert!(keeper.insert_codes(&[hot, fast], at(59)), "another one came");
+        assert!(keeper.insert_codes(&[hot], at(60)));
+        assert!(!keeper.insert_codes(&[fast, hot], at(100)));
     }
 }

@@ -14,7 +14,7 @@ use crate::devices::hiperface::protocol::{Answer, BAUDS, BROADCAST, DeviceAddres
 use crate::units::{Baud, CharacterFormat, Parity};
 
 /// Time for which the search listens for traffic from a running machine.
-pub const LISTEN: Duration = Duration::from_secs(1);
+pub const LISTEN_DURATION: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FindOptions {
@@ -114,14 +114,14 @@ impl Search<'_> {
         let per_format = 32 + u64::from(options.one_encoder);
         let total = 1 + per_format * formats.len() as u64;
         self.report_progress(0, total, &SearchStep::Listening);
-        let heard = master.read_pending(LISTEN)?;
+        let heard = master.read_pending(LISTEN_DURATION)?;
         if !heard.is_empty() {
             return Ok(Some(heard.len()));
         }
         if let Some(patience) = options.power_cycle {
             self.report_progress(0, total, &SearchStep::DefaultWindow);
             let hit = search_in_default_window(master, patience, options.one_encoder)?;
-            self.add_found(hit);
+            self.add_found_encoder(hit);
         }
         let mut done = 1;
         for format in formats {
@@ -135,7 +135,7 @@ impl Search<'_> {
                     continue;
                 }
                 let hit = probe_address(master, address, format)?;
-                self.add_found(hit);
+                self.add_found_encoder(hit);
             }
         }
         Ok(None)
@@ -145,7 +145,7 @@ impl Search<'_> {
         (self.watch)(SearchProgress::Trying { done, total, attempt });
     }
 
-    fn add_found(&mut self, hit: Option<FoundEncoder>) {
+    fn add_found_encoder(&mut self, hit: Option<FoundEncoder>) {
         if let Some(hit) = hit.filter(|hit| !self.found.contains(hit)) {
             (self.watch)(SearchProgress::Found(&hit));
             self.found.push(hit);

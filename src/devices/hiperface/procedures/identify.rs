@@ -120,7 +120,7 @@ pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
 /// # Errors
 /// Returns an error if the exchange fails or the encoder rejects the request.
 pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
-    master.request_with_time(&Request::ReadTypeLabel).map(|timed| timed.sender)
+    master.request_timed(&Request::ReadTypeLabel).map(|timed| timed.sender)
 }
 
 /// Reads the complete data field FFh: its size with command 4Ch, and its content with command 4Ah and code 0.

@@ -88,7 +88,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// Returns an error if every attempt fails, the encoder rejects the request, or the user cancels.
     pub(super) fn request(&mut self, request: &Request) -> Result<Reply, Error> {
-        self.request_with_time(request).map(|timed| timed.reply)
+        self.request_timed(request).map(|timed| timed.reply)
     }
 
     /// Runs `work` with every reply received twice, for values that will be stored.
@@ -120,7 +120,7 @@ impl<'a> Master<'a> {
         Err(Error::Damaged { command: request.command(), tries: MAX_ATTEMPTS, cause: ReplyDamage::Inconsistent })
     }
 
-    pub(super) fn request_with_time(&mut self, request: &Request) -> Result<TimedReply, Error> {
+    pub(super) fn request_timed(&mut self, request: &Request) -> Result<TimedReply, Error> {
         let mut tries = 0;
         loop {
             tries += 1;

@@ -27,7 +27,7 @@ pub struct PositionReading {
 /// Returns an error if the exchange fails or the encoder does not report a position.
 pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PositionReading, Error> {
     let met_before = master.station().codes_to_display.len();
-    let timed = master.request_with_time(&Request::ReadPosition)?;
+    let timed = master.request_timed(&Request::ReadPosition)?;
     let Reply::Position(raw) = timed.reply else {
         return Err(Error::unexpected_reply(Command::ReadPosition, &timed.reply));
     };
@@ -140,7 +140,7 @@ pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error>
 
 /// Reads an analogue channel, and returns its value with the time at which the encoder sampled it.
 fn request_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), Error> {
-    let timed = master.request_with_time(&Request::ReadAnalogue { channel })?;
+    let timed = master.request_timed(&Request::ReadAnalogue { channel })?;
     match timed.reply {
         Reply::Analogue(value) => Ok((timed.at, value)),
         other => Err(Error::unexpected_reply(Command::ReadAnalogue, &other)),

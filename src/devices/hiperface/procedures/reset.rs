@@ -10,9 +10,9 @@ use crate::units::CharacterFormat;
 
 /// Time from the restart to the first request. Between 100 and 900 ms after the restart, the encoder uses its factory
 /// settings.
-const INTO_DEFAULT_WINDOW: Duration = Duration::from_millis(200);
+const DEFAULT_WINDOW_DELAY: Duration = Duration::from_millis(200);
 /// Margin added to the manual's time for applying the stored settings, because clocks differ.
-const TIME_RESERVE: Duration = Duration::from_millis(100);
+const CLOCK_MARGIN: Duration = Duration::from_millis(100);
 
 /// Restarts the encoder, waits until it listens with its stored settings, and reads its complete status queue.
 /// Initialisation may have added up to four codes to the queue.
@@ -28,7 +28,7 @@ pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     let format = stored.character_format().ok_or(Error::ReservedFormat { settings: stored })?;
     master.send_broadcast(&Request::Reset)?;
     let factory = format == CharacterFormat::FACTORY && stored.has_long_timeout();
-    let wait = if factory { INTO_DEFAULT_WINDOW } else { Timing::DEFAULT_WINDOW_END + Timing::SWITCH + TIME_RESERVE };
+    let wait = if factory { DEFAULT_WINDOW_DELAY } else { Timing::DEFAULT_WINDOW_END + Timing::SWITCH + CLOCK_MARGIN };
     // The encoder restarts even if the user cancels now, so the session must know its settings.
     master.run_uncancellable(|master| {
         master.wait(wait)?;

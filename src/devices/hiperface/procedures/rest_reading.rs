@@ -26,10 +26,10 @@ impl Signals {
     /// Volts per analogue count, with ten bits for 5 V.
     const VOLTS_PER_COUNT: f64 = 5.0 / 1023.0;
     /// Analogue counts at the reference level of sine and cosine, 2.5 V.
-    const MEAN: f64 = 511.5;
+    const MEAN_COUNT: f64 = 511.5;
 
     fn from_counts(sine: f64, cosine: f64) -> Self {
-        let volts = |counts: f64| (counts - Self::MEAN) * Self::VOLTS_PER_COUNT;
+        let volts = |counts: f64| (counts - Self::MEAN_COUNT) * Self::VOLTS_PER_COUNT;
         Signals { sine_v: volts(sine), cosine_v: volts(cosine) }
     }
 

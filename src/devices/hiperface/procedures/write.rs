@@ -172,7 +172,7 @@ fn execute(master: &mut Master<'_>, op: &Op, confirmed: &ConfirmedPlan<'_>, rang
             let guarded_by = from.unwrap_or(*to).code();
             let code = master.station().codes.get(guarded_by);
             let request = Request::DefineField { field: *field, status: *to, code };
-            master.send_verified(&request, |master| reads_back_status(master, *field, *to))
+            master.send_verified(&request, |master| field_status_matches(master, *field, *to))
         }
         Op::Store { field, address, status, new, .. } => {
             let code = master.station().codes.get(status.code());
@@ -210,7 +210,7 @@ fn execute(master: &mut Master<'_>, op: &Op, confirmed: &ConfirmedPlan<'_>, rang
             master.send_verified(&Request::ClearCounter { code0 }, |master| Ok(read_counter(master)? == 0))
         }
         Op::IncrementCounter { from } => {
-            let next = next_count(*from);
+            let next = increment_counter_value(*from);
             match master.send_verified(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next)) {
                 // Some types report the overflow this way although the counter was incremented (manual, "Zähler
                 // erhöhen").
@@ -224,7 +224,7 @@ fn execute(master: &mut Master<'_>, op: &Op, confirmed: &ConfirmedPlan<'_>, rang
     }
 }
 
-fn next_count(counter: u32) -> u32 {
+fn increment_counter_value(counter: u32) -> u32 {
     counter.wrapping_add(1) & 0x00FF_FFFF
 }
 
@@ -246,7 +246,7 @@ fn set_address(master: &mut Master<'_>, to: DeviceAddress) -> Result<u32, Error>
     Ok(sent)
 }
 
-fn reads_back_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Result<bool, Error> {
+fn field_status_matches(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Result<bool, Error> {
     match read_field_status(master, field) {
         Ok(status) => Ok(status == wanted),
         Err(error) if error.is_rejection(StatusCode::NO_SUCH_FIELD) => Ok(!wanted.exists()),
@@ -281,7 +281,7 @@ fn verify_plan(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Res
         match op {
             Op::Define { field, to, .. } => {
                 let redefined = |op: &Op| matches!(op, Op::Define { field: other, .. } if other == field);
-                if !later.iter().any(redefined) && !reads_back_status(master, *field, *to)? {
+                if !later.iter().any(redefined) && !field_status_matches(master, *field, *to)? {
                     let (item, expected) = (op.plan_item(), format!("{:02X}", to.byte()));
                     return Err(Error::NotVerified { item, expected, got: ReadBackValue::StatusMismatch });
                 }
@@ -319,7 +319,7 @@ fn verify_plan(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Res
             }
             Op::ClearCounter { .. } | Op::IncrementCounter { .. } => {
                 let expected = match op {
-                    Op::IncrementCounter { from } => next_count(*from),
+                    Op::IncrementCounter { from } => increment_counter_value(*from),
                     _ => 0,
                 };
                 let counter = read_counter(master)?;

@@ -90,7 +90,7 @@ impl ExtendedLabel {
         Ok(ExtendedLabel {
             checksum_fits: checksum(bytes) == 0,
             flags: *flags,
-            geometry: Self::geometry_from(flags & Self::LINEAR != 0, first, second),
+            geometry: Self::build_geometry(flags & Self::LINEAR != 0, first, second),
             designation: text(designation),
             parameters: Self::parameters(sets),
         })
@@ -148,7 +148,7 @@ impl ExtendedLabel {
         Ok(parts)
     }
 
-    fn geometry_from(linear: bool, first: u32, second: u32) -> Option<Geometry> {
+    fn build_geometry(linear: bool, first: u32, second: u32) -> Option<Geometry> {
         if first == 0 || second == 0 {
             return None;
         }

@@ -82,7 +82,7 @@ fn vector_lines() -> Vec<Line> {
     lines
 }
 
-fn lines_of_kind(kind: Kind) -> impl Iterator<Item = Line> {
+fn lines_by_kind(kind: Kind) -> impl Iterator<Item = Line> {
     vector_lines().into_iter().filter(move |line| line.kind == kind)
 }
 
@@ -124,7 +124,7 @@ fn vector_frames_have_valid_checksums() {
 
 #[test]
 fn vector_requests_round_trip() {
-    for line in lines_of_kind(Kind::Request) {
+    for line in lines_by_kind(Kind::Request) {
         let (request, address) = line.requested_frame();
         assert_eq!(request.emit(address).bytes(), line.bytes, "line {}", line.number);
     }
@@ -132,7 +132,7 @@ fn vector_requests_round_trip() {
 
 #[test]
 fn vector_replies_match_requests() {
-    for line in lines_of_kind(Kind::Reply) {
+    for line in lines_by_kind(Kind::Reply) {
         let (request, address) = line.requested_frame();
         let answer = request.parse_reply(address, &line.bytes);
         assert!(matches!(answer, Ok(Answer::Reply { .. })), "line {}: {answer:?}", line.number);
@@ -143,7 +143,7 @@ fn vector_replies_match_requests() {
 
 #[test]
 fn error_frames_parse_as_rejection_and_status() {
-    for line in lines_of_kind(Kind::ErrorFrame) {
+    for line in lines_by_kind(Kind::ErrorFrame) {
         let pending = line.bytes[1] == 0xD0;
         let codes = vec![StatusCode::new(line.bytes[2])];
         let refused = Request::FreeMemory.parse_reply(0x40, &line.bytes);
@@ -155,7 +155,7 @@ fn error_frames_parse_as_rejection_and_status() {
 
 #[test]
 fn rejects_non_reply_frames() {
-    for line in lines_of_kind(Kind::NotAReply) {
+    for line in lines_by_kind(Kind::NotAReply) {
         let (request, address) = line.requested_frame();
         let answer = request.parse_reply(address, &line.bytes);
         assert!(!matches!(answer, Ok(_) | Err(ReplyError::Frame(_))), "line {}: {answer:?}", line.number);
@@ -187,7 +187,7 @@ fn rejects_corrupt_replies() {
 
 #[test]
 fn decodes_single_byte_vectors() {
-    for line in lines_of_kind(Kind::SingleByte) {
+    for line in lines_by_kind(Kind::SingleByte) {
         let (what, text) = line.meaning.split_once(": ").unwrap();
         let words: Vec<&str> = text.split(", ").collect();
         match what {
@@ -220,7 +220,7 @@ fn decodes_single_byte_vectors() {
 
 #[test]
 fn parses_label_vector() {
-    let content = lines_of_kind(Kind::LabelContent).next().unwrap().bytes;
+    let content = lines_by_kind(Kind::LabelContent).next().unwrap().bytes;
     assert_eq!(content.len(), 64);
     let label = ExtendedLabel::parse(&content).unwrap();
     let expected = ExtendedLabel {

@@ -52,7 +52,7 @@ impl Config {
 
     /// Returns the serial number of an encoder. Its final digits increase with `index`, so that the encoders can be
     /// distinguished.
-    pub(super) fn serial_number_of(&self, index: u8) -> String {
+    pub(super) fn derive_serial_number(&self, index: u8) -> String {
         let first = self.serial_number.as_deref().unwrap_or(self.model.serial_number);
         let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
         let digits = first.strip_prefix(stem).unwrap_or_default();
@@ -225,9 +225,9 @@ mod tests {
     #[test]
     fn serial_numbers_are_consecutive() {
         let config = Config { serial_number: Some("AB999".to_owned()), ..Config::default() };
-        assert_eq!(config.serial_number_of(0), "AB999    ");
-        assert_eq!(config.serial_number_of(2), "AB001    ");
-        assert_eq!(Config::default().serial_number_of(1), "GB0450180");
+        assert_eq!(config.derive_serial_number(0), "AB999    ");
+        assert_eq!(config.derive_serial_number(2), "AB001    ");
+        assert_eq!(Config::default().derive_serial_number(1), "GB0450180");
     }
 
     proptest! {

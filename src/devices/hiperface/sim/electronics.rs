@@ -74,7 +74,7 @@ pub(super) struct EncoderElectronics {
 
 impl EncoderElectronics {
     /// Maximum of the 24-bit counter.
-    const COUNTER_END: u32 = 0x00FF_FFFF;
+    const COUNTER_MAX: u32 = 0x00FF_FFFF;
     /// Analogue channel of the sine signal, as specified in the data sheets.
     const SINE: u8 = 0x00;
     const COSINE: u8 = 0x01;
@@ -89,7 +89,7 @@ impl EncoderElectronics {
             model,
             kit: config.is_kit(&types),
             encoder_type: config.encoder_type.unwrap_or(model.encoder_type),
-            serial_number: config.serial_number_of(index),
+            serial_number: config.derive_serial_number(index),
             address: config.device_address(index),
             stored_settings: config.settings,
             memory: factory_memory(&model, config.codes),
@@ -153,7 +153,7 @@ impl EncoderElectronics {
                 Ok(vec![c2, c1, c0])
             }
             Request::IncrementCounter => {
-                self.counter = (self.counter + 1) & Self::COUNTER_END;
+                self.counter = (self.counter + 1) & Self::COUNTER_MAX;
                 if self.counter == 0 {
                     self.queue.push(StatusCode::COUNTER_OVERFLOW);
                 }

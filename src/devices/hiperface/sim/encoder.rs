@@ -35,7 +35,7 @@ pub enum ResponseTimes {
 impl ResponseTimes {
     const READ_POSITION: Duration = Duration::from_micros(3_700);
     const STORE: Duration = Duration::from_millis(20);
-    const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
+    const STORE_BYTE: Duration = Duration::from_micros(1_500);
 
     /// Returns the time for processing a frame. A rejected frame takes as long as a status request.
     fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
@@ -45,7 +45,7 @@ impl ResponseTimes {
             (ResponseTimes::Worst, Err(_)) => longest(Command::ReadStatus),
             (ResponseTimes::Typical, Ok(Request::ReadPosition)) => Self::READ_POSITION,
             (ResponseTimes::Typical, Ok(Request::StoreData { data, .. })) => {
-                Self::STORE + Self::STORE_A_BYTE * u32::try_from(data.len()).unwrap_or(u32::MAX)
+                Self::STORE + Self::STORE_BYTE * u32::try_from(data.len()).unwrap_or(u32::MAX)
             }
             (ResponseTimes::Typical, Ok(request)) => longest(request.command()) / 2,
             (ResponseTimes::Typical, Err(_)) => longest(Command::ReadStatus) / 2,

@@ -90,7 +90,7 @@ impl Encoder {
             _ if self.session.is_writing() => Err(Text::new("session.busy")),
             // A profile can always be edited, because the recorded write protection applies only to the encoder.
             (Phase::Offline, _) | (_, None) => Ok(()),
-            (_, Some(image)) => self.reason_not_editable(image).map_or(Ok(()), Err),
+            (_, Some(image)) => self.edit_lock_reason(image).map_or(Ok(()), Err),
         };
         let allowed = allowed.and_then(|()| {
             let put = self.staged.edit_bytes(field, address, bytes);

@@ -19,7 +19,7 @@ use crate::devices::hiperface::state::TEXTS;
 
 pub use form::{EnergisedVector, Form, OffsetInputs, Source, Storage, VectorSlot};
 pub use offset_location::OffsetLocation;
-pub use outcome::{CommutationOffset, PositionSetting, StoredRecord, check_can_read, stored};
+pub use outcome::{CommutationOffset, PositionSetting, StoredRecord, reading_permission, stored};
 pub use report::reading_kind_text;
 
 pub enum CommutationAction {
@@ -78,7 +78,7 @@ pub enum PositionKind {
 }
 
 impl Commutation {
-    pub fn reading_of(&self, slot: VectorSlot) -> Option<&RestReading> {
+    pub fn reading_at(&self, slot: VectorSlot) -> Option<&RestReading> {
         let [one, other, second] = &self.readings;
         match slot {
             VectorSlot::OneSide => one,
@@ -158,7 +158,7 @@ impl PendingReading {
         };
         match (self.source, rest.signals) {
             (Source::Absolute, _) | (Source::Signals, None) => Ok(absolute),
-            (Source::Typed, _) => fine_reading(rest.raw, form::phase(&self.phase)?, geometry, None),
+            (Source::Typed, _) => combine_with_phase(rest.raw, form::phase(&self.phase)?, geometry, None),
             (Source::Signals, Some(signals)) => {
                 let volts = signals.sine_v.hypot(signals.cosine_v);
                 let no_signal = || TEXTS.text("commutation.no_signal").with_number("volts", 2.0 * volts, 3);
@@ -166,14 +166,14 @@ impl PendingReading {
                     return Err(no_signal());
                 }
                 let phase = from_voltages(signals.sine_v, signals.cosine_v).ok_or_else(no_signal)?;
-                fine_reading(rest.raw, phase, geometry, Some(signals.resolution_periods()))
+                combine_with_phase(rest.raw, phase, geometry, Some(signals.resolution_periods()))
             }
         }
     }
 }
 
 /// Combines the absolute position and the phase. If they differ by more than 14/32 of a period, returns an error.
-fn fine_reading(
+fn combine_with_phase(
     raw: u32,
     phase: Phase,
     geometry: Option<Geometry>,
@@ -219,7 +219,7 @@ mod tests {
         commutation.request_reading(VectorSlot::OneSide);
         commutation.form = Form { source: Source::Absolute, phase: String::new(), ..Form::default() };
         commutation.accept_position(rest(40, None), SKM36);
-        let reading = commutation.reading_of(VectorSlot::OneSide).unwrap();
+        let reading = commutation.reading_at(VectorSlot::OneSide).unwrap();
         assert!((reading.fine_periods - 1.27).abs() < 1e-12, "{reading:?}");
     }
 

@@ -157,7 +157,7 @@ impl Encoder {
     }
 
     /// Returns the reason why a field cannot be edited, or `None` if it can be edited.
-    pub fn reason_not_editable(&self, field: &FieldImage) -> Option<Text> {
+    pub fn edit_lock_reason(&self, field: &FieldImage) -> Option<Text> {
         self.unreadable.get(&field.number).cloned().or_else(|| rules::check_edit(field).err())
     }
 

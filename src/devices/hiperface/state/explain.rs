@@ -178,7 +178,7 @@ pub fn unknown_field(field: &UnknownMeaningField) -> Text {
 }
 
 /// Returns the message for created fields that an undo has not deleted, or `None` if there are none.
-pub fn undeleted_fields_text(fields: &[u8]) -> Option<Text> {
+pub fn remaining_fields_text(fields: &[u8]) -> Option<Text> {
     let numbers: Vec<String> = fields.iter().map(ToString::to_string).collect();
     (!fields.is_empty()).then(|| TEXTS.text("review.created_left").with("fields", numbers.join(", ")))
 }

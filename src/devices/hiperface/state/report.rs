@@ -22,7 +22,7 @@ const MAP_ROW: u32 = 32;
 const BLOCK: u32 = 20;
 /// Fill colours of the fields, on which black text remains legible in print.
 const COLOURS: [&str; 6] = ["#b8dcff", "#ffd9a0", "#cdebc9", "#e2d3f7", "#ffd0cb", "#e4e2b4"];
-const UNUSED: &str = "#ffffff";
+const UNUSED_COLOUR: &str = "#ffffff";
 const BORDER: &str = "#8a939b";
 
 pub(super) fn content(
@@ -158,7 +158,7 @@ fn field_map(context: &ReportContext<'_>, profile: &HiperfaceProfile) -> Drawing
             y: y.into(),
             width: BLOCK.into(),
             height: BLOCK.into(),
-            fill: colour.unwrap_or(UNUSED),
+            fill: colour.unwrap_or(UNUSED_COLOUR),
             line: BORDER,
         });
         if let Some((field, true)) = owner {

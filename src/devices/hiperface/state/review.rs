@@ -72,7 +72,7 @@ impl Reviewable for Hiperface {
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
         warnings.extend(prepared.other_type.map(words::other_type));
-        warnings.extend(words::undeleted_fields_text(&prepared.created_left));
+        warnings.extend(words::remaining_fields_text(&prepared.created_left));
         if prepared.plan.ops.iter().any(|op| matches!(op, Op::SetPosition { .. })) {
             warnings.push(Text::new("review.commutation"));
         }

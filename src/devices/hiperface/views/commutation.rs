@@ -7,8 +7,8 @@ use egui::{RichText, Ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, Text};
 use crate::devices::hiperface::state::commutation::{
-    CommutationAction as Assistant, CommutationOffset, EnergisedVector, Form, Source, VectorSlot, check_can_read,
-    reading_kind_text,
+    CommutationAction as Assistant, CommutationOffset, EnergisedVector, Form, Source, VectorSlot, reading_kind_text,
+    reading_permission,
 };
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::translate;
@@ -100,12 +100,12 @@ fn preparation_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
 
 fn limits_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     let (current, time) = (&mut form.current_a, &mut form.time_s);
-    two_numbers_ui(ui, theme, ("commutation.current", current, ""), ("commutation.time", time, ""));
+    number_pair_ui(ui, theme, ("commutation.current", current, ""), ("commutation.time", time, ""));
 }
 
 /// Draws two number fields, in one row if there is enough space. Each argument contains a field's label ID, entered
 /// text and hint.
-fn two_numbers_ui(
+fn number_pair_ui(
     ui: &mut Ui,
     theme: &Theme,
     (one, first, first_hint): (&'static str, &mut String, &str),
@@ -136,7 +136,7 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
         let of_type = Form::default().signal_periods(encoder.geometry()).map(|periods| periods.to_string());
         let of_type = of_type.unwrap_or_default();
         let (pairs, periods) = (&mut form.pole_pairs, &mut form.periods);
-        two_numbers_ui(ui, theme, ("commutation.pole_pairs", pairs, ""), ("commutation.periods", periods, &of_type));
+        number_pair_ui(ui, theme, ("commutation.pole_pairs", pairs, ""), ("commutation.periods", periods, &of_type));
         if let Some(words) = form.periods_warning(encoder.geometry()) {
             verdict_ui(ui, theme, Verdict::Warn, &words);
         }
@@ -179,7 +179,7 @@ fn number_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hi
 
 fn rest_position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
     let commutation = &encoder.commutation;
-    let any = VectorSlot::ALL.into_iter().any(|slot| commutation.reading_of(slot).is_some());
+    let any = VectorSlot::ALL.into_iter().any(|slot| commutation.reading_at(slot).is_some());
     let mut clear = false;
     let aside = |ui: &mut Ui| {
         clear = icon_button(ui, any, icons::TRASH, &translate(theme, "commutation.clear")).clicked();
@@ -249,7 +249,7 @@ fn slot_ui(
     };
     let beside = ui.available_width() >= MIN_ONE_LINE_WIDTH;
     ui.horizontal_wrapped(|ui| {
-        let allowed = check_can_read(commutation, encoder.session.is_ready());
+        let allowed = reading_permission(commutation, encoder.session.is_ready());
         // All buttons have the same width, so that the entries are aligned in a column.
         let size = egui::vec2(READ_BUTTON_WIDTH.min(ui.available_width()), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -277,7 +277,7 @@ fn slot_ui(
 
 /// Draws the position of a reading and its source, or a dash without a reading.
 fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: VectorSlot) {
-    let Some(reading) = encoder.commutation.reading_of(slot) else {
+    let Some(reading) = encoder.commutation.reading_at(slot) else {
         ui.label(theme.monospace("–").color(theme.palette.muted));
         return;
     };

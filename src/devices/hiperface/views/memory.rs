@@ -162,7 +162,7 @@ fn field_ui(
         ui.add_space(theme.space.between);
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::KEY).color(theme.palette.warn));
-            let why = encoder.reason_not_editable(field);
+            let why = encoder.edit_lock_reason(field);
             paragraph(ui, why.map(|why| theme.format_text(&why)).unwrap_or_default());
         });
         return;
@@ -170,7 +170,7 @@ fn field_ui(
     let read_only = match encoder.session.phase {
         Phase::Offline => None,
         _ if encoder.session.is_writing() => Some(Text::new("session.busy")),
-        _ => encoder.reason_not_editable(field),
+        _ => encoder.edit_lock_reason(field),
     };
     let device = encoder.field(field.number).and_then(|own| own.bytes.clone()).unwrap_or_default();
     let mounting = encoder.mounting_ranges(field.number);

@@ -153,7 +153,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
         };
         let stored_words = theme.format_text(&words::line_settings(stored));
         row(ui, theme, &translate(theme, "settings_card.stored"), stored_words);
-        let mut chosen = view.settings.unwrap_or_else(|| chosen_settings(stored));
+        let mut chosen = view.settings.unwrap_or_else(|| initial_selection(stored));
         entry(ui, theme, &theme.translate("settings_card.baud"), |ui| {
             let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
             dropdown(ui, &theme.translate("settings_card.baud"), &mut chosen.format.baud, bauds);
@@ -169,7 +169,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
             dropdown(ui, &translate(theme, "settings_card.timeout"), &mut chosen.long_timeout, times);
         });
         ui.checkbox(&mut chosen.bus, translate(theme, "settings_card.bus"));
-        view.settings = Some(chosen).filter(|chosen| *chosen != chosen_settings(stored));
+        view.settings = Some(chosen).filter(|chosen| *chosen != initial_selection(stored));
         let ready = encoder.session.is_ready();
         ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
@@ -190,7 +190,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
     });
 }
 
-fn chosen_settings(stored: LineSettings) -> SelectedSettings {
+fn initial_selection(stored: LineSettings) -> SelectedSettings {
     SelectedSettings {
         format: stored.character_format().unwrap_or(CharacterFormat::FACTORY),
         long_timeout: stored.has_long_timeout(),

@@ -16,7 +16,7 @@ use crate::units::Moment;
 
 /// Status codes which indicate that the request was damaged on the line. They include `LENGTH`, because the checksum
 /// remains valid if a byte 00h is lost.
-const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
+const LINE_ERROR_CODES: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
 
 pub(in super::super) enum ExchangeFailure {
     /// No reply was received, except possibly the echo.
@@ -205,7 +205,7 @@ impl Master<'_> {
             .parse_reply(self.station.address, &heard.reply)
             .map_err(|e| ExchangeFailure::Damage(ReplyDamage::Reply(e)))?;
         if let Answer::Rejected { codes, .. } = &answer
-            && let Some(code) = codes.iter().find(|code| DAMAGED_REQUEST.contains(code))
+            && let Some(code) = codes.iter().find(|code| LINE_ERROR_CODES.contains(code))
         {
             // The request was correct when it was sent, so the line damaged it.
             return Err(ExchangeFailure::Damage(ReplyDamage::AtEncoder(*code)));

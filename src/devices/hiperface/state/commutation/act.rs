@@ -1,6 +1,6 @@
 //! Handles the user's actions in the commutation assistant.
 
-use super::outcome::check_can_read;
+use super::outcome::reading_permission;
 use super::{CommutationAction, VectorSlot};
 use crate::app::services::Services;
 use crate::app::session::{HasMemory, SessionEvents};
@@ -23,7 +23,7 @@ impl Encoder {
             CommutationAction::Use(slot) => self.commutation.apply_typed_value(slot),
             CommutationAction::Clear => self.commutation.forget_readings(),
             CommutationAction::Store => {
-                match self.if_verified(|own| own.commutation.bytes(own.geometry(), &own.staged)) {
+                match self.with_verified_offset(|own| own.commutation.bytes(own.geometry(), &own.staged)) {
                     Ok((field, address, bytes)) => {
                         self.edit_bytes(field, address, &bytes, services);
                         // The location is stored in the form, so that the next offset replaces this one even if another
@@ -41,7 +41,7 @@ impl Encoder {
                     Err(why) => self.commutation.problem = Some(why),
                 }
             }
-            CommutationAction::Set => match self.if_verified(|own| own.commutation.setting(own.geometry())) {
+            CommutationAction::Set => match self.with_verified_offset(|own| own.commutation.setting(own.geometry())) {
                 Ok(setting) => {
                     let (wanted, exact) = (setting.value, setting.exact);
                     let change = Change::SetPosition { wanted, exact, synchronise: false, kit: false };
@@ -53,13 +53,13 @@ impl Encoder {
     }
 
     /// Returns the result if the offset has been verified, or an error otherwise.
-    fn if_verified<T>(&self, result: impl FnOnce(&Self) -> Result<T, Text>) -> Result<T, Text> {
+    fn with_verified_offset<T>(&self, result: impl FnOnce(&Self) -> Result<T, Text>) -> Result<T, Text> {
         let result = result(self)?;
         self.commutation.check_offset_is_verified(self.geometry()).map(|()| result)
     }
 
     fn read_into_slot(&mut self, slot: VectorSlot, services: &mut Services) {
-        if let Err(why) = check_can_read(&self.commutation, self.session.is_ready()) {
+        if let Err(why) = reading_permission(&self.commutation, self.session.is_ready()) {
             self.commutation.problem = Some(why);
             return;
         }

@@ -249,7 +249,7 @@ impl Form {
         let pole_pairs = parse_integer(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MAX_POLE_PAIRS)?;
         let periods = self.signal_periods(geometry)?;
         Ok(OffsetInputs {
-            motor: Motor::new(periods, pole_pairs).ok_or_else(|| missing_text("commutation.pole_pairs"))?,
+            motor: Motor::new(periods, pole_pairs).ok_or_else(|| missing_entry_text("commutation.pole_pairs"))?,
             periods,
             pole_pairs,
             reversed: self.reversed,
@@ -259,11 +259,11 @@ impl Form {
     }
 }
 
-fn missing_text(what: &'static str) -> Text {
+fn missing_entry_text(what: &'static str) -> Text {
     Text::new("entry.missing").with_text("what", TEXTS.text(what))
 }
 
 pub(super) fn phase(text: &str) -> Result<Phase, Text> {
     let periods = parse_in_range(TEXTS.text("commutation.phase"), text, 0.0, 0.999_999_999)?;
-    Phase::from_periods(periods).ok_or_else(|| missing_text("commutation.phase"))
+    Phase::from_periods(periods).ok_or_else(|| missing_entry_text("commutation.phase"))
 }

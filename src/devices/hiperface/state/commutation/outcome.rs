@@ -61,7 +61,7 @@ impl Commutation {
     /// Returns an error if an entry or a reading is missing, or if the readings cannot be used.
     pub fn offset(&self, geometry: Option<Geometry>) -> Result<CommutationOffset, Text> {
         let inputs = self.form.inputs(geometry)?;
-        let (one, other) = (self.reading_of(VectorSlot::OneSide), self.reading_of(VectorSlot::OtherSide));
+        let (one, other) = (self.reading_at(VectorSlot::OneSide), self.reading_at(VectorSlot::OtherSide));
         let (first, apart) = match (one, other) {
             (Some(one), Some(other)) => {
                 (one, Some(signed_distance(one.fine_periods, other.fine_periods, inputs.periods)))
@@ -98,7 +98,7 @@ impl Commutation {
     /// # Errors
     /// Returns an error if an entry or a reading is missing or unusable.
     pub fn second_vector_result(&self, geometry: Option<Geometry>) -> Option<Result<(Verdict, Text), Text>> {
-        let reading = self.reading_of(VectorSlot::Second)?;
+        let reading = self.reading_at(VectorSlot::Second)?;
         Some(self.evaluate_second_reading(reading.fine_periods, geometry))
     }
 
@@ -140,7 +140,7 @@ impl Commutation {
     pub fn are_sides_identical(&self) -> bool {
         let is_fine = |reading: &&RestReading| matches!(reading.kind, PositionKind::Fine { .. });
         let [one, other] =
-            [VectorSlot::OneSide, VectorSlot::OtherSide].map(|slot| self.reading_of(slot).filter(is_fine));
+            [VectorSlot::OneSide, VectorSlot::OtherSide].map(|slot| self.reading_at(slot).filter(is_fine));
         one.is_some() && one == other
     }
 
@@ -196,7 +196,7 @@ impl Commutation {
         if step >= UNUSABLE_DEG {
             return Err(TEXTS.text("commutation.unusable").with_number("step", step, 1));
         }
-        let here = self.last.filter(|slot| *slot != VectorSlot::Second).and_then(|slot| self.reading_of(slot));
+        let here = self.last.filter(|slot| *slot != VectorSlot::Second).and_then(|slot| self.reading_at(slot));
         let here = here.ok_or_else(|| TEXTS.text("commutation.not_there"))?;
         let phase = Phase::from_periods(here.fine_periods).ok_or_else(|| TEXTS.text("commutation.not_there"))?;
         let steps = u64::from(STEPS_PER_PERIOD);
@@ -233,7 +233,7 @@ pub fn stored(staged: &StagedEdits) -> Vec<StoredRecord> {
 }
 
 /// Checks whether a position may be read, which requires that all previous steps of the assistant are complete.
-pub fn check_can_read(commutation: &Commutation, ready: bool) -> ActionPermission {
+pub fn reading_permission(commutation: &Commutation, ready: bool) -> ActionPermission {
     commutation.form.check_prepared()?;
     if commutation.form.source == Source::Typed {
         commutation.form.phase()?;

@@ -10,7 +10,7 @@ use crate::devices::hiperface::state::TEXTS;
 impl Commutation {
     /// Returns the commutation results for an encoder report, or `None` before the first reading.
     pub fn session_result(&self, name: &str, geometry: Option<Geometry>) -> Option<SessionResult> {
-        VectorSlot::ALL.into_iter().find_map(|slot| self.reading_of(slot))?;
+        VectorSlot::ALL.into_iter().find_map(|slot| self.reading_at(slot))?;
         let mut texts = self.report_texts(name, geometry).into_iter();
         Some(SessionResult::Procedure { title: texts.next()?, lines: texts.collect() })
     }
@@ -43,7 +43,7 @@ impl Commutation {
             lines.push(text.with("periods", inputs.periods).with_text("direction", direction));
         }
         for slot in VectorSlot::ALL {
-            if let Some(reading) = self.reading_of(slot) {
+            if let Some(reading) = self.reading_at(slot) {
                 let text = TEXTS.text("commutation.report_reading").with_text("slot", TEXTS.text(slot.keyword()));
                 lines.push(
                     text.with_number("fine", reading.fine_periods, 5).with_text("kind", reading_kind_text(reading)),

@@ -12,7 +12,7 @@ use crate::devices::hiperface::state::{TEXTS, position_text};
 /// Describes an operation without revealing access codes.
 pub fn operation_texts(op: &Op, geometry: Option<Geometry>) -> OperationTexts {
     match op {
-        Op::Define { field, from, to } => define_texts(*field, *from, *to),
+        Op::Define { field, from, to } => describe_definition(*field, *from, *to),
         Op::Store { field, address, old, new, .. } => OperationTexts::single(
             byte_range_text(*field, usize::from(*address), new.len()),
             old.as_ref().map_or_else(|| TEXTS.text("op.new_field"), |old| literal_text(hex(old))),
@@ -53,7 +53,7 @@ fn byte_range_text(field: u8, first: usize, count: usize) -> Text {
     }
 }
 
-fn define_texts(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OperationTexts {
+fn describe_definition(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OperationTexts {
     let item = TEXTS.text("op.field").with("field", field);
     match from {
         Some(from) if from.exists() && !to.exists() => {
