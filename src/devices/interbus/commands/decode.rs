@@ -73,7 +73,7 @@ fn explain_word(word: CapturedWord, direction: Option<Direction>, known: &WordCo
         CapturedWord::K1(word) => {
             (format!("{word:04X}"), Ok(vec![meaning::k1_word_meaning(SingleWord::parse_k1(word))]))
         }
-        CapturedWord::Long(word) => (format!("{word:08X}"), long_word_meanings(word, direction, known)),
+        CapturedWord::Long(word) => (format!("{word:08X}"), word_meanings(word, direction, known)),
     };
     let mut more = Map::from_iter([("device".to_owned(), json!(KIND))]);
     if let Ok(meanings) = &meanings {
@@ -83,7 +83,7 @@ fn explain_word(word: CapturedWord, direction: Option<Direction>, known: &WordCo
     FrameExplanation { compact: shown.clone(), shown, meaning, more }
 }
 
-fn long_word_meanings(
+fn word_meanings(
     word: u32,
     direction: Option<Direction>,
     known: &WordContext,

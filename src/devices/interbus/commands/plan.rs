@@ -95,7 +95,7 @@ fn operation_steps(op: &Op) -> Vec<PlanStep> {
     let last =
         |item: &str, new: String| PlanStep { item: item.to_owned(), old: None, new: Some(new), write_cycles: cost };
     let mut steps: Vec<PlanStep> = op
-        .change_steps()
+        .value_changes()
         .into_iter()
         .map(|step| PlanStep { item: step.name, old: Some(step.from), new: Some(step.to), write_cycles: 0 })
         .collect();

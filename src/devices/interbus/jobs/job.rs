@@ -20,7 +20,7 @@ pub const WEAR_WARNING: u64 = 150;
 /// Number of EEPROM write cycles above which the user has to confirm a second time.
 pub const WEAR_CONFIRMATION: u64 = NOMINAL_STORES as u64;
 /// Maximum number of EEPROM write cycles that the manufacturer guarantees.
-pub const WEAR_LAST: u64 = GUARANTEED_STORES as u64;
+pub const WEAR_GUARANTEE: u64 = GUARANTEED_STORES as u64;
 /// Number of EEPROM write cycles from which the EEPROM counts as worn out.
 pub const WEAR_LIMIT: u64 = 450;
 

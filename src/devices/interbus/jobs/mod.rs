@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 pub use job::{
     Change, ChangeKind, Commit, Committed, DeviceMessage, InterbusJob, InterbusOutput, JobError, JobStep, Prepared,
-    WEAR_CONFIRMATION, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, WearAfterPlan, device_key, logbook_key, wear_limit,
+    WEAR_CONFIRMATION, WEAR_GUARANTEE, WEAR_LIMIT, WEAR_WARNING, WearAfterPlan, device_key, logbook_key, wear_limit,
 };
 pub use open::{check_link, open};
 

@@ -32,7 +32,7 @@ pub enum WordReply {
 /// parameter, but not in the echo of a cam, where it selects the edge (reference 2).
 pub(super) fn is_echo(command: Command, input: u32) -> bool {
     const MANUFACTURER: u32 = 1 << 29;
-    let echo = Reply::echo_of(command).emit();
+    let echo = Reply::echo_for(command).emit();
     input == echo || matches!(command, Command::Set(..)) && input == echo | MANUFACTURER
 }
 

@@ -14,7 +14,7 @@ use stability::{CycleResult, MIN_HANDSHAKE_TIMEOUT, StabilityTimer};
 use super::data::ProcessData;
 use super::error::{ExpectedWord, RequestedItem};
 use super::handshake::{Handshake, LeftState, WordReply, is_echo};
-use super::reading::{swapped_position_word, swapped_word_if_unexplained};
+use super::reading::{find_swapped_word, swapped_position_word};
 use super::{Error, Gateway, KnownState, Station, WordReading};
 use crate::devices::interbus::protocol::{
     Command, EncoderMode, Gear, ReadOutNumber, Reply, StartupMode, Value, WindowShift,
@@ -304,7 +304,7 @@ impl<'a> Master<'a> {
         if !matches!(Reply::parse(input), Reply::Run { .. }) && self.data.output()? != Some(0) {
             return Ok(None);
         }
-        Ok(swapped_word_if_unexplained(input))
+        Ok(find_swapped_word(input))
     }
 
     /// Returns the most likely reason why the expected word did not arrive.
@@ -315,8 +315,7 @@ impl<'a> Master<'a> {
             Err(error) => return error,
             Ok(_) => {}
         }
-        let suspected =
-            if self.is.is_none() { swapped_word_if_unexplained(input) } else { swapped_position_word(input) };
+        let suspected = if self.is.is_none() { find_swapped_word(input) } else { swapped_position_word(input) };
         if let Some(swapped) = suspected {
             return Error::WordOrder { input, swapped };
         }

@@ -107,7 +107,7 @@ pub(super) fn swapped_position_word(word: u32) -> Option<u32> {
 
 /// Returns the word with swapped halves, if only that is a valid position. Unlike [`swapped_position_word`], this also
 /// examines words that are not positions, except error words without data.
-pub(super) fn swapped_word_if_unexplained(word: u32) -> Option<u32> {
+pub(super) fn find_swapped_word(word: u32) -> Option<u32> {
     match Reply::parse(word) {
         Reply::Run { .. } => swapped_position_word(word),
         Reply::Error(error) if error.data.get() == 0 => None,
@@ -163,10 +163,7 @@ mod tests {
         assert_eq!(swapped_position_word(0x3456_3456), None);
         // The first word is 2DC6C0h with swapped halves. The second one is the error word for lost parameters, which is
         // not a position.
-        assert_eq!(
-            (swapped_position_word(0xC6C0_002D), swapped_word_if_unexplained(0xC6C0_002D)),
-            (None, Some(0x002D_C6C0))
-        );
-        assert_eq!(swapped_word_if_unexplained(0x8600_0000), None);
+        assert_eq!((swapped_position_word(0xC6C0_002D), find_swapped_word(0xC6C0_002D)), (None, Some(0x002D_C6C0)));
+        assert_eq!(find_swapped_word(0x8600_0000), None);
     }
 }

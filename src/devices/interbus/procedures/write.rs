@@ -188,7 +188,7 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut WrittenCh
             Edge::Start => (Command::CamStart(*cam, *to), Command::ReadCamStart(*cam)),
             Edge::Stop => (Command::CamStop(*cam, *to), Command::ReadCamStop(*cam)),
         };
-        match Reply::echo_of(command) {
+        match Reply::echo_for(command) {
             Reply::Busy { .. } => {
                 master.set_and_verify(command, question, *to, || format!("{} {edge}", Item::Cam(number, *cam)))?;
             }

@@ -74,7 +74,7 @@ const ITEMS: &str = "steps, revolutions, direction, preset, zero-shift, shift, c
 
 impl Item {
     /// Items without a program or cam number, in comparison order.
-    const UNNUMBERED: [Item; 8] = [
+    const UNNUMBERED_ITEMS: [Item; 8] = [
         Item::Steps,
         Item::Revolutions,
         Item::Direction,
@@ -87,13 +87,13 @@ impl Item {
 
     /// Returns all writable items in comparison order. The parameters and the shift come first, then the mask and cams
     /// of each program.
-    pub fn all_writable() -> impl Iterator<Item = Item> {
-        let plain = Item::UNNUMBERED.into_iter().filter(|item| item.is_writable());
-        plain.chain(ProgramNumber::all().flat_map(Item::items_of_program))
+    pub fn writable_items() -> impl Iterator<Item = Item> {
+        let plain = Item::UNNUMBERED_ITEMS.into_iter().filter(|item| item.is_writable());
+        plain.chain(ProgramNumber::all().flat_map(Item::program_items))
     }
 
     /// Returns the mask and the cams of a program.
-    pub fn items_of_program(program: ProgramNumber) -> impl Iterator<Item = Item> {
+    pub fn program_items(program: ProgramNumber) -> impl Iterator<Item = Item> {
         std::iter::once(Item::CamMask(program)).chain(CamNumber::all().map(move |cam| Item::Cam(program, cam)))
     }
 
@@ -168,7 +168,7 @@ impl FromStr for Item {
     type Err = ItemError;
 
     fn from_str(text: &str) -> Result<Self, ItemError> {
-        if let Some(plain) = Item::UNNUMBERED.into_iter().find(|item| item.to_string() == text) {
+        if let Some(plain) = Item::UNNUMBERED_ITEMS.into_iter().find(|item| item.to_string() == text) {
             return Ok(plain);
         }
         let unknown = || ItemError::Unknown(text.to_owned());
@@ -206,7 +206,7 @@ impl fmt::Display for ItemValue {
 
 impl Image {
     /// Returns the value of an item, or `None` if it is unknown or measured.
-    pub fn value_of(&self, item: Item) -> Option<ItemValue> {
+    pub fn get_value(&self, item: Item) -> Option<ItemValue> {
         let number = ItemValue::Number;
         let Parameters { steps, revolutions, direction, preset, zero_shift } = self.parameters;
         Some(match item {
@@ -287,7 +287,7 @@ mod tests {
     #[test]
     fn items_round_trip_through_image() {
         // Five parameters, the shift, eight programs with a mask and eight cams.
-        assert_eq!(Item::all_writable().count(), 5 + 1 + 8 * 9);
+        assert_eq!(Item::writable_items().count(), 5 + 1 + 8 * 9);
         let full = image();
         let mut copy = Image::from_parameters(Parameters {
             steps: 1,
@@ -296,8 +296,8 @@ mod tests {
             zero_shift: 4,
             ..full.parameters
         });
-        for item in Item::all_writable() {
-            assert!(copy.set_value(item, full.value_of(item).unwrap()), "{item}");
+        for item in Item::writable_items() {
+            assert!(copy.set_value(item, full.get_value(item).unwrap()), "{item}");
         }
         assert_eq!(copy, full);
         for (item, value) in [

@@ -23,7 +23,7 @@ pub use entry_error::EntryError;
 pub use error::{PlanError, TypeMismatch};
 pub use image::{Direction, DirectionError, Image, Parameters};
 pub use item::{Item, ItemError, ItemValue};
-pub use note::ChangeStep;
+pub use note::ValueChange;
 pub use plan::{Base, CamChange, Edge, InterbusPlan, Op, ParameterChange, ProgramChange};
 pub use record::{CamNames, InterbusProfile, MountingMark, ProfileIdentity, RecordedValues, UnknownEntries};
 pub use restore::{

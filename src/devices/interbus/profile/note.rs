@@ -7,7 +7,7 @@ use crate::profile::ChangedItem;
 
 /// A single change within an operation.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ChangeStep {
+pub struct ValueChange {
     /// Name of the changed item, or of the changed edge of a cam.
     pub name: String,
     /// Old value.
@@ -23,15 +23,15 @@ impl Op {
             Op::FirePreset { value } => vec![ChangedItem::new_value("position", value)],
             Op::Default => vec![ChangedItem::new_value("default", "all parameters as delivered")],
             op => {
-                let steps = op.change_steps().into_iter();
+                let steps = op.value_changes().into_iter();
                 steps.map(|step| ChangedItem::new(step.name, Some(step.from), Some(step.to))).collect()
             }
         }
     }
 
     /// Returns the individual changes of parameters, masks and cam edges. Returns an empty list for other operations.
-    pub fn change_steps(&self) -> Vec<ChangeStep> {
-        let step = |name: String, from: &dyn ToString, to: &dyn ToString| ChangeStep {
+    pub fn value_changes(&self) -> Vec<ValueChange> {
+        let step = |name: String, from: &dyn ToString, to: &dyn ToString| ValueChange {
             name,
             from: from.to_string(),
             to: to.to_string(),

@@ -101,7 +101,7 @@ impl InterbusProfile {
 
     /// Returns the settings that the profile contains, in comparison order.
     pub fn items(&self) -> impl Iterator<Item = Item> {
-        Item::all_writable().filter(|item| self.image.value_of(*item).is_some())
+        Item::writable_items().filter(|item| self.image.get_value(*item).is_some())
     }
 }
 

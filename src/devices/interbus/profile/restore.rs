@@ -45,7 +45,7 @@ pub fn plan_restore(
     let (mut unchanged, mut missing) = (0, Vec::new());
     let (mut mounting_left, mut mounting_written) = (Vec::new(), Vec::new());
     for item in profile.items() {
-        let (Some(to), Some(from)) = (profile.image.value_of(item), device.image.value_of(item)) else {
+        let (Some(to), Some(from)) = (profile.image.get_value(item), device.image.get_value(item)) else {
             missing.push(item.to_string());
             continue;
         };

@@ -67,8 +67,8 @@ impl Profile for InterbusProfile {
 
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
-        for item in Item::all_writable() {
-            comparison.compare_item(item.to_string(), self.image.value_of(item), other.image.value_of(item));
+        for item in Item::writable_items() {
+            comparison.compare_item(item.to_string(), self.image.get_value(item), other.image.get_value(item));
         }
         comparison
     }

@@ -93,7 +93,7 @@ impl Reply {
 
     /// Returns the echo of a command, which is its word with bits 31 and 30 set. That cams are echoed unchanged is an
     /// assumption (`U`). Always compare complete words, because an older reply may have the same code (reference 4).
-    pub fn echo_of(command: Command) -> Self {
+    pub fn echo_for(command: Command) -> Self {
         Reply::parse(command.emit() | ECHO)
     }
 

@@ -165,8 +165,8 @@ fn resolves_manual_contradictions() {
         assert_eq!(stop.emit() >> 16 & 1, 0, "6: bit 16 ends a read-out");
         assert!(stop.is_legal_in(Reading), "6");
     }
-    assert_eq!(Reply::echo_of(set_command(P::Steps, 255)).emit(), 0xC200_00FF, "8: not C2000100");
-    assert_ne!(Reply::parse(0xC200_0100), Reply::echo_of(set_command(P::Steps, 255)), "8");
+    assert_eq!(Reply::echo_for(set_command(P::Steps, 255)).emit(), 0xC200_00FF, "8: not C2000100");
+    assert_ne!(Reply::parse(0xC200_0100), Reply::echo_for(set_command(P::Steps, 255)), "8");
     assert_eq!(CamNumber::new(8), None, "9: eight cams");
     assert_eq!(Command::all_meanings(0x5000_0000), [Command::Unknown(0x5000_0000)], "9");
     assert_eq!(P::Default.row().code << 1, 0x0E, "10");
@@ -220,7 +220,7 @@ fn mode_determines_echo() {
     // The worked example of the reference.
     let example = [(P::Steps, 255, 0xC200_00FF), (P::Turns, 1, 0xC400_0001), (P::Direction, 3, 0xC600_0003)];
     for (parameter, number, word) in example {
-        assert_eq!(Reply::echo_of(set_command(parameter, number)).emit(), word);
+        assert_eq!(Reply::echo_for(set_command(parameter, number)).emit(), word);
     }
 }
 

@@ -90,7 +90,7 @@ impl Chart {
         Chart { program, range: wanted.step_count(), lanes }
     }
 
-    pub fn lane_of(&self, cam: CamNumber) -> Option<&Lane> {
+    pub fn find_lane(&self, cam: CamNumber) -> Option<&Lane> {
         self.lanes.get(usize::from(cam.get()))
     }
 
@@ -129,7 +129,7 @@ impl Chart {
 
     /// Returns an edge of a cam, or `None` if the cam has no edges.
     pub fn edge_position(&self, cam: CamNumber, edge: Edge) -> Option<u32> {
-        Some(edge_value(self.lane_of(cam)?.edges?, edge).get())
+        Some(edge_value(self.find_lane(cam)?.edges?, edge).get())
     }
 }
 

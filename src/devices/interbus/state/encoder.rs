@@ -83,7 +83,7 @@ impl Encoder {
     pub fn visible_marks(&self, program: Option<ProgramNumber>) -> Vec<Text> {
         let mut marks: Vec<EditFinding> = self.findings();
         marks.sort_by_key(|mark| program.is_none() || mark.program() != program);
-        truncated_list(&cams::labels::finding_texts(&marks), Text::clone)
+        truncated_list(&cams::labels::describe_findings(&marks), Text::clone)
     }
 
     pub fn profile(&self) -> Option<&InterbusProfile> {

@@ -70,7 +70,7 @@ pub fn flags_text(flags: Flags) -> Text {
 }
 
 /// Returns the meaning of an LED combination and a remedy.
-pub fn led_texts(row: &LedRow) -> (Text, Text) {
+pub fn led_labels(row: &LedRow) -> (Text, Text) {
     use crate::devices::interbus::protocol::LedState::{Blinking, On};
     let (meaning, remedy) = match (row.leds.ba, row.leds.rbda) {
         (On, _) => ("ib_leds.run", "ib_leds.run_remedy"),

@@ -48,7 +48,7 @@ pub(super) fn item_group(item: &str) -> Option<Text> {
 /// Returns the value of an item in a profile, with its unit and meaning.
 pub(super) fn item_value(profile: &InterbusProfile, item: &str) -> Option<ItemValue> {
     let item: Item = item.parse().ok()?;
-    let text = match profile.image.value_of(item)? {
+    let text = match profile.image.get_value(item)? {
         Value::Direction(direction) => explain::direction_text(direction),
         Value::Mask(mask) => explain::cam_mask_text(mask),
         Value::Cam(cam) => with_unit(literal_text(format!("{}…{}", cam.start.get(), cam.stop.get())), unit_text(item)?),
@@ -96,6 +96,6 @@ mod tests {
             assert_eq!((name.to_string_in(English).as_str(), name.to_string_in(German).as_str()), (english, german));
         }
         assert_eq!((item_name("cam:2:5 middle"), item_name("steps start")), (None, None));
-        assert!(Item::all_writable().all(|item| item_name(&item.to_string()).is_some()));
+        assert!(Item::writable_items().all(|item| item_name(&item.to_string()).is_some()));
     }
 }

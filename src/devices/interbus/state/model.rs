@@ -103,7 +103,7 @@ impl DeviceModel for Encoder {
     fn take_item(&mut self, item: &str, from: &Body) -> Result<(), Text> {
         let not_taken = || Text::new("comparison.not_taken");
         let item: Item = item.parse().map_err(|_| not_taken())?;
-        let value = from.get::<InterbusProfile>().and_then(|profile| profile.image.value_of(item));
+        let value = from.get::<InterbusProfile>().and_then(|profile| profile.image.get_value(item));
         let edit = Edit::of_item(item, value.ok_or_else(not_taken)?).ok_or_else(not_taken)?;
         self.staged.apply_edit(&edit).map(drop).map_err(|error| edit_error_text(&error))
     }

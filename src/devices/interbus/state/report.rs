@@ -42,7 +42,7 @@ pub(super) fn content(
     let programs = ProgramNumber::all().filter_map(|number| Some((number, Chart::from_edits(&staged, number)?)));
     let (used, unused): (Vec<_>, Vec<_>) = programs.partition(|(_, chart)| chart.lanes.iter().any(is_used));
     sections.extend(used.iter().map(|(number, chart)| program_section(context, profile, *number, chart)));
-    sections.extend(unused_section(context, unused.iter().map(|(number, _)| number.get())));
+    sections.extend(unused_programs_section(context, unused.iter().map(|(number, _)| number.get())));
     let key = (!serial.is_empty()).then(|| logbook_key(serial, false));
     Ok(ReportContent { title, key, sections })
 }
@@ -85,7 +85,7 @@ fn parameter_section(context: &ReportContext<'_>, profile: &InterbusProfile) -> 
         ("report.meaning".into(), CellStyle::Text),
     ]);
     for item in profile.items().filter(|item| item.program().is_none()) {
-        let Some(value) = profile.image.value_of(item) else { continue };
+        let Some(value) = profile.image.get_value(item) else { continue };
         let name = item.parameter().map_or_else(|| TEXTS.text("report.ib_shift"), format::parameter);
         let meaning = match value {
             ItemValue::Direction(direction) => context.localize(direction_text(direction)),
@@ -127,7 +127,7 @@ fn is_used(lane: &Lane) -> bool {
 }
 
 /// Returns a section that lists the unused programs, or `None` if there are none.
-fn unused_section(context: &ReportContext<'_>, programs: impl Iterator<Item = u8>) -> Option<Section> {
+fn unused_programs_section(context: &ReportContext<'_>, programs: impl Iterator<Item = u8>) -> Option<Section> {
     let numbers: Vec<String> = programs.map(|number| number.to_string()).collect();
     let text = TEXTS.text("report.ib_unused").with("programs", numbers.join(", "));
     let title = context.localize(TEXTS.text("ib_card.programs"));

@@ -3,7 +3,7 @@
 use crate::app::explain::{cycle_count_text, literal_text};
 use crate::app::review::{self, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
-use crate::devices::interbus::jobs::{Change, Interbus, Prepared, WEAR_CONFIRMATION, WEAR_LAST, WearAfterPlan};
+use crate::devices::interbus::jobs::{Change, Interbus, Prepared, WEAR_CONFIRMATION, WEAR_GUARANTEE, WearAfterPlan};
 use crate::devices::interbus::procedures::write::WrittenChanges;
 use crate::devices::interbus::profile::Op;
 use crate::devices::interbus::state::TEXTS;
@@ -76,7 +76,7 @@ impl Reviewable for Interbus {
             None => TEXTS.text("ib_review.cost_unknown").with("stores", stores),
         }
         .with("nominal", WEAR_CONFIRMATION)
-        .with("last", WEAR_LAST)
+        .with("last", WEAR_GUARANTEE)
     }
 
     fn reaches_wear_limit(prepared: &Prepared) -> bool {

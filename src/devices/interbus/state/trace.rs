@@ -37,7 +37,7 @@ impl FrameDecoder {
         };
         if entry.direction == Direction::Sent {
             self.requested.clone_from(&bytes);
-            return self.word_meaning_texts(entry.direction, &bytes).into();
+            return self.explain_words(entry.direction, &bytes).into();
         }
         match find_fault(&self.requested, &bytes, self.order) {
             Some(GatewayFault::Broken(damage)) => FrameExplanation::from_error(explained::damage_text(damage)),
@@ -51,7 +51,7 @@ impl FrameDecoder {
 
     /// Explains a reply. An error word is marked as an error reported by the encoder.
     fn explain_received(&mut self, bytes: &[u8]) -> FrameExplanation {
-        let meaning = self.word_meaning_texts(Direction::Received, bytes);
+        let meaning = self.explain_words(Direction::Received, bytes);
         let is_error = match word_in_frame(false, bytes, self.order) {
             Some(FrameWord::In(word)) => matches!(Reply::parse(word), Reply::Error(_)),
             _ => false,
@@ -59,11 +59,11 @@ impl FrameDecoder {
         FrameExplanation { fault: is_error.then_some(TraceFault::Reported), ..meaning.into() }
     }
 
-    fn word_meaning_texts(&mut self, direction: Direction, bytes: &[u8]) -> Vec<Text> {
+    fn explain_words(&mut self, direction: Direction, bytes: &[u8]) -> Vec<Text> {
         match word_in_frame(direction == Direction::Sent, bytes, self.order) {
             Some(FrameWord::Out(word)) => {
                 let command = self.command(word);
-                self.follow_command(command);
+                self.track_command(command);
                 vec![hex_word_text("ib_trace.out", word), word_meaning::command_text(command)]
             }
             Some(FrameWord::In(word)) => {
@@ -80,12 +80,12 @@ impl FrameDecoder {
         Command::in_mode(word, self.mode).ok().or_else(readings).unwrap_or(Command::Unknown(word))
     }
 
-    fn follow_command(&mut self, command: Command) {
+    fn track_command(&mut self, command: Command) {
         match command {
             Command::Cams(Some(_)) => self.mode = EncoderMode::Cam,
             Command::Cams(None) | Command::Velocity(false) => self.mode = EncoderMode::Position,
             Command::Velocity(true) => self.mode = EncoderMode::Velocity,
-            _ if word_meaning::mode_of_command(command) == EncoderMode::Cam => self.mode = EncoderMode::Cam,
+            _ if word_meaning::command_mode(command) == EncoderMode::Cam => self.mode = EncoderMode::Cam,
             _ => {}
         }
         self.read_out = if let Command::ReadOut(read_out) = command { Some(read_out) } else { None };

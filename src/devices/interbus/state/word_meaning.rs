@@ -21,7 +21,7 @@ impl WordContext {
     /// Returns the context for interpreting the reply to a command.
     pub fn for_command(command: Command, shift: Option<WindowShift>) -> Self {
         let read_out = if let Command::ReadOut(what) = command { Some(what) } else { None };
-        WordContext { mode: mode_of_command(command), read_out, shift }
+        WordContext { mode: command_mode(command), read_out, shift }
     }
 }
 
@@ -67,7 +67,7 @@ pub fn command_text(command: Command) -> Text {
 }
 
 /// Returns a mode in which the encoder accepts a command. Position mode is preferred over cam mode.
-pub fn mode_of_command(command: Command) -> EncoderMode {
+pub fn command_mode(command: Command) -> EncoderMode {
     if command.is_legal_in(EncoderMode::Position) || !command.is_legal_in(EncoderMode::Cam) {
         EncoderMode::Position
     } else {

@@ -80,7 +80,7 @@ impl HasProfile for Encoder {
     }
 
     fn save_remarks(&self) -> Vec<Text> {
-        truncated_list(&labels::finding_texts(&self.findings()), Text::clone)
+        truncated_list(&labels::describe_findings(&self.findings()), Text::clone)
     }
 
     fn last_read_profile(&self) -> Option<KnownProfile> {

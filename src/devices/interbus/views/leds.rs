@@ -51,7 +51,7 @@ fn output_indicators_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
             paragraph(ui, RichText::new(translate(theme, "ib_leds.unknown")).color(theme.palette.warn));
             return;
         };
-        let (meaning, remedy) = format::led_texts(own);
+        let (meaning, remedy) = format::led_labels(own);
         paragraph(ui, theme.value(theme.format_text(&meaning)));
         paragraph(ui, theme.format_text(&remedy));
     });

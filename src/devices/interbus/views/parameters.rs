@@ -9,7 +9,9 @@ use egui::{Align, Layout, RichText, Ui, vec2};
 
 use crate::app::explain::cycle_count_text;
 use crate::app::{Action, Text};
-use crate::devices::interbus::jobs::{Change, WEAR_CONFIRMATION, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, WearAfterPlan};
+use crate::devices::interbus::jobs::{
+    Change, WEAR_CONFIRMATION, WEAR_GUARANTEE, WEAR_LIMIT, WEAR_WARNING, WearAfterPlan,
+};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::Parameter;
 use crate::devices::interbus::state::staged::Edit;
@@ -195,9 +197,9 @@ fn eeprom_wear_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
             .text("ib_wear.seen")
             .with_text("stores", cycle_count_text(stores))
             .with("nominal", WEAR_CONFIRMATION)
-            .with("last", WEAR_LAST);
+            .with("last", WEAR_GUARANTEE);
         paragraph(ui, theme.format_text(&text));
-        let share = (stores.seen as f32 / WEAR_LAST as f32).min(1.0);
+        let share = (stores.seen as f32 / WEAR_GUARANTEE as f32).min(1.0);
         ui.add(egui::ProgressBar::new(share).desired_height(6.0).fill(ink.into()));
         let text = TEXTS
             .text("ib_wear.words")

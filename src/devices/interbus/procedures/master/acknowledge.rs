@@ -94,7 +94,7 @@ impl Master<'_> {
     /// Returns how long the echo of a command must persist, or `None` if it cannot be mistaken for the word of a busy
     /// encoder.
     fn required_echo_time(&self, command: Command, tried: u32) -> Option<Duration> {
-        let echo = Reply::echo_of(command);
+        let echo = Reply::echo_for(command);
         let most = self.patience / 2;
         match echo {
             _ if echo.emit() == BUSY => Some(most),

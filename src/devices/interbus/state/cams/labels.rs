@@ -80,7 +80,7 @@ pub fn output_text(lamp: OutputState) -> Text {
 
 /// Returns the messages for the given findings. Cams of one program that are beyond the measuring range share a
 /// message.
-pub fn finding_texts(marks: &[EditFinding]) -> Vec<Text> {
+pub fn describe_findings(marks: &[EditFinding]) -> Vec<Text> {
     let beyond_in = |own: &EditFinding| matches!(own, EditFinding::Beyond { .. }).then(|| own.program()).flatten();
     let mut named = Vec::new();
     let mut texts = Vec::new();

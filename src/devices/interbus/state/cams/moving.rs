@@ -28,14 +28,14 @@ pub fn apply_drag(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     let (start, stop) = (i64::from(cam.start.get()), i64::from(cam.stop.get()));
     if start >= whole || stop >= whole {
         let to = (i64::from(edge_value(cam, edge).get()) + by).clamp(0, whole - 1);
-        return with_edge_moved(cam, edge, to, whole);
+        return move_edge(cam, edge, to, whole);
     }
     let length = (stop - start).rem_euclid(whole) + 1;
     let by = match edge {
         Edge::Start => by.clamp(length - whole, length - 1),
         Edge::Stop => by.clamp(1 - length, whole - length),
     };
-    with_edge_moved(cam, edge, i64::from(edge_value(cam, edge).get()) + by, whole)
+    move_edge(cam, edge, i64::from(edge_value(cam, edge).get()) + by, whole)
 }
 
 /// Returns the cam with both edges moved by `by` steps. A cam with an edge beyond the range is left unchanged.
@@ -45,8 +45,8 @@ pub fn move_cam(cam: Cam, by: i64, range: u32) -> Cam {
         return cam;
     }
     let by = by.rem_euclid(whole);
-    let start = with_edge_moved(cam, Edge::Start, i64::from(cam.start.get()) + by, whole);
-    with_edge_moved(start, Edge::Stop, i64::from(cam.stop.get()) + by, whole)
+    let start = move_edge(cam, Edge::Start, i64::from(cam.start.get()) + by, whole);
+    move_edge(start, Edge::Stop, i64::from(cam.stop.get()) + by, whole)
 }
 
 /// Returns the cam between two pointer positions, in either order. They may be beyond the range.
@@ -55,10 +55,10 @@ pub fn cam_between(from: i64, to: i64, range: u32) -> Cam {
     let (first, last) = (from.min(to), from.max(to));
     let last = last.min(first + whole - 1);
     let none = Cam { start: Value::default(), stop: Value::default() };
-    with_edge_moved(with_edge_moved(none, Edge::Start, first, whole), Edge::Stop, last, whole)
+    move_edge(move_edge(none, Edge::Start, first, whole), Edge::Stop, last, whole)
 }
 
-fn with_edge_moved(cam: Cam, edge: Edge, to: i64, whole: i64) -> Cam {
+fn move_edge(cam: Cam, edge: Edge, to: i64, whole: i64) -> Cam {
     // The position is below the range, which has at most 25 bits.
     let to = Value::from_word(to.rem_euclid(whole) as u32);
     match edge {

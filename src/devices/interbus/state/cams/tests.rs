@@ -213,7 +213,7 @@ fn lane_describes_cam_and_problems() {
         own.apply_edit(&Edit::Name { program: program(), cam: cam(number), name: "glue".to_owned() }).unwrap();
     }
     let chart = Chart::from_edits(&own, program()).unwrap();
-    let lane = chart.lane_of(cam(3)).unwrap();
+    let lane = chart.find_lane(cam(3)).unwrap();
     let degrees = Scale::in_degrees(1000.0, 0).unwrap();
     let says = |text: crate::app::Text| text.to_string_in(Language::English);
     assert_eq!(says(labels::cam(lane)), "Cam 3 · glue");
@@ -225,7 +225,7 @@ fn lane_describes_cam_and_problems() {
     own.apply_edit(&Edit::Steps(850)).unwrap();
     let chart = Chart::from_edits(&own, program()).unwrap();
     let troubles: Vec<String> =
-        labels::lane_problems(&chart, chart.lane_of(cam(3)).unwrap()).into_iter().map(says).collect();
+        labels::lane_problems(&chart, chart.find_lane(cam(3)).unwrap()).into_iter().map(says).collect();
     assert_eq!(troubles[0], "The position is outside the measuring range, which ends at 849.");
-    assert!(chart.lane_of(cam(3)).unwrap().edited && !chart.lane_of(cam(5)).unwrap().edited);
+    assert!(chart.find_lane(cam(3)).unwrap().edited && !chart.find_lane(cam(5)).unwrap().edited);
 }

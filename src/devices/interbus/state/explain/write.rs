@@ -43,7 +43,7 @@ pub fn operation_texts(op: &Op) -> OperationTexts {
         },
         Op::Program(change) => OperationTexts {
             item: TEXTS.text("ib_op.program").with("program", change.program.get()),
-            changes: program_change_texts(change),
+            changes: describe_program_change(change),
         },
         Op::FirePreset { value } => {
             OperationTexts::single(TEXTS.text("ib_op.fire"), TEXTS.text("ib_op.place"), literal_text(value))
@@ -56,7 +56,7 @@ pub fn operation_texts(op: &Op) -> OperationTexts {
     }
 }
 
-fn program_change_texts(change: &ProgramChange) -> Vec<ChangeTexts> {
+fn describe_program_change(change: &ProgramChange) -> Vec<ChangeTexts> {
     let words = |part: Text, old: Text, new: Text| ChangeTexts { part: Some(part), old, new };
     // Both edges of a cam are on one line.
     let of_cam = |own: &[CamChange]| match own {

@@ -149,12 +149,12 @@ impl SavedEdit {
             }
             SavedEdit::Name(_, cam, ref name) => {
                 let place = self.program().zip(CamNumber::new(cam));
-                if let Some(((program, cam), name)) = place.zip(edit::checked_name(name).ok()) {
+                if let Some(((program, cam), name)) = place.zip(edit::validate_name(name).ok()) {
                     wanted.names.set_cam(program, cam, name);
                 }
             }
             SavedEdit::ProgramName(_, ref name) => {
-                if let Some((program, name)) = self.program().zip(edit::checked_name(name).ok()) {
+                if let Some((program, name)) = self.program().zip(edit::validate_name(name).ok()) {
                     wanted.names.set_program(program, name);
                 }
             }

@@ -177,8 +177,8 @@ pub(super) fn apply_edit(wanted: &EditedValues, edit: &Edit, ground: BaseSource)
             }
             own.mask = mask;
         }
-        Edit::Name { program, cam, ref name } => after.names.set_cam(program, cam, checked_name(name)?),
-        Edit::ProgramName { program, ref name } => after.names.set_program(program, checked_name(name)?),
+        Edit::Name { program, cam, ref name } => after.names.set_cam(program, cam, validate_name(name)?),
+        Edit::ProgramName { program, ref name } => after.names.set_program(program, validate_name(name)?),
         Edit::Copy { from, to } => {
             let copied = *wanted.image.program(from).ok_or(EditError::NotRead(from))?;
             *program_mut(&mut after, to, ground)? = copied;
@@ -263,7 +263,7 @@ fn fill_program(after: &mut EditedValues, filled: &ImportedProgram, ground: Base
         position(Edge::Stop, cam.stop.get(), after)?;
     }
     for (cam, name) in CamNumber::all().zip(&filled.names) {
-        after.names.set_cam(filled.program, cam, checked_name(name)?);
+        after.names.set_cam(filled.program, cam, validate_name(name)?);
     }
     let own = program_mut(after, filled.program, ground)?;
     own.mask = 0;
@@ -277,7 +277,7 @@ fn fill_program(after: &mut EditedValues, filled: &ImportedProgram, ground: Base
 }
 
 /// Checks a name and removes blanks from both ends.
-pub(super) fn checked_name(name: &str) -> Result<String, EditError> {
+pub(super) fn validate_name(name: &str) -> Result<String, EditError> {
     let name = name.trim();
     if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
         return Err(EditError::Name);

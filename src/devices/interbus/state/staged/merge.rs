@@ -16,17 +16,17 @@ pub(super) fn merge_known(known: &Image, read: Image) -> Image {
 /// Applies edits made to the previous base values to the new ones.
 pub(super) fn rebase_edits(own: &mut EditedValues, before: &EditedValues, now: &EditedValues) {
     let (parameters, was, is) = (&mut own.image.parameters, &before.image.parameters, &now.image.parameters);
-    follow_base(&mut parameters.steps, &was.steps, &is.steps);
-    follow_base(&mut parameters.revolutions, &was.revolutions, &is.revolutions);
-    follow_base(&mut parameters.direction, &was.direction, &is.direction);
-    follow_base(&mut parameters.preset, &was.preset, &is.preset);
-    follow_base(&mut parameters.zero_shift, &was.zero_shift, &is.zero_shift);
-    follow_base(&mut own.image.shift, &before.image.shift, &now.image.shift);
+    update_if_unedited(&mut parameters.steps, &was.steps, &is.steps);
+    update_if_unedited(&mut parameters.revolutions, &was.revolutions, &is.revolutions);
+    update_if_unedited(&mut parameters.direction, &was.direction, &is.direction);
+    update_if_unedited(&mut parameters.preset, &was.preset, &is.preset);
+    update_if_unedited(&mut parameters.zero_shift, &was.zero_shift, &is.zero_shift);
+    update_if_unedited(&mut own.image.shift, &before.image.shift, &now.image.shift);
     let programs = own.image.programs.iter_mut().zip(&before.image.programs).zip(&now.image.programs);
     for ((program, was), is) in programs {
         match (program.as_mut(), was, is) {
             (Some(program), Some(was), Some(is)) => rebase_program(program, was, is),
-            _ => follow_base(program, was, is),
+            _ => update_if_unedited(program, was, is),
         }
     }
     for program in ProgramNumber::all() {
@@ -45,10 +45,10 @@ fn rebase_program(program: &mut Program, was: &Program, is: &Program) {
     for ((cam, was), is) in program.cams.iter_mut().zip(&was.cams).zip(&is.cams) {
         match (cam.as_mut(), was, is) {
             (Some(Cam { start, stop }), Some(was), Some(is)) => {
-                follow_base(start, &was.start, &is.start);
-                follow_base(stop, &was.stop, &is.stop);
+                update_if_unedited(start, &was.start, &is.start);
+                update_if_unedited(stop, &was.stop, &is.stop);
             }
-            _ => follow_base(cam, was, is),
+            _ => update_if_unedited(cam, was, is),
         }
     }
     let edited = program.mask ^ was.mask;
@@ -56,7 +56,7 @@ fn rebase_program(program: &mut Program, was: &Program, is: &Program) {
 }
 
 /// Updates a value to the new base value, unless the user has edited it.
-fn follow_base<T: PartialEq + Clone>(own: &mut T, was: &T, is: &T) {
+fn update_if_unedited<T: PartialEq + Clone>(own: &mut T, was: &T, is: &T) {
     if own == was {
         own.clone_from(is);
     }

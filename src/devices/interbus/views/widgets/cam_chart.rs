@@ -63,7 +63,7 @@ impl CamChart<'_> {
     /// Returns the cam as it is after a drag from one position to another.
     pub(super) fn apply_drag(&self, hold: DragTarget, from: f64, at: f64, snap: &SnapSettings) -> Option<Cam> {
         let range = self.chart.range;
-        let own = self.chart.lane_of(hold.cam())?.edges;
+        let own = self.chart.find_lane(hold.cam())?.edges;
         let by = |hold, cam| cams::snap_distance(self.chart, self.scale, hold, cam, at - from, snap);
         match hold {
             DragTarget::Edge(_, edge) => own.map(|cam| cams::apply_drag(cam, edge, by(hold, cam), range)),
@@ -99,7 +99,7 @@ impl CamChart<'_> {
         if response.drag_stopped() {
             ui.data_mut(|data| data.remove::<Drag>(base));
             let is_new = matches!(drag.hold, DragTarget::New(_));
-            let other = to.filter(|to| is_new || self.chart.lane_of(cam).is_some_and(|lane| lane.edges != Some(*to)));
+            let other = to.filter(|to| is_new || self.chart.find_lane(cam).is_some_and(|lane| lane.edges != Some(*to)));
             return Some(match other {
                 Some(to) => CamEvent::Moved { cam, to, drawn: is_new },
                 None => CamEvent::Selected(cam),
@@ -128,7 +128,7 @@ impl CamChart<'_> {
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
         let pressed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
         let cam = hold.cam();
-        let lane = self.chart.lane_of(cam)?;
+        let lane = self.chart.find_lane(cam)?;
         let edge = match hold {
             DragTarget::Edge(_, edge) => edge,
             DragTarget::Whole(_) | DragTarget::New(_) => Edge::Start,
@@ -152,7 +152,7 @@ impl CamChart<'_> {
 
     fn move_by(&self, hold: DragTarget, by: i64) -> Option<CamEvent> {
         let cam = hold.cam();
-        let own = self.chart.lane_of(cam)?.edges?;
+        let own = self.chart.find_lane(cam)?.edges?;
         let to = match hold {
             DragTarget::Edge(_, edge) => cams::apply_drag(own, edge, by, self.chart.range),
             DragTarget::Whole(_) | DragTarget::New(_) => cams::move_cam(own, by, self.chart.range),
@@ -198,7 +198,7 @@ impl CamChart<'_> {
             });
             (set.last(), count(Action::Increment), count(Action::Decrement))
         });
-        let own = self.chart.lane_of(cam)?.edges?;
+        let own = self.chart.find_lane(cam)?.edges?;
         if let Some(value) = set {
             // The value is within the range, which has at most 25 bits.
             let value = Value::from_word(value.round().clamp(0.0, f64::from(last)) as u32);
@@ -212,7 +212,7 @@ impl CamChart<'_> {
     }
 
     pub(super) fn show_tooltip(&self, theme: &Theme, response: Response, hold: DragTarget) {
-        let Some(lane) = self.chart.lane_of(hold.cam()) else { return };
+        let Some(lane) = self.chart.find_lane(hold.cam()) else { return };
         response.on_hover_ui(|ui| {
             ui.set_max_width(300.0);
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);

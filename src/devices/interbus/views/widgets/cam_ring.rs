@@ -127,7 +127,7 @@ impl Ring<'_> {
         let sense = if self.model.movable { Sense::CLICK | Sense::DRAG } else { Sense::CLICK };
         let response = self.ui.interact(rect, self.base.with("disc"), sense);
         let under = |place: Pos2| {
-            let lane = self.model.chart.lane_of(self.dial.cam_at(place)?)?;
+            let lane = self.model.chart.find_lane(self.dial.cam_at(place)?)?;
             let position = Value::from_word(self.dial.position(place) as u32);
             lane.edges.filter(|cam| cam.is_on(position)).map(|_| DragTarget::Whole(lane.cam))
         };

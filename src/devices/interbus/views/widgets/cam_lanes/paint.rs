@@ -120,7 +120,7 @@ impl LanePainter<'_> {
 
     /// Draws the outline of a cam from the program used for comparison. It is dashed if that cam is inactive.
     fn draw_compared_cam(&self, painter: &Painter, cam: CamNumber) {
-        let Some((chart, lane)) = self.model.compared.and_then(|chart| Some((chart, chart.lane_of(cam)?))) else {
+        let Some((chart, lane)) = self.model.compared.and_then(|chart| Some((chart, chart.find_lane(cam)?))) else {
             return;
         };
         let stroke = Stroke::new(if lane.on { 2.0 } else { 1.0 }, self.theme.palette.text);
@@ -207,7 +207,7 @@ impl LanePainter<'_> {
     }
 
     pub(super) fn paint_focus(&self, cam: CamNumber) {
-        let Some(lane) = self.shown.lane_of(cam) else { return };
+        let Some(lane) = self.shown.find_lane(cam) else { return };
         let painter = self.ui.painter();
         for stretch in lane.on_ranges(self.shown.range) {
             if let Some(bar) = self.place.bar_rect(cam, stretch) {
