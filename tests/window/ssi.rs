@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Language, Severity};
 use encoder_studio::devices::ssi::procedures::check::Verdict;
-use encoder_studio::devices::ssi::protocol::{Code, LayoutProposal, Location, Range, SearchUncertainty};
+use encoder_studio::devices::ssi::protocol::{Code, LayoutProposal, Location, Range, UncertaintyReason};
 use encoder_studio::devices::ssi::state::strip::Handle;
 use encoder_studio::devices::ssi::state::{
     Edit, Encoder, Entry, ExportFormat, Field, FieldInput, SearchState, SsiAction as Ssi, TrialInput,
@@ -284,7 +284,7 @@ fn adopts_layout_found_live() {
     // The shaft did not pass the end of the 4096 turns, so the result is uncertain. The number of remaining classes
     // depends on the angle by which the shaft has turned in the meantime.
     assert!(
-        matches!(search.uncertainty, Some(SearchUncertainty::Open | SearchUncertainty::Close)),
+        matches!(search.uncertainty, Some(UncertaintyReason::Open | UncertaintyReason::Close)),
         "{:?}",
         search.uncertainty
     );

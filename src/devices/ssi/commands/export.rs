@@ -10,8 +10,8 @@ use super::profiles::{profile_document, write};
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result, Success};
 use crate::devices::ssi::protocol::{
-    ReadConditions, Times, TooWideError, bit_table, english_text, frame_picture, generate_c99, scl_source,
-    settings_sheet, structured_text, structured_text_32, timing_picture, to_linuxcnc,
+    ReadConditions, Times, TooWideError, bit_table, english_text, frame_drawing, generate_c99, scl_source,
+    settings_sheet, structured_text, structured_text_32, timing_drawing, to_linuxcnc,
 };
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain;
@@ -32,7 +32,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
         SsiFormat::Linuxcnc => to_linuxcnc(layout).map_err(|error| Failure::Failed(vec![format!("{error}.")]))? + "\n",
         SsiFormat::Csv => bit_table(layout, &english_text),
         SsiFormat::Sheet => settings_sheet(layout, times.as_ref(), title, &english_text),
-        SsiFormat::Svg => frame_picture(layout, None, title, &english_text).to_svg(),
+        SsiFormat::Svg => frame_drawing(layout, None, title, &english_text).to_svg(),
         SsiFormat::Profile => profile_document(chosen.profile).emit(),
         SsiFormat::Timing => {
             // The default of each option comes from the profile.
@@ -54,7 +54,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
             for warning in timing.warnings {
                 output.print_message(&explain::timing_warning_text(&warning).terminal_text());
             }
-            timing_picture(layout, times.as_ref().unwrap_or(&Times::GENERAL), &reads, title, &english_text).to_svg()
+            timing_drawing(layout, times.as_ref().unwrap_or(&Times::GENERAL), &reads, title, &english_text).to_svg()
         }
     };
     match file {

@@ -98,7 +98,7 @@ fn evidence_text(class: &LayoutClass) -> String {
 
 /// Returns the motion that would distinguish the remaining layouts, or `None` if the result is certain.
 fn next_motion(search: &Search) -> Option<String> {
-    let uncertainty = search.uncertainty.filter(|uncertainty| *uncertainty != protocol::SearchUncertainty::Open);
+    let uncertainty = search.uncertainty.filter(|uncertainty| *uncertainty != protocol::UncertaintyReason::Open);
     let uncertainty = uncertainty.map(|uncertainty| explain::uncertainty_text(Some(uncertainty)).terminal_text());
     let open = search.classes.first().into_iter().flat_map(|class| &class.open);
     let open = open.map(|open| explain::open_question_text(*open).terminal_text());

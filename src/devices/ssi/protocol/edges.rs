@@ -167,13 +167,13 @@ mod tests {
 
     /// Frame of an AHM36 in Gray code with MT 123h and ST 2A5Bh (reference section 8).
     const GRAY: &str = "000110110010011111011101100";
-    const INVERSE: &str = "111001001101100000100010011";
+    const INVERTED_GRAY: &str = "111001001101100000100010011";
 
     #[test]
     fn samples_bits_like_host() {
         // The clock frequencies are 400 kHz, 2 MHz and 25 kHz. At 25 kHz, half a period is longer than tm.
         for (half, pause) in [(1.25, 30.0), (0.25, 30.0), (20.0, 200.0)] {
-            let found = extract_frames(&recording(&[GRAY, INVERSE, GRAY], half, pause)).unwrap();
+            let found = extract_frames(&recording(&[GRAY, INVERTED_GRAY, GRAY], half, pause)).unwrap();
             assert_eq!(
                 found,
                 ExtractedFrames { clocks: 27, frames: vec![0x0D9_3EEC, 0x726_C113, 0x0D9_3EEC], left_out: 0 }
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn idle_level_reveals_swapped_clock() {
-        let mut levels = recording(&[GRAY, INVERSE], 1.25, 60.0);
+        let mut levels = recording(&[GRAY, INVERTED_GRAY], 1.25, 60.0);
         levels.iter_mut().for_each(|own| own.clock = !own.clock);
         assert_eq!(extract_frames(&levels).unwrap().frames, [0x0D9_3EEC, 0x726_C113]);
     }

@@ -18,7 +18,7 @@ pub use halves::{TooWideError, scl_source, structured_text_32};
 pub use linuxcnc::{FormatError, UnsupportedProperty, from_linuxcnc, to_linuxcnc};
 pub use sheet::settings_sheet;
 pub use structured_text::structured_text;
-pub use svg::{frame_picture, timing_picture};
+pub use svg::{frame_drawing, timing_drawing};
 pub use table::bit_table;
 pub use text::{ExportText, ModuleObstacle, SettingMeaning, TranslateFn, english_text};
 

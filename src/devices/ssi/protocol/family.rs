@@ -199,7 +199,7 @@ impl Family {
         let family: Family = ron::from_str(text).map_err(|wrong| {
             error(wrong.span.start.line, wrong.span.start.col, FamilyProblem::Parser(wrong.code.to_string()))
         })?;
-        let at = |entry| location_of_entry(text, entry);
+        let at = |entry| locate_entry(text, entry);
         let fits = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || matches!(letter, '-' | '_');
         if family.key.is_empty() || !family.key.chars().all(fits) {
             let (line, column) = at("key:");
@@ -219,7 +219,7 @@ impl Family {
     }
 
     /// Returns the German translation of the family's source or a note, or the English text if there is none.
-    pub fn german_or<'f>(&'f self, english: &'f str) -> &'f str {
+    pub fn german_or_english<'f>(&'f self, english: &'f str) -> &'f str {
         self.german.get(english).map_or(english, String::as_str)
     }
 
@@ -231,7 +231,7 @@ impl Family {
 
 /// Returns the line and the column of the first line that begins with `entry`, both counted from 1. Both are 1 if there
 /// is no such line.
-fn location_of_entry(text: &str, entry: &str) -> (usize, usize) {
+fn locate_entry(text: &str, entry: &str) -> (usize, usize) {
     let lines = text.lines().enumerate();
     let found = lines.filter(|(_, line)| line.trim_start().starts_with(entry)).map(|(at, line)| {
         let blanks = line.chars().take_while(|letter| letter.is_whitespace()).count();

@@ -55,14 +55,14 @@ pub struct Search {
     pub different: usize,
     /// Reason why the best result is uncertain, or `None` if every bit is explained and no other class fits equally
     /// well.
-    pub uncertainty: Option<SearchUncertainty>,
+    pub uncertainty: Option<UncertaintyReason>,
     /// Classes of possible layouts, best first. The list may be empty.
     pub classes: Vec<LayoutClass>,
 }
 
 /// The reason why the result of a search is uncertain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SearchUncertainty {
+pub enum UncertaintyReason {
     /// The shaft was at rest or hardly moved.
     Standing,
     /// All bits of all frames have the same value.
@@ -186,10 +186,10 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     let different = seen.distinct_count();
     let search = |uncertainty, classes| Search { frames: frames.len(), different, uncertainty, classes };
     if let Some(high) = seen.stuck_level().filter(|_| !newest.is_empty()) {
-        return search(Some(SearchUncertainty::Stuck { high }), Vec::new());
+        return search(Some(UncertaintyReason::Stuck { high }), Vec::new());
     }
     if different < 8 || seen.is_at_rest() {
-        return search(Some(SearchUncertainty::Standing), Vec::new());
+        return search(Some(UncertaintyReason::Standing), Vec::new());
     }
     let repeat = seen.detect_repetition();
     let words = repeat.map_or_else(|| FrameSet::new(newest, clocks), |repeat| seen.first_words(repeat));
@@ -215,7 +215,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         }
     }
     if different < MIN_DIFFERENT_FRAMES && !groups.first().is_some_and(|group| group.read.closed) {
-        return search(Some(SearchUncertainty::Standing), Vec::new());
+        return search(Some(UncertaintyReason::Standing), Vec::new());
     }
     for group in &mut groups {
         // If the step size varies, a lowest bit that never changes is not part of the position. It is a parity bit, or
@@ -235,7 +235,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         group.bits += WEIGHT_BITS * group.members.first().map_or(0.0, |member| member.weight);
     }
     groups.sort_by(|a, b| a.bits.total_cmp(&b.bits));
-    let uncertainty = verdict::search_uncertainty(&words, &groups);
+    let uncertainty = verdict::uncertainty_reason(&words, &groups);
     search(uncertainty, verdict::merge_classes(&words, groups))
 }
 

@@ -34,7 +34,8 @@ const NAMES: &[&str] = &[
 
 const UNKNOWN: &str = "BIT";
 /// Keys of the bit lists, each with the name of its bits and whether the bits are active at 0.
-const LISTS: [(&str, &str, bool); 3] = [("ones", "HIGH", true), ("err", "ERROR", false), ("unknown", UNKNOWN, false)];
+const BIT_LISTS: [(&str, &str, bool); 3] =
+    [("ones", "HIGH", true), ("err", "ERROR", false), ("unknown", UNKNOWN, false)];
 
 impl FrameDescriptor {
     /// Parses a frame given as one word, or returns `None` if the word begins with another keyword.
@@ -82,7 +83,7 @@ impl FrameDescriptor {
         let parity = |parity: Parity| format!("{}@{}", if parity.even { "even" } else { "odd" }, parity.clock);
         word("parity", self.parity.map(parity));
         word("repeat", self.repeat.map(|repeat| format!("{}+{}", repeat.word, repeat.gap)));
-        for (name, called, low) in LISTS {
+        for (name, called, low) in BIT_LISTS {
             let is_unknown = called == UNKNOWN;
             let listed =
                 |bit: &&ErrorBit| bit.active_low == low && (low || bit.name.starts_with(UNKNOWN) == is_unknown);
@@ -121,7 +122,7 @@ fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<FrameDescriptor, Sp
             "repeat" => frame.repeat = Some(parse_repetition(value).ok_or_else(|| wrong(AllowedValues::Repetition))?),
             _ => {
                 let (_, called, active_low) =
-                    LISTS.iter().find(|(list, ..)| *list == setting.name).ok_or_else(|| setting.unknown_name())?;
+                    BIT_LISTS.iter().find(|(list, ..)| *list == setting.name).ok_or_else(|| setting.unknown_name())?;
                 for clock in value.split('+') {
                     let clock = clock.parse().map_err(|_| wrong(AllowedValues::Clocks))?;
                     frame.errors.push(ErrorBit {

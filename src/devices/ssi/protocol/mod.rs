@@ -29,14 +29,14 @@ pub use edges::{BurstError, ExtractedFrames, LineLevels, extract_frames};
 pub use explain::{Cell, FrameFinding, Role};
 pub use export::{
     ExportText, FormatError, ModuleObstacle, SettingMeaning, TooWideError, TranslateFn, UnsupportedProperty, bit_table,
-    english_text, frame_picture, from_linuxcnc, generate_c99, scl_source, settings_sheet, structured_text,
-    structured_text_32, timing_picture, to_linuxcnc,
+    english_text, frame_drawing, from_linuxcnc, generate_c99, scl_source, settings_sheet, structured_text,
+    structured_text_32, timing_drawing, to_linuxcnc,
 };
 pub use family::{
     Alignment, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, ResolvedFrame, SettingAdvice,
     SettingName, Settings, SettingsError, Signal, StepLimits,
 };
-pub use find::{ClassEvidence, LayoutClass, LayoutProposal, OpenQuestion, Search, SearchUncertainty, find};
+pub use find::{ClassEvidence, LayoutClass, LayoutProposal, OpenQuestion, Search, UncertaintyReason, find};
 pub use finding_counts::{CountedFinding, FindingCounts};
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]

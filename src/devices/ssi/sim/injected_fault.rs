@@ -41,7 +41,7 @@ impl InjectedFault {
                     Some((name, seconds)) => (name, Some(period(seconds)?)),
                     None => (item, None),
                 };
-                Some(InjectedFault { shows: indication_of(name, layout)?, period })
+                Some(InjectedFault { shows: find_indication(name, layout)?, period })
             })
             .collect()
     }
@@ -83,7 +83,7 @@ impl InjectedFault {
     }
 }
 
-fn indication_of(name: &str, layout: &Layout) -> Option<FaultIndication> {
+fn find_indication(name: &str, layout: &Layout) -> Option<FaultIndication> {
     let descriptor = layout.descriptor();
     let is_own = |own: &str| own.replace(' ', "-").eq_ignore_ascii_case(name.trim());
     let bits = descriptor.errors.iter().enumerate();

@@ -14,7 +14,7 @@ use crate::buses::bridge::state::adapter_error_text;
 use crate::devices::ssi::jobs::JobError;
 use crate::devices::ssi::protocol::{
     BitMeaning, ClassEvidence, Code, CountedFinding, FrameFinding, GrayCoverage, Layout, OpenQuestion, Range,
-    SearchUncertainty, SettingAdvice, Warning,
+    SettingAdvice, UncertaintyReason, Warning,
 };
 use crate::devices::ssi::state::TEXTS;
 
@@ -175,15 +175,15 @@ pub fn open_question_text(open: OpenQuestion) -> Text {
 }
 
 /// Returns a message that the best layout is certain, or the reason why it is not.
-pub fn uncertainty_text(uncertainty: Option<SearchUncertainty>) -> Text {
+pub fn uncertainty_text(uncertainty: Option<UncertaintyReason>) -> Text {
     TEXTS.text(match uncertainty {
         None => "ssi_find.sure",
-        Some(SearchUncertainty::Standing) => "ssi_find.standing",
-        Some(SearchUncertainty::Stuck { high: true }) => "ssi.stuck_high",
-        Some(SearchUncertainty::Stuck { high: false }) => "ssi.stuck_low",
-        Some(SearchUncertainty::Nothing) => "ssi_find.nothing_fits",
-        Some(SearchUncertainty::Close) => "ssi_find.close",
-        Some(SearchUncertainty::Open) => "ssi_find.open",
+        Some(UncertaintyReason::Standing) => "ssi_find.standing",
+        Some(UncertaintyReason::Stuck { high: true }) => "ssi.stuck_high",
+        Some(UncertaintyReason::Stuck { high: false }) => "ssi.stuck_low",
+        Some(UncertaintyReason::Nothing) => "ssi_find.nothing_fits",
+        Some(UncertaintyReason::Close) => "ssi_find.close",
+        Some(UncertaintyReason::Open) => "ssi_find.open",
     })
 }
 

@@ -3,8 +3,8 @@
 use super::design::LayoutDesigner;
 use crate::app::{Language, Text};
 use crate::devices::ssi::protocol::{
-    ExportText, bit_table, frame_picture, generate_c99, scl_source, settings_sheet, structured_text,
-    structured_text_32, timing_picture, to_linuxcnc,
+    ExportText, bit_table, frame_drawing, generate_c99, scl_source, settings_sheet, structured_text,
+    structured_text_32, timing_drawing, to_linuxcnc,
 };
 use crate::devices::ssi::state::explain;
 use crate::drawing::Drawing;
@@ -84,7 +84,7 @@ impl LayoutDesigner {
     /// # Errors
     /// Returns an error with the property of the layout that the format cannot represent.
     pub fn export(&self, format: ExportFormat, language: Language) -> Result<String, Text> {
-        if let Some(picture) = self.layout_picture(format, language) {
+        if let Some(picture) = self.layout_drawing(format, language) {
             return Ok(picture.to_svg());
         }
         let layout = self.layout();
@@ -102,13 +102,13 @@ impl LayoutDesigner {
     }
 
     /// Returns the layout as a picture, or `None` if the format is text.
-    pub fn layout_picture(&self, format: ExportFormat, language: Language) -> Option<Drawing> {
+    pub fn layout_drawing(&self, format: ExportFormat, language: Language) -> Option<Drawing> {
         let (layout, title) = (self.layout(), self.title());
         let say = |text: &ExportText| explain::export_text(text).to_string_in(language);
         match format {
-            ExportFormat::Frame => Some(frame_picture(layout, None, &title, &say)),
+            ExportFormat::Frame => Some(frame_drawing(layout, None, &title, &say)),
             ExportFormat::Timing => {
-                Some(timing_picture(layout, &self.applicable_times(), &self.read_conditions(), &title, &say))
+                Some(timing_drawing(layout, &self.applicable_times(), &self.read_conditions(), &title, &say))
             }
             _ => None,
         }

@@ -34,7 +34,7 @@ pub(super) fn content(
     let reading = Section::new(context.localize("report.interface")).with(Block::Facts(reading));
     let drawings = [("report.ssi_frame", ExportFormat::Frame), ("report.ssi_timing", ExportFormat::Timing)];
     let drawings = drawings.into_iter().filter_map(|(title, format)| {
-        let drawing = designer.layout_picture(format, context.language)?;
+        let drawing = designer.layout_drawing(format, context.language)?;
         Some(Section::new(context.localize(TEXTS.text(title))).with(Block::Drawing(drawing)))
     });
     let sections = drawings.collect::<Vec<_>>();

@@ -162,7 +162,7 @@ impl Strip {
     }
 
     /// Returns the strip after a part was moved to a clock, or as close to it as possible. See [`move_part`].
-    pub fn with_part_moved(&self, handle: Handle, to: u8, following: bool) -> Strip {
+    pub fn with_moved_part(&self, handle: Handle, to: u8, following: bool) -> Strip {
         Strip::from_layout(&move_part(&self.layout, handle, to, following))
     }
 

@@ -172,7 +172,7 @@ impl BurstDiagram {
 
     /// Returns the time in seconds at which the data line goes low after the bits, and the earliest and latest time at
     /// which it returns high. The next burst ends the low level in any case.
-    pub fn low_times(&self) -> (f64, f64, f64) {
+    pub fn low_level_times(&self) -> (f64, f64, f64) {
         let (burst, cycle) = (self.timing.burst.as_secs_f64(), self.timing.cycle.as_secs_f64());
         let (least, most) = self.timing.monoflop;
         (burst, (burst + least.as_secs_f64()).min(cycle), (burst + most.as_secs_f64()).min(cycle))
@@ -189,7 +189,7 @@ impl BurstDiagram {
 
     /// Returns texts for a point in time: the time itself, and either the bit being sent or the reason why the lines
     /// are idle.
-    pub fn texts_at(&self, at: f64) -> Vec<Text> {
+    pub fn describe_moment(&self, at: f64) -> Vec<Text> {
         let mut texts = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
             texts.push(cell_text(&self.strip, bit.clock));

@@ -36,7 +36,7 @@ pub(super) fn page_ui(
     ui.add_space(theme.space.between);
     paragraph(ui, theme.label(translate(theme, own.hint_id())));
     ui.add_space(theme.space.between);
-    let picture = encoder.designer.layout_picture(own, theme.language);
+    let picture = encoder.designer.layout_drawing(own, theme.language);
     let text = encoder.designer.export(own, theme.language);
     let copy = if picture.is_some() { "ssi_export.copy_svg" } else { "ssi_export.copy" };
     let aside = |ui: &mut Ui| {

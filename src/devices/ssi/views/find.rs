@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 
 use super::frames;
 use crate::app::{Action, Text};
-use crate::devices::ssi::protocol::{FrameDescriptor, LayoutClass, LayoutProposal, Search, SearchUncertainty};
+use crate::devices::ssi::protocol::{FrameDescriptor, LayoutClass, LayoutProposal, Search, UncertaintyReason};
 use crate::devices::ssi::state::explain;
 use crate::devices::ssi::state::{Encoder, Origin, SearchState, SsiAction as Ssi, TEXTS, read_clocks};
 use crate::devices::ssi::views::translate;
@@ -132,9 +132,9 @@ fn search_results_ui(
     paragraph(ui, theme.label(theme.format_text(&text)));
     let (icon, colour) = match search.uncertainty {
         None => (icons::CHECK_CIRCLE, theme.palette.good),
-        Some(SearchUncertainty::Open) => (icons::QUESTION, theme.palette.accent),
-        Some(SearchUncertainty::Stuck { .. }) => (icons::X_CIRCLE, theme.palette.bad),
-        Some(SearchUncertainty::Standing | SearchUncertainty::Nothing | SearchUncertainty::Close) => {
+        Some(UncertaintyReason::Open) => (icons::QUESTION, theme.palette.accent),
+        Some(UncertaintyReason::Stuck { .. }) => (icons::X_CIRCLE, theme.palette.bad),
+        Some(UncertaintyReason::Standing | UncertaintyReason::Nothing | UncertaintyReason::Close) => {
             (icons::WARNING, theme.palette.warn)
         }
     };

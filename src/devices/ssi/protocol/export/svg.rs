@@ -53,7 +53,7 @@ fn titled_drawing(width: u32, height: u32, title: &str) -> Drawing {
 }
 
 /// Draws the frame with one cell per clock. If `frame` is `Some`, the cells show its bits.
-pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: TranslateFn<'_>) -> Drawing {
+pub fn frame_drawing(layout: &Layout, frame: Option<u64>, title: &str, say: TranslateFn<'_>) -> Drawing {
     let roles = layout.clock_roles();
     let clocks = u32::from(layout.clock_count());
     let mut picture = titled_drawing(2 * MARGIN + clocks * CELL, 112, title);
@@ -113,7 +113,7 @@ pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Tran
 
 /// Draws a burst and the pause after it to scale, with the clock, the data and the transfer times. See figure 2 of the
 /// manual.
-pub fn timing_picture(
+pub fn timing_drawing(
     layout: &Layout,
     times: &Times,
     reads: &ReadConditions,

@@ -44,24 +44,24 @@ impl Settings {
 
     /// Returns the family key and all settings that are not `None` as one word, such as `ahm36,code=gray,st=12`.
     pub fn emit(&self, key: &str) -> String {
-        fn keyword_of<T: ToString>(value: Option<T>) -> Option<String> {
+        fn to_keyword<T: ToString>(value: Option<T>) -> Option<String> {
             value.map(|value| value.to_string())
         }
         let values = [
-            keyword_of(self.code),
-            keyword_of(self.coded),
-            keyword_of(self.multiturn),
-            keyword_of(self.singleturn),
-            keyword_of(self.steps),
-            keyword_of(self.turns),
-            keyword_of(self.revolutions),
-            keyword_of(self.clocks),
-            keyword_of(self.align),
-            keyword_of(self.shift.then_some(1)),
-            keyword_of(self.errors),
-            keyword_of(self.step_nanometres),
-            keyword_of(self.direction),
-            keyword_of(self.preset),
+            to_keyword(self.code),
+            to_keyword(self.coded),
+            to_keyword(self.multiturn),
+            to_keyword(self.singleturn),
+            to_keyword(self.steps),
+            to_keyword(self.turns),
+            to_keyword(self.revolutions),
+            to_keyword(self.clocks),
+            to_keyword(self.align),
+            to_keyword(self.shift.then_some(1)),
+            to_keyword(self.errors),
+            to_keyword(self.step_nanometres),
+            to_keyword(self.direction),
+            to_keyword(self.preset),
         ];
         let named = NAMES.iter().zip(values).filter_map(|(name, value)| Some(format!(",{name}={}", value?)));
         key.to_owned() + &named.collect::<String>()

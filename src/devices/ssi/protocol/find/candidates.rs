@@ -14,8 +14,8 @@ use crate::devices::ssi::protocol::layout::Layout;
 /// Weight of a frame that belongs to no family. A changed setting of a family, in comparison, has a weight of 0.8.
 pub(super) const NO_FAMILY_WEIGHT: f64 = 2.0;
 pub(super) const EXCHANGE_WEIGHT: f64 = 2.0;
-pub(super) const PADDED: f64 = 1.5;
-const NEVER_ODD_WEIGHT: f64 = 8.0;
+pub(super) const PADDED_WEIGHT: f64 = 1.5;
+const EVEN_ONLY_WEIGHT: f64 = 8.0;
 
 #[derive(Clone, Debug)]
 pub(super) struct LayoutCandidate {
@@ -40,7 +40,7 @@ pub(super) fn group_members(
     let mut found = Vec::new();
     let mut take = |family: Option<(String, Settings)>, layout: Layout, weight: f64| {
         if let Some(trial) = probe.try_layout(&layout) {
-            let weight = weight + if trial.never_odd { NEVER_ODD_WEIGHT } else { 0.0 };
+            let weight = weight + if trial.never_odd { EVEN_ONLY_WEIGHT } else { 0.0 };
             found.push(LayoutCandidate { family, layout, weight, trial });
         }
     };

@@ -2,7 +2,7 @@
 //! active at some time, or are unexplained become separate bits.
 
 use super::candidates::{
-    EXCHANGE_WEIGHT, NO_FAMILY_WEIGHT, PADDED, TestCandidateFn, encoder_parity, find_ambiguous_parity, sum,
+    EXCHANGE_WEIGHT, NO_FAMILY_WEIGHT, PADDED_WEIGHT, TestCandidateFn, encoder_parity, find_ambiguous_parity, sum,
 };
 use super::frame_set::FrameSet;
 use super::plausible::{common_bit_splits, width_penalty};
@@ -15,10 +15,10 @@ use crate::devices::ssi::protocol::range::Range;
 
 /// Number of different position widths to propose.
 const WIDTHS: usize = 4;
-const MIN_SHARES: usize = 3;
+const MIN_SPLITS: usize = 3;
 /// Minimum number of frames per thousand in which a bit must deviate to be considered an error bit.
 const ERROR_BIT_PERMILLE: usize = 5;
-const ALWAYS_HIGH: f64 = 0.7;
+const ALWAYS_HIGH_WEIGHT: f64 = 0.7;
 const PARITY: f64 = 0.5;
 
 /// Tries frames without a family that have the given number of clocks.
@@ -60,12 +60,12 @@ pub(super) fn try_custom_frames(
             let fixed = bits_outside_position(words, read, lead, inverted);
             let high = fixed.iter().filter(|bit| bit.active_low).count();
             let weights = [(inverted, EXCHANGE_WEIGHT), (reading.parity.is_some(), PARITY)];
-            let weight = NO_FAMILY_WEIGHT + weight + ALWAYS_HIGH * high as f64 + sum(&weights);
+            let weight = NO_FAMILY_WEIGHT + weight + ALWAYS_HIGH_WEIGHT * high as f64 + sum(&weights);
             let base = FrameDescriptor { errors: fixed, ..base };
             let over =
                 find_ambiguous_parity(reading, inverted).into_iter().flat_map(|parity| parity_variants(&base, parity));
             let all: Vec<(FrameDescriptor, f64)> =
-                over.map(|frame| (frame, PADDED)).chain([(base.clone(), 0.0)]).collect();
+                over.map(|frame| (frame, PADDED_WEIGHT)).chain([(base.clone(), 0.0)]).collect();
             for (frame, more) in all {
                 let whole = match repeat {
                     None => frame,
@@ -108,7 +108,7 @@ fn possible_ranges(read: &FrameNumbers, bits: u8) -> Vec<(Range, f64)> {
         let range = Range::Bits { multiturn: bits - singleturn, singleturn };
         return vec![(range, width_penalty(bits - singleturn, singleturn))];
     }
-    let shares = common_bit_splits(bits, MIN_SHARES).into_iter();
+    let shares = common_bit_splits(bits, MIN_SPLITS).into_iter();
     shares
         .map(|(multiturn, singleturn)| (Range::Bits { multiturn, singleturn }, width_penalty(multiturn, singleturn)))
         .collect()

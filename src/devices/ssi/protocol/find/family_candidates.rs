@@ -1,7 +1,7 @@
 //! Candidate layouts of an encoder family. Only settings whose position ends at the clock found in the recorded frames
 //! are tried.
 
-use super::candidates::{EXCHANGE_WEIGHT, PADDED, TestCandidateFn, find_ambiguous_parity, sum};
+use super::candidates::{EXCHANGE_WEIGHT, PADDED_WEIGHT, TestCandidateFn, find_ambiguous_parity, sum};
 use super::frame_set::FrameSet;
 use super::plausible::width_penalty;
 use super::reading::FrameNumbers;
@@ -76,7 +76,7 @@ pub(super) fn try_families(
                             Range::Bits { multiturn, singleturn } => width_penalty(multiturn, singleturn) / 2.0,
                             _ => 0.0,
                         };
-                        let weights = [(inverted, EXCHANGE_WEIGHT), (*coded != GrayCoverage::Position, PADDED)];
+                        let weights = [(inverted, EXCHANGE_WEIGHT), (*coded != GrayCoverage::Position, PADDED_WEIGHT)];
                         let weight = CHANGE_WEIGHT * changed as f64 + unusual + place as f64 * 0.01 + sum(&weights);
                         take(Some((family.key.clone(), settings)), layout, weight);
                     }

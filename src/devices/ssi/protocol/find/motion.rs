@@ -6,7 +6,7 @@ const BLOCK: usize = 16;
 /// Cost in bits of each group of similar differences, in addition to the differences themselves.
 const MODEL_BITS: f64 = 8.0;
 /// Cost in bits of a frame without a valid number.
-const NONE_BITS: f64 = 16.0;
+const INVALID_FRAME_BITS: f64 = 16.0;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
@@ -47,7 +47,7 @@ impl Motion {
         let mut known: Vec<i64> = steps.iter().flatten().copied().collect();
         let nones = numbers.iter().filter(|number| number.is_none()).count();
         Motion {
-            bits: information_bits(&uneven) + NONE_BITS * nones as f64,
+            bits: information_bits(&uneven) + INVALID_FRAME_BITS * nones as f64,
             median: median(&mut known),
             jumps: uneven.iter().filter(|uneven| uneven.unsigned_abs() > limit).count(),
             limit,

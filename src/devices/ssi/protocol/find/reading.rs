@@ -219,7 +219,7 @@ pub(super) fn best_readings(seen: &FrameSet) -> Vec<FrameNumbers> {
     let mut best = f64::INFINITY;
     for (_, reading) in tried.into_iter().take(BEST_READINGS) {
         let plain = FrameNumbers::new(seen, reading);
-        if is_missing_highest_bit(seen, &plain) {
+        if lacks_highest_bit(seen, &plain) {
             continue;
         }
         best = best.min(plain.bits);
@@ -235,7 +235,7 @@ pub(super) fn best_readings(seen: &FrameSet) -> Vec<FrameNumbers> {
 }
 
 /// Returns whether a bit before the position changes whenever the numbers wrap. Such a bit is the true highest bit.
-fn is_missing_highest_bit(seen: &FrameSet, read: &FrameNumbers) -> bool {
+fn lacks_highest_bit(seen: &FrameSet, read: &FrameNumbers) -> bool {
     let round = read.reading.wrap_after();
     let moving = (1..read.reading.first).rev().find(|clock| seen.bit(*clock).moves);
     let Some(clock) = moving.filter(|_| round != 0) else { return false };

@@ -5,7 +5,7 @@ use super::motion::{Motion, median};
 use super::reading::{FrameNumbers, Reading};
 use crate::devices::ssi::protocol::code::Code;
 
-const TRIED_COUNTS: usize = 40;
+const MAX_TRIED_COUNTS: usize = 40;
 /// Maximum number of additional bits with which another number of steps is considered as good as the best one.
 const ALTERNATIVE_MARGIN_BITS: f64 = 10.0;
 
@@ -58,7 +58,7 @@ fn best_step_counts(read: &FrameNumbers, reading: &Reading, least: &[u64], whole
     let mut costs: Vec<(f64, u64)> = Vec::new();
     let mut add = |all: Vec<u64>| {
         for steps in all.iter().filter(|steps| fits(steps)) {
-            if costs.len() < TRIED_COUNTS && costs.iter().all(|(_, known)| known != steps) {
+            if costs.len() < MAX_TRIED_COUNTS && costs.iter().all(|(_, known)| known != steps) {
                 costs.push((Motion::from_numbers(&numbers(*steps), *steps).bits, *steps));
             }
         }

@@ -47,7 +47,7 @@ fn every_family_class_ranks_first() {
             // If the shaft does not pass the end of the range, it is unknown whether higher bits belong to the
             // position.
             assert!(
-                matches!(search.uncertainty, None | Some(SearchUncertainty::Open)),
+                matches!(search.uncertainty, None | Some(UncertaintyReason::Open)),
                 "{text} at {speed}: {:?}",
                 search.uncertainty
             );
@@ -78,7 +78,7 @@ fn finds_settings() {
     for text in settings {
         let truth = layout(text);
         let search = find(&turning(&truth, 1.3), truth.clock_count(), &families);
-        assert_eq!(search.uncertainty, Some(SearchUncertainty::Open), "{text}");
+        assert_eq!(search.uncertainty, Some(UncertaintyReason::Open), "{text}");
         let first = &search.classes[0];
         assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &truth)), "{text}");
     }
@@ -109,7 +109,7 @@ fn resting_shaft_yields_no_layout() {
     for family in families.iter() {
         let truth = layout(&family.key);
         let search = find(&turning(&truth, 0.0), truth.clock_count(), &families);
-        assert_eq!(search.uncertainty, Some(SearchUncertainty::Standing), "{}", family.key);
+        assert_eq!(search.uncertainty, Some(UncertaintyReason::Standing), "{}", family.key);
         assert_eq!(search.classes, []);
     }
 }
@@ -119,10 +119,10 @@ fn noise_and_stuck_lines_yield_no_layout() {
     let families = Families::built_in();
     let mut rng = Rng::with_seed(3);
     let noise: Vec<u64> = (0..2000).map(|_| rng.u64(..)).collect();
-    assert_eq!(find(&noise, 25, &families).uncertainty, Some(SearchUncertainty::Nothing));
-    assert_eq!(find(&[0; 100], 25, &families).uncertainty, Some(SearchUncertainty::Stuck { high: false }));
-    assert_eq!(find(&[0x1FF_FFFF; 100], 25, &families).uncertainty, Some(SearchUncertainty::Stuck { high: true }));
-    assert_eq!(find(&[], 25, &families).uncertainty, Some(SearchUncertainty::Standing));
+    assert_eq!(find(&noise, 25, &families).uncertainty, Some(UncertaintyReason::Nothing));
+    assert_eq!(find(&[0; 100], 25, &families).uncertainty, Some(UncertaintyReason::Stuck { high: false }));
+    assert_eq!(find(&[0x1FF_FFFF; 100], 25, &families).uncertainty, Some(UncertaintyReason::Stuck { high: true }));
+    assert_eq!(find(&[], 25, &families).uncertainty, Some(UncertaintyReason::Standing));
 }
 
 /// Frames without a family are recognised, both Gray excess that passes the end of the range and a frame with a parity
@@ -150,7 +150,7 @@ fn finds_encoders_without_family() {
     let with_parity =
         Layout::new(FrameDescriptor { clocks: 21, parity: Some(parity), ..FrameDescriptor::binary(0, 20) }).unwrap();
     let search = find(&turning(&with_parity, 2.7), 21, &families);
-    assert_eq!(search.uncertainty, Some(SearchUncertainty::Open));
+    assert_eq!(search.uncertainty, Some(UncertaintyReason::Open));
     assert_eq!(search.classes[0].members[0].layout.descriptor().parity, Some(parity));
 }
 
@@ -168,7 +168,7 @@ fn disturbed_frames_do_not_hide_layout() {
     let search = find(&frames, 27, &Families::built_in());
     let first = &search.classes[0];
     // The disturbed bit is a turn bit that otherwise never changes.
-    assert_eq!((search.uncertainty, first.evidence.misfits), (Some(SearchUncertainty::Open), 40));
+    assert_eq!((search.uncertainty, first.evidence.misfits), (Some(UncertaintyReason::Open), 40));
     assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &truth)));
 }
 

@@ -5,13 +5,13 @@ use super::candidates::{LayoutCandidate, has_only_even_steps};
 use super::frame_set::FrameSet;
 use super::probe::TrialReading;
 use super::reading::FrameNumbers;
-use super::{CLASSES, ClassEvidence, Group, LayoutClass, LayoutProposal, OpenQuestion, SearchUncertainty, WEIGHT_BITS};
+use super::{CLASSES, ClassEvidence, Group, LayoutClass, LayoutProposal, OpenQuestion, UncertaintyReason, WEIGHT_BITS};
 use crate::devices::ssi::protocol::range::Range;
 
 /// Minimum lead of the best class over the next one, in bits.
 const LEAD_BITS: f64 = 100.0;
 /// Maximum information content of steady motion, as a fraction of the bits in the position values.
-const EVEN_MOTION_INFORMATION: f64 = 0.7;
+const STEADY_MOTION_INFORMATION: f64 = 0.7;
 /// Maximum information content of motion in a certain result, as a fraction of the bits in the position values.
 const CERTAIN_INFORMATION: f64 = 0.35;
 /// Maximum percentage of frames that jump or have no valid number.
@@ -23,14 +23,14 @@ const CERTAIN_BITS: u8 = 5;
 const CERTAIN_DIFFERENT_FRAMES: usize = 64;
 const MEMBERS: usize = 200;
 
-pub(super) fn search_uncertainty(words: &FrameSet, groups: &[Group]) -> Option<SearchUncertainty> {
-    let Some(first) = groups.first() else { return Some(SearchUncertainty::Nothing) };
+pub(super) fn uncertainty_reason(words: &FrameSet, groups: &[Group]) -> Option<UncertaintyReason> {
+    let Some(first) = groups.first() else { return Some(UncertaintyReason::Nothing) };
     let frames = words.words().len();
-    if !is_even(&first.read, frames, EVEN_MOTION_INFORMATION) {
-        return Some(SearchUncertainty::Nothing);
+    if !is_even(&first.read, frames, STEADY_MOTION_INFORMATION) {
+        return Some(UncertaintyReason::Nothing);
     }
     if groups.get(1).is_some_and(|next| next.bits - first.bits < LEAD_BITS) {
-        return Some(SearchUncertainty::Close);
+        return Some(UncertaintyReason::Close);
     }
     let sure = frames >= CERTAIN_FRAMES && first.read.reading.width() >= CERTAIN_BITS;
     let sure = sure && !has_uniform_jumps(&first.read) && words.distinct_count() >= CERTAIN_DIFFERENT_FRAMES;
@@ -38,7 +38,7 @@ pub(super) fn search_uncertainty(words: &FrameSet, groups: &[Group]) -> Option<S
     let sure = sure && groups.iter().skip(1).all(|next| next.read.total_cost() - first.read.total_cost() >= LEAD_BITS);
     let proven =
         sure && is_even(&first.read, frames, CERTAIN_INFORMATION) && unproven_properties(words, first).is_empty();
-    (!proven).then_some(SearchUncertainty::Open)
+    (!proven).then_some(UncertaintyReason::Open)
 }
 
 /// Returns whether many jumps have the same size, which indicates a wrong code rather than disturbances.

@@ -9,7 +9,7 @@ use crate::store::StoreError;
 
 /// Returns a note or the source of a family in both languages.
 pub fn note_text(family: &Family, words: &str) -> Text {
-    Text::new("plain.words").with_name("words", words, family.german_or(words))
+    Text::new("plain.words").with_name("words", words, family.german_or_english(words))
 }
 
 /// Returns the message about a family file that cannot be read or used.

@@ -96,7 +96,7 @@ proptest! {
         let strip = Strip::from_layout(&layout);
         let handle = strip.strip_handles()[which.index(strip.strip_handles().len())];
         let at = strip.clock(handle).unwrap();
-        let there = strip.with_part_moved(handle, to, following);
+        let there = strip.with_moved_part(handle, to, following);
         let reached = there.clock(handle).unwrap();
         prop_assert!((at.min(to)..=at.max(to)).contains(&reached), "{handle:?}: {at} to {to}, at {reached}");
         // A bit that is moved directly after other bits follows the position from then on.
@@ -104,7 +104,7 @@ proptest! {
         // The end of an area that the position now fills also follows the position.
         let fills = |layout: &Layout| moving::position_end(layout) == layout.descriptor().area;
         prop_assume!(fills(there.layout()) == fills(&layout) || !following);
-        let back = there.with_part_moved(handle, at, following);
+        let back = there.with_moved_part(handle, at, following);
         prop_assert_eq!(back.clock(handle), Some(at), "{:?} at {}", handle, reached);
         prop_assert_eq!(without_area(back.layout()), without_area(&layout), "{:?}: {} to {}", handle, at, reached);
     }
@@ -115,9 +115,9 @@ proptest! {
         let handle = strip.strip_handles()[which.index(strip.strip_handles().len())];
         let (least, most) = strip.limits(handle, false);
         for end in [least, most] {
-            prop_assert_eq!(strip.with_part_moved(handle, end, false).clock(handle), Some(end));
+            prop_assert_eq!(strip.with_moved_part(handle, end, false).clock(handle), Some(end));
         }
-        let reached = strip.with_part_moved(handle, to, false).clock(handle).unwrap();
+        let reached = strip.with_moved_part(handle, to, false).clock(handle).unwrap();
         prop_assert!((least..=most).contains(&reached));
     }
 
@@ -176,9 +176,9 @@ fn divides_frames_into_fields() {
 fn error_bits_can_follow_step_end() {
     let strip = family("ahs36", &Settings::default());
     assert!(bits_follow_position(strip.layout()));
-    let fixed = strip.with_part_moved(Handle::StepsEnd, 12, false);
+    let fixed = strip.with_moved_part(Handle::StepsEnd, 12, false);
     assert_eq!(frame(&fixed, 0xABC, &[0]), 0x55E1);
-    let following = strip.with_part_moved(Handle::StepsEnd, 12, true);
+    let following = strip.with_moved_part(Handle::StepsEnd, 12, true);
     assert_eq!(frame(&following, 0xABC, &[0]), 0x55E4);
     assert_eq!((bits_follow_position(fixed.layout()), bits_follow_position(following.layout())), (false, true));
     // The error bit blocks the move. If the bit follows the position, the end of the frame is the limit.
@@ -192,16 +192,16 @@ fn error_bits_can_follow_step_end() {
 fn moved_boundaries_yield_manual_formats() {
     let position = 0xA5 << 8 | 0x3C;
     let whole = Strip::from_layout(&Layout::new(FrameDescriptor::binary(12, 13)).unwrap());
-    let tree = whole.with_part_moved(Handle::LeadEnd, 4, true).with_part_moved(Handle::StepsEnd, 20, true);
+    let tree = whole.with_moved_part(Handle::LeadEnd, 4, true).with_moved_part(Handle::StepsEnd, 20, true);
     assert_eq!(frame(&tree, position, &[]), 0x014_A780);
-    let other = whole.with_part_moved(Handle::Split, 13, true).with_part_moved(Handle::LeadEnd, 5, true);
-    assert_eq!(frame(&other.with_part_moved(Handle::StepsEnd, 21, true), position, &[]), 0x00A_53C0);
-    let right = tree.with_part_moved(Handle::Position, 9, true);
+    let other = whole.with_moved_part(Handle::Split, 13, true).with_moved_part(Handle::LeadEnd, 5, true);
+    assert_eq!(frame(&other.with_moved_part(Handle::StepsEnd, 21, true), position, &[]), 0x00A_53C0);
+    let right = tree.with_moved_part(Handle::Position, 9, true);
     assert_eq!(frame(&right, position, &[]), 0x001_4A78);
     // With two zeros between turns and steps, the turns can be extended over these zeros.
-    let apart = tree.with_part_moved(Handle::BetweenEnd, 14, true);
+    let apart = tree.with_moved_part(Handle::BetweenEnd, 14, true);
     assert_eq!(kinds(&apart)[1..4], [(Kind::Turns, 5, 12), (Kind::Between, 13, 14), (Kind::Steps, 15, 20)]);
-    assert_eq!(apart.with_part_moved(Handle::TurnsEnd, 20, true).clock(Handle::TurnsEnd), Some(14));
+    assert_eq!(apart.with_moved_part(Handle::TurnsEnd, 20, true).clock(Handle::TurnsEnd), Some(14));
     assert!(apart.strip_handles().contains(&Handle::TurnsEnd) && !apart.strip_handles().contains(&Handle::Split));
 }
 
@@ -209,14 +209,14 @@ fn moved_boundaries_yield_manual_formats() {
 #[test]
 fn extending_frame_adds_zeros() {
     let ttk = family("ttk70", &Settings::default());
-    let longer = ttk.with_part_moved(Handle::FrameEnd, 31, true);
+    let longer = ttk.with_moved_part(Handle::FrameEnd, 31, true);
     assert_eq!(frame(&longer, 0x12_3456, &[0]), 0x091A_2B40);
     assert_eq!(ttk.limits(Handle::FrameEnd, true), (26, 64));
     let kh53 = family("kh53", &Settings::default());
-    let longer = kh53.with_part_moved(Handle::FrameEnd, 26, true);
+    let longer = kh53.with_moved_part(Handle::FrameEnd, 26, true);
     assert!(longer.layout().decode(0x3FF_FFF8).flags.contains(Flags::pattern_flag(0)));
     assert!(!longer.layout().decode(0xFF_FFFE).flags.contains(Flags::pattern_flag(0)));
-    assert_eq!(longer.with_part_moved(Handle::FrameEnd, 0, true).layout(), kh53.layout());
+    assert_eq!(longer.with_moved_part(Handle::FrameEnd, 0, true).layout(), kh53.layout());
 }
 
 #[test]
@@ -224,11 +224,11 @@ fn error_bits_swap_positions() {
     let strip = family("afs60", &Settings::default());
     let names = |strip: &Strip| [19, 20, 21].map(|clock| strip.layout().role_name(strip.cells()[clock - 1].role));
     assert_eq!(names(&strip), ["ERRDIG", "ERRSI", "ERRSYNC"]);
-    let moved = strip.with_part_moved(Handle::Error(0), 21, true);
+    let moved = strip.with_moved_part(Handle::Error(0), 21, true);
     assert_eq!(names(&moved), ["ERRSYNC", "ERRSI", "ERRDIG"]);
     // A bit cannot be moved into the position or beyond the end of the frame.
-    assert_eq!(strip.with_part_moved(Handle::Error(2), 5, true).clock(Handle::Error(2)), Some(19));
-    assert_eq!(strip.with_part_moved(Handle::Error(0), 64, true).clock(Handle::Error(0)), Some(21));
+    assert_eq!(strip.with_moved_part(Handle::Error(2), 5, true).clock(Handle::Error(2)), Some(19));
+    assert_eq!(strip.with_moved_part(Handle::Error(0), 64, true).clock(Handle::Error(0)), Some(21));
 }
 
 #[test]
@@ -240,7 +240,7 @@ fn step_positions_move_as_one_field() {
     // The position has 12 bits on clocks 1 to 12, followed by two zeros and the error bit on clock 15.
     assert_eq!(strip.limits(Handle::Position, true), (1, 3));
     assert_eq!(
-        kinds(&strip.with_part_moved(Handle::Position, 9, true))[..2],
+        kinds(&strip.with_moved_part(Handle::Position, 9, true))[..2],
         [(Kind::Before, 1, 2), (Kind::Position, 3, 14)]
     );
 }

@@ -29,7 +29,7 @@ fn micros(seconds: f64) -> f64 {
     (seconds * 1e9).round() / 1e3
 }
 
-fn span_texts(diagram: &BurstDiagram) -> Vec<String> {
+fn span_labels(diagram: &BurstDiagram) -> Vec<String> {
     diagram.spans().iter().map(|span| diagram.span_text(span).to_string_in(Language::English)).collect()
 }
 
@@ -39,7 +39,7 @@ fn draws_short_pause_without_break() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
     let times =
         ["T = 2.5 µs", "Burst of 33 clocks: 82.5 µs", "Pause: 40 µs", "tm = 15 µs … 25 µs", "Minimum pause: 25 µs"];
-    assert_eq!(span_texts(&diagram), times);
+    assert_eq!(span_labels(&diagram), times);
     // The interval between bursts is 122.5 µs. Two and a half clocks of the next burst are also drawn.
     assert_eq!(diagram.sections().len(), 1);
     assert_eq!(micros(diagram.end_time()), 128.75);
@@ -49,7 +49,7 @@ fn draws_short_pause_without_break() {
     let bits = diagram.bits();
     assert_eq!((micros(bits[0].from), micros(bits[0].to), bits.len()), (1.25, 3.75, 33));
     assert_eq!((micros(bits[32].from), micros(bits[32].to)), (81.25, 82.5), "then the line is low");
-    let (from, least, most) = diagram.low_times();
+    let (from, least, most) = diagram.low_level_times();
     assert_eq!([from, least, most].map(micros), [82.5, 97.5, 107.5]);
     let steps = diagram.strip().fields().iter().find(|field| field.kind == Kind::Steps).unwrap();
     let (from, to) = diagram.field(steps);
@@ -70,10 +70,10 @@ fn shows_sampling_moment() {
         (TimingEvent::Next, 267.5),
     ];
     assert_eq!(marks, expected);
-    assert_eq!(span_texts(&synchronous)[4..], ["Minimum pause: 150 µs", "Preparation of the next position: 125 µs"]);
+    assert_eq!(span_labels(&synchronous)[4..], ["Minimum pause: 150 µs", "Preparation of the next position: 125 µs"]);
     let first_edge = diagram("atm60", 500e3, 300.0, true);
     assert_eq!(first_edge.marks()[0], TimingMark { event: TimingEvent::Taken, at: 0.0 });
-    assert_eq!(span_texts(&first_edge)[3], "tm = 150 µs");
+    assert_eq!(span_labels(&first_edge)[3], "tm = 150 µs");
     assert_eq!(diagram("ahm36", 400e3, 200.0, false).marks().len(), 2);
 }
 
@@ -92,7 +92,7 @@ fn draws_long_pause_with_break() {
 fn describes_point_in_time() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
     let told = |at: f64| {
-        diagram.texts_at(at * 1e-6).iter().map(|text| text.to_string_in(Language::English)).collect::<Vec<_>>()
+        diagram.describe_moment(at * 1e-6).iter().map(|text| text.to_string_in(Language::English)).collect::<Vec<_>>()
     };
     assert_eq!(told(3.0), ["3 µs after the first edge", "Clock 1: turn bit MT11 (number of turn bits: 12)"]);
     assert_eq!(told(90.0), ["90 µs after the first edge", "Pause: 40 µs", "tm = 15 µs … 25 µs"]);

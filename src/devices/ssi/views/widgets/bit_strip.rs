@@ -73,7 +73,7 @@ pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Opt
     let drag: Option<Drag> = ui.data(|data| data.get_temp(base));
     let held = drag.filter(|drag| model.movable && grips::is_dragged(ui, base, *drag));
     // The cells show the frame after the drag, whereas the handles remain at their current positions.
-    let preview = held.and_then(|drag| Some(model.strip.with_part_moved(drag.handle, drag.to?, model.following)));
+    let preview = held.and_then(|drag| Some(model.strip.with_moved_part(drag.handle, drag.to?, model.following)));
     let shown = preview.as_ref().unwrap_or(model.strip);
     let cells =
         model.frame.filter(|_| preview.is_none()).map(|frame| model.strip.cell_states(frame)).unwrap_or_default();

@@ -124,7 +124,7 @@ fn diagram_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let under = response.hover_pos().and_then(|pos| axis.time_at(pos.x - outer.left()));
     if let Some(at) = under {
         response.on_hover_ui_at_pointer(|ui| {
-            for (number, text) in diagram.texts_at(at).iter().enumerate() {
+            for (number, text) in diagram.describe_moment(at).iter().enumerate() {
                 let words = theme.format_text(text);
                 if number == 0 {
                     ui.label(theme.caption(words))
@@ -202,7 +202,7 @@ impl Picture<'_> {
             let ink = field.map_or_else(|| self.line_colour(), |field| field_ink(self.theme, field.kind));
             self.bit((self.x(bit.from), self.x(bit.to)), ink, shown.get(number).map(|cell| cell.bit));
         }
-        let (low, least, most) = diagram.low_times();
+        let (low, least, most) = diagram.low_level_times();
         let next = self.x(diagram.next());
         let (low, least, most) = (self.x(low), self.x(least), self.x(most));
         self.painter.add(Shape::line(

@@ -154,7 +154,7 @@ fn apply_drag(
             }
             _ => view.rows.nearest_boundary(pos, clocks),
         };
-        model.strip.with_part_moved(handle, wanted, model.following).clock(handle).unwrap_or(at)
+        model.strip.with_moved_part(handle, wanted, model.following).clock(handle).unwrap_or(at)
     });
     if released {
         ui.data_mut(|data| data.remove::<Drag>(view.base));
@@ -187,7 +187,7 @@ fn handle_keys(view: &StripContext<'_>, response: &Response, handle: Handle, at:
     } else {
         return None;
     };
-    let reached = model.strip.with_part_moved(handle, to, model.following).clock(handle)?;
+    let reached = model.strip.with_moved_part(handle, to, model.following).clock(handle)?;
     (reached != at).then_some(StripEvent::Moved(handle, reached))
 }
 

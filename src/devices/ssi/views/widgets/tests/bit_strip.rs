@@ -36,7 +36,7 @@ fn strip(layout: &Layout, width: f32) -> Harness<'static, Design> {
         };
         let event = bit_strip(ui, &theme(), &model);
         match event {
-            Some(StripEvent::Moved(handle, clock)) => state.strip = state.strip.with_part_moved(handle, clock, true),
+            Some(StripEvent::Moved(handle, clock)) => state.strip = state.strip.with_moved_part(handle, clock, true),
             Some(StripEvent::Selected(clock)) => state.selected = Some(clock),
             Some(StripEvent::Toggled(clock)) => {
                 let behind = state.strip.layout().clock_count() - clock;
