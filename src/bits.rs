@@ -159,7 +159,7 @@ fn parse_group(group: &str, bytes: &mut Vec<u8>) -> Result<(), HexError> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum TypedKind {
+pub enum DataType {
     U8,
     /// A signed byte in two's complement.
     I8,
@@ -177,56 +177,60 @@ pub enum TypedKind {
     Text,
 }
 
-impl TypedKind {
-    pub const ALL: [TypedKind; 9] = [
-        TypedKind::U8,
-        TypedKind::I8,
-        TypedKind::U16,
-        TypedKind::I16,
-        TypedKind::U32,
-        TypedKind::I32,
-        TypedKind::F32,
-        TypedKind::Binary,
-        TypedKind::Text,
+impl DataType {
+    pub const ALL: [DataType; 9] = [
+        DataType::U8,
+        DataType::I8,
+        DataType::U16,
+        DataType::I16,
+        DataType::U32,
+        DataType::I32,
+        DataType::F32,
+        DataType::Binary,
+        DataType::Text,
     ];
 
     /// Returns whether the value depends on the byte order.
     pub const fn has_byte_order(self) -> bool {
-        !matches!(self, TypedKind::U8 | TypedKind::I8 | TypedKind::Binary | TypedKind::Text)
+        !matches!(self, DataType::U8 | DataType::I8 | DataType::Binary | DataType::Text)
     }
 }
 
 /// The start of a byte sequence, interpreted as one kind of value. `little` and `big` are equal if the byte order does
 /// not matter.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TypedRow {
-    pub kind: TypedKind,
+pub struct InterpretedRow {
+    pub kind: DataType,
     /// Little-endian value, or `None` if there are too few bytes.
     pub little: Option<String>,
     /// Big-endian value, or `None` if there are too few bytes.
     pub big: Option<String>,
 }
 
-/// Interprets the start of `bytes` as each kind of value, in the order of [`TypedKind::ALL`].
-pub fn interpret(bytes: &[u8]) -> Vec<TypedRow> {
-    let row = |kind| TypedRow { kind, little: read_typed(kind, bytes, false), big: read_typed(kind, bytes, true) };
-    TypedKind::ALL.into_iter().map(row).collect()
+/// Interprets the start of `bytes` as each kind of value, in the order of [`DataType::ALL`].
+pub fn interpret(bytes: &[u8]) -> Vec<InterpretedRow> {
+    let row = |kind| InterpretedRow {
+        kind,
+        little: format_as_type(kind, bytes, false),
+        big: format_as_type(kind, bytes, true),
+    };
+    DataType::ALL.into_iter().map(row).collect()
 }
 
-fn read_typed(kind: TypedKind, bytes: &[u8], big: bool) -> Option<String> {
+fn format_as_type(kind: DataType, bytes: &[u8], big: bool) -> Option<String> {
     let (one, two, four) = (bytes.first().copied(), bytes.first_chunk::<2>(), bytes.first_chunk::<4>());
     let word = two.map(|word| if big { u16::from_be_bytes(*word) } else { u16::from_le_bytes(*word) });
     let long = four.map(|long| if big { u32::from_be_bytes(*long) } else { u32::from_le_bytes(*long) });
     match kind {
-        TypedKind::U8 => one.map(|byte| byte.to_string()),
-        TypedKind::I8 => one.map(|byte| byte.cast_signed().to_string()),
-        TypedKind::U16 => word.map(|word| word.to_string()),
-        TypedKind::I16 => word.map(|word| word.cast_signed().to_string()),
-        TypedKind::U32 => long.map(|long| long.to_string()),
-        TypedKind::I32 => long.map(|long| long.cast_signed().to_string()),
-        TypedKind::F32 => long.map(|long| format_float(f32::from_bits(long))),
-        TypedKind::Binary => one.map(format_binary),
-        TypedKind::Text => one.map(|_| bytes.iter().map(|byte| ascii(*byte).unwrap_or(UNPRINTABLE)).collect()),
+        DataType::U8 => one.map(|byte| byte.to_string()),
+        DataType::I8 => one.map(|byte| byte.cast_signed().to_string()),
+        DataType::U16 => word.map(|word| word.to_string()),
+        DataType::I16 => word.map(|word| word.cast_signed().to_string()),
+        DataType::U32 => long.map(|long| long.to_string()),
+        DataType::I32 => long.map(|long| long.cast_signed().to_string()),
+        DataType::F32 => long.map(|long| format_float(f32::from_bits(long))),
+        DataType::Binary => one.map(format_binary),
+        DataType::Text => one.map(|_| bytes.iter().map(|byte| ascii(*byte).unwrap_or(UNPRINTABLE)).collect()),
     }
 }
 

@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use encoder_studio::analysis::SampleTime;
-use encoder_studio::analysis::history::{ColumnPart, Grid, History, HistoryPicture, Kind};
+use encoder_studio::analysis::history::{ColumnPart, Grid, History, Kind, RenderedHistory};
 use encoder_studio::app::{FrameExplanation, Language, Text, TraceFilter, TraceLog, TraceMatches};
 use encoder_studio::bits::MaskedBytes;
 use encoder_studio::kinds::program;
@@ -74,7 +74,7 @@ fn samples() {
         append.push((count, batches[batches.len() / 2]));
         memory.push((count, history.memory() as f64 / (count * 8 * (SIGNALS + 1)) as f64));
         let end = SampleTime::from_nanoseconds(count as i64 * PERIOD);
-        let mut picture = HistoryPicture::default();
+        let mut picture = RenderedHistory::default();
         picture_times.push((
             count,
             median(ROUNDS, || {

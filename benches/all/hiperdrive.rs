@@ -32,7 +32,8 @@ const TO_ORIGINATOR: u32 = 0x0003_0001;
 
 fn opened(port: u16) -> OpenedConnection {
     let owner = ConnectionOwner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
-    let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: EPath::to_assemblies(104, 100, 101) };
+    let close =
+        ForwardClose { timeout: RequestTimeout::TWO_SECOND_TIMEOUT, owner, path: EPath::to_assemblies(104, 100, 101) };
     OpenedConnection {
         to_target_id: TO_TARGET,
         to_originator_id: TO_ORIGINATOR,

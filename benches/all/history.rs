@@ -7,7 +7,7 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use encoder_studio::analysis::history::{ColumnPart, Flags, Grid, History, HistoryPicture, Kind};
+use encoder_studio::analysis::history::{ColumnPart, Flags, Grid, History, Kind, RenderedHistory};
 use encoder_studio::analysis::{PositionUnwrapper, SampleTime};
 
 const SAMPLES: usize = 10_000_000;
@@ -37,8 +37,8 @@ pub(crate) fn run(parts: &[String]) {
         memory(&filled(Kind::Real, 1, true), 1);
     }
     if is_wanted("soak") {
-        soak_of("24 h of 1 kHz position", 86_400_000, PERIOD, 1, Kind::Whole);
-        soak_of("1 h of 100 kHz sine and cosine", 360_000_000, PERIOD / 100, 2, Kind::Real);
+        measure_long_recording("24 h of 1 kHz position", 86_400_000, PERIOD, 1, Kind::Whole);
+        measure_long_recording("1 h of 100 kHz sine and cosine", 360_000_000, PERIOD / 100, 2, Kind::Real);
     }
 }
 
@@ -94,7 +94,7 @@ impl Naive {
 fn append(batch: usize) {
     let samples = 4_000_000;
     let batches = samples / batch;
-    let columns: Vec<Vec<f64>> = (0..SIGNALS).map(|signal| signal_of(signal, batch)).collect();
+    let columns: Vec<Vec<f64>> = (0..SIGNALS).map(|signal| generate_signal(signal, batch)).collect();
     let mut totals = [Vec::new(), Vec::new()];
     let mut least = [vec![Duration::MAX; batches], vec![Duration::MAX; batches]];
     for _ in 0..ROUNDS {
@@ -160,7 +160,7 @@ fn measure_frame_times(history: &History) {
     for (zoom, part) in zooms {
         let from = first.saturating_add_ns(span / 3 - span / 3 / part);
         let step = span / part / PIXELS as i64 / 10;
-        let mut picture = HistoryPicture::default();
+        let mut picture = RenderedHistory::default();
         let mut took: Vec<Duration> = (0..101)
             .map(|shift| {
                 let from = from.saturating_add_ns(shift * step);
@@ -219,14 +219,14 @@ fn memory(history: &History, columns: usize) {
 }
 
 /// Appends the samples of a day or an hour with pauses in between. The history keeps at most ten million samples.
-fn soak_of(label: &str, samples: usize, period: i64, columns: usize, kind: Kind) {
+fn measure_long_recording(label: &str, samples: usize, period: i64, columns: usize, kind: Kind) {
     const BATCH: usize = 10_000;
     const RANGE: i64 = 4096 * 32_768;
     /// Number of batches between two pauses of one second.
     const PAUSE: usize = 500;
     let began = Instant::now();
     let mut history = History::new(&vec![kind; columns], SAMPLES).with_longest_pause(period * 10);
-    let reals: Vec<Vec<f64>> = (0..columns).map(|signal| signal_of(signal, BATCH)).collect();
+    let reals: Vec<Vec<f64>> = (0..columns).map(|signal| generate_signal(signal, BATCH)).collect();
     let mut unwrap = PositionUnwrapper::rotary(RANGE).unwrap();
     let (mut most, mut breaks_seen, mut breaks_made, mut wrong) = (0, 0, 0, 0_u64);
     let (mut pauses, mut truth, mut wholes) = (0_i64, 0_i64, Vec::new());
@@ -259,7 +259,7 @@ fn soak_of(label: &str, samples: usize, period: i64, columns: usize, kind: Kind)
         });
         wrong += u64::from(!found);
         let grid = Grid::new(times[0], times[BATCH - 1].saturating_add_ns(1), 10);
-        let mut picture = HistoryPicture::default();
+        let mut picture = RenderedHistory::default();
         history.render_column(columns - 1, &history.divide_into_pixels(&grid), &mut picture);
         breaks_seen +=
             u64::from(picture.pixels.iter().any(|pixel| pixel.flags.contains(Flags::BREAK) && !pixel.joined));
@@ -267,7 +267,7 @@ fn soak_of(label: &str, samples: usize, period: i64, columns: usize, kind: Kind)
     }
     let all = history.indices();
     let grid = Grid::new(history.time(all.start).unwrap(), history.time(all.end - 1).unwrap(), PIXELS);
-    let mut picture = HistoryPicture::default();
+    let mut picture = RenderedHistory::default();
     history.render_column(0, &history.divide_into_pixels(&grid), &mut picture);
     let kept = picture.pixels.iter().filter(|pixel| pixel.flags.contains(Flags::BREAK)).count();
     println!("soak, {label}: {:.1} s", began.elapsed().as_secs_f64());
@@ -287,7 +287,7 @@ fn filled(kind: Kind, columns: usize, flagged: bool) -> History {
         let reals: Vec<Vec<f64>> = (0..columns)
             .map(|signal| {
                 let drift = (number as f64 / 97.0).sin();
-                signal_of(signal, BATCH).into_iter().map(|value| value + drift).collect()
+                generate_signal(signal, BATCH).into_iter().map(|value| value + drift).collect()
             })
             .collect();
         let wholes: Vec<Vec<i64>> =
@@ -309,7 +309,7 @@ fn times(start: usize, count: usize) -> Vec<SampleTime> {
         .collect()
 }
 
-fn signal_of(signal: usize, count: usize) -> Vec<f64> {
+fn generate_signal(signal: usize, count: usize) -> Vec<f64> {
     let mut noise = fastrand::Rng::with_seed(signal as u64);
     (0..count).map(|at| (at as f64 * 0.01 * (signal + 1) as f64).sin() + noise.f64() * 0.1).collect()
 }

@@ -35,12 +35,12 @@ pub(crate) fn run(parts: &[String]) {
         let log = folder.path().join("encoder-studio/encoder-studio.log");
         let _ = fs::remove_file(&log);
         let mut child = display.start(program, &[], folder.path());
-        ours.push(wait_for(|| first_picture(&fs::read_to_string(&log).ok()?)));
+        ours.push(wait_for(|| first_frame_time(&fs::read_to_string(&log).ok()?)));
         end(&mut child);
         let log = folder.path().join("minimal.log");
         let _ = fs::remove_file(&log);
         let mut child = display.start(own.to_str().unwrap(), &["window", "minimal"], folder.path());
-        least.push(wait_for(|| first_picture(&fs::read_to_string(&log).ok()?)));
+        least.push(wait_for(|| first_frame_time(&fs::read_to_string(&log).ok()?)));
         end(&mut child);
     }
     println!("first picture, median of {STARTS} starts: {} ms", median(&mut ours));
@@ -272,7 +272,7 @@ fn minimal() {
     eframe::run_native("minimal", options, Box::new(move |_| Ok(Box::new(Nothing(Some(began)))))).unwrap();
 }
 
-fn first_picture(log: &str) -> Option<u64> {
+fn first_frame_time(log: &str) -> Option<u64> {
     let (_, rest) = log.split_once("first picture after ")?;
     rest.split_once(" ms")?.0.parse().ok()
 }

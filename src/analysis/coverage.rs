@@ -36,12 +36,12 @@ pub(super) struct UnwrappedAngle {
 
 impl UnwrappedAngle {
     fn from_sample(sine: f64, cosine: f64) -> Self {
-        UnwrappedAngle { quarters: i64::from(quadrant_of(sine, cosine)), sine, cosine }
+        UnwrappedAngle { quarters: i64::from(quadrant_index(sine, cosine)), sine, cosine }
     }
 
     /// Returns the angle after the signals have moved to the given voltages, by less than half a period.
     fn advanced_to(self, sine: f64, cosine: f64) -> Self {
-        let step = (quadrant_of(sine, cosine) - quadrant_of(self.sine, self.cosine)).rem_euclid(4);
+        let step = (quadrant_index(sine, cosine) - quadrant_index(self.sine, self.cosine)).rem_euclid(4);
         let step = match step {
             3 => -1,
             // Two quarters forward or back: the vectors show which direction is shorter.
@@ -59,7 +59,7 @@ impl UnwrappedAngle {
     fn periods(&self) -> f64 {
         let phase = self.sine.atan2(self.cosine) / std::f64::consts::TAU;
         // Whole quarters are counted. Only the part of the phase within the current quarter is added.
-        self.quarters as f64 / 4.0 + phase.rem_euclid(1.0) - f64::from(quadrant_of(self.sine, self.cosine)) / 4.0
+        self.quarters as f64 / 4.0 + phase.rem_euclid(1.0) - f64::from(quadrant_index(self.sine, self.cosine)) / 4.0
     }
 }
 
@@ -164,7 +164,7 @@ fn split_at_breaks(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item =
 }
 
 /// Returns the quadrant, 0 to 3, counted in the direction of increasing angle. It avoids branches for speed.
-fn quadrant_of(sine: f64, cosine: f64) -> i32 {
+fn quadrant_index(sine: f64, cosine: f64) -> i32 {
     let upper = sine > 0.0 || (sine == 0.0 && cosine >= 0.0);
     let right = cosine > 0.0 || (cosine == 0.0 && sine <= 0.0);
     match (upper, right) {
@@ -179,12 +179,12 @@ impl Coverage {
     /// Measures how the samples cover the ellipse. The angle must change by less than half a period between consecutive
     /// samples. Returns `None` without samples.
     pub fn measure(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> Option<Self> {
-        Coverage::measure_without(sine, cosine, &[], &[], ellipse)
+        Coverage::measure_excluding(sine, cosine, &[], &[], ellipse)
     }
 
     /// Measures how the samples cover the ellipse, excluding the ranges in `left_out`, which must be ordered and must
     /// not overlap. Each index in `breaks` is the first sample after a gap, across which the angle is not followed.
-    pub(super) fn measure_without(
+    pub(super) fn measure_excluding(
         sine: &[f64],
         cosine: &[f64],
         left_out: &[Range<usize>],
@@ -300,7 +300,7 @@ mod tests {
         let angles =
             (0..100).map(|at| 0.1 + 0.027 * f64::from(at)).chain((0..100).map(|at| 43.2 - 0.011 * f64::from(at)));
         let (sine, cosine): (Vec<f64>, Vec<f64>) = angles.map(|periods| ELLIPSE.point_at(TAU * periods)).unzip();
-        let told = Coverage::measure_without(&sine, &cosine, &[100..101, 150..152], &[100], &ELLIPSE).unwrap();
+        let told = Coverage::measure_excluding(&sine, &cosine, &[100..101, 150..152], &[100], &ELLIPSE).unwrap();
         assert!((told.travel_periods - (99.0 * 0.027 - 98.0 * 0.011)).abs() < 1e-8, "{told:?}");
         assert!((told.path_periods - (99.0 * 0.027 + 98.0 * 0.011)).abs() < 1e-8, "{told:?}");
         assert_eq!((told.reversals, told.octants), (0, 8), "which way it went in between is not known");

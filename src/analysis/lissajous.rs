@@ -79,7 +79,7 @@ impl SampleDensity {
         let cell_v = 2.0 * half_v / side as f64;
         for (at, direction) in density.directions.iter_mut().enumerate() {
             let middle = |place: usize, of: f64| of - half_v + (place as f64 + 0.5) * cell_v;
-            *direction = sector_of(middle(at / side, sine_v), middle(at % side, cosine_v)) as u8;
+            *direction = sector_index(middle(at / side, sine_v), middle(at % side, cosine_v)) as u8;
         }
         Some(density)
     }
@@ -103,7 +103,7 @@ impl SampleDensity {
                 self.directions.get(cell).copied().map_or(0, usize::from)
             } else if y.is_finite() && x.is_finite() {
                 self.outside += 1;
-                sector_of(*y, *x)
+                sector_index(*y, *x)
             } else {
                 self.bad += 1;
                 continue;
@@ -160,7 +160,7 @@ impl VectorLengths {
 }
 
 /// Returns the index of the direction of a vector, at most `SECTORS` − 1.
-fn sector_of(sine: f64, cosine: f64) -> usize {
+fn sector_index(sine: f64, cosine: f64) -> usize {
     let share = (sine.atan2(cosine) / TAU).rem_euclid(1.0);
     ((share * SECTORS as f64) as usize).min(SECTORS - 1)
 }

@@ -85,7 +85,7 @@ impl Analysis {
         };
         let left_out = outliers.as_ref().map_or(&[][..], |outliers| &outliers.excluded_ranges);
         let continuity = Continuity::from_times(time_s);
-        let coverage = Coverage::measure_without(sine_v, cosine_v, left_out, &continuity.breaks, &ellipse);
+        let coverage = Coverage::measure_excluding(sine_v, cosine_v, left_out, &continuity.breaks, &ellipse);
         let coverage = coverage.ok_or(FitError::TooFew { points: 0 })?;
         if coverage.residual_rms > LARGEST_RESIDUAL {
             return Err(AnalysisError::NoSignal { share: coverage.residual_rms });

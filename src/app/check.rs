@@ -4,15 +4,15 @@ use super::Text;
 use crate::analysis::check::{StepResult, Verdict};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CheckLine {
+pub struct CheckResultLine {
     pub step: Text,
     pub verdict: Verdict,
     pub findings: Vec<Text>,
 }
 
-impl CheckLine {
+impl CheckResultLine {
     pub(crate) fn from_step<S: Copy, F>(line: &StepResult<S, F>, step: fn(S) -> Text, finding: fn(&F) -> Text) -> Self {
-        CheckLine {
+        CheckResultLine {
             step: step(line.step),
             verdict: line.verdict,
             findings: line.findings.iter().map(finding).collect(),

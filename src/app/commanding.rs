@@ -58,7 +58,7 @@ impl Studio {
     fn write_profile_to(&mut self, id: SessionId, target: SessionId) {
         // A device without a memory is never written to, so it can adopt a read-only profile.
         let is_written = self.device(id).is_some_and(|device| device.memory().is_some());
-        if is_written && self.refuse_if_read_only(id) {
+        if is_written && self.reject_if_read_only(id) {
             return;
         }
         let Some(body) = self.device(id).and_then(AnyDevice::edited_body) else { return };

@@ -83,7 +83,7 @@ impl Studio {
     }
 
     /// Refuses to save or write a profile with a newer schema. Returns whether it was refused.
-    pub(crate) fn refuse_if_read_only(&mut self, id: SessionId) -> bool {
+    pub(crate) fn reject_if_read_only(&mut self, id: SessionId) -> bool {
         let refusal = self.device(id).and_then(|device| read_only_reason(device.source()));
         let Some(refusal) = refusal else { return false };
         self.services.notify(Severity::Error, vec![refusal], None);
@@ -100,11 +100,11 @@ pub(crate) fn read_only_reason(source: &Source) -> Option<Text> {
 
 /// Creates a document for a profile that has just been read.
 pub(crate) fn new_document(body: Body) -> ProfileDocument {
-    ProfileDocument::new(whole_seconds(Timestamp::now()), body)
+    ProfileDocument::new(format_whole_seconds(Timestamp::now()), body)
 }
 
 /// Returns a time without fractions of a second, as stored in profiles.
-pub(crate) fn whole_seconds(at: Timestamp) -> String {
+pub(crate) fn format_whole_seconds(at: Timestamp) -> String {
     Timestamp::from_second(at.as_second()).unwrap_or(at).to_string()
 }
 

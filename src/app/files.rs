@@ -79,7 +79,7 @@ impl Studio {
         self.with_device(session, |device, services| device.save(path, services));
     }
 
-    pub fn recorder_of(&self, owner: RecorderOwner) -> Option<&Recorder> {
+    pub fn recorder_for(&self, owner: RecorderOwner) -> Option<&Recorder> {
         match owner {
             RecorderOwner::Device(id) => self.device(id).map(|device| device.recorder()),
             RecorderOwner::Tool(tab) => self.tool(tab).map(|tool| tool.recorder()),
@@ -102,7 +102,7 @@ impl Studio {
     }
 
     pub(super) fn confirm_discard_recording(&mut self, owner: RecorderOwner) {
-        if self.recorder_of(owner).is_some_and(|recorder| recorder.unexported_duration() >= LONG_RECORDING_NS) {
+        if self.recorder_for(owner).is_some_and(|recorder| recorder.unexported_duration() >= LONG_RECORDING_NS) {
             let (text, confirm) = (Text::new("question.forget"), Text::new("question.forget_it"));
             self.question = Some(Question::new(text, confirm, FollowUpAction::Forget(owner)));
         } else {

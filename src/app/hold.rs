@@ -122,7 +122,7 @@ impl HoldState {
                 }
             }
             HoldInput::OtherKey => {
-                self.keys.mark_suspect(now);
+                self.keys.restart_release_delay(now);
                 self.release_all();
             }
             HoldInput::Modifiers | HoldInput::Finger => self.release_all(),

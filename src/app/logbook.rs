@@ -157,7 +157,7 @@ impl Studio {
     }
 
     /// Returns the open device to which an entry belongs, if any.
-    pub fn device_of(&self, key: &DeviceKey) -> Option<&AnyDevice> {
+    pub fn device_for_key(&self, key: &DeviceKey) -> Option<&AnyDevice> {
         self.devices.iter().map(Box::as_ref).find(|own| own.logbook_key().as_ref() == Some(key))
     }
 
@@ -167,7 +167,7 @@ impl Studio {
     /// Returns the reason why the entry cannot be undone.
     pub fn undo_target(&self, entry: &Entry) -> Result<&AnyDevice, Text> {
         entry.undo_backup().map_err(explain::undo_obstacle_text)?;
-        match self.device_of(&entry.device) {
+        match self.device_for_key(&entry.device) {
             Some(device) if device.is_ready() => Ok(device),
             Some(device) if device.is_busy() => Err(Text::new("session.busy")),
             Some(_) | None => Err(Text::new("undo.not_connected")),

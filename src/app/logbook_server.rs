@@ -26,7 +26,7 @@ const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Returns the server address from the environment, or else from the settings. Returns `None` if neither contains one.
 pub(super) fn server_address(settings: &Settings) -> Option<Result<ServerAddress, ServerAddressError>> {
-    match given_server() {
+    match server_from_environment() {
         Some(address) => Some(ServerAddress::from_environment(&address)),
         None if settings.logbook.trim().is_empty() => None,
         None => Some(ServerAddress::from_setting(&settings.logbook)),
@@ -37,16 +37,16 @@ pub(super) fn server_address(settings: &Settings) -> Option<Result<ServerAddress
 /// unreachable.
 pub(super) fn server_address_without_settings() -> Option<Result<ServerAddress, ServerAddressError>> {
     let unknown = || Err(ServerAddressError::SettingsUnreadable);
-    Some(given_server().map_or_else(unknown, |address| ServerAddress::from_environment(&address)))
+    Some(server_from_environment().map_or_else(unknown, |address| ServerAddress::from_environment(&address)))
 }
 
-fn given_server() -> Option<String> {
+fn server_from_environment() -> Option<String> {
     std::env::var(VARIABLE).ok().filter(|address| !address.trim().is_empty())
 }
 
 /// Returns whether the environment overrides the server address from the settings.
 pub(super) fn is_server_given() -> bool {
-    given_server().is_some()
+    server_from_environment().is_some()
 }
 
 /// State of the exchange with the server.
@@ -137,7 +137,7 @@ impl Studio {
             }
         }
         for holder in contact.others.iter().filter(|holder| !before.contact.others.contains(holder)) {
-            self.services.notify(Severity::Warning, vec![explain::other_holder_text(holder)], None);
+            self.services.notify(Severity::Warning, vec![explain::device_in_use_text(holder)], None);
         }
     }
 }

@@ -80,7 +80,7 @@ pub use live_session::{JobProgress, LiveSession, RunningJob};
 pub use logbook::{LOGBOOK_TAB, LogbookMatches, LogbookPage, MAX_NOTE, entry_kind_text, outcome_text};
 pub use logbook_server::ServerExchange;
 pub use notices::{Notice, NoticeLog, Severity};
-pub use number::{parse_decimal, plain_decimals};
+pub use number::{parse_decimal, significant_decimals};
 pub use payload::{DeviceAction, Payload, PayloadKindError};
 pub(crate) use pending::{EditHistoryParts, SnapshotEdits};
 pub use pending::{EditStep, PendingEdits};

@@ -58,7 +58,7 @@ impl Studio {
         let asks = self.question.is_some() || self.services.file_question.is_some();
         let is_covered = self.connect.is_some() || self.has_form() || asks;
         let tab = self.settings.tab;
-        let seen = self.shown.session_of(tab).filter(|_| !is_covered);
+        let seen = self.shown.session_in_tab(tab).filter(|_| !is_covered);
         for device in &mut self.devices {
             let is_seen = seen == Some(device.id()) && !device.is_reviewing();
             if let Some(motion) = device.motion_mut().filter(|_| !is_seen) {

@@ -127,11 +127,11 @@ fn check_not_empty(what: &Text, text: &str) -> Result<(), Text> {
 
 /// Returns the number of decimals needed to display a limit, at most three.
 pub(crate) fn decimal_places(value: f64) -> usize {
-    decimals_of(value, 3)
+    required_decimals(value, 3)
 }
 
 /// Returns the number of decimals needed to display a number with at most twelve significant digits.
-pub fn plain_decimals(value: f64) -> usize {
+pub fn significant_decimals(value: f64) -> usize {
     const DIGITS: i32 = 12;
     let before = if value == 0.0 { 1 } else { (value.abs().log10().floor() as i32).saturating_add(1) };
     let rounded = format!("{value:.*}", usize::try_from(DIGITS - before).unwrap_or(0));
@@ -139,7 +139,7 @@ pub fn plain_decimals(value: f64) -> usize {
 }
 
 /// Returns the number of decimals needed to display a number, at most `most`.
-pub(crate) fn decimals_of(value: f64, most: usize) -> usize {
+pub(crate) fn required_decimals(value: f64, most: usize) -> usize {
     (0..most).find(|count| (value * 10_f64.powi(*count as i32)).fract() == 0.0).unwrap_or(most)
 }
 

@@ -72,7 +72,7 @@ impl KeyStates {
 
     /// Records that another key was pressed outside a text entry. A press immediately after it is not fresh: only a
     /// barcode scanner types that fast.
-    pub fn mark_suspect(&mut self, now: f64) {
+    pub fn restart_release_delay(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.state_mut(key);
             if *own == KeyState::Up {
@@ -218,21 +218,21 @@ mod tests {
     #[test]
     fn press_after_other_key_is_not_fresh() {
         let mut keys = KeyStates::ALL_UP;
-        keys.mark_suspect(1.0);
+        keys.restart_release_delay(1.0);
         assert!(!keys.is_fresh_press(Enter), "in the same picture");
         let mut keys = KeyStates::ALL_UP;
-        keys.mark_suspect(1.0);
+        keys.restart_release_delay(1.0);
         let _ = keys.finish_ui_frame(1.0);
         assert!(!keys.is_fresh_press(Enter), "in the next one, whenever that is");
         let mut keys = KeyStates::ALL_UP;
-        keys.mark_suspect(1.0);
+        keys.restart_release_delay(1.0);
         pictures(&mut keys, 1.0, 0.05, 2);
         assert!(keys.is_fresh_press(Enter), "a person's");
-        keys.mark_suspect(2.0);
+        keys.restart_release_delay(2.0);
         pictures(&mut keys, 2.0, 0.05, 2);
         assert!(!keys.is_fresh_press(Enter), "it is down");
         let mut keys = KeyStates::default();
-        keys.mark_suspect(1.0);
+        keys.restart_release_delay(1.0);
         pictures(&mut keys, 1.0, 0.05, 2);
         assert!(!keys.is_fresh_press(Enter), "it may be held");
     }

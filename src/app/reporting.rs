@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::action::{Action, RecorderOwner, TaskResult};
-use super::documents::whole_seconds;
+use super::documents::format_whole_seconds;
 use super::file_question::FileQuestion;
 use super::report::{
     CreateReport, DeviceReading, ReportContext, ReportFormat, ReportRequest, company, current_time_text,
@@ -74,7 +74,7 @@ impl Studio {
                 let reading = DeviceReading { body, status: device.reported_status() };
                 let mut request = ReportRequest::for_device(url, self.services.world.kinds, reading, language);
                 // The values may have been read long ago.
-                request.document.saved = device.values_read_at().map(whole_seconds);
+                request.document.saved = device.last_read_time().map(format_whole_seconds);
                 Ok(ReportRequest { results: device.session_results(), ..request })
             }
         }

@@ -8,7 +8,7 @@ mod undone;
 use std::path::PathBuf;
 
 pub use notices::redo;
-pub(crate) use notices::{skipped_texts, undo_texts};
+pub(crate) use notices::{skipped_item_messages, undo_texts};
 pub use permit::{Permit, PermitToggle};
 pub use undone::UndoneEntry;
 
@@ -166,23 +166,23 @@ impl<K: Reviewable> Review<K> {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OperationTexts {
+pub struct OperationDescription {
     pub item: Text,
     /// Changes in order, never empty.
-    pub changes: Vec<ChangeTexts>,
+    pub changes: Vec<ChangeDescription>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ChangeTexts {
+pub struct ChangeDescription {
     /// Part of the item that is changed, or `None` for the whole item.
     pub part: Option<Text>,
     pub old: Text,
     pub new: Text,
 }
 
-impl OperationTexts {
+impl OperationDescription {
     pub fn single(item: Text, old: Text, new: Text) -> Self {
-        OperationTexts { item, changes: vec![ChangeTexts { part: None, old, new }] }
+        OperationDescription { item, changes: vec![ChangeDescription { part: None, old, new }] }
     }
 
     pub fn texts(&self) -> impl Iterator<Item = &Text> {
@@ -234,7 +234,7 @@ impl ExecutionMode {
 pub struct ReviewSheet {
     pub title: Text,
     pub stage: Stage,
-    pub lines: Vec<OperationTexts>,
+    pub lines: Vec<OperationDescription>,
     pub warnings: Vec<Text>,
     /// What the user has to do at the device for this plan.
     pub needs: Vec<Text>,
@@ -288,7 +288,7 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
     fn change_title(change: &Self::Change) -> Text;
     /// Returns the flag in a change that grants a permission, or `None` if the change has no such flag.
     fn permit_flag(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
-    fn operation_texts(prepared: &Self::Prepared, op: &Op<Self>) -> OperationTexts;
+    fn operation_texts(prepared: &Self::Prepared, op: &Op<Self>) -> OperationDescription;
     /// Returns whether the write skips some values because they depend on how the device is mounted.
     fn skips_mounting_values(_prepared: &Self::Prepared) -> bool {
         false
@@ -337,7 +337,7 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
 
 pub(crate) type Op<K> = <<K as Reviewable>::Prepared as PlannedWrite>::Op;
 
-pub fn written_texts<K: Reviewable>(committed: &CommitResult<K::Written>) -> (Severity, Vec<Text>) {
+pub fn write_result_messages<K: Reviewable>(committed: &CommitResult<K::Written>) -> (Severity, Vec<Text>) {
     let text = K::written_text(&committed.written);
     match &committed.logbook_warning {
         Some(why) => (Severity::Warning, vec![text, explain::logbook_error_text(why)]),
@@ -355,7 +355,7 @@ impl<K: Reviewable> Review<K> {
     pub(in crate::app) fn review_sheet(
         &self,
         done: usize,
-        op: impl Fn(&K::Prepared, &Op<K>) -> OperationTexts,
+        op: impl Fn(&K::Prepared, &Op<K>) -> OperationDescription,
     ) -> ReviewSheet {
         let prepared = self.prepared_plan();
         let cut_off = match &self.state {
@@ -385,7 +385,7 @@ impl<K: Reviewable> Review<K> {
             |own: &K::Prepared| is_incomplete(own.cycles_seen(), own.plan().write_cycles(), own.wear_limit());
         let needs_permit = |own: &&K::Prepared| uncounted(own) || incomplete(own) || K::reaches_wear_limit(own);
         let lines = |own: &K::Prepared| own.plan().ops.iter().map(|own_op| op(own, own_op)).collect();
-        let lines: Vec<OperationTexts> = carried.map(lines).unwrap_or_default();
+        let lines: Vec<OperationDescription> = carried.map(lines).unwrap_or_default();
         let items = || lines.iter().map(|line| line.item.clone());
         let undo = costs.map(|own| undo_texts(items().zip(own.undos()))).unwrap_or_default();
         ReviewSheet {

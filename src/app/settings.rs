@@ -170,7 +170,7 @@ impl Settings {
         );
         self.apply_drive_changes(known, ours);
         for tab in ours.links.tabs() {
-            let used = links_used_since(known.links_of(tab), ours.links_of(tab));
+            let used = recently_used_links(known.links_of(tab), ours.links_of(tab));
             used.iter().rev().for_each(|link| self.use_link(tab, link));
         }
         self
@@ -340,7 +340,7 @@ impl<'de> Deserialize<'de> for Links {
 }
 
 /// Returns the links in `ours` that were used since `known`. They precede the unchanged ones.
-fn links_used_since<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
+fn recently_used_links<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
     let is_rest = |at: &usize| {
         let (used, rest) = ours.split_at(*at);
         let mut before = known.iter().filter(|link| !used.contains(link));

@@ -288,7 +288,7 @@ fn read(path: PathBuf, kinds: KindRegistry) -> LoadedSettings {
     match parse_settings(read_text(&path), kinds) {
         Ok(Some((settings, true))) => LoadedSettings::Whole(Box::new(settings)),
         Ok(Some((settings, false))) => {
-            let aside = broken_copy_path(&path);
+            let aside = broken_settings_path(&path);
             let copied = fs::copy(&path, &aside);
             let aside = copied.map(|_| aside).map_err(|error| error.to_string());
             LoadedSettings::Broken { settings: Box::new(settings), path, aside }
@@ -328,7 +328,7 @@ fn read_settings(path: &Path, kinds: KindRegistry) -> Result<Option<Settings>, F
     }
 }
 
-fn broken_copy_path(path: &Path) -> PathBuf {
+fn broken_settings_path(path: &Path) -> PathBuf {
     let mut aside = path.to_owned().into_os_string();
     aside.push(".broken");
     PathBuf::from(aside)
@@ -341,7 +341,7 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: KindRegistry) ->
             Some((found, is_whole)) => (Some(found), is_whole),
             None => (None, true),
         };
-        let aside = if is_whole { None } else { copy_broken_settings(path)? };
+        let aside = if is_whole { None } else { back_up_broken_settings(path)? };
         // A deleted file has no changes of others.
         let merged = there.clone().map_or_else(|| ours.clone(), |there| there.with_changes(known, ours));
         let text = (there.as_ref() != Some(&merged) || !is_whole).then(|| merged.emit());
@@ -350,8 +350,8 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: KindRegistry) ->
 }
 
 /// Copies an invalid file unless an identical copy exists. Returns the paths of the file and the copy.
-fn copy_broken_settings(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> {
-    let aside = broken_copy_path(path);
+fn back_up_broken_settings(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> {
+    let aside = broken_settings_path(path);
     let is_there = fs::read(path).is_ok_and(|broken| fs::read(&aside).is_ok_and(|before| before == broken));
     if is_there {
         return Ok(None);

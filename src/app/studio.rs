@@ -236,13 +236,13 @@ impl Studio {
     /// Returns the device shown in the open tab, or else the one shown last.
     pub fn selected_device(&self) -> Option<&AnyDevice> {
         let tab = self.settings.tab;
-        let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.session_of(tab) };
+        let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.session_in_tab(tab) };
         self.device(id?)
     }
 
     /// Returns the device of type `M` that its tab shows.
     pub fn selected_model<M: DeviceType>(&self) -> Option<&M> {
-        self.device(self.shown.session_of(M::TAB)?)?.get()
+        self.device(self.shown.session_in_tab(M::TAB)?)?.get()
     }
 
     fn is_tool(&self, tab: Tab) -> bool {
@@ -262,7 +262,7 @@ impl Studio {
             self.logbook.mark_stale();
         }
         self.settings.tab = tab;
-        if self.shown.session_of(tab).is_none() {
+        if self.shown.session_in_tab(tab).is_none() {
             self.new_profile(tab);
         }
     }
@@ -282,7 +282,7 @@ impl Studio {
     /// Returns the source of sine and cosine signals, if one of the devices shown in their tabs has them.
     pub fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
         let kinds = self.services.world.kinds.devices().iter();
-        kinds.into_iter().find_map(|kind| self.device(self.shown.session_of(kind.tab())?)?.sine_cosine())
+        kinds.into_iter().find_map(|kind| self.device(self.shown.session_in_tab(kind.tab())?)?.sine_cosine())
     }
 
     pub(crate) fn show(&mut self, tab: Tab, id: SessionId) {

@@ -70,7 +70,7 @@ pub struct CommonArgs {
 
 impl CommonArgs {
     /// Returns the values given for the options that the kinds of device add.
-    pub(super) fn given_values(&self) -> Result<TypeMap, Failure> {
+    pub(super) fn kind_option_values(&self) -> Result<TypeMap, Failure> {
         self.commands.devices().iter().try_fold(TypeMap::default(), |given, device| device.add_given(&self.own, given))
     }
 }
@@ -293,7 +293,7 @@ pub struct Restore {
 
 impl Restore {
     /// Creates a restore that undoes a write by means of its backup. It never accepts a different device.
-    pub(super) fn of_backup(file: PathBuf, undo: &UndoArgs, undone: UndoneEntry) -> Self {
+    pub(super) fn from_backup(file: PathBuf, undo: &UndoArgs, undone: UndoneEntry) -> Self {
         Restore {
             file,
             dry_run: undo.dry_run,

@@ -6,18 +6,18 @@ use super::output::{Lines, Output};
 use super::{Failure, Result, Success};
 use crate::analysis::check::Verdict;
 use crate::app::Text;
-use crate::app::check::{CheckLine, verdict_text};
+use crate::app::check::{CheckResultLine, verdict_text};
 use crate::link::LineQuality;
 
 /// Prints the results of the check. Returns an error if a result is a fault.
-pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {
+pub(crate) fn show(output: &Output, lines: &[CheckResultLine]) -> Result {
     show_check(output, lines, None)
 }
 
 /// Prints the results of the check, and the line quality if it was measured. Returns an error if a result is a fault.
-pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
+pub(crate) fn show_check(output: &Output, lines: &[CheckResultLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
-    let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal_text).collect::<Vec<_>>();
+    let findings = |line: &CheckResultLine| line.findings.iter().map(Text::terminal_text).collect::<Vec<_>>();
     let (mut list, mut results) = (Vec::new(), Vec::new());
     let mut text = Lines::default();
     for line in lines {

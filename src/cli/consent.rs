@@ -67,7 +67,7 @@ where
 }
 
 /// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal, the file
-/// is replaced, as in other tools, and [`ReplacementNotice::report_replaced`] reports the replacement.
+/// is replaced, as in other tools, and [`ReplacementNotice::report_replacement`] reports the replacement.
 pub(super) fn confirm_replacement(path: &Path, force: bool) -> Result<ReplacementNotice> {
     // A pipe or a device file has no content to replace.
     let is_there = path.metadata().is_ok_and(|found| found.is_file());
@@ -90,7 +90,7 @@ pub(super) struct ReplacementNotice {
 
 impl ReplacementNotice {
     /// Reports that a file was replaced, unless the user was asked before.
-    pub(super) fn report_replaced(&self, output: &Output) {
+    pub(super) fn report_replacement(&self, output: &Output) {
         if let Some(message) = &self.message {
             output.print_message(message);
         }

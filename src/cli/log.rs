@@ -36,7 +36,7 @@ pub(super) fn entry_with_number(common: &CommonArgs, id: EntryId) -> Result<Entr
 }
 
 /// Returns the path of the profile that belongs to an entry: the backup before a write, or the saved profile.
-pub(super) fn profile_of(entry: &Entry) -> Result<PathBuf> {
+pub(super) fn linked_profile_path(entry: &Entry) -> Result<PathBuf> {
     let path = entry.backup.as_deref().ok_or_else(|| no_backup(entry))?;
     check_bench(entry, path)?;
     Ok(path.to_owned())
@@ -63,7 +63,7 @@ pub(super) fn profile_path(common: &CommonArgs, argument: &Path) -> Result<PathB
         return Ok(argument.to_owned());
     };
     let id = parse_entry(number).map_err(|why| Failure::Usage(format!("log:{number}: {why}")))?;
-    profile_of(&entry_with_number(common, id)?)
+    linked_profile_path(&entry_with_number(common, id)?)
 }
 
 pub(super) fn log(common: &CommonArgs, output: &Output, arguments: &LogArgs) -> Result {

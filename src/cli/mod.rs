@@ -117,7 +117,7 @@ fn open_window(common: CommonArgs, profile: Option<PathBuf>) -> Invocation {
             "--json and --trace need a command; encoder-studio help lists them",
         ))));
     }
-    match common.given_values() {
+    match common.kind_option_values() {
         Ok(given) => Invocation::Window(Window { link: common.link, profile, given }),
         Err(failure) => Invocation::Command(exit_code(Err(failure))),
     }
@@ -194,7 +194,7 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
         (Command::Save(save), _) => {
             let replaces = consent::confirm_replacement(&save.file, save.force)?;
             let done = run()?;
-            replaces.report_replaced(output);
+            replaces.report_replacement(output);
             Ok(done)
         }
         _ => run(),

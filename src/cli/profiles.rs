@@ -144,7 +144,7 @@ pub fn write_restore<P: PlannedWrite>(
         print_undo(output, &prepared);
         show_dry_run(output, restore, plan, (left, undo_json(&prepared)))
     } else {
-        show_restored(output, restore, plan, &write(prepared)?, left)
+        print_restore_result(output, restore, plan, &write(prepared)?, left)
     }
 }
 
@@ -236,7 +236,7 @@ fn show_dry_run(
     Ok(Success::Completed)
 }
 
-fn show_restored(
+fn print_restore_result(
     output: &Output,
     restore: &Restore,
     plan: &PlanReport,

@@ -51,7 +51,7 @@ pub(super) fn report(common: &CommonArgs, output: &Output, arguments: &ReportArg
     let printed = current_time_text(&Zoned::now(), context.language);
     let bytes = format.render(&report, &printed).map_err(|why| to_failure(&why))?;
     write_atomically(file, &bytes).map_err(|error| to_failure(&explain::file_error_text(&error)))?;
-    replaces.report_replaced(output);
+    replaces.report_replacement(output);
     let hash = report.content_hash();
     let json = json!({"file": file, "report_number": hash.report_number(), "sha256": hash.to_string()});
     output.show(&json, &format!("{}: report {}\n", file.display(), hash.report_number()))?;

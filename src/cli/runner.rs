@@ -101,7 +101,7 @@ impl<D: CliDevice> Runner<D> {
         let Some(url) = &common.link else {
             return Err(Failure::Usage("this command needs --link URL; without hardware, use --link sim:".to_owned()));
         };
-        let given = common.given_values()?;
+        let given = common.kind_option_values()?;
         if let Some(why) = common.commands.foreign_common_option_error(D::COMMANDS, &common.own) {
             return Err(Failure::Usage(why));
         }

@@ -50,7 +50,7 @@ pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Res
         output.print_message(&format!("{item} is not undone: {instead}."));
     }
     let undone = UndoneEntry { entry: entry.id, uid: entry.uid, device: entry.device, write, kept };
-    let restore = Restore::of_backup(file, undo, undone);
+    let restore = Restore::from_backup(file, undo, undone);
     kind.restore(common, output, &restore, profile)
 }
 

@@ -43,7 +43,7 @@ pub(super) fn report_other_holders(server: &LogbookServer, output: &Output) {
     }
     HOLDERS_REPORTED.call_once(|| {
         for holder in others {
-            output.print_message(&explain::other_holder_text(&holder).terminal_text());
+            output.print_message(&explain::device_in_use_text(&holder).terminal_text());
         }
     });
 }

@@ -45,7 +45,7 @@ fn names(text: &str) -> Vec<(usize, usize)> {
 }
 
 /// Returns a name with typing errors: a letter omitted, doubled, swapped with its neighbour, or added.
-fn typing_errors(name: &str) -> Vec<String> {
+fn generate_typos(name: &str) -> Vec<String> {
     let short = name[..name.len() - 1].to_owned();
     let doubled = format!("{name}{}", &name[name.len() - 1..]);
     let (first, rest) = name.split_at(1);
@@ -64,7 +64,7 @@ fn reports_misspelt_names_in_ready_made_profiles() {
         for (begin, end) in names(&text) {
             let line = text[..begin].matches('\n').count() + 1;
             let column = begin - text[..begin].rfind('\n').map_or(0, |at| at + 1) + 1;
-            for slip in typing_errors(&text[begin..end]) {
+            for slip in generate_typos(&text[begin..end]) {
                 let wrong = format!("{}{slip}{}", &text[..begin], &text[end..]);
                 let error = ProfileDocument::parse(&wrong, program().studio.formats).map(|_| ()).unwrap_err();
                 let place = format!("line {line}, column {column}: ");

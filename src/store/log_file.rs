@@ -201,12 +201,12 @@ mod tests {
     }
 
     /// A simulated disk that hangs until it is released.
-    struct HangingDisk {
+    struct HungDisk {
         lock: Receiver<()>,
         written: Arc<Mutex<Vec<u8>>>,
     }
 
-    impl Write for HangingDisk {
+    impl Write for HungDisk {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
             let _ = self.lock.recv();
             self.written.lock().unwrap().extend(bytes);
@@ -225,7 +225,7 @@ mod tests {
         let log = LogFile::spawn_writer(
             {
                 let written = written.clone();
-                move || Ok(HangingDisk { lock, written })
+                move || Ok(HungDisk { lock, written })
             },
             2,
         )

@@ -6,10 +6,10 @@ use super::controls::paragraph;
 use super::{Theme, icons};
 use crate::analysis::check::Verdict;
 use crate::app::Text;
-use crate::app::check::{CheckLine, verdict_text};
+use crate::app::check::{CheckResultLine, verdict_text};
 
 /// Draws the results of the last check, or explains what a check does if there are none.
-pub(crate) fn lines_ui(ui: &mut Ui, theme: &Theme, lines: Option<&[CheckLine]>, nothing: impl Into<Text>) {
+pub(crate) fn lines_ui(ui: &mut Ui, theme: &Theme, lines: Option<&[CheckResultLine]>, nothing: impl Into<Text>) {
     let Some(lines) = lines else {
         paragraph(ui, theme.label(theme.format_text(&nothing.into())));
         return;

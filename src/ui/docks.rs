@@ -65,7 +65,7 @@ impl Docks {
         if studio.settings.tab == LOGBOOK_TAB {
             panes.push(Pane::Live);
         }
-        let hidden = self.tiles_of(&panes);
+        let hidden = self.tiles_with_only(&panes);
         hidden.iter().for_each(|tile| self.tree.set_visible(*tile, false));
         let mut behaviour = DockBehaviour { theme, studio, views, actions, edited: false };
         self.tree.ui(&mut behaviour, ui);
@@ -102,7 +102,7 @@ impl Docks {
     }
 
     /// Returns the tiles that contain only the given panes, wherever the user has dragged them.
-    fn tiles_of(&self, panes: &[Pane]) -> Vec<TileId> {
+    fn tiles_with_only(&self, panes: &[Pane]) -> Vec<TileId> {
         let mut tiles = Vec::new();
         if let Some(root) = self.tree.root() {
             self.collect_tiles(root, panes, &mut tiles);

@@ -57,7 +57,7 @@ impl KeyboardFilter {
                             fresh.record_other_key_press(now);
                         }
                         if !typing {
-                            fresh.mark_suspect(now);
+                            fresh.restart_release_delay(now);
                         }
                         true
                     }

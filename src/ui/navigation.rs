@@ -25,7 +25,7 @@ pub(super) fn navigation_ui(
         let is_shown = tab == LOGBOOK_TAB && tab == studio.settings.tab;
         let response = entry_ui(ui, is_shown, text, &word);
         if is_shown {
-            mark_shown(ui, theme, response.rect);
+            highlight_current_page(ui, theme, response.rect);
         }
         if response.clicked() {
             views.plot.restore_size();
@@ -81,7 +81,7 @@ fn pages_ui(
             ui.painter().text(place, egui::Align2::CENTER_CENTER, icons::PENCIL_SIMPLE, font, ink);
         }
         if shown == at {
-            mark_shown(ui, theme, response.rect);
+            highlight_current_page(ui, theme, response.rect);
         }
         if response.clicked() {
             pressed = Some(at);
@@ -90,7 +90,7 @@ fn pages_ui(
     pressed
 }
 
-fn mark_shown(ui: &Ui, theme: &Theme, entry: Rect) {
+fn highlight_current_page(ui: &Ui, theme: &Theme, entry: Rect) {
     let bar = entry.with_max_x(entry.left() + 3.0);
     ui.painter().rect_filled(bar, 1.0, theme.palette.accent);
 }

@@ -9,7 +9,9 @@ use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 use super::controls::{enabled_button, modal, paragraph, primary_button, right_aligned, row, spinner};
 use super::page::with_stable_ids;
 use super::{Theme, icons};
-use crate::app::review::{ChangeTexts, ExecutionMode, OperationTexts, PermitToggle, Question, ReviewSheet, Stage};
+use crate::app::review::{
+    ChangeDescription, ExecutionMode, OperationDescription, PermitToggle, Question, ReviewSheet, Stage,
+};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
 pub(super) fn review_ui(ctx: &egui::Context, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
@@ -155,7 +157,7 @@ fn buttons_ui(
 }
 
 /// Draws the operations and, during a write, the number of completed ones. Values are never truncated.
-fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], f32), done: Option<usize>) {
+fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationDescription], f32), done: Option<usize>) {
     let palette = theme.palette;
     theme.sunken_frame().show(ui, |ui| {
         ScrollArea::vertical().id_salt("operations").max_height(room).auto_shrink([false, true]).show(ui, |ui| {
@@ -198,7 +200,7 @@ fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], 
 }
 
 /// Returns the old and new value on one line, or `None` if they do not fit next to the item's name.
-fn layout_change(ui: &Ui, theme: &Theme, item: &str, change: &ChangeTexts, ink: Rgb) -> Option<Arc<Galley>> {
+fn layout_change(ui: &Ui, theme: &Theme, item: &str, change: &ChangeDescription, ink: Rgb) -> Option<Arc<Galley>> {
     let mut job = LayoutJob::default();
     let font = FontId::monospace(theme.sizes.body);
     let parts = [
@@ -216,7 +218,7 @@ fn layout_change(ui: &Ui, theme: &Theme, item: &str, change: &ChangeTexts, ink: 
     (galley.rows.len() == 1 && beside + galley.size().x <= ui.available_width()).then_some(galley)
 }
 
-fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeTexts, heads: [&'static str; 2], ink: Rgb) {
+fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeDescription, heads: [&'static str; 2], ink: Rgb) {
     if let Some(part) = &change.part {
         ui.horizontal(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;

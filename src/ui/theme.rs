@@ -3,7 +3,7 @@
 
 use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
 
-use crate::app::{ColorScheme, Language, Palette, Rgb, SpacingSizes, Text, TextSizes, ThemeData, plain_decimals};
+use crate::app::{ColorScheme, Language, Palette, Rgb, SpacingSizes, Text, TextSizes, ThemeData, significant_decimals};
 use crate::bits::Word;
 use crate::fonts;
 
@@ -36,7 +36,7 @@ impl Theme {
     }
 
     /// Returns the same theme with the texts of the other language.
-    pub(crate) fn in_other_language(&self) -> Self {
+    pub(crate) fn with_other_language(&self) -> Self {
         let language = match self.language {
             Language::English => Language::German,
             Language::German => Language::English,
@@ -65,7 +65,7 @@ impl Theme {
     /// Formats a number with as many decimals as it needs, up to twelve significant digits. Further digits would only
     /// show rounding errors.
     pub fn format_plain(&self, value: f64) -> String {
-        self.format_number(value, plain_decimals(value))
+        self.format_number(value, significant_decimals(value))
     }
 
     /// Formats a word in hexadecimal, padded to its width.

@@ -29,7 +29,7 @@ const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Highest limit of write cycles at which a memory is considered to wear out quickly. Write cycles missing from the
 /// logbook could then use up all that are left.
-const QUICKLY_WORN: u64 = 10_000;
+const LOW_ENDURANCE_CYCLES: u64 = 10_000;
 
 /// A plan approved by the user, with the values on which it is based.
 #[derive(Clone, Debug)]
@@ -280,7 +280,7 @@ pub const fn check_wear(seen: Option<CycleCount>, cost: u64, limit: u64, force_w
         Some(CycleCount { seen, .. }) if seen.saturating_add(cost) > limit => {
             Err(NotStarted::Worn { seen, cost, limit })
         }
-        Some(CycleCount { seen, is_complete: false }) if cost > 0 && limit <= QUICKLY_WORN => {
+        Some(CycleCount { seen, is_complete: false }) if cost > 0 && limit <= LOW_ENDURANCE_CYCLES => {
             Err(NotStarted::WearIncomplete { seen, cost, limit })
         }
         _ => Ok(()),

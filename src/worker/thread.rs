@@ -92,7 +92,7 @@ fn run_loop<D: Device>(mut bench: SessionThread<D>) {
         if let Some((at, due)) = &due
             && *at <= now
         {
-            if bench.serve_due(due) {
+            if bench.serve_due_request(due) {
                 agenda.mark_completed(due, Instant::now());
             }
             bench.run_idle_work();
@@ -130,7 +130,7 @@ impl<D: Device> SessionThread<D> {
 
     /// Takes the sample or watched value that is due. Returns `false` if a job or another request has interrupted it;
     /// it then remains due.
-    fn serve_due(&mut self, due: &DueRequest<D::Watch>) -> bool {
+    fn serve_due_request(&mut self, due: &DueRequest<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling_cancel_token().clone());
         let request = self.live.request_number();
         let taken = match due {

@@ -77,7 +77,7 @@ fn device_report_shows_read_values() {
     let mut desk = Desk::new_form("");
     let requests = desk.wire().count(0x4A);
     let path = desk.outside.path("device.html");
-    let read_at = desk.studio.selected_device().unwrap().values_read_at().unwrap();
+    let read_at = desk.studio.selected_device().unwrap().last_read_time().unwrap();
     // The report is made later than the values were read.
     std::thread::sleep(std::time::Duration::from_millis(1_100));
     report(&mut desk, &path);

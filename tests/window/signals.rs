@@ -255,13 +255,13 @@ fn clamps_periods_to_range() {
 fn kept_capture_stays() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Keep);
-    assert!(desk.studio.signals().compared_result().is_none(), "there is nothing to keep");
+    assert!(desk.studio.signals().comparison_result().is_none(), "there is nothing to keep");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
     desk.signals(Signals::Keep);
     desk.signals(Signals::Example(ExampleCapture::WithErrors));
     desk.until_measured();
-    let kept = |studio: &Studio| studio.signals().compared_result().map(|own| own.origin.clone());
+    let kept = |studio: &Studio| studio.signals().comparison_result().map(|own| own.origin.clone());
     assert_eq!(kept(&desk.studio), Some(Origin::Table(TableSource::Example(ExampleCapture::Healthy))));
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(ExampleCapture::WithErrors))));
     desk.signals(Signals::DropComparison);
@@ -404,7 +404,7 @@ fn scope_shows_and_exports_signals() {
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
     let recorder = |studio: &Studio| {
-        studio.recorder_of(encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS)).unwrap().recorded_span()
+        studio.recorder_for(encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS)).unwrap().recorded_span()
     };
     let (from, to) = recorder(&desk.studio).unwrap();
     // 401 rows including the header are 400 samples, 5 µs apart.

@@ -22,7 +22,7 @@ fn begin(desk: &mut Desk, link: &str, sample_hz: u32) {
 
 /// Returns the number of samples in the scope and the number of gaps, where the first sample counts as one.
 fn recorded(studio: &Studio) -> (u64, usize) {
-    let recorder = studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap();
+    let recorder = studio.recorder_for(Of::Tool(crate::tabs::SIGNALS)).unwrap();
     let history = recorder.history(&recorder.series()[0]).unwrap();
     let is_break = |at: &u64| history.sample(0, *at).is_some_and(|own| own.flags.contains(Flags::BREAK));
     (history.indices().end, history.indices().filter(is_break).count())
@@ -45,7 +45,7 @@ fn measures_virtual_adapter_like_capture() {
         measurement.levels_v.is_none() && measurement.capture.wires.is_none(),
         "there are two signals, not four wires"
     );
-    assert_eq!(desk.studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap().series().len(), 3);
+    assert_eq!(desk.studio.recorder_for(Of::Tool(crate::tabs::SIGNALS)).unwrap().series().len(), 3);
     let streaming = signals.source().streaming_adapter().unwrap();
     assert_eq!((streaming.period_ns, streaming.full_scale_microvolt), (20_000, 1_250_000));
     assert_eq!((signals.source().lost_samples(), signals.source().kind()), (0, SourceKind::Adapter));
@@ -140,7 +140,7 @@ fn remembers_only_valid_adapter_links() {
 fn supplies_encoder_only_as_chosen() {
     let mut desk = Desk::fresh("");
     let amplitude = |studio: &Studio| {
-        let recorder = studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap();
+        let recorder = studio.recorder_for(Of::Tool(crate::tabs::SIGNALS)).unwrap();
         let vector = recorder.series().iter().find(|line| line.name.id() == "scope.vector").unwrap();
         let last = recorder.history(vector).unwrap().indices().end.checked_sub(1)?;
         Some(recorder.history(vector).unwrap().sample(vector.column(), last)?.value.to_f64())
@@ -172,7 +172,7 @@ fn source_runs_until_validly_replaced() {
         studio.signals().measurement().is_some_and(|own| own.origin == Origin::Virtual)
     });
     assert_eq!(
-        desk.studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap().series().len(),
+        desk.studio.recorder_for(Of::Tool(crate::tabs::SIGNALS)).unwrap().series().len(),
         7,
         "the wires are back"
     );

@@ -12,7 +12,7 @@ use crate::support::Desk;
 
 /// Returns the number of samples in the scope, and the indices of the gaps.
 fn recorded(studio: &Studio) -> (u64, Vec<u64>) {
-    let recorder = studio.recorder_of(Of::Tool(crate::tabs::SIGNALS)).unwrap();
+    let recorder = studio.recorder_for(Of::Tool(crate::tabs::SIGNALS)).unwrap();
     let history = recorder.history(&recorder.series()[0]).unwrap();
     let is_break = |at: &u64| history.sample(0, *at).is_some_and(|own| own.flags.contains(Flags::BREAK));
     (history.indices().end, history.indices().filter(is_break).collect())
@@ -126,7 +126,7 @@ fn kept_capture_keeps_no_samples() {
     desk.until_measured();
     desk.until("the samples are gone", |_| samples.strong_count() == 0);
     // The circle has 100 samples per period.
-    assert_eq!(desk.studio.signals().compared_result().unwrap().analysis.as_ref().unwrap().samples, 150_001);
+    assert_eq!(desk.studio.signals().comparison_result().unwrap().analysis.as_ref().unwrap().samples, 150_001);
 }
 
 #[test]

@@ -161,7 +161,7 @@ fn compares_kept_capture_in_columns() {
     screen.click("page.error");
     assert!(screen.shows(&screen.say("error.kept_raw")));
     screen.click("compare.drop");
-    assert!(screen.studio().signals().compared_result().is_none());
+    assert!(screen.studio().signals().comparison_result().is_none());
     assert!(!screen.shows(&screen.say("error.kept_raw")));
 }
 

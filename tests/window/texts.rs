@@ -5,7 +5,7 @@ use crate::tabs::Tabs as _;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
-use encoder_studio::app::review::OperationTexts;
+use encoder_studio::app::review::OperationDescription;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{COMMON, Catalogue};
 use encoder_studio::app::{JobState, Language, Notice, Studio, Text};
@@ -123,7 +123,7 @@ fn check_encoder(encoder: &Encoder) {
         texts.iter().for_each(check);
     }
     let sheet = review.to_sheet(0);
-    sheet.lines.iter().flat_map(OperationTexts::texts).for_each(check);
+    sheet.lines.iter().flat_map(OperationDescription::texts).for_each(check);
     sheet.needs.iter().chain(&sheet.warnings).chain(&sheet.cost).for_each(check);
 }
 

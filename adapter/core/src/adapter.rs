@@ -144,7 +144,7 @@ impl<B: Bus> Adapter<B> {
     /// Sends the available samples. If the host has stopped fetching data, ends the streams.
     pub fn poll(&mut self) {
         if self.outbox.is_stuck(self.bus.now_us()) {
-            self.host_left();
+            self.handle_host_disconnect();
         }
         self.supply.poll(&mut self.bus);
         self.poll_transfer();
@@ -163,7 +163,7 @@ impl<B: Bus> Adapter<B> {
     }
 
     /// Ends the streams and discards unsent bytes after the host has disconnected.
-    pub fn host_left(&mut self) {
+    pub fn handle_host_disconnect(&mut self) {
         self.stop_streams();
         if self.transfer.take().is_some() {
             self.bus.end_transfer();
@@ -376,7 +376,7 @@ impl<B: Bus> Adapter<B> {
     /// Starts a stream, or ends it if the period is 0. Returns the actual period in microseconds.
     fn stream(&mut self, clocking: Clocking, period_us: u32, least_us: u32) -> u32 {
         if period_us == 0 {
-            let same = |stream: &ClockedStream| bus_of(stream.clocking()) == bus_of(clocking);
+            let same = |stream: &ClockedStream| bus_discriminant(stream.clocking()) == bus_discriminant(clocking);
             if self.stream.as_ref().is_some_and(same) {
                 self.stop_stream();
             }
@@ -413,7 +413,7 @@ fn is_clocked(operation: Operation) -> bool {
     (Operation::SsiConfig.byte()..=Operation::BissStream.byte()).contains(&operation.byte())
 }
 
-fn bus_of(clocking: Clocking) -> core::mem::Discriminant<Clocking> {
+fn bus_discriminant(clocking: Clocking) -> core::mem::Discriminant<Clocking> {
     core::mem::discriminant(&clocking)
 }
 

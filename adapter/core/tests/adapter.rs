@@ -181,7 +181,7 @@ fn stream_ends_without_host() {
     // After a disconnection, the stream ends immediately.
     bench.ask(&SSI_25);
     bench.ask(&Request::SsiStream { period_us: 1_000 });
-    bench.adapter.host_left();
+    bench.adapter.handle_host_disconnect();
     assert!(!bench.adapter.is_streaming());
     assert!(matches!(bench.ask(&Request::Hello), Message::Reply(Reply::Hello(_))));
 }
@@ -284,6 +284,6 @@ fn survives_million_random_packets() {
         "{data} {broken} {malformed}"
     );
     let _: &Model = bench.adapter.bus();
-    bench.adapter.host_left();
+    bench.adapter.handle_host_disconnect();
     assert!(matches!(bench.ask(&Request::Hello), Message::Reply(Reply::Hello(_))));
 }

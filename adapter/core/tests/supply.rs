@@ -36,7 +36,7 @@ fn supply_stays_on_between_requests() {
     assert!(bench.model().is_supplied);
     // HELLO, a disconnection of the host and an hour of waiting change nothing.
     assert!(hello(&mut bench).capabilities.contains(Capabilities::SUPPLY_ON));
-    bench.adapter.host_left();
+    bench.adapter.handle_host_disconnect();
     bench.run(3_600_000_000);
     assert!(bench.model().is_supplied);
     assert_eq!(status(&mut bench).input_millivolt, 8_050);

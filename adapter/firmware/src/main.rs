@@ -127,7 +127,7 @@ fn run() -> Option<()> {
         watchdog.feed();
         let is_open = usb::is_open();
         if was_open && !is_open {
-            adapter.host_left();
+            adapter.handle_host_disconnect();
         }
         was_open = is_open;
 

@@ -14,7 +14,7 @@ const SECTORS: usize = 64;
 const SAMPLES: usize = 1 << 18;
 /// Orders examined in the averaged distance from the ellipse. The ellipse fit absorbs the first two orders.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=8;
-const REVOLUTION_SECTORS: usize = 36;
+const SECTORS_PER_REVOLUTION: usize = 36;
 /// Number of samples per period sufficient to follow the angle.
 const SAMPLES_PER_PERIOD: f64 = 16.0;
 
@@ -99,7 +99,7 @@ pub(super) fn amplitude_modulation(samples: &Samples<'_>, analysis: &Analysis, p
         return None;
     }
     let correction = analysis.ellipse.correction();
-    let mut sectors = [(0.0, 0_u32); REVOLUTION_SECTORS];
+    let mut sectors = [(0.0, 0_u32); SECTORS_PER_REVOLUTION];
     let stride = ((analysis.samples as f64 / analysis.coverage.periods / SAMPLES_PER_PERIOD) as usize).max(1);
     let (mut place, mut last) = (0.0, None);
     for (y, x) in included_samples(samples, analysis).step_by(stride) {
@@ -109,7 +109,7 @@ pub(super) fn amplitude_modulation(samples: &Samples<'_>, analysis: &Analysis, p
         place += step - step.round();
         last = Some(phase);
         let share = (place / revolution).rem_euclid(1.0);
-        if let Some((sum, count)) = sectors.get_mut((share * REVOLUTION_SECTORS as f64) as usize) {
+        if let Some((sum, count)) = sectors.get_mut((share * SECTORS_PER_REVOLUTION as f64) as usize) {
             *sum += y.hypot(x);
             *count += 1;
         }

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::flags::{FlagBlock, Flags};
 use super::number::Number;
-use super::spread::{RunningStatistics, combine_spreads, extremes_of_eight, min_and_max};
+use super::spread::{RunningStatistics, combine_spreads, min_and_max, min_max_of_eight};
 use super::{BLOCK, PYRAMID_FACTOR};
 
 #[derive(Clone, Copy)]
@@ -181,7 +181,7 @@ impl<T: Number> SampleBlock<T> {
         if range == (0..BLOCK) {
             return self.spread.as_deref().copied();
         }
-        self.spread_of(range)
+        self.range_statistics(range)
     }
 
     pub(super) fn first_valid(&self, range: Range<usize>) -> Option<usize> {
@@ -241,12 +241,12 @@ impl<T: Number> SampleBlock<T> {
             None => buckets.zip(groups).for_each(|(bucket, _)| *bucket = Bucket::EMPTY),
             Some(base) if flags.all_flags().contains(Flags::BAD) => {
                 for (bucket, range) in buckets.zip(ranges) {
-                    *bucket = Bucket::from_extremes(extremes_within(values, flags, range), base);
+                    *bucket = Bucket::from_extremes(valid_min_max(values, flags, range), base);
                 }
             }
             Some(base) => {
                 for (bucket, group) in buckets.zip(groups) {
-                    *bucket = Bucket::from_extremes(Some(extremes_of_eight(group)), base);
+                    *bucket = Bucket::from_extremes(Some(min_max_of_eight(group)), base);
                 }
             }
         }
@@ -254,7 +254,7 @@ impl<T: Number> SampleBlock<T> {
         self.fill_level(second, third, before);
         if self.values.len() == BLOCK {
             self.top = Bucket::merge_all(self.buckets.get(..PYRAMID_FACTOR).unwrap_or_default());
-            self.spread = self.spread_of(0..BLOCK).map(Box::new);
+            self.spread = self.range_statistics(0..BLOCK).map(Box::new);
         }
     }
 
@@ -296,7 +296,7 @@ impl<T: Number> SampleBlock<T> {
         }
     }
 
-    fn spread_of(&self, range: Range<usize>) -> Option<RunningStatistics<T>> {
+    fn range_statistics(&self, range: Range<usize>) -> Option<RunningStatistics<T>> {
         self.flags
             .valid_ranges(range)
             .map(|good| RunningStatistics::from_values(self.values.get(good)?))
@@ -304,7 +304,7 @@ impl<T: Number> SampleBlock<T> {
     }
 
     fn scan_range(&self, range: Range<usize>) -> ValueRange {
-        let extremes = extremes_within(&self.values, &self.flags, range);
+        let extremes = valid_min_max(&self.values, &self.flags, range);
         extremes.map_or(ValueRange::EMPTY, |(min, max)| ValueRange { min: min.to_f64_floor(), max: max.to_f64_ceil() })
     }
 
@@ -345,7 +345,7 @@ impl BucketSearch {
 }
 
 /// Returns the minimum and maximum of the valid samples in `range`. Returns `None` if no sample is valid.
-fn extremes_within<T: Number>(values: &[T], flags: &FlagBlock, range: Range<usize>) -> Option<(T, T)> {
+fn valid_min_max<T: Number>(values: &[T], flags: &FlagBlock, range: Range<usize>) -> Option<(T, T)> {
     flags.valid_ranges(range).filter_map(|good| min_and_max(values.get(good)?)).reduce(|one, other| {
         (if other.0 < one.0 { other.0 } else { one.0 }, if other.1 > one.1 { other.1 } else { one.1 })
     })

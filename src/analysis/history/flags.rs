@@ -103,7 +103,7 @@ impl FlagBlock {
             // The edge is part of a group and may add no new flags.
             let group = edge.start / GROUP;
             if !found.contains(self.flags_in_groups(group..group + 1)) {
-                found |= union_of(self.samples(edge));
+                found |= merge_flags(self.samples(edge));
             }
         }
         found
@@ -136,7 +136,7 @@ impl FlagBlock {
     }
 }
 
-fn union_of(flags: &[Flags]) -> Flags {
+fn merge_flags(flags: &[Flags]) -> Flags {
     flags.iter().fold(Flags::NONE, |all, flags| all | *flags)
 }
 
@@ -223,7 +223,7 @@ mod tests {
                 // Covers short ranges as well as long ones.
                 let other = if random.bool() { other } else { (one + other % 70).min(BLOCK) };
                 let range = one.min(other)..one.max(other);
-                assert_eq!(block.flags_in(range.clone()), union_of(&plain[range.clone()]), "{range:?}");
+                assert_eq!(block.flags_in(range.clone()), merge_flags(&plain[range.clone()]), "{range:?}");
                 let good: usize = block.valid_ranges(range.clone()).map(|stretch| stretch.len()).sum();
                 assert_eq!(good, plain[range].iter().filter(|flags| !flags.contains(Flags::BAD)).count());
             }
@@ -231,7 +231,7 @@ mod tests {
                 assert_eq!(block.get(at), *flags);
                 assert!(!block.is_known_valid(at) || !flags.contains(Flags::BAD));
             }
-            assert_eq!(block.all_flags(), union_of(&plain));
+            assert_eq!(block.all_flags(), merge_flags(&plain));
         }
     }
 

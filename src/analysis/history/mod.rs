@@ -21,7 +21,7 @@ use std::ops::Range;
 
 pub use flags::Flags;
 pub use number::Value;
-pub use picture::{Grid, GridColumns, HistoryPicture, Pixel, ReducedSamples};
+pub use picture::{Grid, GridColumns, Pixel, ReducedSamples, RenderedHistory};
 pub use statistics::Statistics;
 
 use number::Number;

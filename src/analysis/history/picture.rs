@@ -102,7 +102,7 @@ pub struct ReducedSamples {
 /// first, min, max and last. The nearest samples to the left and right are included, so the line extends beyond both
 /// edges.
 #[derive(Clone, Debug, Default)]
-pub struct HistoryPicture {
+pub struct RenderedHistory {
     /// Pixel columns that contain samples, or single samples if `raw` is set.
     pub pixels: Vec<Pixel>,
     /// Whether each sample has a separate pixel with its exact time, because there are only a few samples.
@@ -149,25 +149,25 @@ impl History {
     }
 
     /// Draws a column of the history into `picture`, reusing its memory.
-    pub fn render_column(&self, column: usize, cut: &GridColumns, picture: &mut HistoryPicture) {
+    pub fn render_column(&self, column: usize, cut: &GridColumns, picture: &mut RenderedHistory) {
         picture.pixels.clear();
         match self.columns.get(column) {
-            Some(Column::Real(series)) => HistoryPainter { history: self, series, last: None, picture }.paint(cut),
-            Some(Column::Whole(series)) => HistoryPainter { history: self, series, last: None, picture }.paint(cut),
+            Some(Column::Real(series)) => HistoryRenderer { history: self, series, last: None, picture }.paint(cut),
+            Some(Column::Whole(series)) => HistoryRenderer { history: self, series, last: None, picture }.paint(cut),
             None => {}
         }
     }
 }
 
-struct HistoryPainter<'a, T> {
+struct HistoryRenderer<'a, T> {
     history: &'a History,
     series: &'a Series<T>,
     /// Index of the last valid sample already painted, if any.
     last: Option<u64>,
-    picture: &'a mut HistoryPicture,
+    picture: &'a mut RenderedHistory,
 }
 
-impl<T: Number> HistoryPainter<'_, T> {
+impl<T: Number> HistoryRenderer<'_, T> {
     fn paint(&mut self, cut: &GridColumns) {
         let all = self.history.indices();
         let (Some(from), Some(to)) = (cut.edges.first(), cut.edges.last()) else { return };

@@ -61,18 +61,18 @@ pub(super) fn min_and_max<T: Number>(values: &[T]) -> Option<(T, T)> {
         let (mut least, mut most) = (*first, *first);
         for group in others {
             for ((least, most), value) in least.iter_mut().zip(&mut most).zip(group) {
-                *least = min_of(*least, *value);
-                *most = max_of(*most, *value);
+                *least = smaller_number(*least, *value);
+                *most = larger_number(*most, *value);
             }
         }
-        (reduce_eight(least, min_of), reduce_eight(most, max_of))
+        (reduce_eight(least, smaller_number), reduce_eight(most, larger_number))
     });
     let start = of_groups.or_else(|| rest.first().map(|first| (*first, *first)))?;
-    Some(rest.iter().fold(start, |(least, most), value| (min_of(least, *value), max_of(most, *value))))
+    Some(rest.iter().fold(start, |(least, most), value| (smaller_number(least, *value), larger_number(most, *value))))
 }
 
-pub(super) fn extremes_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
-    (reduce_eight(*values, min_of), reduce_eight(*values, max_of))
+pub(super) fn min_max_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
+    (reduce_eight(*values, smaller_number), reduce_eight(*values, larger_number))
 }
 
 /// Reduces eight values pairwise, so that fewer operations have to wait for a previous result.
@@ -80,11 +80,11 @@ fn reduce_eight<T: Number>([a, b, c, d, e, f, g, h]: [T; 8], choose: impl Fn(T, 
     choose(choose(choose(a, e), choose(b, f)), choose(choose(c, g), choose(d, h)))
 }
 
-fn min_of<T: Number>(one: T, other: T) -> T {
+fn smaller_number<T: Number>(one: T, other: T) -> T {
     if other < one { other } else { one }
 }
 
-fn max_of<T: Number>(one: T, other: T) -> T {
+fn larger_number<T: Number>(one: T, other: T) -> T {
     if other > one { other } else { one }
 }
 

@@ -1,8 +1,8 @@
 //! Wrapping of continuous counts to a range for display, such as the positions of a rotary encoder.
 
-use super::picture::{HistoryPicture, Pixel, ReducedSamples};
+use super::picture::{Pixel, ReducedSamples, RenderedHistory};
 
-impl HistoryPicture {
+impl RenderedHistory {
     /// Wraps counts to the range from 0 to below `range`. Where they wrap, the line is interrupted. A pixel column in
     /// which the counts wrap once has two parts, one at each end of the range.
     pub fn wrap(&mut self, range: i64) {
@@ -15,8 +15,8 @@ impl HistoryPicture {
                 wrapped.push(pixel);
                 continue;
             };
-            let joined = pixel.joined && period == Some(period_of(values.first, range));
-            period = Some(period_of(values.last, range));
+            let joined = pixel.joined && period == Some(wrap_index(values.first, range));
+            period = Some(wrap_index(values.last, range));
             let is_whole = push_parts(&mut wrapped, Pixel { joined, ..pixel }, values, range);
             period = period.filter(|_| is_whole);
         }
@@ -24,15 +24,15 @@ impl HistoryPicture {
     }
 }
 
-fn period_of(value: f64, range: f64) -> f64 {
+fn wrap_index(value: f64, range: f64) -> f64 {
     (value / range).floor()
 }
 
 /// Appends the parts of a pixel column. Returns whether the last part contains the last value.
 fn push_parts(wrapped: &mut Vec<Pixel>, pixel: Pixel, values: ReducedSamples, range: f64) -> bool {
-    let [begin, end] = [values.first, values.last].map(|own| period_of(own, range));
+    let [begin, end] = [values.first, values.last].map(|own| wrap_index(own, range));
     // The extremes are rounded outward, but counts are whole numbers.
-    let (low, high) = (period_of(values.min.ceil(), range).min(begin.min(end)), period_of(values.max.floor(), range));
+    let (low, high) = (wrap_index(values.min.ceil(), range).min(begin.min(end)), wrap_index(values.max.floor(), range));
     let high = high.max(begin.max(end));
     let part = |period: f64, joined: bool| {
         let within = |own: f64| (own - period * range).clamp(0.0, range);
@@ -65,7 +65,7 @@ mod tests {
     const RANGE: i64 = 1000;
 
     /// Returns the picture of counts that are one microsecond apart, in `pixels` columns.
-    fn picture(counts: &[i64], pixels: usize) -> HistoryPicture {
+    fn picture(counts: &[i64], pixels: usize) -> RenderedHistory {
         let mut history = History::new(&[Kind::Whole], 100_000);
         let times: Vec<SampleTime> =
             (0..counts.len() as i64).map(|at| SampleTime::from_nanoseconds(at * 1000)).collect();
@@ -73,7 +73,7 @@ mod tests {
             .append(&times, &[ColumnPart::from_integers(counts).with_flags(&vec![Flags::NONE; counts.len()])])
             .unwrap();
         let end = SampleTime::from_nanoseconds(counts.len() as i64 * 1000);
-        let mut picture = HistoryPicture::default();
+        let mut picture = RenderedHistory::default();
         history.render_column(
             0,
             &history.divide_into_pixels(&Grid::new(SampleTime::ORIGIN, end, pixels)),
@@ -83,7 +83,7 @@ mod tests {
         picture
     }
 
-    fn extents(picture: &HistoryPicture) -> Vec<(f64, f64, bool)> {
+    fn extents(picture: &RenderedHistory) -> Vec<(f64, f64, bool)> {
         picture.pixels.iter().filter_map(|own| Some((own.values?.min, own.values?.max, own.joined))).collect()
     }
 

@@ -155,7 +155,7 @@ impl Studio {
                     view.shows_all = all;
                 }
             }
-            ComparisonAction::Take(item) => self.take_over(&item),
+            ComparisonAction::Take(item) => self.copy_to_right(&item),
             ComparisonAction::Close => self.comparison = None,
         }
         self.refresh_comparison();
@@ -230,7 +230,7 @@ impl Studio {
     }
 
     /// Copies the value of an item from the left side to the right side, as an edit.
-    fn take_over(&mut self, item: &str) {
+    fn copy_to_right(&mut self, item: &str) {
         let target = self.edited_side().map(|device| device.id());
         let Some(view) = &mut self.comparison else { return };
         let Some((target, left)) = target.zip(view.left.document().cloned()) else { return };

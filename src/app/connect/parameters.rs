@@ -2,20 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use super::target::{non_empty, unusable_link_text};
+use super::target::{optional_entry, unusable_link_text};
 use crate::app::{Text, explain};
 use crate::link::{LinkScheme, LinkUrl, UrlQuery};
 use crate::parameter::Entry;
 
 /// The name and value of a link parameter.
-pub(crate) type NameAndValue = (String, String);
+pub(crate) type NameValuePair = (String, String);
 
 /// Returns the link parameters that have no entry in the form. `take` fills in an entry and returns whether the entry
 /// exists.
 pub(crate) fn parameters_without_entry(
     query: &UrlQuery,
     mut take: impl FnMut(&str, &str) -> bool,
-) -> Vec<NameAndValue> {
+) -> Vec<NameValuePair> {
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
 }
 
@@ -47,7 +47,7 @@ impl EnteredValues {
 
 /// The link parameters of a form's entries, in order. Default values are omitted.
 #[derive(Default)]
-pub(crate) struct Parameters(Vec<NameAndValue>);
+pub(crate) struct Parameters(Vec<NameValuePair>);
 
 impl Parameters {
     pub(crate) fn set(&mut self, name: &str, value: &str) {
@@ -56,11 +56,11 @@ impl Parameters {
 
     /// Adds an entry unless it is empty.
     pub(crate) fn entry(&mut self, name: &str, entry: &str) {
-        self.0.extend(non_empty(entry).map(|value| (name.to_owned(), value)));
+        self.0.extend(optional_entry(entry).map(|value| (name.to_owned(), value)));
     }
 
     /// Adds the strings typed into the form, converting decimal commas to points.
-    pub(crate) fn add_entered(&mut self, entries: &[Entry], typed: &EnteredValues) {
+    pub(crate) fn add_typed_entries(&mut self, entries: &[Entry], typed: &EnteredValues) {
         for entry in entries {
             match entry.is_decimal {
                 true => self.add_decimal(entry.key, typed.get(entry.key)),
@@ -78,16 +78,16 @@ impl Parameters {
     /// virtual device.
     pub(crate) fn add_remaining(
         &mut self,
-        rest: &[NameAndValue],
+        rest: &[NameValuePair],
         is_virtual: bool,
         (link, of_the_virtual): (&[&str], &[&str]),
     ) {
-        self.add_others(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
+        self.add_other_parameters(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
     }
 
     /// Adds the parameters without an entry that are valid for the link. An entry overrides an older parameter of the
     /// same name.
-    pub(crate) fn add_others(&mut self, rest: &[NameAndValue], belongs: impl Fn(&str) -> bool) {
+    pub(crate) fn add_other_parameters(&mut self, rest: &[NameValuePair], belongs: impl Fn(&str) -> bool) {
         for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
             if self.0.iter().all(|(own, _)| own != name) {
                 self.set(name, value);

@@ -17,7 +17,7 @@ pub(crate) fn required_entry(entry: &str, missing: &'static str) -> Result<Strin
     if entry.is_empty() { Err(Text::new(missing)) } else { Ok(entry.to_owned()) }
 }
 
-pub(crate) fn non_empty(entry: &str) -> Option<String> {
+pub(crate) fn optional_entry(entry: &str) -> Option<String> {
     Some(entry.trim().to_owned()).filter(|entry| !entry.is_empty())
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn format_host_and_optional_port(
     port: &str,
     usual: &str,
 ) -> Result<String, Text> {
-    host_and_port(&required_entry(host, missing)?, non_empty(port).as_deref().unwrap_or(usual))
+    host_and_port(&required_entry(host, missing)?, optional_entry(port).as_deref().unwrap_or(usual))
 }
 
 /// Splits a network address into host and port. The port is empty if the address has none.
@@ -122,7 +122,7 @@ pub(crate) fn split_host_default_port(place: &str, usual: &str) -> (String, Stri
 const TCP: &str = "tcp:";
 
 /// Returns the network address of an adapter, or `None` if it is on a serial port.
-pub(crate) fn network_address_of_adapter(target: &str) -> Option<&str> {
+pub(crate) fn adapter_network_address(target: &str) -> Option<&str> {
     target.strip_prefix(TCP)
 }
 

@@ -46,8 +46,8 @@ impl AnyDevice {
     }
 
     /// Returns the time at which the displayed values were read, if they were.
-    pub fn values_read_at(&self) -> Option<Timestamp> {
-        self.state().values_read_at
+    pub fn last_read_time(&self) -> Option<Timestamp> {
+        self.state().last_read_time
     }
 
     pub fn phase(&self) -> &Phase {

@@ -14,7 +14,7 @@ pub(crate) struct Selection {
 }
 
 impl Selection {
-    pub(crate) fn session_of(&self, tab: Tab) -> Option<SessionId> {
+    pub(crate) fn session_in_tab(&self, tab: Tab) -> Option<SessionId> {
         self.by_tab.get(&tab).copied()
     }
 
@@ -43,7 +43,7 @@ impl Selection {
         self.by_tab.retain(|_, shown| *shown != id);
         if self.last == Some(id) {
             let tabs = kinds.devices().iter().rev().map(|kind| kind.tab());
-            self.last = tabs.filter_map(|tab| self.session_of(tab)).next();
+            self.last = tabs.filter_map(|tab| self.session_in_tab(tab)).next();
         }
     }
 }

@@ -13,7 +13,7 @@ pub(crate) use detail::syntax_error_text;
 pub(crate) use detail::tests::check as assert_in_both_languages;
 pub use detail::{logbook_problem, profile_error_text, setting_error_text, trace_error_text, url_error_text};
 pub use expected::expected_text;
-pub use server::{other_holder_text, server_address_error_text, server_error_text};
+pub use server::{device_in_use_text, server_address_error_text, server_error_text};
 
 use super::action::OpenFailure;
 use super::{KindRegistry, Text};

@@ -9,7 +9,9 @@ pub fn server_error_text(error: &ServerError) -> Text {
     match &error.problem {
         ServerErrorKind::Address(problem) => server_address_error_text(problem),
         ServerErrorKind::UnknownHost => of_server("server.unknown_host"),
-        ServerErrorKind::Unreachable { why } => of_server("server.unreachable").with_text("why", unreachable_text(why)),
+        ServerErrorKind::Unreachable { why } => {
+            of_server("server.unreachable").with_text("why", connection_failure_text(why))
+        }
         ServerErrorKind::NoReply => of_server("server.no_reply"),
         ServerErrorKind::PasswordMissing => of_server("server.password_missing"),
         ServerErrorKind::WrongPassword => of_server("server.wrong_password"),
@@ -29,7 +31,7 @@ pub fn server_error_text(error: &ServerError) -> Text {
     }
 }
 
-fn unreachable_text(cause: &UnreachableCause) -> Text {
+fn connection_failure_text(cause: &UnreachableCause) -> Text {
     match cause {
         UnreachableCause::Refused => Text::new("server.refused"),
         UnreachableCause::NoRoute => Text::new("server.no_route"),
@@ -39,7 +41,7 @@ fn unreachable_text(cause: &UnreachableCause) -> Text {
 }
 
 /// Returns the warning that another program is connected to the same device.
-pub fn other_holder_text(holder: &OtherHolder) -> Text {
+pub fn device_in_use_text(holder: &OtherHolder) -> Text {
     let text = match &holder.user {
         Some(user) => Text::new("server.held_by_user").with("user", user),
         None => Text::new("server.held"),

@@ -80,7 +80,7 @@ impl Recorder {
         let factor = line.factor();
         let (min, max) = (statistics.min.to_f64(), statistics.max.to_f64());
         // If the line wraps between the cursors, the positions have no useful mean.
-        let begin = match line.range_of_samples().map(|range| range as f64) {
+        let begin = match line.sample_wrap_range().map(|range| range as f64) {
             Some(range) if (min / range).floor() != (max / range).floor() => return None,
             Some(range) => (min / range).floor() * range,
             None => 0.0,

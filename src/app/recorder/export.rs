@@ -150,7 +150,7 @@ impl Recorder {
                 head,
                 column: line.column,
                 factor: line.factor(),
-                range: line.range_of_samples(),
+                range: line.sample_wrap_range(),
                 derived: line.derived,
             });
         }
@@ -247,13 +247,13 @@ impl Recorder {
                 head.next += u64::from(due.is_some());
             }
             rows.times.push(now);
-            rows.cells.extend(columns.iter().map(|column| cell_of(column, &histories, &due)));
+            rows.cells.extend(columns.iter().map(|column| export_cell(column, &histories, &due)));
         }
         if rows.times.is_empty() { Chunk::End } else { Chunk::Rows(rows) }
     }
 }
 
-fn cell_of(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) -> Cell {
+fn export_cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) -> Cell {
     let sample = || {
         let index = (*due.get(column.head)?)?;
         (*histories.get(column.head)?)?.sample(column.column, index)

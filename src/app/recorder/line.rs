@@ -120,12 +120,12 @@ impl Series {
     }
 
     /// Returns the range after which displayed values wrap to 0, in units of the samples.
-    pub fn range_of_samples(&self) -> Option<i64> {
+    pub fn sample_wrap_range(&self) -> Option<i64> {
         self.scale().and_then(|scale| scale.range)
     }
 
     pub fn value(&self, sample: &Sample) -> f64 {
-        within_range(sample.value, self.range_of_samples()) * self.factor()
+        within_range(sample.value, self.sample_wrap_range()) * self.factor()
     }
 
     /// Returns `later` minus `earlier` in the displayed unit. Counts are subtracted as integers before they are

@@ -122,7 +122,7 @@ impl Recorder {
 
     pub(super) fn arm_trigger(&mut self, trigger: Trigger) {
         let Some(line) = self.series_by_id(trigger.line) else { return };
-        let (factor, range) = (line.factor(), line.range_of_samples());
+        let (factor, range) = (line.factor(), line.sample_wrap_range());
         let level = trigger.level / factor;
         if trigger.when.needs_level() && !level.is_finite() {
             return;

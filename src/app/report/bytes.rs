@@ -25,7 +25,7 @@ pub fn byte_table(
     ]);
     let mut at = 0;
     while let Some(row) = bytes.get(at..bytes.len().min(at + ROW)).filter(|row| !row.is_empty()) {
-        let (byte, same) = leading_repetition(bytes.get(at..).unwrap_or_default());
+        let (byte, same) = count_leading_repeats(bytes.get(at..).unwrap_or_default());
         let whole_rows = same / ROW * ROW;
         let end =
             if whole_rows > ROW && meaning(at..at + whole_rows).is_empty() { at + whole_rows } else { at + row.len() };
@@ -43,7 +43,7 @@ pub fn byte_table(
 }
 
 /// Returns the first byte and how often it is repeated from there.
-fn leading_repetition(bytes: &[u8]) -> (u8, usize) {
+fn count_leading_repeats(bytes: &[u8]) -> (u8, usize) {
     let first = bytes.first().copied().unwrap_or_default();
     (first, bytes.iter().take_while(|byte| **byte == first).count())
 }

@@ -1,6 +1,6 @@
 //! The content of a report, as provided by a kind of device.
 
-use crate::app::{Language, Text, format_decimal, plain_decimals};
+use crate::app::{Language, Text, format_decimal, significant_decimals};
 use crate::report::{CellStyle, Fact, Section, Table};
 use crate::store::{DeviceKey, Store};
 
@@ -51,7 +51,7 @@ impl<'a> ReportContext<'a> {
 
     /// Formats a number with as many decimals as it needs.
     pub fn format_shortest_number(&self, value: f64) -> String {
-        self.number(value, plain_decimals(value))
+        self.number(value, significant_decimals(value))
     }
 
     /// Creates a table without rows.

@@ -3,14 +3,14 @@
 use super::ReportContext;
 use crate::analysis::check::Verdict;
 use crate::app::Text;
-use crate::app::check::{CheckLine, verdict_text};
+use crate::app::check::{CheckResultLine, verdict_text};
 use crate::report::{Block, CellStyle, Mark, Section};
 
 /// A result of the current session.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SessionResult {
     /// Results of a device check.
-    Check(Vec<CheckLine>),
+    Check(Vec<CheckResultLine>),
     /// Title of a procedure, and its results in order.
     Procedure { title: Text, lines: Vec<Text> },
 }
@@ -25,7 +25,7 @@ pub(super) fn result_section(context: &ReportContext<'_>, result: &SessionResult
     }
 }
 
-fn check_section(context: &ReportContext<'_>, lines: &[CheckLine]) -> Section {
+fn check_section(context: &ReportContext<'_>, lines: &[CheckResultLine]) -> Section {
     let mut table = context.table([
         ("report.name".into(), CellStyle::Text),
         ("logbook.result".into(), CellStyle::Text),

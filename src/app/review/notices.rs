@@ -22,7 +22,7 @@ pub(crate) fn undo_texts(operations: impl IntoIterator<Item = (Text, Option<Undo
     if groups.is_empty() {
         return has_exact.then(|| undo_text(&Undo::Exactly)).into_iter().collect();
     }
-    let named = |(undo, items): &(Undo, Vec<Text>)| undo_text(undo).with_list("items", first_items(items));
+    let named = |(undo, items): &(Undo, Vec<Text>)| undo_text(undo).with_list("items", truncate_items(items));
     let mut texts = truncated_list(&groups, named);
     texts.extend(has_exact.then(|| Text::new("review.undo_rest")));
     texts
@@ -31,7 +31,7 @@ pub(crate) fn undo_texts(operations: impl IntoIterator<Item = (Text, Option<Undo
 /// Maximum number of items listed in a sentence.
 const MAX_NAMED: usize = 3;
 
-fn first_items(items: &[Text]) -> Vec<Text> {
+fn truncate_items(items: &[Text]) -> Vec<Text> {
     let more = (items.len() > MAX_NAMED).then(|| literal_text("…"));
     items.iter().take(MAX_NAMED).cloned().chain(more).collect()
 }
@@ -49,7 +49,7 @@ fn undo_text(undo: &Undo) -> Text {
 
 /// Describes the values that a restore does not change: those missing from the profile or the device, and those that
 /// depend on how the device is mounted.
-pub(crate) fn skipped_texts(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
+pub(crate) fn skipped_item_messages(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
     let mut texts = Vec::new();
     if !missing.is_empty() {
         texts.push(words.into().with_list("items", missing));

@@ -37,7 +37,7 @@ impl UndoneEntry {
         let manual_names = entry.items.iter().filter_map(|own| Some((own.item.clone(), own.name.clone()?))).collect();
         let (uid, at, device_kind) = (entry.uid.clone(), minutes(entry.at), entry.device.kind.clone());
         let undone = UndoneEntry { uid, at, undone_at, write, device_kind, kinds, manual_names };
-        if undone.write.has_effect() { Ok(undone) } else { Err(undone.kept_texts()) }
+        if undone.write.has_effect() { Ok(undone) } else { Err(undone.kept_item_messages()) }
     }
 
     pub(super) fn title(&self) -> Text {
@@ -54,15 +54,15 @@ impl UndoneEntry {
 
     /// Returns a warning if the entry has been undone before, and a description of each item that is not undone.
     pub(super) fn warnings(&self) -> impl Iterator<Item = Text> {
-        self.already_undone().into_iter().chain(self.kept_texts())
+        self.repeated_undo_message().into_iter().chain(self.kept_item_messages())
     }
 
-    fn already_undone(&self) -> Option<Text> {
+    fn repeated_undo_message(&self) -> Option<Text> {
         self.undone_at.as_ref().map(|at| Text::new("undo.already").with("time", at))
     }
 
     /// Describes each item that is not undone, and what to do instead.
-    fn kept_texts(&self) -> Vec<Text> {
+    fn kept_item_messages(&self) -> Vec<Text> {
         let kept = |own: &KeptItem| {
             let name = self.item_name(&own.item);
             Text::new("undo.kept").with_text("item", name).with_text("instead", redo_text(&own.redo))
@@ -75,12 +75,12 @@ impl UndoneEntry {
     pub(super) fn rejection<P: PlannedWrite>(&self, prepared: &P) -> Option<Vec<Text>> {
         let planned = prepared.plan().ops.iter().flat_map(|op| prepared.changed_items(op));
         let changed = self.write.changed_since(planned);
-        let first = self.already_undone().into_iter().chain([Text::new("undo.changed")]);
-        let texts = first.chain(truncated_list(&changed, |own| self.changed_text(own)));
+        let first = self.repeated_undo_message().into_iter().chain([Text::new("undo.changed")]);
+        let texts = first.chain(truncated_list(&changed, |own| self.changed_item_message(own)));
         (!changed.is_empty()).then(|| texts.collect())
     }
 
-    fn changed_text(&self, changed: &ChangedSince) -> Text {
+    fn changed_item_message(&self, changed: &ChangedSince) -> Text {
         let value = |value: &Option<String>| match value {
             Some(value) => literal_text(value),
             None => Text::new("undo.no_value"),

@@ -5,7 +5,8 @@
 
 use super::{HasDraft, HasSession, Interruption, Kind, SessionEvents};
 use crate::app::review::{
-    self, OperationTexts, Permit, Review, ReviewSheet, ReviewState, Reviewable, UndoneEntry, written_texts,
+    self, OperationDescription, Permit, Review, ReviewSheet, ReviewState, Reviewable, UndoneEntry,
+    write_result_messages,
 };
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
@@ -36,7 +37,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     }
 
     /// Describes an operation of a plan.
-    fn operation_texts(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OperationTexts {
+    fn operation_texts(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OperationDescription {
         Self::Device::operation_texts(prepared, op)
     }
 
@@ -238,7 +239,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
 
     /// Handles the end of an executed plan and reads the device again.
     fn handle_commit_end(&mut self, committed: Committed<Self>, services: &mut Services) {
-        let (severity, texts) = written_texts::<Self::Device>(&committed);
+        let (severity, texts) = write_result_messages::<Self::Device>(&committed);
         let (name, stands) = (self.session().name(), self.open_review().is_some_and(Review::is_writing));
         // A successful result remains in the review until the user closes it.
         if severity == Severity::Good && stands {

@@ -34,7 +34,7 @@ pub struct SessionState {
     /// Status codes in the logbook, newest first.
     pub statuses: Vec<Entry>,
     /// Time at which the displayed values were read, if they were.
-    pub(crate) values_read_at: Option<Timestamp>,
+    pub(crate) last_read_time: Option<Timestamp>,
     /// Whether the device has not been read since the link was opened.
     pub just_connected: bool,
     /// Whether live values start automatically once the device has been read and its line is idle.
@@ -60,7 +60,7 @@ impl SessionState {
             cycles: None,
             asset: None,
             statuses: Vec::new(),
-            values_read_at: None,
+            last_read_time: None,
             just_connected: false,
             live_due: false,
             save_to: None,

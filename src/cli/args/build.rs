@@ -10,7 +10,7 @@ use super::{COMMON_HEADING, Cli, Command, CommonArgs};
 use crate::cli::commands::{CliCommand, CommandId, Commands, DeviceCommands};
 
 /// Display order of options added by a device kind. They follow the shared options.
-const AFTER_SHARED: usize = 200;
+const KIND_OPTION_ORDER: usize = 200;
 
 pub(in crate::cli) struct Arguments {
     pub(in crate::cli) common: CommonArgs,
@@ -58,7 +58,7 @@ pub fn command(commands: Commands) -> clap::Command {
     let front = commands.common_options().fold(Cli::command(), |front, option| {
         // Several kinds of devices may have the same option.
         let is_new = front.get_arguments().all(|other| other.get_id() != option.get_id());
-        if is_new { front.arg(option.help_heading(COMMON_HEADING).display_order(AFTER_SHARED)) } else { front }
+        if is_new { front.arg(option.help_heading(COMMON_HEADING).display_order(KIND_OPTION_ORDER)) } else { front }
     });
     let shared = Command::augment_subcommands(front).after_help(command_summary(commands));
     let extended = CommandId::ALL
@@ -68,8 +68,8 @@ pub fn command(commands: Commands) -> clap::Command {
     let names = kind_name_parser(CommandId::Identify, commands);
     let extended = extended.mut_subcommand("log", |log| log.mut_arg("device", |device| device.value_parser(names)));
     let options = commands.kind_commands().flat_map(|own| own.report_options());
-    let extended =
-        extended.mut_subcommand("report", |report| report.args(options.map(|own| own.display_order(AFTER_SHARED))));
+    let extended = extended
+        .mut_subcommand("report", |report| report.args(options.map(|own| own.display_order(KIND_OPTION_ORDER))));
     extended.subcommands(commands.kind_commands().map(|own| own.command()))
 }
 
@@ -88,7 +88,7 @@ fn add_kind_options(command: clap::Command, id: CommandId, commands: Commands) -
         for option in own.chain(settings) {
             // Several kinds of devices may have the same option.
             if command.get_arguments().all(|other| other.get_id() != option.get_id()) {
-                command = command.arg(option.display_order(AFTER_SHARED));
+                command = command.arg(option.display_order(KIND_OPTION_ORDER));
             }
         }
     }

@@ -20,8 +20,8 @@ pub(in crate::profile) fn apply_change(text: &str, change: &Change) -> Option<St
             return replace_range(text, &root.span, to);
         }
     };
-    let within = way.iter().try_fold(&root, |node, step| part_at(text, node, step).map(|part| &part.value))?;
-    match (part_at(text, within, last), &change.to) {
+    let within = way.iter().try_fold(&root, |node, step| find_part(text, node, step).map(|part| &part.value))?;
+    match (find_part(text, within, last), &change.to) {
         (Some(part), Some(to)) => {
             let own = text.get(part.value.span.clone())?;
             // Elements that are identified only by their index are the same only if their contents are.
@@ -43,15 +43,15 @@ pub(in crate::profile) fn apply_change(text: &str, change: &Change) -> Option<St
 pub(super) fn value_at(text: &str, path: &[PathStep]) -> Option<(String, Vec<PathStep>)> {
     let root = read(text)?;
     let (last, way) = path.split_last()?;
-    let within = way.iter().try_fold(&root, |node, step| part_at(text, node, step).map(|part| &part.value))?;
-    let part = part_at(text, within, last)?;
+    let within = way.iter().try_fold(&root, |node, step| find_part(text, node, step).map(|part| &part.value))?;
+    let part = find_part(text, within, last)?;
     let behind = path_steps(text, within).into_iter().take_while(|step| step != last);
     let mut behind: Vec<PathStep> = behind.collect();
     behind.reverse();
     Some((text.get(part.value.span.clone())?.to_owned(), behind))
 }
 
-fn part_at<'n>(text: &str, node: &'n SourceNode, step: &PathStep) -> Option<&'n NodePart> {
+fn find_part<'n>(text: &str, node: &'n SourceNode, step: &PathStep) -> Option<&'n NodePart> {
     if let PathStep::At(at) = step {
         // An element that has a name is not addressed by its index.
         return if matches!(node.kind, Kind::List(_)) { node.parts().get(*at) } else { None };
@@ -106,7 +106,7 @@ fn insert_entry(text: &str, within: &SourceNode, change: &Change, last: &PathSte
         _ => String::new(),
     };
     let (end, parts) = (line_end(text), within.parts());
-    let anchor = change.behind.iter().find_map(|step| part_at(text, within, step));
+    let anchor = change.behind.iter().find_map(|step| find_part(text, within, step));
     let open = within.span.start + text.get(within.span.clone())?.find(['(', '[', '{'])? + 1;
     let first_line = text.get(open..parts.first().map_or(within.span.end, NodePart::start))?;
     let stands_in_lines = first_line.contains('\n') || parts.is_empty();

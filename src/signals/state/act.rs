@@ -163,7 +163,7 @@ impl Signals {
     }
 
     /// Returns the results of the capture kept for comparison.
-    pub fn compared_result(&self) -> Option<&Arc<MeasurementResult>> {
+    pub fn comparison_result(&self) -> Option<&Arc<MeasurementResult>> {
         self.comparison.as_ref()
     }
 

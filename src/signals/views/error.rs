@@ -26,7 +26,7 @@ pub(super) fn page_ui(
         octant::card_ui(ui, theme, &mut view.octant);
         return;
     };
-    let compared = signals.compared_result();
+    let compared = signals.comparison_result();
     curves_ui(ui, theme, &analysis.error, compared.map(AsRef::as_ref));
     theme.add_gap(ui);
     split(

@@ -77,14 +77,14 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
             None => TEXTS.text("quality.lissajous_bare").with("samples", measurement.capture.sine_v.len()),
         };
         let [own, other] = &mut view.pictures;
-        if signals.compared_result().is_none() {
+        if signals.comparison_result().is_none() {
             *other = LissajousTexture::default();
         }
-        let compared = signals.compared_result().map(|kept| {
-            let picture = other.texture_of(ui, theme, kept, corrected, 1);
+        let compared = signals.comparison_result().map(|kept| {
+            let picture = other.density_texture(ui, theme, kept, corrected, 1);
             quality_figure(kept, corrected, picture, (1, true))
         });
-        let picture = own.texture_of(ui, theme, measurement.results(), corrected, 0);
+        let picture = own.density_texture(ui, theme, measurement.results(), corrected, 0);
         let shown = quality_figure(measurement, corrected, picture, (0, false));
         let figures: Vec<LissajousFigure> = compared.into_iter().chain([shown]).collect();
         let side = ui.available_width().min(440.0);
@@ -105,7 +105,7 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
 pub(super) struct LissajousTexture(Option<(Arc<MeasurementResult>, bool, Color32, TextureHandle)>);
 
 impl LissajousTexture {
-    fn texture_of(
+    fn density_texture(
         &mut self,
         ui: &Ui,
         theme: &Theme,
@@ -183,7 +183,7 @@ fn verdict_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measu
         for finding in findings {
             finding_ui(ui, theme, finding);
         }
-        if let Some((kept, changes)) = signals.compared_result().zip(signals.changes()) {
+        if let Some((kept, changes)) = signals.comparison_result().zip(signals.changes()) {
             changes_ui(ui, theme, &kept.origin.name(), &changes);
         }
     });
@@ -238,7 +238,7 @@ fn values_ui(
         periods_ui(ui, theme, signals, &mut view.periods, actions);
         ui.add_space(theme.space.inside);
         let of = |own: &MeasurementResult| signal_quantities(own, signals.family(), signals.signal_periods());
-        let others = signals.compared_result().map(|own| of(own));
+        let others = signals.comparison_result().map(|own| of(own));
         numbers::rows_ui(ui, theme, "quality.numbers", &of(measurement), others.as_deref());
     });
 }

@@ -85,7 +85,7 @@ fn spectrum_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Meas
                 return;
             }
         };
-        let kept = signals.compared_result().and_then(|own| own.spectra.as_ref().ok());
+        let kept = signals.comparison_result().and_then(|own| own.spectra.as_ref().ok());
         lines_ui(ui, theme, spectra, kept, volts);
         peaks_ui(ui, theme, spectra, measurement);
     });

@@ -247,7 +247,7 @@ fn toggle_ui(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
 fn save_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let word = translate(theme, "compare.keep");
     let same = signals
-        .compared_result()
+        .comparison_result()
         .zip(signals.measurement())
         .is_some_and(|(a, b)| std::sync::Arc::ptr_eq(a, b.results()));
     if enabled_button(ui, !same, icons::PUSH_PIN, &word).on_hover_text(translate(theme, "compare.keep_hint")).clicked()
@@ -264,7 +264,7 @@ fn report_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Ac
 }
 
 fn compared_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
-    let Some(kept) = signals.compared_result() else { return };
+    let Some(kept) = signals.comparison_result() else { return };
     ui.horizontal(|ui| {
         let text = TEXTS.text("compare.with").with_text("name", kept.origin.name());
         let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 12.0), egui::Sense::hover());

@@ -32,7 +32,7 @@ pub(super) fn set_aside(path: &Path, patience: Duration) -> Result<Option<PathBu
     let copied = fs::hard_link(path, &kept).or_else(|_| fs::copy(path, &kept).map(drop));
     copied.map_err(|_| LogbookErrorKind::NoAccess)?;
     let new = with_ending(path, NEW);
-    let begun = begin_new(&new, &kept, patience);
+    let begun = create_replacement(&new, &kept, patience);
     begun.inspect_err(|_| drop(fs::remove_file(&kept)))?;
     for ending in ENDINGS {
         match fs::rename(with_ending(path, ending), with_ending(&kept, ending)) {
@@ -44,7 +44,7 @@ pub(super) fn set_aside(path: &Path, patience: Duration) -> Result<Option<PathBu
     Ok(Some(kept))
 }
 
-fn begin_new(new: &Path, kept: &Path, patience: Duration) -> Result<(), LogbookErrorKind> {
+fn create_replacement(new: &Path, kept: &Path, patience: Duration) -> Result<(), LogbookErrorKind> {
     // A program that was killed at this point may have left a file behind.
     let _ = fs::remove_file(new);
     let database = schema::open(new, patience)?;
@@ -56,14 +56,14 @@ fn begin_new(new: &Path, kept: &Path, patience: Duration) -> Result<(), LogbookE
 }
 
 /// Returns the most recent damaged file, whose entries are missing from this logbook.
-pub(super) fn last_damaged(database: &Connection) -> rusqlite::Result<Option<PathBuf>> {
+pub(super) fn latest_damaged_file(database: &Connection) -> rusqlite::Result<Option<PathBuf>> {
     let sql = "SELECT kept FROM damage ORDER BY rowid DESC LIMIT 1";
     let kept = database.query_row(sql, [], |row| row.get::<_, String>(0)).optional()?;
     Ok(kept.map(PathBuf::from))
 }
 
 /// Returns whether an error means that the file itself is damaged, rather than a value in it.
-pub(super) fn is_damage(error: &rusqlite::Error) -> bool {
+pub(super) fn is_corruption_error(error: &rusqlite::Error) -> bool {
     let code = error.sqlite_error_code();
     matches!(code, Some(ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt))
 }
@@ -75,7 +75,7 @@ fn is_damaged(path: &Path) -> bool {
     let _ = database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
     match database.query_row("PRAGMA quick_check(1)", [], |row| row.get::<_, String>(0)) {
         Ok(found) => found != "ok",
-        Err(error) => is_damage(&error),
+        Err(error) => is_corruption_error(&error),
     }
 }
 

@@ -64,7 +64,7 @@ pub(super) fn assignment(
 ) -> rusqlite::Result<()> {
     // Another window may assign the device at the same time.
     let transaction = database.transaction_with_behavior(TransactionBehavior::Immediate)?;
-    let present = query::present_asset(&transaction, device)?;
+    let present = query::current_asset(&transaction, device)?;
     if present.as_deref() == Some(asset.as_str()) {
         return Ok(());
     }

@@ -173,7 +173,7 @@ impl Logbook {
     /// # Errors
     /// Returns an error if the logbook cannot be read.
     pub fn asset(&self, device: &DeviceKey) -> Result<Option<String>, LogbookError> {
-        query::present_asset(&self.database, device).map_err(|error| self.database_error(error))
+        query::current_asset(&self.database, device).map_err(|error| self.database_error(error))
     }
 
     /// Returns the entry with the given number, or `None` if it does not exist.
@@ -246,12 +246,12 @@ impl Logbook {
     /// # Errors
     /// Returns an error if the logbook cannot be read.
     pub fn damaged_file(&self) -> Result<Option<PathBuf>, LogbookError> {
-        aside::last_damaged(&self.database).map_err(|error| self.database_error(error))
+        aside::latest_damaged_file(&self.database).map_err(|error| self.database_error(error))
     }
 
     /// Converts a database error to the one reported. If the file is damaged, a new file is created for the next use.
     fn database_error(&self, error: rusqlite::Error) -> LogbookError {
-        let problem = match aside::is_damage(&error).then(|| aside::set_aside(&self.path, LOCK_TIMEOUT)) {
+        let problem = match aside::is_corruption_error(&error).then(|| aside::set_aside(&self.path, LOCK_TIMEOUT)) {
             Some(Ok(Some(kept))) => LogbookErrorKind::SetAside { kept },
             _ => LogbookErrorKind::from(error),
         };

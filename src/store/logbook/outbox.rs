@@ -107,7 +107,7 @@ pub(super) fn count_waiting(database: &Connection) -> rusqlite::Result<u64> {
 }
 
 /// Returns the first rows to send. A result is sent with its event, because the server may have lost the event.
-pub(super) fn first_waiting(database: &Connection, limit: usize) -> rusqlite::Result<Rows> {
+pub(super) fn rows_to_send(database: &Connection, limit: usize) -> rusqlite::Result<Rows> {
     let mut waiting = Rows::default();
     let mut outbox = database.prepare_cached("SELECT uid, is_result FROM outbox ORDER BY id LIMIT ?1")?;
     let mut event = database.prepare_cached(
@@ -295,12 +295,12 @@ mod tests {
     fn entry_with_reused_number_is_sent() {
         let TwoPrograms { _root, mut logbook, mut one, mut two } = two_programs();
         logbook.record(Timestamp::UNIX_EPOCH, &device(), &Event::new(EntryKind::Note, "first")).unwrap();
-        let by_both = [&one, &two].map(|database| first_waiting(database, 9).unwrap());
+        let by_both = [&one, &two].map(|database| rows_to_send(database, 9).unwrap());
         assert_eq!(acknowledge(&mut two, &by_both[1]), Some(0));
         // The outbox is empty, so SQLite gives the number of the first entry to the second.
         logbook.record(Timestamp::UNIX_EPOCH, &device(), &Event::new(EntryKind::Note, "second")).unwrap();
         assert_eq!(acknowledge(&mut one, &by_both[0]), Some(0));
-        let waiting = first_waiting(&one, 9).unwrap().events;
+        let waiting = rows_to_send(&one, 9).unwrap().events;
         assert_eq!(waiting.iter().map(|row| row.description.as_str()).collect::<Vec<_>>(), ["second"]);
     }
 
@@ -308,7 +308,7 @@ mod tests {
     fn servers_acknowledge_separately() {
         let TwoPrograms { _root, mut logbook, mut one, mut two } = two_programs();
         intend(&mut logbook);
-        let sent = first_waiting(&one, 9).unwrap();
+        let sent = rows_to_send(&one, 9).unwrap();
         begin(&mut two, "another server").unwrap();
         assert_eq!(acknowledge(&mut one, &sent), None);
         assert_eq!(count_waiting(&two), Ok(1));
@@ -339,7 +339,7 @@ mod tests {
     fn skips_invalid_server_result() {
         let TwoPrograms { _root, mut logbook, mut one, .. } = two_programs();
         intend(&mut logbook);
-        let event = first_waiting(&one, 9).unwrap().events.remove(0).uid;
+        let event = rows_to_send(&one, 9).unwrap().events.remove(0).uid;
         let result = |at: &str| ResultRow {
             event: event.clone(),
             at: at.to_owned(),
@@ -359,10 +359,10 @@ mod tests {
     fn sends_result_with_event() {
         let TwoPrograms { _root, mut logbook, mut one, .. } = two_programs();
         let entry = intend(&mut logbook);
-        let sent = first_waiting(&one, 9).unwrap();
+        let sent = rows_to_send(&one, 9).unwrap();
         acknowledge(&mut one, &sent);
         logbook.record_outcome(entry, Timestamp::UNIX_EPOCH, Outcome::Done, 1).unwrap();
-        let waiting = first_waiting(&one, 9).unwrap();
+        let waiting = rows_to_send(&one, 9).unwrap();
         assert_eq!((waiting.events, waiting.results.len()), (sent.events, 1));
     }
 }

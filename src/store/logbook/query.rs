@@ -95,7 +95,7 @@ pub(super) fn entry(database: &Connection, id: EntryId) -> rusqlite::Result<Opti
 }
 
 /// Returns the asset to which a device is currently assigned.
-pub(super) fn present_asset(database: &Connection, device: &DeviceKey) -> rusqlite::Result<Option<String>> {
+pub(super) fn current_asset(database: &Connection, device: &DeviceKey) -> rusqlite::Result<Option<String>> {
     let sql = "SELECT asset FROM event WHERE asset IS NOT NULL AND kind = ?1 AND serial_number = ?2
         AND device_type = ?3 AND is_virtual = ?4 ORDER BY rtrim(at, 'Z') DESC, id DESC LIMIT 1";
     let key = (&device.kind, &device.serial_number, &device.device_type, device.is_virtual);
@@ -125,7 +125,7 @@ fn select(
 const LONGEST_CHAIN: usize = 100;
 
 /// Returns the last complete undo of an entry, unless it was itself undone.
-fn effective_undo(database: &Connection, undone: &EntryUid) -> rusqlite::Result<Option<LinkedEntry>> {
+fn latest_valid_undo(database: &Connection, undone: &EntryUid) -> rusqlite::Result<Option<LinkedEntry>> {
     let sql = format!(
         "SELECT event.uid, event.id, event.at FROM event JOIN result ON result.event = event.uid
          WHERE undoes = ?1 AND outcome = 'done' ORDER BY {NEWEST_FIRST} LIMIT 1"
@@ -194,7 +194,7 @@ fn read_valid_entry(database: &Connection, row: &Row<'_>) -> rusqlite::Result<En
     Ok(Entry {
         id: EntryId(row.get("id")?),
         undoes: undoes.map(|uid| linked_entry(database, &uid)).transpose()?.flatten(),
-        undone_by: if kind.has_result() { effective_undo(database, &uid)? } else { None },
+        undone_by: if kind.has_result() { latest_valid_undo(database, &uid)? } else { None },
         uid,
         kind,
         at: row.get("at").and_then(|text: String| schema::parse_time(&text))?,

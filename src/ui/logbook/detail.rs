@@ -4,7 +4,7 @@ use std::path::Path;
 
 use egui::{Label, RichText, ScrollArea, Ui};
 
-use super::{LogbookView, description, device_name, moment, old_and_new, result, time, undone_by};
+use super::{LogbookView, description, device_name, format_change, moment, result, time, undone_by};
 use crate::app::{
     Action, AnyDevice, ComparisonAction, ComparisonSource, DeviceCommand, MAX_NOTE, Studio, Text, entry_kind_text,
 };
@@ -131,14 +131,14 @@ fn items_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry) {
             _ => theme.format_text(&studio.item_name(&entry.device.kind, &item.item, item.name.as_deref())),
         };
         paragraph(ui, theme.label(name));
-        ui.add(Label::new(theme.monospace(old_and_new(item))).wrap().selectable(true));
+        ui.add(Label::new(theme.monospace(format_change(item))).wrap().selectable(true));
     }
 }
 
 /// Draws the buttons for opening, comparing and restoring the backup. It can be restored only while the device is
 /// connected.
 fn backup_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, (entry, path): (&Entry, &Path), actions: &mut Vec<Action>) {
-    let device = studio.device_of(&entry.device);
+    let device = studio.device_for_key(&entry.device);
     if enabled_button(ui, true, icons::FILE_TEXT, &theme.translate("backups_card.look")).clicked() {
         actions.push(Action::Open(path.to_owned()));
     }
@@ -159,7 +159,7 @@ fn backup_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, (entry, path): (&Entry
         return;
     };
     if restore.clicked() {
-        push_for(device, DeviceCommand::Restore(path.to_owned()), actions);
+        push_device_command(device, DeviceCommand::Restore(path.to_owned()), actions);
     }
 }
 
@@ -170,7 +170,7 @@ fn undo_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry, actions: 
     match target {
         Ok(device) => {
             if button.on_hover_text(theme.translate("undo.hint")).clicked() {
-                push_for(device, DeviceCommand::UndoWrite(Box::new(entry.clone())), actions);
+                push_device_command(device, DeviceCommand::UndoWrite(Box::new(entry.clone())), actions);
             }
         }
         Err(why) => drop(button.on_disabled_hover_text(theme.format_text(&why))),
@@ -178,7 +178,7 @@ fn undo_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, entry: &Entry, actions: 
 }
 
 /// Selects a device and sends it a command.
-fn push_for(device: &AnyDevice, command: DeviceCommand, actions: &mut Vec<Action>) {
+fn push_device_command(device: &AnyDevice, command: DeviceCommand, actions: &mut Vec<Action>) {
     actions.push(Action::Select(device.id()));
     actions.push(device.command(command));
 }

@@ -281,14 +281,14 @@ fn description(theme: &Theme, studio: &Studio, entry: &Entry) -> String {
     match (entry.kind, entry.items.as_slice(), &entry.backup) {
         (EntryKind::Connected, ..) => String::new(),
         (EntryKind::Assigned, [ChangedItem { old: None, new: Some(new), .. }], _) => new.clone(),
-        (EntryKind::Assigned, [item], _) => old_and_new(item),
+        (EntryKind::Assigned, [item], _) => format_change(item),
         (EntryKind::Backup, _, Some(path)) => path.display().to_string(),
         _ => theme.format_text(&studio.entry_text(entry)),
     }
 }
 
 /// Formats the old and new value of an item.
-fn old_and_new(item: &ChangedItem) -> String {
+fn format_change(item: &ChangedItem) -> String {
     let [old, new] = [&item.old, &item.new].map(|value| value.as_deref().unwrap_or("–"));
     format!("{old}  →  {new}")
 }

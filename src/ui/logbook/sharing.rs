@@ -35,7 +35,7 @@ fn state(theme: &Theme, studio: &Studio) -> (&'static str, crate::app::Rgb, Text
     };
     match &exchange.contact.problem {
         Some(problem) => {
-            (icons::WARNING, palette.warn, away_text(exchange.waiting, explain::server_error_text(problem)))
+            (icons::WARNING, palette.warn, server_away_notice(exchange.waiting, explain::server_error_text(problem)))
         }
         None if !exchange.contact.is_reached => {
             (icons::ARROWS_CLOCKWISE, palette.muted, Text::new("logbook.connecting"))
@@ -47,7 +47,7 @@ fn state(theme: &Theme, studio: &Studio) -> (&'static str, crate::app::Rgb, Text
     }
 }
 
-fn away_text(waiting: u64, problem: Text) -> Text {
+fn server_away_notice(waiting: u64, problem: Text) -> Text {
     match waiting {
         0 => problem,
         count => Text::new("logbook.away").with_text("problem", problem).with("count", count),

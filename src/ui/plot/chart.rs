@@ -119,7 +119,7 @@ fn paint_lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: 
     let axis = lane.value_axis();
     let mut shapes = Vec::new();
     for id in &lane.lines {
-        let (Some(line), Some(picture)) = (context.recorder.series_by_id(*id), reduced.picture_of(*id)) else {
+        let (Some(line), Some(picture)) = (context.recorder.series_by_id(*id), reduced.rendered_line(*id)) else {
             continue;
         };
         let colour = series_colour(context.theme, line);

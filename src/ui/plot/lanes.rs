@@ -7,7 +7,7 @@ use egui::{Rect, pos2};
 
 use super::axes;
 use super::trace::{TimeAxis, ValueAxis};
-use crate::analysis::history::{Grid, GridColumns, HistoryPicture};
+use crate::analysis::history::{Grid, GridColumns, RenderedHistory};
 use crate::app::recorder::{Recorder, SampleGroupStamp, Series, SeriesId};
 
 /// Gap between two lanes, in points.
@@ -48,21 +48,21 @@ pub(super) struct Layout {
 /// Samples reduced to the pixel columns of a lane, cached between redraws.
 #[derive(Default)]
 pub(super) struct ReducedLane {
-    pictures: Vec<(SeriesId, HistoryPicture)>,
-    made: Vec<(SeriesId, PictureInputs, Option<i64>)>,
+    pictures: Vec<(SeriesId, RenderedHistory)>,
+    made: Vec<(SeriesId, RenderInputs, Option<i64>)>,
     gutter: f32,
 }
 
 /// The inputs from which a lane's samples are reduced. The result is recalculated only if they change.
 #[derive(Clone, PartialEq)]
-struct PictureInputs {
+struct RenderInputs {
     samples: Option<SampleGroupStamp>,
     all: Range<u64>,
     grid: Grid,
 }
 
 impl ReducedLane {
-    pub(super) fn picture_of(&self, line: SeriesId) -> Option<&HistoryPicture> {
+    pub(super) fn rendered_line(&self, line: SeriesId) -> Option<&RenderedHistory> {
         self.pictures.iter().find(|(own, _)| *own == line).map(|(_, picture)| picture)
     }
 
@@ -71,11 +71,11 @@ impl ReducedLane {
         let shown = |id: &SeriesId| recorder.visible_series().any(|line| line.id == *id);
         self.pictures.retain(|(id, _)| shown(id));
         self.made.retain(|(id, ..)| shown(id));
-        let mut cuts: Vec<(PictureInputs, GridColumns)> = Vec::new();
+        let mut cuts: Vec<(RenderInputs, GridColumns)> = Vec::new();
         for line in recorder.visible_series() {
             let Some(history) = recorder.history(line) else { continue };
-            let wanted = PictureInputs { samples: recorder.group_stamp(line), all: history.indices(), grid: *grid };
-            let range = line.range_of_samples();
+            let wanted = RenderInputs { samples: recorder.group_stamp(line), all: history.indices(), grid: *grid };
+            let range = line.sample_wrap_range();
             if self.made.iter().any(|(id, made, own)| *id == line.id && *made == wanted && *own == range) {
                 continue;
             }
@@ -83,8 +83,8 @@ impl ReducedLane {
             if !cuts.iter().any(|(made, _)| *made == wanted) {
                 cuts.push((wanted.clone(), history.divide_into_pixels(grid)));
             }
-            if self.picture_of(line.id).is_none() {
-                self.pictures.push((line.id, HistoryPicture::default()));
+            if self.rendered_line(line.id).is_none() {
+                self.pictures.push((line.id, RenderedHistory::default()));
             }
             let cut = cuts.iter().find(|(made, _)| *made == wanted);
             let picture = self.pictures.iter_mut().find(|(id, _)| *id == line.id);
@@ -101,7 +101,7 @@ impl ReducedLane {
 
     /// Returns the minimum and maximum of the visible values, in the line's unit.
     fn value_extent(&self, line: &Series, time: &TimeAxis, chart: Rect) -> Option<(f64, f64)> {
-        let picture = self.picture_of(line.id)?;
+        let picture = self.rendered_line(line.id)?;
         // The samples beyond the edges only continue the line. They do not affect the range.
         let visible = |pixel: &&crate::analysis::history::Pixel| {
             time.x(pixel.to) >= chart.left() && time.x(pixel.from) <= chart.right()
@@ -213,7 +213,7 @@ mod tests {
     }
 
     fn shown(reduced: &ReducedLane, recorder: &Recorder) -> f64 {
-        let picture = reduced.picture_of(recorder.series()[0].id).unwrap();
+        let picture = reduced.rendered_line(recorder.series()[0].id).unwrap();
         picture.pixels[0].values.unwrap().first
     }
 
@@ -244,7 +244,7 @@ mod tests {
         other.handle_action(RecorderAction::Clear);
         compute_layout(&other, RECT, 1.0, &mut reduced);
         let line = other.series()[0].id;
-        assert!(reduced.picture_of(line).unwrap().pixels.is_empty());
+        assert!(reduced.rendered_line(line).unwrap().pixels.is_empty());
     }
 
     #[test]

@@ -5,7 +5,7 @@ use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
 use crate::analysis::SampleTime;
-use crate::analysis::history::{Flags, HistoryPicture};
+use crate::analysis::history::{Flags, RenderedHistory};
 
 const LINE_WIDTH: f32 = 1.5;
 /// Maximum number of points of a smooth line.
@@ -76,7 +76,7 @@ pub(super) struct TraceStyle {
 }
 
 pub(super) fn trace_shapes(
-    picture: &HistoryPicture,
+    picture: &RenderedHistory,
     lane: Rect,
     time: &TimeAxis,
     value: &ValueAxis,
@@ -96,7 +96,7 @@ pub(super) fn trace_shapes(
 /// Draws one vertical bar per pixel column. The bar spans the minimum to the maximum of the samples, and is extended to
 /// join the end of the previous column.
 fn draw_dense_trace(
-    picture: &HistoryPicture,
+    picture: &RenderedHistory,
     lane: Rect,
     time: &TimeAxis,
     value: &ValueAxis,
@@ -142,7 +142,7 @@ fn add_bar(mesh: &mut Mesh, rect: Rect, lane: Rect, colour: Color32) {
 }
 
 fn draw_sparse_trace(
-    picture: &HistoryPicture,
+    picture: &RenderedHistory,
     lane: Rect,
     time: &TimeAxis,
     value: &ValueAxis,
@@ -229,7 +229,7 @@ fn clip_segment(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
 }
 
 /// Draws ticks at the bottom of the lane for invalid samples and warnings, at any zoom level.
-fn add_flag_ticks(picture: &HistoryPicture, lane: Rect, time: &TimeAxis, pen: &TraceStyle, out: &mut Vec<Shape>) {
+fn add_flag_ticks(picture: &RenderedHistory, lane: Rect, time: &TimeAxis, pen: &TraceStyle, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
     for pixel in &picture.pixels {
         let (colour, height) = if pixel.flags.contains(Flags::BAD) {
@@ -277,7 +277,7 @@ mod tests {
         let flags: Vec<Flags> = (0..count).map(flags).collect();
         history.append(&times, &[ColumnPart::from_reals(&values).with_flags(&flags)]).unwrap();
         let grid = Grid::new(SampleTime::ORIGIN, SampleTime::from_nanoseconds(100_000), 100);
-        let mut picture = HistoryPicture::default();
+        let mut picture = RenderedHistory::default();
         history.render_column(0, &history.divide_into_pixels(&grid), &mut picture);
         let time = TimeAxis { from: SampleTime::ORIGIN, left: 0.0, scale: 1e-3, pixel: 1.0 };
         let mut shapes = Vec::new();

@@ -143,10 +143,10 @@ fn body_ui(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>
     let (header, _) = ui.allocate_exact_size(Vec2::new(grid.width, grid.row + theme.space.inside), Sense::hover());
     paint::header(ui, theme, grid, header, model, view);
     let shown = grid.line_count().clamp(1, model.lines.max(1));
-    let height = grid.height_of(shown);
+    let height = grid.lines_height(shown);
     let area = ScrollArea::vertical().id_salt(id.with("lines")).max_height(height).min_scrolled_height(height);
     let lines = area.show(ui, |ui| {
-        let size = Vec2::new(grid.width, grid.height_of(grid.line_count().max(1)));
+        let size = Vec2::new(grid.width, grid.lines_height(grid.line_count().max(1)));
         let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
         let response = ui.interact(rect, id, Sense::click_and_drag());
         handle_pointer(ui, &response, grid, model, view);

@@ -10,7 +10,7 @@ use egui::accesskit::Role;
 use egui::{Align2, FontId, Id, Rect, Response, Sense, Stroke, TextWrapMode, Ui, Vec2, WidgetInfo, WidgetText};
 
 use super::focus_ring;
-use crate::bits::{self, TypedKind, TypedRow};
+use crate::bits::{self, DataType, InterpretedRow};
 use crate::ui::{Theme, icons};
 
 /// Time in seconds for which a copied value stays marked.
@@ -55,7 +55,7 @@ fn header_ui(ui: &mut Ui, theme: &Theme, columns: &Columns) {
     ui.painter().hline(rect.x_range(), y, Stroke::new(1.0, theme.palette.line));
 }
 
-fn line_ui(ui: &mut Ui, theme: &Theme, columns: &Columns, row: &TypedRow) {
+fn line_ui(ui: &mut Ui, theme: &Theme, columns: &Columns, row: &InterpretedRow) {
     let size = Vec2::new(columns.name + columns.value * 2.0, columns.row);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let name = name(theme, row.kind);
@@ -135,17 +135,17 @@ fn is_copied(ui: &Ui, id: Id) -> bool {
     left > 0.0
 }
 
-fn name(theme: &Theme, kind: TypedKind) -> String {
+fn name(theme: &Theme, kind: DataType) -> String {
     let name = match kind {
-        TypedKind::U8 => "u8",
-        TypedKind::I8 => "i8",
-        TypedKind::U16 => "u16",
-        TypedKind::I16 => "i16",
-        TypedKind::U32 => "u32",
-        TypedKind::I32 => "i32",
-        TypedKind::F32 => "f32",
-        TypedKind::Binary => return theme.translate("widget.typed_binary"),
-        TypedKind::Text => return theme.translate("widget.typed_text"),
+        DataType::U8 => "u8",
+        DataType::I8 => "i8",
+        DataType::U16 => "u16",
+        DataType::I16 => "i16",
+        DataType::U32 => "u32",
+        DataType::I32 => "i32",
+        DataType::F32 => "f32",
+        DataType::Binary => return theme.translate("widget.typed_binary"),
+        DataType::Text => return theme.translate("widget.typed_text"),
     };
     name.to_owned()
 }

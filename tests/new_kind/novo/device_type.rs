@@ -47,7 +47,7 @@ impl Kind for Novo {
     }
     fn result_texts(output: &Output) -> Option<(Severity, Vec<Text>)> {
         let Output::Committed(committed) = output else { return None };
-        Some(review::written_texts::<Novo>(committed))
+        Some(review::write_result_messages::<Novo>(committed))
     }
     fn error_texts(error: &JobError) -> Vec<Text> {
         vec![match (error, error.device()) {

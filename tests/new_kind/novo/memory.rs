@@ -1,6 +1,6 @@
 //! Edits of a Novo encoder, which can be preserved after a crash, reviewed, written, saved and restored.
 
-use encoder_studio::app::review::{OperationTexts, Permit, Reviewable};
+use encoder_studio::app::review::{OperationDescription, Permit, Reviewable};
 use encoder_studio::app::session::{
     ApprovedPlanOf, HasDraft, HasMemory, HasProfile, KnownProfile, ProfileFile, unsaved_edits_remark,
 };
@@ -27,8 +27,8 @@ impl Reviewable for Novo {
         change.restored?;
         permit.restore_option(&mut change.options)
     }
-    fn operation_texts(_: &Prepared, op: &Op) -> OperationTexts {
-        OperationTexts::single(
+    fn operation_texts(_: &Prepared, op: &Op) -> OperationDescription {
+        OperationDescription::single(
             explain::literal_text(op.name()),
             explain::literal_text(op.from),
             explain::literal_text(op.to),

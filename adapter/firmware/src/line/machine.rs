@@ -94,7 +94,7 @@ impl<SM: ValidStateMachine> Machine<SM> {
     }
 
     /// Returns whether the machine has taken all words from its input FIFO.
-    pub(super) fn has_taken_all(&self) -> bool {
+    pub(super) fn has_consumed_all(&self) -> bool {
         self.tx.is_empty()
     }
 

@@ -279,11 +279,11 @@ impl Bus for Line {
             match self.clocking {
                 Some(Clocking::Biss(_)) => {
                     self.biss_pacer.send(count);
-                    while !self.biss_pacer.has_taken_all() {}
+                    while !self.biss_pacer.has_consumed_all() {}
                 }
                 _ => {
                     self.ssi_pacer.send(count);
-                    while !self.ssi_pacer.has_taken_all() {}
+                    while !self.ssi_pacer.has_consumed_all() {}
                 }
             }
             self.now_us()

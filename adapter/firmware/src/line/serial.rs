@@ -117,7 +117,7 @@ impl Serial {
 
     /// Returns whether all characters have been sent and the driver is off.
     pub(super) fn has_sent(&mut self) -> bool {
-        !is_busy(SEND) && self.sender.has_taken_all() && self.sender.is_at_start()
+        !is_busy(SEND) && self.sender.has_consumed_all() && self.sender.is_at_start()
     }
 
     /// Returns the lower half of the first edge's time, or `None` if there was no edge yet.

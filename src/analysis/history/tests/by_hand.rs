@@ -1,6 +1,6 @@
 //! Tests of cases small enough to be worked out by hand.
 
-use super::super::{BLOCK, BatchError, ColumnPart, Flags, Grid, History, HistoryPicture, Kind, Value};
+use super::super::{BLOCK, BatchError, ColumnPart, Flags, Grid, History, Kind, RenderedHistory, Value};
 use crate::analysis::SampleTime;
 
 fn time(nanoseconds: i64) -> SampleTime {
@@ -11,8 +11,8 @@ fn times(nanoseconds: impl IntoIterator<Item = i64>) -> Vec<SampleTime> {
     nanoseconds.into_iter().map(time).collect()
 }
 
-fn picture(history: &History, from: i64, to: i64, pixels: usize) -> HistoryPicture {
-    let mut picture = HistoryPicture::default();
+fn picture(history: &History, from: i64, to: i64, pixels: usize) -> RenderedHistory {
+    let mut picture = RenderedHistory::default();
     history.render_column(0, &history.divide_into_pixels(&Grid::new(time(from), time(to), pixels)), &mut picture);
     picture
 }

@@ -1,7 +1,7 @@
 //! Tests of long runs in virtual time and of their memory use. The runs are shorter than a day to keep unoptimised
 //! builds fast; `benches/history.rs` runs a whole day.
 
-use super::super::{BLOCK, ColumnPart, Flags, Grid, History, HistoryPicture, Kind};
+use super::super::{BLOCK, ColumnPart, Flags, Grid, History, Kind, RenderedHistory};
 use crate::analysis::{Motion, PositionUnwrapper, SampleTime};
 
 const MILLISECOND: i64 = 1_000_000;
@@ -113,7 +113,7 @@ fn long_rotation_keeps_breaks_and_hides_wraps() {
     assert!(kept > 3 && kept <= gaps);
     for pixels in [20, 400, 3_000] {
         let grid = Grid::new(from, to, pixels);
-        let mut picture = HistoryPicture::default();
+        let mut picture = RenderedHistory::default();
         history.render_column(0, &history.divide_into_pixels(&grid), &mut picture);
         let broken = picture.pixels.iter().filter(|pixel| pixel.flags.contains(Flags::BREAK)).count();
         assert!(broken == kept || pixels == 20 && broken > 3, "{pixels}: {broken} of {kept}");

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::super::{BLOCK, ColumnPart, Flags, Grid, History, HistoryPicture, Kind, Pixel, Value};
+use super::super::{BLOCK, ColumnPart, Flags, Grid, History, Kind, Pixel, RenderedHistory, Value};
 use super::model::Model;
 use crate::analysis::SampleTime;
 
@@ -179,7 +179,7 @@ proptest! {
             let from = (from * 1.2 - 0.1) * span;
             let to = from + span * length * length * length + 1.0;
             let grid = Grid::new(SampleTime::from_nanoseconds(from as i64), SampleTime::from_nanoseconds(to as i64), pixels);
-            let mut picture = HistoryPicture::default();
+            let mut picture = RenderedHistory::default();
             history.render_column(1, &history.divide_into_pixels(&grid), &mut picture);
             let (wanted, raw) = model.picture(first, &grid);
             prop_assert_eq!(picture.raw, raw);
@@ -255,10 +255,10 @@ proptest! {
         let (history, before) = build(kind, &runs, capacity);
         let end = before.times[before.times.len() - 1] + 1;
         let grid = Grid::new(SampleTime::ORIGIN, SampleTime::from_nanoseconds(end), 50);
-        let mut picture = HistoryPicture::default();
+        let mut picture = RenderedHistory::default();
         history.render_column(1, &history.divide_into_pixels(&grid), &mut picture);
         let (later, _) = build(kind, &[runs, more].concat(), capacity);
-        let mut later_picture = HistoryPicture::default();
+        let mut later_picture = RenderedHistory::default();
         later.render_column(1, &later.divide_into_pixels(&grid), &mut later_picture);
         // The results for stored complete blocks are identical to the last bit.
         let settled = history.time(history.indices().end / BLOCK as u64 * BLOCK as u64).map_or(end, SampleTime::as_nanoseconds);
@@ -276,7 +276,7 @@ proptest! {
         let width = grid.width();
         let moved = Grid::new(SampleTime::from_nanoseconds(10 * width), SampleTime::from_nanoseconds(60 * width), 50);
         prop_assert_eq!(moved.width(), width);
-        let mut moved_picture = HistoryPicture::default();
+        let mut moved_picture = RenderedHistory::default();
         history.render_column(1, &history.divide_into_pixels(&moved), &mut moved_picture);
         if !picture.raw && !moved_picture.raw {
             // The ends of a picture are exact. Between them, a column may begin a sixteenth of its width earlier.

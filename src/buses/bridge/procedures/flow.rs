@@ -147,7 +147,7 @@ impl SampleStream {
             adapter.state.damaged += adapter.adapter.receiver.dropped_count() - broken;
             let now = adapter.line.now();
             if let Some(packet) = packet {
-                if let Some(portion) = self.samples_in(&packet, now)? {
+                if let Some(portion) = self.decode_samples(&packet, now)? {
                     return Ok(Some(portion));
                 }
                 continue;
@@ -189,7 +189,7 @@ impl SampleStream {
     }
 
     /// Returns the samples of a packet, or `None` if the packet contains no samples of this stream.
-    fn samples_in(&mut self, packet: &Packet, now: Moment) -> Result<Option<Chunk>, AdapterError> {
+    fn decode_samples(&mut self, packet: &Packet, now: Moment) -> Result<Option<Chunk>, AdapterError> {
         let data = match Message::parse(packet) {
             Ok(Message::Data(data)) if self.streamed.matches_stream(&data) => data,
             // The packet is a late reply or the end of an earlier stream.

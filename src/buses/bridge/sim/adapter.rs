@@ -53,7 +53,7 @@ const NOT_CONFIGURED: ErrorReply = (ErrorCode::BAD_ARGUMENT, "not configured yet
 const OUT_OF_RANGE: ErrorReply = (ErrorCode::BAD_ARGUMENT, "out of range");
 const STREAMING: ErrorReply = (ErrorCode::BUSY, "a stream is running");
 const ENCODER_SILENT: ErrorReply = (ErrorCode::NO_ANSWER, "the encoder does not answer");
-const NOT_THERE: ErrorReply = (ErrorCode::NOT_SUPPORTED, "this adapter has no such thing");
+const MISSING_FEATURE: ErrorReply = (ErrorCode::NOT_SUPPORTED, "this adapter has no such thing");
 
 impl Adapter {
     const MAX_SAMPLE_HZ: u32 = 1_000_000;
@@ -195,7 +195,7 @@ impl Adapter {
         }
         let refused = |(code, text): ErrorReply| Message::Error { op: packet.op, code, text: text.to_owned() };
         let (message, time) = match Request::parse(packet) {
-            Err(BodyError::Operation(_)) => (refused(NOT_THERE), Duration::ZERO),
+            Err(BodyError::Operation(_)) => (refused(MISSING_FEATURE), Duration::ZERO),
             Err(_) => (refused(OUT_OF_RANGE), Duration::ZERO),
             Ok(request) => {
                 let time = self.time(&request);
@@ -274,7 +274,7 @@ impl Adapter {
                 Ok(Reply::BissStream { period_us })
             }
             // The virtual adapter samples both signals at the same time, and its faults are simulated.
-            Request::Status | Request::AnalogSkew => Err(NOT_THERE),
+            Request::Status | Request::AnalogSkew => Err(MISSING_FEATURE),
             Request::AnalogConfig { sample_hz } => {
                 let checked = self.analog.clone().with_value(Quantity::Rate, f64::from(sample_hz)).validate();
                 self.analog = checked.map_err(|_| OUT_OF_RANGE)?.settings().clone();
@@ -294,12 +294,12 @@ impl Adapter {
                 Ok(Reply::AnalogStream { on })
             }
             Request::UartConfig { baud, parity, .. } => {
-                let set = self.uart.as_mut().ok_or(NOT_THERE)?.configure(self.now, baud, parity);
+                let set = self.uart.as_mut().ok_or(MISSING_FEATURE)?.configure(self.now, baud, parity);
                 if set { Ok(Reply::UartConfig { baud }) } else { Err(OUT_OF_RANGE) }
             }
             Request::UartTransfer { timeout_us, idle_us, tx } => {
                 let [timeout, idle] = [timeout_us, idle_us].map(|time| Duration::from_micros(time.into()));
-                let transfer = self.uart.as_mut().ok_or(NOT_THERE)?.transfer(self.now, timeout, idle, &tx);
+                let transfer = self.uart.as_mut().ok_or(MISSING_FEATURE)?.transfer(self.now, timeout, idle, &tx);
                 let transfer = transfer.ok_or(NOT_CONFIGURED)?;
                 self.last_reply_end = self.last_reply_end.max(transfer.end);
                 Ok(Reply::UartTransfer { t_us: adapter_microseconds(transfer.start), rx: transfer.rx })
@@ -338,7 +338,7 @@ impl Adapter {
 
     fn switch_supply(&mut self, on: bool, millivolt: u16) -> Result<Reply, ErrorReply> {
         if !self.switched_supply {
-            return Err(NOT_THERE);
+            return Err(MISSING_FEATURE);
         }
         if !on {
             self.switch_off();

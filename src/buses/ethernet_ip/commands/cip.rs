@@ -128,7 +128,7 @@ fn forward_open_lines(asked: &ForwardOpen) -> Vec<String> {
             "{}; ends after {} without data ({} ms to the target); transport 0x{:02X}, class {}; request within {} ms; {}",
             owner_name(asked.owner),
             count(usize::try_from(asked.connection_timeout.interval_multiplier()).unwrap_or(usize::MAX), "interval"),
-            asked.to_target_timeout().as_millis(),
+            asked.target_timeout().as_millis(),
             asked.transport.byte(),
             asked.transport.transport_class(),
             asked.timeout.duration().as_millis(),

@@ -198,7 +198,7 @@ impl ConnectionTimeout {
 
 impl RequestTimeout {
     /// A time-out of two seconds: 250 ticks of 8 ms.
-    pub const TWO_SECONDS: RequestTimeout = RequestTimeout { priority_and_tick: 3, ticks: 250 };
+    pub const TWO_SECOND_TIMEOUT: RequestTimeout = RequestTimeout { priority_and_tick: 3, ticks: 250 };
 
     /// Returns the time-out as a duration.
     pub const fn duration(self) -> Duration {

@@ -111,7 +111,7 @@ impl RequestTimeout {
 
 impl ForwardOpen {
     /// Returns the time without data after which the target ends the connection.
-    pub fn to_target_timeout(&self) -> Duration {
+    pub fn target_timeout(&self) -> Duration {
         self.connection_timeout.for_interval(Duration::from_micros(self.to_target_interval_us.into()))
     }
 

@@ -49,6 +49,6 @@ pub use status::{
 pub use tcp_ip::{AddressError, AddressSource, ConfigurationControl, InterfaceConfiguration};
 
 /// TCP port for explicit messages, and UDP port for ListIdentity.
-pub const EXPLICIT_PORT: u16 = 44818;
+pub const EXPLICIT_MESSAGE_PORT: u16 = 44818;
 /// Default UDP port for cyclic data. Another port can be given when a connection is opened.
-pub const IMPLICIT_PORT: u16 = 2222;
+pub const IMPLICIT_MESSAGE_PORT: u16 = 2222;

@@ -130,7 +130,7 @@ fn open() -> ForwardOpen {
     let parameters =
         |size| NetworkParameters::new(NetworkType::PointToPoint, NetworkPriority::Scheduled, size).unwrap();
     ForwardOpen {
-        timeout: RequestTimeout::TWO_SECONDS,
+        timeout: RequestTimeout::TWO_SECOND_TIMEOUT,
         to_target_id: 0,
         to_originator_id: 0x0001_0001,
         owner: OWNER,
@@ -156,7 +156,7 @@ fn published_connection_matches() {
     assert_eq!(parsed, open());
     assert_eq!(parsed.timeout.duration(), Duration::from_secs(2));
     // The interval is 10 ms, and multiplier 1 means 4 · 2 intervals.
-    assert_eq!(parsed.to_target_timeout(), Duration::from_millis(80));
+    assert_eq!(parsed.target_timeout(), Duration::from_millis(80));
 
     let text = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 10 27 00 00 10 27 00 00 00 00";
     let opened = ForwardOpenSuccess {
@@ -171,8 +171,11 @@ fn published_connection_matches() {
     assert_eq!(ForwardOpenSuccess::parse(&Reply::parse(&bytes(text)).unwrap().data), Ok(opened));
 
     let text = "4E 02 20 06 24 01 03 FA 01 00 34 12 CD AB 00 00 04 00 20 04 24 68 2C 64 2C 65";
-    let close =
-        ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner: OWNER, path: EPath::to_assemblies(104, 100, 101) };
+    let close = ForwardClose {
+        timeout: RequestTimeout::TWO_SECOND_TIMEOUT,
+        owner: OWNER,
+        path: EPath::to_assemblies(104, 100, 101),
+    };
     assert_eq!(hex(&close.request().emit()), text);
     assert_eq!(ForwardClose::parse(&Request::parse(&bytes(text)).unwrap().data), Ok(close));
 }
@@ -280,7 +283,7 @@ fn parses_identity_item() {
     let Body::List(items) = frame.parse_body().unwrap() else { panic!("no list") };
     let expected = IdentityItem {
         version: 1,
-        socket: SocketAddress::new(Ipv4Addr::new(192, 168, 1, 5), EXPLICIT_PORT),
+        socket: SocketAddress::new(Ipv4Addr::new(192, 168, 1, 5), EXPLICIT_MESSAGE_PORT),
         identity: Identity {
             vendor: 1010,
             device_type: 12,
@@ -334,7 +337,7 @@ fn parses_socket_address_items() {
     let text = "02 00 00 80 10 00 00 02 08 AE 0A 00 00 07 00 00 00 00 00 00 00 00 01 80 10 00 00 02 08 AE EF 01 02 03 00 \
                 00 00 00 00 00 00 00";
     let items = ItemList::parse(&bytes(text)).unwrap();
-    let socket = |address| Some(SocketAddress::new(address, IMPLICIT_PORT));
+    let socket = |address| Some(SocketAddress::new(address, IMPLICIT_MESSAGE_PORT));
     assert_eq!(items.socket_to_target(), socket(Ipv4Addr::new(10, 0, 0, 7)));
     assert_eq!(items.socket_to_originator(), socket(Ipv4Addr::new(239, 1, 2, 3)));
     assert_eq!(hex(&items.emit()), hex(&bytes(text)));

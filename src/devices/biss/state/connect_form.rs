@@ -4,7 +4,7 @@ use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
 use crate::app::connect::target::{
-    for_adapter, host_and_port, network_address_of_adapter, required_entry, split_target, validated_link,
+    adapter_network_address, for_adapter, host_and_port, required_entry, split_target, validated_link,
 };
 use crate::bits::ByteOrder;
 use crate::buses::bridge::procedures::SupplyAfterSession;
@@ -93,7 +93,7 @@ impl FormModel for BissForm {
         let target = url.target.as_str();
         let network = match url.scheme {
             LinkScheme::Tcp => Some(target),
-            LinkScheme::Bridge => network_address_of_adapter(target),
+            LinkScheme::Bridge => adapter_network_address(target),
             _ => None,
         };
         form.kind = match url.scheme {
@@ -203,15 +203,15 @@ impl BissForm {
             parameters.set(BRIDGE.0, BRIDGE.1);
         }
         if self.kind == BissLinkKind::Virtual {
-            parameters.add_entered(&Self::virtual_device_entries(), &self.typed);
+            parameters.add_typed_entries(&Self::virtual_device_entries(), &self.typed);
         }
         if self.uses_bus() {
-            parameters.add_entered(&Self::bus_entries(), &self.typed);
+            parameters.add_typed_entries(&Self::bus_entries(), &self.typed);
             if self.leave_supply {
                 parameters.set(SupplyAfterSession::LEAVE_SUPPLY_ON.0, SupplyAfterSession::LEAVE_SUPPLY_ON.1);
             }
         } else {
-            parameters.add_entered(&PinParameters::entries(), &self.typed);
+            parameters.add_typed_entries(&PinParameters::entries(), &self.typed);
             if self.parity != FORMAT.parity {
                 parameters.set("parity", self.parity.keyword());
             }
@@ -223,8 +223,8 @@ impl BissForm {
             }
         }
         let (frame, line) = Self::common_entries();
-        parameters.add_entered(&[frame, line].concat(), &self.typed);
-        parameters.add_others(&self.rest, |name| self.has_parameter(name));
+        parameters.add_typed_entries(&[frame, line].concat(), &self.typed);
+        parameters.add_other_parameters(&self.rest, |name| self.has_parameter(name));
         parameters
     }
 

@@ -8,7 +8,7 @@ use super::meaning::FrameDecoder;
 use super::memory::Memory;
 use super::record::{FrameStream, Record};
 use super::table::Table;
-use crate::app::check::CheckLine;
+use crate::app::check::CheckResultLine;
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, HasMemory, HasProfile, Session, Source};
 use crate::app::{PendingEdits, Text};
@@ -23,7 +23,7 @@ pub struct Encoder {
     pub session: Session<Biss>,
     pub survey: Option<Survey>,
     pub status: Option<EncoderStatus>,
-    pub check: Option<Vec<CheckLine>>,
+    pub check: Option<Vec<CheckResultLine>>,
     pub description: Option<Arc<Description>>,
     pub memory: Memory,
     pub table: Table,
@@ -132,7 +132,7 @@ impl Encoder {
 
     /// Applies the values read from the encoder. Edits are kept unless it is a different encoder.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
-        self.session.values_read_at = Some(services.current_time().timestamp());
+        self.session.last_read_time = Some(services.current_time().timestamp());
         let fresh = std::mem::take(&mut self.session.just_connected);
         // Without a serial number, this may be any encoder of the same type.
         let unproven = fresh && self.survey.is_some() && survey.identity.serial_number.is_empty();

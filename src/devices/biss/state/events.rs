@@ -4,7 +4,7 @@ use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::format;
 use crate::app::FrameExplanation;
-use crate::app::review::{Review, written_texts};
+use crate::app::review::{Review, write_result_messages};
 use crate::app::services::{JobState, Services};
 use crate::app::session::{HasMemory, Interruption, Kind, SessionEvents, first};
 use crate::app::{Severity, Text};
@@ -50,7 +50,7 @@ impl Kind for Biss {
 
     fn result_texts(output: &BissOutput) -> Option<(Severity, Vec<Text>)> {
         let BissOutput::Committed(committed) = output else { return None };
-        Some(written_texts::<Biss>(committed))
+        Some(write_result_messages::<Biss>(committed))
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {

@@ -1,7 +1,7 @@
 //! Log entries about an encoder: its identity and link, the start of a write, and the results of operations.
 
 use super::encoder::Encoder;
-use crate::app::review::{ChangeTexts, OperationTexts};
+use crate::app::review::{ChangeDescription, OperationDescription};
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
 use crate::bits::ByteOrder;
@@ -28,7 +28,7 @@ impl Encoder {
                 op.changed_items(&identity.description).iter().map(explain::literal_text).collect::<Vec<_>>()
             }
             op => {
-                let OperationTexts { item, changes } = words::operation_texts(op, &identity.layout);
+                let OperationDescription { item, changes } = words::operation_texts(op, &identity.layout);
                 changes.into_iter().map(|change| operation_text(&item, change)).collect()
             }
         });
@@ -44,7 +44,7 @@ impl Encoder {
 }
 
 /// Returns the log line for a changed value, with the old and the new value.
-fn operation_text(item: &Text, ChangeTexts { part, old, new }: ChangeTexts) -> Text {
+fn operation_text(item: &Text, ChangeDescription { part, old, new }: ChangeDescription) -> Text {
     let text = match part {
         None => TEXTS.text("log.operation"),
         Some(part) => TEXTS.text("log.operation_part").with_text("part", part),

@@ -1,7 +1,7 @@
 //! The summary of a write to a BiSS encoder before it starts: required permissions, warnings and write cycles.
 
 use crate::app::explain::{cycle_count_text, literal_text};
-use crate::app::review::{self, ExecutionMode, OperationTexts, Permit, Reviewable};
+use crate::app::review::{self, ExecutionMode, OperationDescription, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::biss::jobs::{Biss, Change, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::write::WrittenValues;
@@ -31,7 +31,7 @@ impl Reviewable for Biss {
         permit.restore_option(options)
     }
 
-    fn operation_texts(prepared: &Prepared, op: &Op) -> OperationTexts {
+    fn operation_texts(prepared: &Prepared, op: &Op) -> OperationDescription {
         words::operation_texts(op, &prepared.identity.layout)
     }
 
@@ -55,7 +55,7 @@ impl Reviewable for Biss {
         }
         warnings.extend(prepared.unsaved.map(words::unsaved_profile_text_for_mode));
         let mounting = prepared.mounting_left.iter().map(explain::literal_text).collect();
-        warnings.extend(review::skipped_texts(
+        warnings.extend(review::skipped_item_messages(
             TEXTS.text("biss_review.missing"),
             prepared.missing.iter().map(literal_text).collect(),
             mounting,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde_json::{Value as Json, json};
 
 use crate::app::explain;
-use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
+use crate::buses::ethernet_ip::protocol::EXPLICIT_MESSAGE_PORT;
 use crate::cli::args::CommonArgs;
 use crate::cli::output::Output;
 use crate::cli::runner::to_failure;
@@ -19,7 +19,7 @@ use crate::link::{CancelToken, Clock, LinkScheme, LinkUrl, RealClock, UdpBroadca
 pub(super) fn find(common: &CommonArgs, output: &Output) -> Result {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let shout = match &common.link {
-        None => UdpBroadcast::on_all_networks(EXPLICIT_PORT, clock.clone()),
+        None => UdpBroadcast::on_all_networks(EXPLICIT_MESSAGE_PORT, clock.clone()),
         Some(url) => UdpBroadcast::new(query_addresses(url)?, clock.clone()),
     };
     let mut shout = shout.map_err(|error| to_failure(&explain::link_error_text(&error)))?;
@@ -72,7 +72,7 @@ fn query_addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
 
 fn discovered_device_link(found: &DiscoveredDevice) -> String {
     match found.port {
-        EXPLICIT_PORT => format!("enip:{}", found.address),
+        EXPLICIT_MESSAGE_PORT => format!("enip:{}", found.address),
         port => format!("enip:{}:{port}", found.address),
     }
 }

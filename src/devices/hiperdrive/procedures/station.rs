@@ -6,7 +6,7 @@ use std::fmt;
 use std::hash::{BuildHasher, Hasher};
 use std::time::Duration;
 
-use crate::buses::ethernet_ip::protocol::{EXPLICIT_PORT, IMPLICIT_PORT, Receiver};
+use crate::buses::ethernet_ip::protocol::{EXPLICIT_MESSAGE_PORT, IMPLICIT_MESSAGE_PORT, Receiver};
 use crate::devices::hiperdrive::protocol::{ByteOrder, Topology};
 use crate::expected::Quantity;
 use crate::link::line::LineState;
@@ -73,7 +73,7 @@ impl Station {
         let random = RandomState::new().build_hasher().finish();
         Station {
             link: LinkParameters::default(),
-            udp: IMPLICIT_PORT,
+            udp: IMPLICIT_MESSAGE_PORT,
             recorded: false,
             line: LineState::new(margin),
             session: None,
@@ -97,7 +97,7 @@ impl Station {
     pub fn from_query(query: &UrlQuery, tcp: Option<u16>, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         // A server with a non-standard port for messages also uses this port for cyclic data.
-        let beside = tcp.filter(|port| *port != EXPLICIT_PORT).unwrap_or(IMPLICIT_PORT);
+        let beside = tcp.filter(|port| *port != EXPLICIT_MESSAGE_PORT).unwrap_or(IMPLICIT_MESSAGE_PORT);
         Ok(Station { link, udp: link.udp.unwrap_or(beside), ..Station::new(margin) })
     }
 

@@ -152,7 +152,7 @@ impl HiperdriveForm {
         if is_virtual {
             parameters.entry("hub", self.hub.keyword().unwrap_or_default());
         }
-        parameters.add_entered(&self.entries(), &self.typed);
+        parameters.add_typed_entries(&self.entries(), &self.typed);
         if self.big_endian {
             parameters.set(BIG_ENDIAN.0, BIG_ENDIAN.1);
         }

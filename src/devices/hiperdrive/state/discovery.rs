@@ -11,7 +11,7 @@ use crate::app::connect::context::FinderContext;
 use crate::app::connect::form::Finder;
 use crate::app::services::Services;
 use crate::app::{DeviceModel, Text};
-use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
+use crate::buses::ethernet_ip::protocol::EXPLICIT_MESSAGE_PORT;
 use crate::devices::hiperdrive::procedures::{DiscoveredDevice, Error, discover};
 use crate::devices::hiperdrive::state::explain;
 use crate::link::{CancelToken, Clock, RealClock, UdpBroadcast};
@@ -82,7 +82,7 @@ impl fmt::Debug for DiscoveryStub {
 /// Returns an error if the request cannot be sent.
 fn broadcast_discovery() -> Result<Vec<DiscoveredDevice>, Error> {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-    let mut shout = UdpBroadcast::on_all_networks(EXPLICIT_PORT, clock.clone())?;
+    let mut shout = UdpBroadcast::on_all_networks(EXPLICIT_MESSAGE_PORT, clock.clone())?;
     discover(&mut shout, &*clock, &CancelToken::default())
 }
 
@@ -129,7 +129,8 @@ impl Finder for DiscoveryFinder {
                 let Some(device) = devices.get(at) else { return };
                 form.kind = HiperdriveLinkKind::Network;
                 form.host = device.address.to_string();
-                form.tcp_port = if device.port == EXPLICIT_PORT { String::new() } else { device.port.to_string() };
+                form.tcp_port =
+                    if device.port == EXPLICIT_MESSAGE_PORT { String::new() } else { device.port.to_string() };
             }
         }
     }

@@ -7,7 +7,7 @@ use super::job;
 use super::review::ReviewState;
 use super::unit::HiperdriveDevice;
 use crate::app::FrameExplanation;
-use crate::app::review::{Review, written_texts};
+use crate::app::review::{Review, write_result_messages};
 use crate::app::services::Services;
 use crate::app::session::{HasMemory, Interruption, Kind, SessionEvents};
 use crate::app::{Severity, Text};
@@ -72,7 +72,7 @@ impl Kind for Hiperdrive {
 
     fn result_texts(output: &HiperdriveOutput) -> Option<(Severity, Vec<Text>)> {
         let HiperdriveOutput::Committed(committed) = output else { return None };
-        Some(written_texts::<Hiperdrive>(committed))
+        Some(write_result_messages::<Hiperdrive>(committed))
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {

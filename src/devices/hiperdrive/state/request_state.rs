@@ -3,7 +3,7 @@
 use super::action::MotorCommand;
 use super::ruler::PositionUnit;
 use super::unit::HiperdriveDevice;
-use crate::app::number::decimals_of;
+use crate::app::number::required_decimals;
 use crate::app::services::Services;
 use crate::app::session::Phase;
 use crate::app::{Severity, Text};
@@ -195,7 +195,7 @@ impl HiperdriveDevice {
         let wanted = |own: &PositionUnit| *own != PositionUnit::Degrees || *own == self.measure;
         let place = |own: PositionUnit| {
             let value = ruler.from_steps(i64::from(steps), own)?;
-            let decimals = decimals_of(value, ruler.decimal_places(own).min(4));
+            let decimals = required_decimals(value, ruler.decimal_places(own).min(4));
             let text = TEXTS.text("hd_entry.place").with_number("value", value, decimals);
             Some(text.with_text("unit", TEXTS.text(own.unit())))
         };

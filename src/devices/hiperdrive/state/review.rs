@@ -5,8 +5,8 @@ use super::format;
 use super::network::PowerUpAddress;
 use super::ruler::{PositionUnit, Ruler};
 use crate::app::explain::{cycle_count_text, literal_text};
-use crate::app::number::decimals_of;
-use crate::app::review::{self, OperationTexts, Permit, Reviewable};
+use crate::app::number::required_decimals;
+use crate::app::review::{self, OperationDescription, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, Prepared};
 use crate::devices::hiperdrive::procedures::write::WrittenChanges;
@@ -34,7 +34,7 @@ impl Reviewable for Hiperdrive {
         permit.restore_option(options)
     }
 
-    fn operation_texts(prepared: &Prepared, op: &Op) -> OperationTexts {
+    fn operation_texts(prepared: &Prepared, op: &Op) -> OperationDescription {
         operation_texts(prepared, op, |_| None)
     }
 
@@ -55,7 +55,7 @@ impl Reviewable for Hiperdrive {
         }
         texts.extend(power_up(&prepared.plan));
         let mounting = prepared.mounting_left.iter().map(explain::literal_text).collect();
-        texts.extend(review::skipped_texts(
+        texts.extend(review::skipped_item_messages(
             TEXTS.text("hd_review.missing"),
             prepared.missing.iter().map(literal_text).collect(),
             mounting,
@@ -100,7 +100,7 @@ pub(super) fn operation_texts(
     prepared: &Prepared,
     op: &Op,
     pitch: impl Fn(DriveNumber) -> Option<Length>,
-) -> OperationTexts {
+) -> OperationDescription {
     let mut words = explained::operation_texts(op);
     if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {
         let now = prepared.plan.base.image();
@@ -128,7 +128,7 @@ fn value_meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Opti
                 return Some(millimetres_text(Some(Ruler { scale, pitch }), value));
             }
             let turns = value as f64 / scale.steps_per_turn();
-            let text = TEXTS.text("hd_entry.place").with_number("value", turns, decimals_of(turns, 3));
+            let text = TEXTS.text("hd_entry.place").with_number("value", turns, required_decimals(turns, 3));
             Some(text.with_text("unit", TEXTS.text(PositionUnit::Turns.unit())))
         }
         _ => format::value_meaning(number, value),

@@ -5,7 +5,7 @@ use super::ruler::PositionUnit;
 use super::staged::is_editable;
 use super::unit::HiperdriveDevice;
 use crate::app::Text;
-use crate::app::number::decimals_of;
+use crate::app::number::required_decimals;
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
     CONTROL, DENOMINATOR, LOWER_LIMIT, NEWEST_ERROR, NUMERATOR, OLDEST_ERROR, POSITION, REFERENCE, SPEED, SPEED_SHARE,
@@ -163,13 +163,13 @@ impl HiperdriveDevice {
                 let text = TEXTS.text("hd_entry.place").with_number(
                     "value",
                     place,
-                    decimals_of(place, ruler.decimal_places(measure).min(4)),
+                    required_decimals(place, ruler.decimal_places(measure).min(4)),
                 );
                 Some(text.with_text("unit", TEXTS.text(measure.unit())))
             }
             (NUMERATOR | DENOMINATOR, Some(drive)) => {
                 let steps = self.edited_ruler(drive).scale.steps_per_turn();
-                Some(TEXTS.text("hd_meaning.steps_a_turn").with_number("steps", steps, decimals_of(steps, 3)))
+                Some(TEXTS.text("hd_meaning.steps_a_turn").with_number("steps", steps, required_decimals(steps, 3)))
             }
             (SPEED, Some(drive)) => {
                 let rpm = self.speed_scale(drive).rpm(i16::try_from(*value).ok()?);

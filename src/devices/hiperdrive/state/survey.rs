@@ -17,7 +17,7 @@ use crate::devices::hiperdrive::state::explain;
 impl HiperdriveDevice {
     /// Adopts a reading of all parameters. Edits are kept, unless they belong to another device.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
-        self.session.values_read_at = Some(services.current_time().timestamp());
+        self.session.last_read_time = Some(services.current_time().timestamp());
         if self.is_different_device(&survey.identity) {
             self.handle_device_replacement(&survey.identity.serial_number, services);
         }

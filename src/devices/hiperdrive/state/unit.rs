@@ -12,7 +12,7 @@ use super::ruler::{PositionUnit, Ruler};
 use super::staged::{EditFinding, StagedEdits};
 use super::trace::FrameDecoder;
 use super::unsaved::UnsavedChanges;
-use crate::app::check::CheckLine;
+use crate::app::check::CheckResultLine;
 use crate::app::live_session::LiveSession;
 use crate::app::session::{Phase, Session, Source};
 use crate::app::{PendingEdits, SettingsReadState, Text};
@@ -34,7 +34,7 @@ pub struct HiperdriveDevice {
     pub session: Session<Hiperdrive>,
     pub survey: Option<Survey>,
     pub status: Option<Status>,
-    pub check: Option<Vec<CheckLine>>,
+    pub check: Option<Vec<CheckResultLine>>,
     pub staged: StagedEdits,
     pub record: Record,
     pub(super) records: BTreeMap<DriveNumber, Record>,

@@ -6,7 +6,7 @@ use super::review::{Review, operation_texts};
 use super::ruler::PositionUnit;
 use super::unit::HiperdriveDevice;
 use super::unsaved::UnsavedChanges;
-use crate::app::review::OperationTexts;
+use crate::app::review::OperationDescription;
 use crate::app::services::Services;
 use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, truncated_list, unsaved_edits_remark};
 use crate::app::{PendingEdits, Text};
@@ -20,7 +20,7 @@ use crate::profile::{Body, ProfileError};
 impl HiperdriveDevice {}
 
 impl HasMemory for HiperdriveDevice {
-    fn operation_texts(&self, prepared: &Prepared, op: &Op) -> OperationTexts {
+    fn operation_texts(&self, prepared: &Prepared, op: &Op) -> OperationDescription {
         operation_texts(prepared, op, |drive| self.spindle_pitch(drive))
     }
 

@@ -5,7 +5,7 @@ use crate::app::Text;
 use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
 use crate::app::connect::target::{
-    for_adapter, host_and_port, network_address_of_adapter, non_empty, rejection_text, required_entry, split_target,
+    adapter_network_address, for_adapter, host_and_port, optional_entry, rejection_text, required_entry, split_target,
 };
 use crate::buses::bridge::procedures::SupplyAfterSession;
 use crate::devices::hiperface::jobs::check_link;
@@ -101,7 +101,7 @@ impl FormModel for LinkForm {
             LinkScheme::Modbus | LinkScheme::Enip => {}
             LinkScheme::Bridge => {
                 form.kind = LinkKind::Adapter;
-                match network_address_of_adapter(&target) {
+                match adapter_network_address(&target) {
                     Some(address) => {
                         form.network = true;
                         (form.host, form.tcp_port) = split_target(address);
@@ -202,13 +202,13 @@ impl LinkForm {
         let usual = LinkForm::default();
         let mut parameters = Parameters::default();
         if self.kind == LinkKind::Virtual {
-            if non_empty(&self.model).is_some_and(|model| model != usual.model) {
+            if optional_entry(&self.model).is_some_and(|model| model != usual.model) {
                 parameters.entry("model", &self.model);
             }
-            parameters.add_entered(&Self::virtual_device_entries(), &self.typed);
+            parameters.add_typed_entries(&Self::virtual_device_entries(), &self.typed);
         }
         if self.kind == LinkKind::Adapter {
-            parameters.add_entered(&Self::adapter_entries(), &self.typed);
+            parameters.add_typed_entries(&Self::adapter_entries(), &self.typed);
             if self.leave_supply {
                 parameters.set(SupplyAfterSession::LEAVE_SUPPLY_ON.0, SupplyAfterSession::LEAVE_SUPPLY_ON.1);
             }
@@ -229,7 +229,7 @@ impl LinkForm {
         if !self.long_timeout {
             parameters.set("timeout", "11");
         }
-        parameters.add_entered(&Self::link_entries(), &self.typed);
+        parameters.add_typed_entries(&Self::link_entries(), &self.typed);
         parameters.add_remaining(&self.rest, self.kind == LinkKind::Virtual, (LinkParameters::KEYS, Config::KEYS));
         Ok(parameters)
     }

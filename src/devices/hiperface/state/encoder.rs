@@ -114,7 +114,7 @@ impl Encoder {
 
     /// Takes over the values read from the encoder. Edits are kept unless they belong to another encoder.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
-        self.session.values_read_at = Some(services.current_time().timestamp());
+        self.session.last_read_time = Some(services.current_time().timestamp());
         let Survey { identity, codes, fields, unreadable, line, counter, position } = survey;
         let fresh = std::mem::take(&mut self.session.just_connected);
         // Without a serial number, this may be any encoder of the type. It is considered the same encoder if its memory

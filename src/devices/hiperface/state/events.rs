@@ -5,7 +5,7 @@ use super::encoder::Encoder;
 use super::job;
 use super::review::Review;
 use crate::app::FrameExplanation;
-use crate::app::review::written_texts;
+use crate::app::review::write_result_messages;
 use crate::app::services::{JobState, Services};
 use crate::app::session::{HasDraft, HasMemory, Interruption, Kind, SessionEvents, Source, first};
 use crate::app::{PendingEdits, Severity, Text};
@@ -55,7 +55,7 @@ impl Kind for Hiperface {
 
     fn result_texts(output: &HiperfaceOutput) -> Option<(Severity, Vec<Text>)> {
         let HiperfaceOutput::Committed(committed) = output else { return None };
-        Some(written_texts::<Hiperface>(committed))
+        Some(write_result_messages::<Hiperface>(committed))
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {

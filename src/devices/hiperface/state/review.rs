@@ -2,7 +2,7 @@
 
 use crate::app::Text;
 use crate::app::explain::cycle_count_text;
-use crate::app::review::{self, OperationTexts, Permit, Question, Reviewable};
+use crate::app::review::{self, OperationDescription, Permit, Question, Reviewable};
 use crate::devices::hiperface::jobs::{Change, Hiperface, Prepared};
 use crate::devices::hiperface::procedures::write::WrittenChanges;
 use crate::devices::hiperface::profile::{Op, RestoreOptions, UnknownMeaningField};
@@ -42,7 +42,7 @@ impl Reviewable for Hiperface {
         }
     }
 
-    fn operation_texts(prepared: &Prepared, op: &Op) -> OperationTexts {
+    fn operation_texts(prepared: &Prepared, op: &Op) -> OperationDescription {
         words::operation_texts(op, prepared.identity.geometry)
     }
 
@@ -86,7 +86,7 @@ impl Reviewable for Hiperface {
         }
         let missing = prepared.missing.iter().map(words::field_range).collect();
         let mounting = prepared.mounting_left.iter().map(words::field_range).collect();
-        warnings.extend(review::skipped_texts(TEXTS.text("review.missing"), missing, mounting));
+        warnings.extend(review::skipped_item_messages(TEXTS.text("review.missing"), missing, mounting));
         if prepared.plan.ops.iter().any(|op| matches!(op, Op::IncrementCounter { .. })) {
             warnings.push(TEXTS.text("review.counter"));
         }

@@ -122,7 +122,7 @@ impl InterbusForm {
     fn parameters(&self) -> Parameters {
         let is_virtual = self.kind == InterbusLinkKind::Virtual;
         let mut parameters = Parameters::default();
-        parameters.add_entered(&self.entries(), &self.typed);
+        parameters.add_typed_entries(&self.entries(), &self.typed);
         if self.low_first {
             parameters.set(LOW_FIRST.0, LOW_FIRST.1);
         }

@@ -9,7 +9,7 @@ use super::table::Import;
 use super::trace::FrameDecoder;
 use super::{cams, format};
 use crate::analysis::check::CycleCount;
-use crate::app::check::CheckLine;
+use crate::app::check::CheckResultLine;
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, HasMemory, HasProfile, Phase, Session, Source, truncated_list};
 use crate::app::{PendingEdits, Severity, Text};
@@ -30,7 +30,7 @@ const STEPS: usize = 200;
 pub struct Encoder {
     pub session: Session<Interbus>,
     pub survey: Option<Survey>,
-    pub check: Option<Vec<CheckLine>>,
+    pub check: Option<Vec<CheckResultLine>>,
     pub staged: StagedEdits,
     pub read_outs: BTreeMap<u16, Value>,
     pub record: Record,
@@ -192,7 +192,7 @@ impl Encoder {
 
     /// Updates the encoder with the values just read. Edits are kept unless they belong to another encoder.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
-        self.session.values_read_at = Some(services.current_time().timestamp());
+        self.session.last_read_time = Some(services.current_time().timestamp());
         if self.is_different_device(&survey.identity) {
             self.handle_device_replacement(&survey.identity.serial_number, services);
         }

@@ -4,7 +4,7 @@ use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::job;
 use crate::app::FrameExplanation;
-use crate::app::review::{Review, written_texts};
+use crate::app::review::{Review, write_result_messages};
 use crate::app::services::{JobState, Services};
 use crate::app::session::{HasMemory, HasProfile, Interruption, Kind, SessionEvents};
 use crate::app::{Severity, Text};
@@ -52,7 +52,7 @@ impl Kind for Interbus {
 
     fn result_texts(output: &InterbusOutput) -> Option<(Severity, Vec<Text>)> {
         let InterbusOutput::Committed(committed) = output else { return None };
-        Some(written_texts::<Interbus>(committed))
+        Some(write_result_messages::<Interbus>(committed))
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {

@@ -1,7 +1,7 @@
 //! What the user reviews before a write to an INTERBUS encoder: permissions, warnings and the cost of the plan.
 
 use crate::app::explain::{cycle_count_text, literal_text};
-use crate::app::review::{self, OperationTexts, Permit, Reviewable};
+use crate::app::review::{self, OperationDescription, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::interbus::jobs::{Change, Interbus, Prepared, WEAR_CONFIRMATION, WEAR_GUARANTEE, WearAfterPlan};
 use crate::devices::interbus::procedures::write::WrittenChanges;
@@ -26,7 +26,7 @@ impl Reviewable for Interbus {
         permit.restore_option(options)
     }
 
-    fn operation_texts(_: &Prepared, op: &Op) -> OperationTexts {
+    fn operation_texts(_: &Prepared, op: &Op) -> OperationDescription {
         words::operation_texts(op)
     }
 
@@ -46,7 +46,7 @@ impl Reviewable for Interbus {
             warnings.push(TEXTS.text("ib_review.experimental"));
         }
         let mounting = prepared.mounting_left.iter().map(explain::literal_text).collect();
-        warnings.extend(review::skipped_texts(
+        warnings.extend(review::skipped_item_messages(
             TEXTS.text("ib_review.missing"),
             prepared.missing.iter().map(literal_text).collect(),
             mounting,

@@ -4,9 +4,7 @@
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{EnteredValues, Parameters, parameters_without_entry};
-use crate::app::connect::target::{
-    for_adapter, network_address_of_adapter, required_entry, split_target, validated_link,
-};
+use crate::app::connect::target::{adapter_network_address, for_adapter, required_entry, split_target, validated_link};
 use crate::buses::bridge::procedures::SupplyAfterSession;
 use crate::buses::bridge::sim as bridge;
 use crate::devices::ssi::jobs::check_link;
@@ -62,7 +60,7 @@ impl FormModel for SsiForm {
                 SsiLinkKind::Adapter
             }
         };
-        if let Some(network) = network_address_of_adapter(target).filter(|_| url.scheme == LinkScheme::Bridge) {
+        if let Some(network) = adapter_network_address(target).filter(|_| url.scheme == LinkScheme::Bridge) {
             form.network = true;
             (form.host, form.tcp_port) = split_target(network);
         } else if form.kind == SsiLinkKind::Replay {
@@ -124,7 +122,7 @@ impl SsiForm {
     fn parameters(&self) -> Parameters {
         let is_virtual = self.kind == SsiLinkKind::Virtual;
         let mut parameters = Parameters::default();
-        parameters.add_entered(&self.entries(), &self.typed);
+        parameters.add_typed_entries(&self.entries(), &self.typed);
         if self.leave_supply {
             parameters.set(SupplyAfterSession::LEAVE_SUPPLY_ON.0, SupplyAfterSession::LEAVE_SUPPLY_ON.1);
         }

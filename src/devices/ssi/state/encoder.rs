@@ -8,7 +8,7 @@ use super::record::{ReceivedWord, Record, WordStream};
 use super::search::SearchState;
 use super::trial::{Decoded, TrialFrame};
 use crate::app::PendingEdits;
-use crate::app::check::CheckLine;
+use crate::app::check::CheckResultLine;
 use crate::app::session::{Phase, Session, Source};
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::procedures::{ClockSettings, Identity};
@@ -28,7 +28,7 @@ pub struct Encoder {
     pub(super) searches: u32,
     /// Identity of the adapter and its settings for reading words, once known.
     pub identity: Option<Identity>,
-    pub check: Option<Vec<CheckLine>>,
+    pub check: Option<Vec<CheckResultLine>>,
     pub motor: Option<Motor>,
     pub(super) clocks: Option<u8>,
     pub(super) requested: Option<ClockSettings>,

@@ -3,7 +3,7 @@
 use super::form::{coverage_text, direction_text};
 use super::{TEXTS, explain};
 use crate::app::explain::literal_text;
-use crate::app::{ItemValue, Text, plain_decimals};
+use crate::app::{ItemValue, Text, significant_decimals};
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::protocol::{BitMeaning, Range};
 
@@ -90,7 +90,7 @@ pub(super) fn item_value(profile: &SsiProfile, item: &str, value: &str) -> Optio
         "step_nanometres" => with_unit(literal_text(value), literal_text("nm")),
         "reading.clock_hz" => {
             let kilohertz = f64::from(profile.reading.clock_hz) / 1000.0;
-            let value = Text::new("item_value.number").with_number("value", kilohertz, plain_decimals(kilohertz));
+            let value = Text::new("item_value.number").with_number("value", kilohertz, significant_decimals(kilohertz));
             with_unit(value, literal_text("kHz"))
         }
         "reading.pause_us" => with_unit(literal_text(value), literal_text("µs")),

@@ -53,7 +53,7 @@ pub(super) fn transfer(client: &mut Client, identity: &str, path: &Path) -> Resu
     let (mut done, mut size) = (Transferred::default(), FIRST);
     loop {
         let began = Instant::now();
-        let waiting = outbox::first_waiting(&database, size.min(SENT)).map_err(sqlite)?;
+        let waiting = outbox::rows_to_send(&database, size.min(SENT)).map_err(sqlite)?;
         let (rows, after) = client.run(async |postgres| {
             if waiting.is_empty() {
                 receive(postgres, &marks, size).await

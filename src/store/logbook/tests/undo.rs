@@ -25,13 +25,13 @@ fn schema_5_logbook_links_new_entries() {
     let write = logbook.entry(EntryId(1)).unwrap().unwrap();
     assert_eq!((&write.uid, write.undoes, write.undone_by), (&EntryUid("aa".to_owned()), None, None));
     assert_eq!(logbook.count_waiting(), Ok(1));
-    let waiting = outbox::first_waiting(&logbook.database, 9).unwrap();
+    let waiting = outbox::rows_to_send(&logbook.database, 9).unwrap();
     assert_eq!((waiting.events[0].undoes.as_deref(), waiting.results.len()), (None, 1));
     let undo = Intent { undoes: Some(write.uid), ..intent("field:1@3+2", 1, None) };
     let undo = logbook.record_intent(at(0), &device("1"), &undo).unwrap();
     logbook.record_outcome(undo, at(1), Outcome::Done, 1).unwrap();
     assert_eq!(logbook.entry(EntryId(1)).unwrap().unwrap().undone_by, Some(LinkedEntry { id: undo, at: at(0) }));
-    let sent = outbox::first_waiting(&logbook.database, 9).unwrap();
+    let sent = outbox::rows_to_send(&logbook.database, 9).unwrap();
     assert_eq!(sent.events[1].undoes.as_deref(), Some("aa"), "other benches know it too");
 }
 

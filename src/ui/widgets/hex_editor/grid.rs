@@ -61,7 +61,7 @@ impl Grid {
         self.len.div_ceil(WIDTH)
     }
 
-    pub(super) fn height_of(&self, lines: usize) -> f32 {
+    pub(super) fn lines_height(&self, lines: usize) -> f32 {
         self.row * lines as f32
     }
 

@@ -53,7 +53,7 @@ pub(super) fn paint_lines(
     let line_at = |y: f32| ((y - origin.y) / grid.row).floor().max(0.0) as usize;
     let (first, last) = (line_at(seen.top()), line_at(seen.bottom()) + 1);
     let x = origin.x + grid.text_left - grid.gap;
-    let bottom = origin.y + grid.height_of(grid.line_count());
+    let bottom = origin.y + grid.lines_height(grid.line_count());
     ui.painter().vline(x.round() + 0.5, origin.y..=bottom, Stroke::new(1.0, theme.palette.line));
     for line in first..last.min(grid.line_count()) {
         brush.paint_line(line);

@@ -101,7 +101,7 @@ proptest! {
             path: EPath::to_assemblies(104, 100, 101),
         };
         prop_assert_eq!(ForwardOpen::parse(&asked.request().data), Ok(asked.clone()));
-        let _ = (asked.timeout.duration(), asked.to_target_timeout());
+        let _ = (asked.timeout.duration(), asked.target_timeout());
     }
 
     #[test]

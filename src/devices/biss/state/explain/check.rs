@@ -3,15 +3,15 @@
 use super::guide::mode_text;
 use super::{mismatch_text, name_text};
 use crate::app::Text;
-use crate::app::check::CheckLine;
+use crate::app::check::CheckResultLine;
 use crate::app::explain::{cycle_count_text, literal_text};
 use crate::devices::biss::procedures::check::{BissStepResult, CheckFinding, CheckStep};
 use crate::devices::biss::protocol::Name;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::format::data_sheet_error_text;
 
-pub fn check_lines(lines: &[BissStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::from_step(line, check_step_text, finding_text)).collect()
+pub fn check_lines(lines: &[BissStepResult]) -> Vec<CheckResultLine> {
+    lines.iter().map(|line| CheckResultLine::from_step(line, check_step_text, finding_text)).collect()
 }
 
 fn check_step_text(step: CheckStep) -> Text {

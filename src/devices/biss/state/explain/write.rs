@@ -7,7 +7,7 @@ use super::encoder_error_text;
 use super::guide::{blocker_text, mode_text, procedure_step_text, speed_range_text, task_text, temperature_range_text};
 use super::plan::procedure_kind_text;
 use crate::app::explain::literal_text;
-use crate::app::review::{ChangeTexts, OperationTexts};
+use crate::app::review::{ChangeDescription, OperationDescription};
 use crate::app::{Severity, Text};
 use crate::bits::hex;
 use crate::devices::biss::jobs::{Change, ChangeKind, Prepared, WEAR_LIMIT};
@@ -32,14 +32,14 @@ pub fn change_text(change: &Change) -> Text {
     }
 }
 
-pub fn operation_texts(op: &Op, layout: &Layout) -> OperationTexts {
+pub fn operation_texts(op: &Op, layout: &Layout) -> OperationDescription {
     let bits = layout.singleturn_bits();
     match op {
-        Op::StoreData { area, registers } => OperationTexts {
+        Op::StoreData { area, registers } => OperationDescription {
             item: TEXTS.text("biss_op.data").with_text("area", super::name_text(&area.name)),
             changes: register_run_texts(registers),
         },
-        Op::StorePreset { from, to } => OperationTexts::single(
+        Op::StorePreset { from, to } => OperationDescription::single(
             TEXTS.text("biss_op.preset"),
             preset_value_text(*from, bits),
             preset_value_text(*to, bits),
@@ -50,22 +50,22 @@ pub fn operation_texts(op: &Op, layout: &Layout) -> OperationTexts {
                 PresetParts::Singleturn => preset_text("biss_op.singleturn", *value, bits),
                 PresetParts::Multiturn => preset_text("biss_op.multiturn", *value, bits),
             };
-            OperationTexts::single(TEXTS.text("biss_op.fire"), TEXTS.text("biss_op.place"), new)
+            OperationDescription::single(TEXTS.text("biss_op.fire"), TEXTS.text("biss_op.place"), new)
         }
         Op::SelectFilter { from, to } => {
-            OperationTexts::single(TEXTS.text("biss_op.filter"), filter(*from), filter(*to))
+            OperationDescription::single(TEXTS.text("biss_op.filter"), filter(*from), filter(*to))
         }
-        Op::Calibrate => OperationTexts::single(
+        Op::Calibrate => OperationDescription::single(
             TEXTS.text("guide.calibration"),
             TEXTS.text("biss_op.present_table"),
             TEXTS.text("biss_op.new_table"),
         ),
-        Op::WiegandTest { save } => OperationTexts::single(
+        Op::WiegandTest { save } => OperationDescription::single(
             TEXTS.text("guide.wiegand"),
             TEXTS.text("biss_op.last_result"),
             TEXTS.text(if *save { "biss_op.saved_result" } else { "biss_op.fresh_result" }),
         ),
-        Op::WriteRegister { address, old, new, .. } => OperationTexts::single(
+        Op::WriteRegister { address, old, new, .. } => OperationDescription::single(
             TEXTS.text("biss_op.register").with("address", address),
             old.map_or_else(|| TEXTS.text("biss_op.not_readable"), |old| literal_text(format!("{old:02X}"))),
             literal_text(format!("{new:02X}")),
@@ -74,11 +74,15 @@ pub fn operation_texts(op: &Op, layout: &Layout) -> OperationTexts {
 }
 
 /// Returns one line for each run of consecutive registers.
-fn register_run_texts(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
+fn register_run_texts(registers: &[RegisterChange]) -> Vec<ChangeDescription> {
     let words = |range: RegisterRange| {
         let own = registers.iter().filter(|own| range.contains(own.address));
         let (old, new): (Vec<u8>, Vec<u8>) = own.map(|own| (own.old, own.new)).unzip();
-        ChangeTexts { part: Some(literal_text(range)), old: literal_text(hex(&old)), new: literal_text(hex(&new)) }
+        ChangeDescription {
+            part: Some(literal_text(range)),
+            old: literal_text(hex(&old)),
+            new: literal_text(hex(&new)),
+        }
     };
     RegisterRange::from_addresses(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
 }

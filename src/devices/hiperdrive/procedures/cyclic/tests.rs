@@ -22,7 +22,8 @@ fn at(ms: u64) -> Moment {
 /// Returns the connection from the reference (section 9): ID 00020001 and an interval of 10 ms in both directions.
 fn opened(topology: Topology, pkw: bool, order: ByteOrder) -> OpenedConnection {
     let owner = ConnectionOwner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
-    let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: EPath::to_assemblies(104, 100, 101) };
+    let close =
+        ForwardClose { timeout: RequestTimeout::TWO_SECOND_TIMEOUT, owner, path: EPath::to_assemblies(104, 100, 101) };
     let interval = Duration::from_millis(10);
     OpenedConnection {
         to_target_id: 0x0002_0001,

@@ -126,7 +126,7 @@ impl Master<'_> {
         let timeout = if self.station.link.interval < LONG_INTERVAL { TIMEOUT } else { LONG_TIMEOUT };
         let [configuration, to, from] = ASSEMBLIES;
         let open = ForwardOpen {
-            timeout: RequestTimeout::TWO_SECONDS,
+            timeout: RequestTimeout::TWO_SECOND_TIMEOUT,
             to_target_id: 0,
             to_originator_id: self.station.originator.rotate_left(16) ^ u32::from(serial),
             owner,

@@ -14,7 +14,7 @@ use super::device::{Originator, TargetDevice};
 use super::objects::{class_and_attribute, status_of};
 use crate::buses::ethernet_ip::protocol::{
     ConnectionOwner, EPath, ElectronicKey, ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen,
-    ForwardOpenSuccess, GeneralStatus, IMPLICIT_PORT, IoPacket, Item, ItemList, LogicalKind, NetworkType,
+    ForwardOpenSuccess, GeneralStatus, IMPLICIT_MESSAGE_PORT, IoPacket, Item, ItemList, LogicalKind, NetworkType,
     RealTimeFormat, Reply, Request, Segment, Service, SocketAddress, Trigger,
 };
 use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout};
@@ -187,7 +187,7 @@ impl TargetDevice {
         }
         let id = self.connections.next_id();
         let to = originator_socket(from.address, items.socket_to_originator());
-        self.station.open(self.now, open.to_target_timeout());
+        self.station.open(self.now, open.target_timeout());
         self.connections.cyclic = Some(Cyclic::new(open, id, layout, to, self.now));
         let own = SocketAddress::new(Ipv4Addr::UNSPECIFIED, self.udp);
         Ok((id, vec![Item::SocketToTarget(own)]))
@@ -260,7 +260,7 @@ impl TargetDevice {
             session,
             to_target_id: id,
             to_originator_id: open.to_originator_id,
-            timeout: open.to_target_timeout(),
+            timeout: open.target_timeout(),
             heard: self.now,
         });
         Ok(id)
@@ -287,7 +287,7 @@ fn originator_socket(peer: Ipv4Addr, requested: Option<SocketAddress>) -> Socket
     match requested {
         Some(socket) if socket.address.is_unspecified() => SocketAddrV4::new(peer, socket.port),
         Some(socket) => SocketAddrV4::new(socket.address, socket.port),
-        None => SocketAddrV4::new(peer, IMPLICIT_PORT),
+        None => SocketAddrV4::new(peer, IMPLICIT_MESSAGE_PORT),
     }
 }
 

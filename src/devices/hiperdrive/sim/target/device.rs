@@ -11,7 +11,7 @@ use super::super::station::Station;
 use super::TrafficCounters;
 use super::connections::Connections;
 use super::network::Network;
-use crate::buses::ethernet_ip::protocol::{Command, EXPLICIT_PORT, Frame, IMPLICIT_PORT};
+use crate::buses::ethernet_ip::protocol::{Command, EXPLICIT_MESSAGE_PORT, Frame, IMPLICIT_MESSAGE_PORT};
 use crate::devices::hiperdrive::protocol::ByteOrder;
 use crate::sim::SimulatedFaults;
 use crate::sim::line::TransitQueue;
@@ -53,8 +53,8 @@ impl TargetDevice {
             connections: Connections::default(),
             order: config.order,
             counted_texts: config.counted_texts,
-            listens: SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, EXPLICIT_PORT),
-            udp: IMPLICIT_PORT,
+            listens: SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, EXPLICIT_MESSAGE_PORT),
+            udp: IMPLICIT_MESSAGE_PORT,
             figures: TrafficCounters::default(),
             now: Moment::START,
             sessions: BTreeMap::new(),

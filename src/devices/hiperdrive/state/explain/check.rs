@@ -2,15 +2,15 @@
 
 use super::names::{error_code_explanation, state_text, variant_text};
 use crate::app::Text;
-use crate::app::check::CheckLine;
+use crate::app::check::CheckResultLine;
 use crate::app::explain::literal_text;
 use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::devices::hiperdrive::procedures::check::{CheckFinding, CheckStep, HiperdriveStepResult};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 
-pub fn check_lines(lines: &[HiperdriveStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::from_step(line, check_step_text, finding_text)).collect()
+pub fn check_lines(lines: &[HiperdriveStepResult]) -> Vec<CheckResultLine> {
+    lines.iter().map(|line| CheckResultLine::from_step(line, check_step_text, finding_text)).collect()
 }
 
 pub(super) fn check_step_text(step: CheckStep) -> Text {

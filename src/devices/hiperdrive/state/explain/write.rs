@@ -7,7 +7,7 @@ use super::error::{device_error_text, out_of_range};
 use super::names::{parameter_name_text, variant_text};
 use crate::app::Text;
 use crate::app::explain::literal_text;
-use crate::app::review::OperationTexts;
+use crate::app::review::OperationDescription;
 use crate::devices::hiperdrive::jobs::{Change, ChangeKind};
 use crate::devices::hiperdrive::procedures::write::{InterruptedWrite, WrittenChanges};
 use crate::devices::hiperdrive::profile::{Item, NetworkSettings, Op, PlanError, Service, TypeMismatch, Warning};
@@ -42,11 +42,11 @@ pub fn service_text(service: Service) -> Text {
     }
 }
 
-pub fn operation_texts(op: &Op) -> OperationTexts {
+pub fn operation_texts(op: &Op) -> OperationDescription {
     match op {
         Op::Write { number, old, new } => {
             let old = old.map_or_else(|| TEXTS.text("hd_op.unknown"), literal_text);
-            OperationTexts::single(item_text(Item(*number)), old, literal_text(new))
+            OperationDescription::single(item_text(Item(*number)), old, literal_text(new))
         }
         Op::Service(own) => {
             let (before, after) = match own {
@@ -56,10 +56,10 @@ pub fn operation_texts(op: &Op) -> OperationTexts {
                 Service::Reset => ("hd_op.as_now", "hd_op.restarted"),
                 Service::Acknowledge(_) => ("hd_op.fault", "hd_op.acknowledged"),
             };
-            OperationTexts::single(service_text(*own), TEXTS.text(before), TEXTS.text(after))
+            OperationDescription::single(service_text(*own), TEXTS.text(before), TEXTS.text(after))
         }
         Op::Network { from, to } => {
-            OperationTexts::single(TEXTS.text("hd_op.network"), network_text(from), network_text(to))
+            OperationDescription::single(TEXTS.text("hd_op.network"), network_text(from), network_text(to))
         }
     }
 }

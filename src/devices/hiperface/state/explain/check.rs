@@ -3,14 +3,14 @@
 use super::encoder_error_text;
 use super::format::{field_status, position_text, raw_position_text, status_with_number};
 use crate::app::Text;
-use crate::app::check::CheckLine;
+use crate::app::check::CheckResultLine;
 use crate::app::explain::literal_text;
 use crate::devices::hiperface::procedures::LineQuality;
 use crate::devices::hiperface::procedures::check::{CheckFinding, CheckStep, HiperfaceStepResult};
 use crate::devices::hiperface::state::TEXTS;
 
-pub fn check_lines(lines: &[HiperfaceStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::from_step(line, check_step_text, finding_text)).collect()
+pub fn check_lines(lines: &[HiperfaceStepResult]) -> Vec<CheckResultLine> {
+    lines.iter().map(|line| CheckResultLine::from_step(line, check_step_text, finding_text)).collect()
 }
 
 fn check_step_text(step: CheckStep) -> Text {

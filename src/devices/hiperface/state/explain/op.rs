@@ -3,42 +3,46 @@
 use super::format::{field_access, field_code_required, field_status, line_settings};
 use crate::app::Text;
 use crate::app::explain::literal_text;
-use crate::app::review::OperationTexts;
+use crate::app::review::OperationDescription;
 use crate::bits::hex;
 use crate::devices::hiperface::profile::Op;
 use crate::devices::hiperface::protocol::{DataFieldStatus, Geometry};
 use crate::devices::hiperface::state::{TEXTS, position_text};
 
 /// Describes an operation without revealing access codes.
-pub fn operation_texts(op: &Op, geometry: Option<Geometry>) -> OperationTexts {
+pub fn operation_texts(op: &Op, geometry: Option<Geometry>) -> OperationDescription {
     match op {
         Op::Define { field, from, to } => describe_definition(*field, *from, *to),
-        Op::Store { field, address, old, new, .. } => OperationTexts::single(
+        Op::Store { field, address, old, new, .. } => OperationDescription::single(
             byte_range_text(*field, usize::from(*address), new.len()),
             old.as_ref().map_or_else(|| TEXTS.text("op.new_field"), |old| literal_text(hex(old))),
             literal_text(hex(new)),
         ),
-        Op::ChangeCode { number, .. } => OperationTexts::single(
+        Op::ChangeCode { number, .. } => OperationDescription::single(
             TEXTS.text("op.access_code").with("number", number),
             TEXTS.text("op.present_code"),
             TEXTS.text("op.changed_code"),
         ),
         Op::SetPosition { from, to, synchronise } => {
             let item = if *synchronise { "op.synchronise" } else { "op.position" };
-            OperationTexts::single(TEXTS.text(item), position_text(*from, geometry), position_text(*to, geometry))
+            OperationDescription::single(TEXTS.text(item), position_text(*from, geometry), position_text(*to, geometry))
         }
-        Op::SetAddress { from, to } => {
-            OperationTexts::single(TEXTS.text("op.address"), literal_text(format!("{from:02X}h")), literal_text(to))
-        }
+        Op::SetAddress { from, to } => OperationDescription::single(
+            TEXTS.text("op.address"),
+            literal_text(format!("{from:02X}h")),
+            literal_text(to),
+        ),
         Op::Configure { from, to } => {
-            OperationTexts::single(TEXTS.text("op.settings"), line_settings(*from), line_settings(*to))
+            OperationDescription::single(TEXTS.text("op.settings"), line_settings(*from), line_settings(*to))
         }
         Op::ClearCounter { from } => {
-            OperationTexts::single(TEXTS.text("op.counter"), literal_text(from), literal_text(0))
+            OperationDescription::single(TEXTS.text("op.counter"), literal_text(from), literal_text(0))
         }
-        Op::IncrementCounter { from } => {
-            OperationTexts::single(TEXTS.text("op.counter"), literal_text(from), literal_text((from + 1) & 0x00FF_FFFF))
-        }
+        Op::IncrementCounter { from } => OperationDescription::single(
+            TEXTS.text("op.counter"),
+            literal_text(from),
+            literal_text((from + 1) & 0x00FF_FFFF),
+        ),
     }
 }
 
@@ -53,18 +57,18 @@ fn byte_range_text(field: u8, first: usize, count: usize) -> Text {
     }
 }
 
-fn describe_definition(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OperationTexts {
+fn describe_definition(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OperationDescription {
     let item = TEXTS.text("op.field").with("field", field);
     match from {
         Some(from) if from.exists() && !to.exists() => {
-            OperationTexts::single(item, field_status(from), TEXTS.text("op.deleted"))
+            OperationDescription::single(item, field_status(from), TEXTS.text("op.deleted"))
         }
         Some(from) if from.exists() => {
             let (old, new) = changed_status_properties(from, to).into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
             let parts = |texts: Vec<Text>| TEXTS.text("op.parts").with_list("parts", texts);
-            OperationTexts::single(item, parts(old), parts(new))
+            OperationDescription::single(item, parts(old), parts(new))
         }
-        _ => OperationTexts::single(item, TEXTS.text("op.not_there"), field_status(to)),
+        _ => OperationDescription::single(item, TEXTS.text("op.not_there"), field_status(to)),
     }
 }
 

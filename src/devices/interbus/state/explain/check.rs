@@ -2,14 +2,14 @@
 
 use super::{encoder_error_text, error_word_text, format_word, implausible_value_text, startup_mode_text};
 use crate::app::Text;
-use crate::app::check::CheckLine;
+use crate::app::check::CheckResultLine;
 use crate::app::explain::cycle_count_text;
 use crate::devices::interbus::procedures::check::{CheckFinding, CheckStep, InterbusStepResult};
 use crate::devices::interbus::protocol::Reply;
 use crate::devices::interbus::state::TEXTS;
 
-pub fn check_lines(lines: &[InterbusStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::from_step(line, check_step_text, finding_text)).collect()
+pub fn check_lines(lines: &[InterbusStepResult]) -> Vec<CheckResultLine> {
+    lines.iter().map(|line| CheckResultLine::from_step(line, check_step_text, finding_text)).collect()
 }
 
 fn check_step_text(step: CheckStep) -> Text {

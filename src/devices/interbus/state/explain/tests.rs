@@ -227,7 +227,7 @@ fn describes_each_operation() {
     use crate::devices::interbus::profile::{CamChange, ParameterChange, ProgramChange};
     let words = |op: &Op| {
         let own = super::operation_texts(op);
-        let one = |change: &crate::app::review::ChangeTexts| {
+        let one = |change: &crate::app::review::ChangeDescription| {
             let part = change.part.as_ref().map(|part| part.to_string_in(English) + ": ").unwrap_or_default();
             format!("{part}{} → {}", change.old.to_string_in(English), change.new.to_string_in(English))
         };

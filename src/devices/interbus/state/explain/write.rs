@@ -5,7 +5,7 @@ use std::path::Path;
 use super::encoder_error_text;
 use super::item::{cam_mask_text, edge_text, parameter_text, parameter_value_text};
 use crate::app::explain::{self, literal_text};
-use crate::app::review::{ChangeTexts, OperationTexts};
+use crate::app::review::{ChangeDescription, OperationDescription};
 use crate::app::{Severity, Text};
 use crate::devices::interbus::jobs::{Change, ChangeKind, Prepared, WEAR_CONFIRMATION, WEAR_LIMIT, WearAfterPlan};
 use crate::devices::interbus::procedures::write::{EndState, InterruptedWrite, WrittenChanges};
@@ -28,27 +28,27 @@ pub fn change_text(change: &Change) -> Text {
     }
 }
 
-pub fn operation_texts(op: &Op) -> OperationTexts {
+pub fn operation_texts(op: &Op) -> OperationDescription {
     match op {
-        Op::Parameterise(changes) => OperationTexts {
+        Op::Parameterise(changes) => OperationDescription {
             item: TEXTS.text("ib_op.parameters"),
             changes: changes
                 .iter()
-                .map(|ParameterChange { parameter: own, from, to }| ChangeTexts {
+                .map(|ParameterChange { parameter: own, from, to }| ChangeDescription {
                     part: Some(parameter_text(*own)),
                     old: parameter_value_text(*own, *from),
                     new: parameter_value_text(*own, *to),
                 })
                 .collect(),
         },
-        Op::Program(change) => OperationTexts {
+        Op::Program(change) => OperationDescription {
             item: TEXTS.text("ib_op.program").with("program", change.program.get()),
             changes: describe_program_change(change),
         },
         Op::FirePreset { value } => {
-            OperationTexts::single(TEXTS.text("ib_op.fire"), TEXTS.text("ib_op.place"), literal_text(value))
+            OperationDescription::single(TEXTS.text("ib_op.fire"), TEXTS.text("ib_op.place"), literal_text(value))
         }
-        Op::Default => OperationTexts::single(
+        Op::Default => OperationDescription::single(
             TEXTS.text("ib_op.default"),
             TEXTS.text("ib_op.as_set"),
             TEXTS.text("ib_op.as_delivered"),
@@ -56,8 +56,8 @@ pub fn operation_texts(op: &Op) -> OperationTexts {
     }
 }
 
-fn describe_program_change(change: &ProgramChange) -> Vec<ChangeTexts> {
-    let words = |part: Text, old: Text, new: Text| ChangeTexts { part: Some(part), old, new };
+fn describe_program_change(change: &ProgramChange) -> Vec<ChangeDescription> {
+    let words = |part: Text, old: Text, new: Text| ChangeDescription { part: Some(part), old, new };
     // Both edges of a cam are on one line.
     let of_cam = |own: &[CamChange]| match own {
         [start @ CamChange { edge: Edge::Start, .. }, stop] => {

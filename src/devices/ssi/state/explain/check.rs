@@ -2,13 +2,13 @@
 
 use super::finding_text as said;
 use crate::app::Text;
-use crate::app::check::CheckLine;
+use crate::app::check::CheckResultLine;
 use crate::app::explain::literal_text;
 use crate::devices::ssi::procedures::check::{CheckFinding, CheckStep, SsiStepResult};
 use crate::devices::ssi::state::TEXTS;
 
-pub fn check_lines(lines: &[SsiStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::from_step(line, check_step_text, finding_text)).collect()
+pub fn check_lines(lines: &[SsiStepResult]) -> Vec<CheckResultLine> {
+    lines.iter().map(|line| CheckResultLine::from_step(line, check_step_text, finding_text)).collect()
 }
 
 fn check_step_text(step: CheckStep) -> Text {
