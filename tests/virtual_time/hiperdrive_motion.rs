@@ -7,7 +7,7 @@ mod model;
 mod watch;
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
-    ActionEnd, MotionKind, MotionLock, MotionRefusal, MotionRequest, Permit, Phase, SpeedTorque, TargetState,
+    ActionEnd, MotionKind, MotionLock, MotionRejection, MotionRequest, Permit, Phase, SpeedTorque, TargetState,
 };
 use encoder_studio::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd};
 use encoder_studio::devices::hiperdrive::sim::SpindleLoad;
@@ -130,9 +130,9 @@ fn pauses_and_resumes_job() {
     assert_eq!(bench.position(), 3 * TURN);
     // At this time, there is nothing to pause or resume.
     bench.act(MotionRequest::Pause);
-    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToPause));
+    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRejection::NothingToPause));
     bench.act(MotionRequest::Resume);
-    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToResume));
+    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRejection::NothingToResume));
     // A move that waits to start is discarded if it is stopped.
     bench.act(to(0));
     bench.run(1000);
@@ -141,7 +141,7 @@ fn pauses_and_resumes_job() {
     bench.act(MotionRequest::Stop);
     bench.run(300);
     bench.act(MotionRequest::Resume);
-    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToResume));
+    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRejection::NothingToResume));
     // A pause ends a jog instead of pausing it.
     bench.act(jog(Direction::Clockwise));
     bench.run(500);
@@ -156,33 +156,33 @@ fn rejects_invalid_requests() {
     let none = SpeedTorque { speed: Percent::NONE, ..FULL };
     let permit = |limits, locks: &[MotionLock]| Permit { limits, locks: locks.to_vec(), ..Permit::for_range(0, 0) };
     let free = || permit(Some((-TURN, TURN)), &[]);
-    let outside = |target| MotionRefusal::Outside { target, low: -TURN, high: TURN };
+    let outside = |target| MotionRejection::Outside { target, low: -TURN, high: TURN };
     for (label, wish, permit, refusal) in [
-        ("not read", to(1), Permit::default(), MotionRefusal::Locked(MotionLock::Unread)),
-        ("limits not read", to(1), permit(None, &[]), MotionRefusal::Locked(MotionLock::Unread)),
+        ("not read", to(1), Permit::default(), MotionRejection::Locked(MotionLock::Unread)),
+        ("limits not read", to(1), permit(None, &[]), MotionRejection::Locked(MotionLock::Unread)),
         (
             "no time-out",
             jog(Direction::Clockwise),
             permit(Some((0, 9)), &[MotionLock::NoTimeout]),
-            MotionRefusal::Locked(MotionLock::NoTimeout),
+            MotionRejection::Locked(MotionLock::NoTimeout),
         ),
         (
             "limits",
             to(1),
             permit(Some((0, 9)), &[MotionLock::LimitsUnconfirmed]),
-            MotionRefusal::Locked(MotionLock::LimitsUnconfirmed),
+            MotionRejection::Locked(MotionLock::LimitsUnconfirmed),
         ),
         (
             "not requested",
             to(1),
             permit(Some((0, 9)), &[MotionLock::NotRequested]),
-            MotionRefusal::Locked(MotionLock::NotRequested),
+            MotionRejection::Locked(MotionLock::NotRequested),
         ),
         ("above", to(TURN + 1), free(), outside(TURN + 1)),
         ("below", to(i32::MIN), free(), outside(i32::MIN)),
         ("a step beyond", MotionRequest::Step { by: i32::MAX, effort: FULL }, free(), outside(i32::MAX)),
-        ("no speed", MotionRequest::Move { target: 1, effort: none }, free(), MotionRefusal::NoEffort),
-        ("endless", run_endless(), free(), MotionRefusal::Endless),
+        ("no speed", MotionRequest::Move { target: 1, effort: none }, free(), MotionRejection::NoEffort),
+        ("endless", run_endless(), free(), MotionRejection::Endless),
     ] {
         let mut bench = Bench::new();
         bench.permit = permit;
@@ -211,9 +211,9 @@ fn acknowledges_fault_before_motion() {
     assert_eq!(words(&mut bench), "0479 0469 0401");
     let stood = bench.position();
     bench.act(to(0));
-    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::Fault));
+    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRejection::Fault));
     bench.act(MotionRequest::Lead(TargetState::Enabled));
-    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::Fault));
+    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRejection::Fault));
     words(&mut bench);
     bench.act(MotionRequest::Acknowledge);
     assert_eq!(bench.until_over(), ActionEnd::Done);

@@ -162,7 +162,7 @@ fn writes_edit_after_review() {
     write(&mut desk);
     assert!(!unit(&desk).is_dirty());
     assert_eq!(unit(&desk).parameter_value(ONE, 166), Some(200));
-    assert_eq!(unit(&desk).staged.changed_from(number(166)), Some(350));
+    assert_eq!(unit(&desk).staged.previous_value(number(166)), Some(350));
     let target = unit(&desk).target.clone().unwrap();
     assert_eq!(target.with_station(|station| station.save_count()), 1, "saved once");
 }

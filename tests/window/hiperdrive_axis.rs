@@ -272,7 +272,7 @@ fn can_acknowledge_test_fault() {
         axis(&desk).request(AxisButton::Go(TestTarget::Lower), &seen(&desk)).unwrap_err().id(),
         "hd_refused.fault"
     );
-    assert!(axis(&desk).outcome_of(TestTarget::Lower).is_some_and(|own| !own.is_good()));
+    assert!(axis(&desk).test_outcome(TestTarget::Lower).is_some_and(|own| !own.is_good()));
     desk.until("it can be acknowledged", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.axis().unwrap().request(AxisButton::Acknowledge, &own.drive_facts(own.drive())).is_ok()

@@ -5,7 +5,7 @@
 //! interval of 10 ms.
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
-    ActionEnd, MotionRefusal, MotionRequest, Permit, Phase, SpeedTorque,
+    ActionEnd, MotionRejection, MotionRequest, Permit, Phase, SpeedTorque,
 };
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, StatusBit};
 use encoder_studio::devices::hiperdrive::sim::{DriveDefect, SpindleLoad};
@@ -138,7 +138,7 @@ fn allows_only_inward_motion_from_outside() {
             let position = bench.position();
             assert_eq!(
                 bench.until_over(),
-                ActionEnd::Refused(MotionRefusal::Outward { position, low, high }),
+                ActionEnd::Refused(MotionRejection::Outward { position, low, high }),
                 "{wish:?}"
             );
             bench.run(300);
@@ -171,7 +171,7 @@ fn bit_15_alone_needs_permission_to_move() {
         let mut bench = bench(Some(DriveDefect::SaysOutside));
         bench.act(wish);
         let (low, high) = LIMITS;
-        let expected = ActionEnd::Refused(MotionRefusal::Unclear { position: 0, low, high });
+        let expected = ActionEnd::Refused(MotionRejection::Unclear { position: 0, low, high });
         assert_eq!(bench.until_over(), expected, "{wish:?}");
         bench.run(300);
         assert_eq!((bench.position(), bench.moves()), (0, false), "{wish:?}");
@@ -213,7 +213,7 @@ fn permits_outward_motion_for_one_press() {
     bench.act(MotionRequest::Stop);
     bench.run(500);
     bench.act(jog(Direction::Clockwise, FULL, false));
-    assert!(matches!(bench.until_over(), ActionEnd::Refused(MotionRefusal::Outward { .. })));
+    assert!(matches!(bench.until_over(), ActionEnd::Refused(MotionRejection::Outward { .. })));
     // The permission is not needed here: from inside, the limits apply.
     let mut bench = super::watch::bench(Some(DriveDefect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, true));

@@ -322,8 +322,8 @@ pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&Hiperdr
 
 pub(super) fn tested(mut desk: Desk) -> Desk {
     for place in TestTarget::ALL {
-        go(&mut desk, place, |own| own.axis().unwrap().outcome_of(place).is_some());
-        let outcome = axis(&desk).outcome_of(place).unwrap();
+        go(&mut desk, place, |own| own.axis().unwrap().test_outcome(place).is_some());
+        let outcome = axis(&desk).test_outcome(place).unwrap();
         assert!(outcome.is_good(), "{place:?}: {outcome:?}");
         until_stopped(&mut desk);
     }

@@ -187,8 +187,8 @@ fn data_sheet(identity: &Identity) -> BissStepResult {
 
 /// Offsets of the limits within the encoder bank of the data sheet.
 mod offset {
-    pub(super) const COLDEST: u8 = 0x30;
-    pub(super) const HOTTEST: u8 = 0x32;
+    pub(super) const MIN_TEMPERATURE: u8 = 0x30;
+    pub(super) const MAX_TEMPERATURE: u8 = 0x32;
     pub(super) const MIN_VOLTAGE: u8 = 0x34;
     pub(super) const MAX_VOLTAGE: u8 = 0x36;
     pub(super) const MAX_CURRENT: u8 = 0x38;
@@ -201,7 +201,7 @@ fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult>
     let mut findings = Vec::new();
     let celsius = |at| value(sheet, at).and_then(EdsValue::to_celsius);
     if let (Some(celsius), Some(low), Some(high)) =
-        (survey.status.celsius, celsius(offset::COLDEST), celsius(offset::HOTTEST))
+        (survey.status.celsius, celsius(offset::MIN_TEMPERATURE), celsius(offset::MAX_TEMPERATURE))
     {
         let fits = (f64::from(low)..=f64::from(high)).contains(&celsius);
         findings.push((judge(fits), CheckFinding::Temperature { celsius, low, high }));

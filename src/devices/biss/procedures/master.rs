@@ -124,7 +124,7 @@ impl<'a> Master<'a> {
         self.ensure_ready()?;
         let requested = RequestedItem::Read(address);
         match self.read_confirmed(requested, |master| master.read_once(address)) {
-            Err(Error::NoReply { .. }) if self.is_only_this_register_silent(address)? => {
+            Err(Error::NoReply { .. }) if self.is_single_register_silent(address)? => {
                 Err(Error::NoSuchRegister { address })
             }
             Err(failed) if self.station.transport == Transport::Adapter => Err(self.diagnose_line(failed)),
@@ -328,7 +328,7 @@ impl<'a> Master<'a> {
 
     /// Returns whether this register stays silent although the bank selection register replies. Both are read
     /// repeatedly. The test is skipped while the encoder may be silent for a long time.
-    fn is_only_this_register_silent(&mut self, address: RegisterAddress) -> Result<bool, Error> {
+    fn is_single_register_silent(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.retry_time.is_some() {
             return Ok(false);
         }

@@ -69,7 +69,7 @@ impl Encoder {
     const MAX_BANK: u8 = 0x43;
     /// Temperature in degrees Celsius at which the warning is set. The warning is cleared below 123 °C (manual 6.8).
     const HOT: i16 = 125;
-    const COOL: i16 = 123;
+    const COOLDOWN_CELSIUS: i16 = 123;
     const DIAGNOSTICS_SINCE: Firmware = Firmware::new(1, 6, 0);
     const PRESET_PARTS_SINCE: Firmware = Firmware::new(1, 6, 0);
     const PRESET_SINCE: Firmware = Firmware::new(1, 2, 0);
@@ -216,7 +216,7 @@ impl Encoder {
                 eds.emit().get(usize::from(offset)).copied().unwrap_or(0)
             }
             Some(bank) if bank <= Self::MAX_BANK => {
-                let (area, begin) = Area::area_of_bank(bank)?;
+                let (area, begin) = Area::find_bank_area(bank)?;
                 let at = begin + usize::from(offset);
                 self.data.byte(area, at).or_else(|| self.area_bytes(area).get(at).copied())?
             }
@@ -260,7 +260,7 @@ impl Encoder {
             (Some(0x01), 0x02..=0x07) if self.mode == DeviceMode::PRESET => {
                 self.preset.enter(usize::from(offset - 2), value)
             }
-            (Some(bank), _) => Area::area_of_bank(bank)
+            (Some(bank), _) => Area::find_bank_area(bank)
                 .is_some_and(|(area, begin)| self.data.enter(area, begin + usize::from(offset), value)),
             _ => false,
         };
@@ -394,6 +394,6 @@ impl Encoder {
     }
 
     fn watch_temperature(&mut self) {
-        self.hot = self.celsius >= Self::HOT || (self.hot && self.celsius >= Self::COOL);
+        self.hot = self.celsius >= Self::HOT || (self.hot && self.celsius >= Self::COOLDOWN_CELSIUS);
     }
 }

@@ -16,7 +16,7 @@ pub(super) enum Area {
 impl Area {
     /// Returns the area that contains a bank, and the offset of the bank in the area. Returns `None` if the bank does
     /// not belong to an area.
-    pub(super) fn area_of_bank(bank: u8) -> Option<(Area, usize)> {
+    pub(super) fn find_bank_area(bank: u8) -> Option<(Area, usize)> {
         let begin = |first: u8| usize::from(bank - first) * 64;
         match bank {
             0x04..=0x23 => Some((Area::Motor, begin(0x04))),

@@ -103,7 +103,7 @@ impl Encoder {
 
     /// Returns the part of an area that can be shown, which is the whole area of an encoder, or what a profile
     /// contains.
-    pub fn visible_area_part(&self, area: &Area) -> Option<Area> {
+    pub fn visible_area(&self, area: &Area) -> Option<Area> {
         if self.profile().is_some() { self.memory.readable_part(area) } else { Some(area.clone()) }
     }
 

@@ -35,7 +35,7 @@ pub(super) fn page_ui(
         edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::EditKind::Bytes, actions);
     });
     super::messages_ui(ui, theme, encoder, actions);
-    let shown = encoder.visible_area_part(area);
+    let shown = encoder.visible_area(area);
     ui.horizontal_wrapped(|ui| {
         for (at, own) in areas.iter().enumerate() {
             let word = theme.format_text(&explain::name_text(&own.name));

@@ -59,11 +59,11 @@ fn messages_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<
     let id = egui::Id::unique(encoder.session.id).with("biss_messages");
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
         unsaved_warning_ui(ui, theme, encoder, actions);
-        read_refusal_ui(ui, theme, encoder, actions);
+        read_rejection_ui(ui, theme, encoder, actions);
     });
 }
 
-fn read_refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn read_rejection_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(why) = &encoder.refusal else { return };
     ui.horizontal_top(|ui| {
         ui.label(egui::RichText::new(icons::WARNING).color(theme.palette.warn));

@@ -22,7 +22,7 @@ use crate::cli::runner::to_failure;
 use crate::cli::{Failure, Result, Success};
 use crate::devices::hiperdrive::jobs::{DriveSnapshot, HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::dead_man::{
-    ActionEnd, MotionRefusal, MotionRequest, Permit, Phase, SpeedTorque, TargetState,
+    ActionEnd, MotionRejection, MotionRequest, Permit, Phase, SpeedTorque, TargetState,
 };
 use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, MotionLimitParameters};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, Percent, PositionScale, Value};
@@ -57,7 +57,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
     let (permit, scale) = read_permit(&mut runner, &identity, drive)?;
     // An impossible target is rejected before the cyclic connection is opened.
     let target = check_target(&permit, target)?;
-    permit.check_request(MotionRequest::Move { target, effort }, Some(target)).map_err(refusal_failure)?;
+    permit.check_request(MotionRequest::Move { target, effort }, Some(target)).map_err(rejection_failure)?;
     if let Some((low, high)) = permit.limits {
         output.print_message(&describe_range(drive, target, (low, high), scale));
     }
@@ -148,7 +148,7 @@ fn steps_text(steps: impl Into<i64>) -> Text {
     TEXTS.text("hd_entry.place").with("value", steps.into()).with_text("unit", unit)
 }
 
-fn refusal_failure(refusal: MotionRefusal) -> Failure {
+fn rejection_failure(refusal: MotionRejection) -> Failure {
     to_failure(&explain::refusal_text(refusal, steps_text))
 }
 

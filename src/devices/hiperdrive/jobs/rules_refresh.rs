@@ -25,14 +25,14 @@ pub(super) struct RulesRefresh {
 
 /// Returns the groups that have not been read since their last time slot began, least recently read first.
 fn due_groups(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
-    let is_due = |(group, at): &(usize, Moment)| turns_begun(*group, now, turn) > turns_begun(*group, *at, turn);
+    let is_due = |(group, at): &(usize, Moment)| started_slots(*group, now, turn) > started_slots(*group, *at, turn);
     let mut groups: Vec<(usize, Moment)> = read.into_iter().enumerate().filter(is_due).collect();
     groups.sort_by_key(|(_, at)| *at);
     groups.into_iter().map(|(group, _)| group).collect()
 }
 
 /// Returns the number of time slots of a group that have begun by the given time.
-fn turns_begun(group: usize, at: Moment, turn: Duration) -> u128 {
+fn started_slots(group: usize, at: Moment, turn: Duration) -> u128 {
     let begun = at.since_start().as_nanos() / turn.as_nanos();
     let groups = GROUPS as u128;
     (begun + groups - group as u128) / groups

@@ -27,7 +27,7 @@ mod watch;
 use std::time::Duration;
 
 pub use act::{
-    ActionEnd, MotionIntent, MotionKind, MotionLock, MotionRefusal, MotionRequest, Permit, Phase, SpeedTorque,
+    ActionEnd, MotionIntent, MotionKind, MotionLock, MotionRejection, MotionRequest, Permit, Phase, SpeedTorque,
     StopLevel, TargetState,
 };
 pub use watch::{LimitSide, OutsideLimits};
@@ -282,17 +282,17 @@ impl DeadMan {
         actual: ActualValues,
         request: MotionRequest,
         permit: &Permit,
-    ) -> Result<(), MotionRefusal> {
+    ) -> Result<(), MotionRejection> {
         let status = actual.status;
         if !status.is_present() {
-            return Err(MotionRefusal::Absent);
+            return Err(MotionRejection::Absent);
         }
         let kind = match request {
             MotionRequest::Rest | MotionRequest::Stop => return Ok(()),
-            MotionRequest::Lead(goal) => return self.lead_to(now, actual, goal),
+            MotionRequest::Lead(goal) => return self.begin_transition(now, actual, goal),
             MotionRequest::Acknowledge => return self.acknowledge(now, actual),
-            MotionRequest::Pause => return Err(MotionRefusal::NothingToPause),
-            MotionRequest::Resume => return Err(MotionRefusal::NothingToResume),
+            MotionRequest::Pause => return Err(MotionRejection::NothingToPause),
+            MotionRequest::Resume => return Err(MotionRejection::NothingToResume),
             MotionRequest::Move { target, .. } => MotionKind::Job { target },
             MotionRequest::Step { by, .. } => MotionKind::Job { target: actual.position.saturating_add(by) },
             MotionRequest::Jog { direction, .. } => MotionKind::Run { direction, end: RunEnd::RangeEnd },
@@ -300,14 +300,14 @@ impl DeadMan {
         };
         permit.check_request(request, kind.target())?;
         if permit.doubted {
-            return Err(MotionRefusal::Locked(MotionLock::Outdated));
+            return Err(MotionRejection::Locked(MotionLock::Outdated));
         }
         permit.check_position_limits(request, actual)?;
         if status.is_set(StatusBit::Fault) {
-            return Err(MotionRefusal::Fault);
+            return Err(MotionRejection::Fault);
         }
         if status.is_set(StatusBit::SwitchOnLock) {
-            return Err(MotionRefusal::SwitchOnLock);
+            return Err(MotionRejection::SwitchOnLock);
         }
         if let Some(act) = &mut self.act {
             act.motion = Some(Motion { request, kind });
@@ -324,7 +324,7 @@ impl DeadMan {
         if is_commanded || setpoint.control.is_at_rest() { setpoint } else { Setpoint::holding(actual) }
     }
 
-    const fn mark_now(&self, now: Moment) -> ReportMark {
+    const fn current_mark(&self, now: Moment) -> ReportMark {
         ReportMark { at: now, report: self.reports }
     }
 }

@@ -177,7 +177,7 @@ impl DriveLimits {
 
     /// Returns the number of scaled steps per degree, at least 1. Returns 1 if the scale has not been read.
     pub fn steps_per_degree(&self) -> u32 {
-        self.scale().map_or(1, |scale| scale.steps_of_degrees(1.0))
+        self.scale().map_or(1, |scale| scale.degrees_to_steps(1.0))
     }
 }
 

@@ -119,7 +119,7 @@ impl<'a> Master<'a> {
         let requested = RequestedItem::Parameter(number);
         let request = Request::get(number.class(), 1, number.attribute());
         let data = match self.request(requested, &request, RetryPolicy::Always) {
-            Err(Error::Refused { refusal, .. }) => return Err(self.find_refusal_reason(requested, number, refusal)?),
+            Err(Error::Refused { refusal, .. }) => return Err(self.find_rejection_reason(requested, number, refusal)?),
             ended => ended?.data,
         };
         row.kind.parse(&data).map_err(|cause| match cause {
@@ -170,7 +170,9 @@ impl<'a> Master<'a> {
             tries += 1;
             match self.request(requested, &request, once) {
                 Ok(_) => return Ok(()),
-                Err(Error::Refused { refusal, .. }) => return Err(self.write_refusal_reason(number, wanted, refusal)?),
+                Err(Error::Refused { refusal, .. }) => {
+                    return Err(self.write_rejection_reason(number, wanted, refusal)?);
+                }
                 Err(error @ (Error::NoReply { .. } | Error::Damaged { .. })) => {
                     if triggers_action(row) || self.run_uncancellable(|master| master.read_number(number))? == wanted {
                         return if triggers_action(row) { Err(error) } else { Ok(()) };

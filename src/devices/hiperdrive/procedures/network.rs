@@ -36,11 +36,11 @@ impl Network {
 pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
     let switch = master.read_number(device_parameter(12)?)?;
     let control =
-        optional_if_refused(read_attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
+        optional_if_rejected(read_attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
     let interface =
-        optional_if_refused(read_attribute(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse))?;
+        optional_if_rejected(read_attribute(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse))?;
     let (class, number) = MAC;
-    let mac = optional_if_refused(master.read_attribute(RequestedItem::Mac, class, number))?
+    let mac = optional_if_rejected(master.read_attribute(RequestedItem::Mac, class, number))?
         .and_then(|data| data.try_into().ok());
     Ok(Network { switch, control, interface, mac })
 }
@@ -67,7 +67,7 @@ fn read_attribute<T>(
 }
 
 /// Returns the value, or `None` if the device rejected the request.
-fn optional_if_refused<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
+fn optional_if_rejected<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
     match ended {
         Ok(value) => Ok(Some(value)),
         Err(Error::Refused { .. }) => Ok(None),

@@ -85,7 +85,7 @@ impl Write for DeviceWriter<'_, '_> {
         confirmed: &ConfirmedPlan<'_, Base, Op>,
         done: &mut WrittenChanges,
     ) -> Result<(), Error> {
-        if !are_scale_or_limits_incomplete(&confirmed.plan().ops, done.ops) {
+        if !has_incomplete_scale_or_limits(&confirmed.plan().ops, done.ops) {
             self.master.check_cancel()?;
         }
         self.master.run_uncancellable(|master| execute(master, op, done))?;
@@ -115,7 +115,7 @@ fn affected_drives(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumbe
 
 /// Returns whether the scale and limits of a drive are only partly written before this operation. A write must not stop
 /// at this point, because the same limits mean other positions under another scale.
-fn are_scale_or_limits_incomplete(ops: &[Op], at: usize) -> bool {
+fn has_incomplete_scale_or_limits(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
         Op::Write { number, .. }
             if matches!(number.drive1_number(), NUMERATOR | DENOMINATOR | LOWER_LIMIT | UPPER_LIMIT) =>

@@ -32,7 +32,7 @@ pub type Positions = BTreeMap<DriveNumber, i32>;
 /// Returns a [`PlanError`] if a change is not allowed.
 pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan, PlanError> {
     let DeviceState { image: device, positions, .. } = state;
-    let after = device.overlaid_with(wanted);
+    let after = device.with_overlay(wanted);
     let mut writes = Vec::new();
     for (&number, &new) in &wanted.values {
         let item = Item(number);

@@ -56,7 +56,7 @@ impl Image {
     }
 
     /// Returns a copy with the values of `other` added or replaced.
-    pub fn overlaid_with(&self, other: &Image) -> Image {
+    pub fn with_overlay(&self, other: &Image) -> Image {
         let mut image = self.clone();
         image.values.extend(&other.values);
         image

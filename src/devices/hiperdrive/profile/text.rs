@@ -74,7 +74,7 @@ impl Profile for HiperdriveProfile {
     /// Compares the stored parameters. Identities and measured values are not compared.
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
-        for number in self.image.overlaid_with(&other.image).values.into_keys() {
+        for number in self.image.with_overlay(&other.image).values.into_keys() {
             comparison.compare_item(Item(number).to_string(), self.image.get(number), other.image.get(number));
         }
         comparison

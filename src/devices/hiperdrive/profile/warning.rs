@@ -33,7 +33,7 @@ pub enum Warning {
 /// Returns all warnings of a plan.
 pub fn plan_warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
     let (now, written) = (plan.base.image(), written_values(plan));
-    let then = now.overlaid_with(&written);
+    let then = now.with_overlay(&written);
     let mut warnings: Vec<Warning> =
         then.drives().into_iter().filter_map(|drive| moved_limits_warning(&now, &then, drive)).collect();
     for (&number, &new) in &written.values {

@@ -52,7 +52,7 @@ impl ParameterRow {
         ParameterRow { reach: Some(reach), ..self }
     }
 
-    const fn with_slow_values(self, slow: &'static [SlowValue]) -> Self {
+    const fn with_write_durations(self, slow: &'static [SlowValue]) -> Self {
         ParameterRow { slow, ..self }
     }
 }
@@ -69,28 +69,28 @@ const fn store_duration(value: i64) -> SlowValue {
     SlowValue { value, adapter: STORE_TIME, hub: STORE_TIME }
 }
 
-const fn slow_for_all_drives(value: i64) -> SlowValue {
+const fn slow_values_for_all_drives(value: i64) -> SlowValue {
     SlowValue { value, adapter: DRIVE_RESETS, hub: HUB_RESETS }
 }
 
-const fn slow_for_one_drive(value: i64) -> SlowValue {
+const fn slow_values_for_one_drive(value: i64) -> SlowValue {
     SlowValue { value, adapter: DRIVE_RESETS, hub: DRIVE_RESETS }
 }
 
 /// Values of parameter 47 that take long to apply. The manual gives no time for −3, −2 and −1. They are assumed to take
 /// as long as −4, since all of them send all parameters to all drives over RS-485 (`D`).
 const SAVE_AND_RESET: &[SlowValue] = &[
-    slow_for_all_drives(-4),
-    slow_for_all_drives(-3),
-    slow_for_all_drives(-2),
-    slow_for_all_drives(-1),
+    slow_values_for_all_drives(-4),
+    slow_values_for_all_drives(-3),
+    slow_values_for_all_drives(-2),
+    slow_values_for_all_drives(-1),
     store_duration(1),
 ];
 /// The value of parameter 152 that takes long to apply. A change from 0 to 1 resets the drive. The time is derived
 /// (`D`).
-const REQUEST: &[SlowValue] = &[slow_for_one_drive(1)];
+const REQUEST: &[SlowValue] = &[slow_values_for_one_drive(1)];
 /// Values of parameter 199 that take long to apply. The time is derived (`D`).
-const RESET_DRIVE: &[SlowValue] = &[slow_for_one_drive(0), slow_for_one_drive(1)];
+const RESET_DRIVE: &[SlowValue] = &[slow_values_for_one_drive(0), slow_values_for_one_drive(1)];
 
 const fn text(number: u16, name: &'static str, unit: &'static str) -> ParameterRow {
     read(number, name, Text, unit)
@@ -140,7 +140,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
     register(42, "free register 10"),
     read(47, "save and reset", I16, "")
         .writable(OneOf(&[-4, -3, -2, -1, 1]), FactoryValue::None)
-        .with_slow_values(SAVE_AND_RESET),
+        .with_write_durations(SAVE_AND_RESET),
     read(101, "control word", U16, "").writable(Any, FactoryValue::Number(0)),
     percent(102, "speed"),
     percent(103, "torque"),
@@ -173,7 +173,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
     read(REQUESTED_BY_BUS, "requested", U8, "")
         .saved(Within(0, 1), FactoryValue::Topology { adapter: 1, hub: 0 })
         .with_device_storage()
-        .with_slow_values(REQUEST),
+        .with_write_durations(REQUEST),
     scale(NUMERATOR, "position scale numerator", 256),
     scale(DENOMINATOR, "position scale denominator", 1),
     read(LOWER_LIMIT, "lower limit", I32, "steps")
@@ -206,5 +206,5 @@ pub const PARAMETERS: &[ParameterRow] = &[
         access: ParameterAccess::Write,
         ..read(RESET, "reset drive", U8, "").writable(Within(0, 1), FactoryValue::None)
     }
-    .with_slow_values(RESET_DRIVE),
+    .with_write_durations(RESET_DRIVE),
 ];

@@ -112,7 +112,7 @@ impl PositionScale {
     }
 
     /// Converts degrees to steps, rounded up to at least 1.
-    pub fn steps_of_degrees(self, degrees: f64) -> u32 {
+    pub fn degrees_to_steps(self, degrees: f64) -> u32 {
         // The float cast saturates at the limits of the type.
         (self.steps_per_turn() * degrees / 360.0).ceil().max(1.0) as u32
     }

@@ -127,7 +127,7 @@ impl Drive {
         let (low, high) = self.limits();
         let (low, high) = if number == LOWER_LIMIT { (value, high.into()) } else { (low.into(), value) };
         if low >= high || !(low..=high).contains(&self.position().into()) {
-            return Err(self.state_refusal());
+            return Err(self.state_rejection());
         }
         self.memory.set_value(number, value);
         Ok(())
@@ -138,7 +138,7 @@ impl Drive {
         let (low, high) = self.limits();
         let inside = |position: &i32| (low..=high).contains(position);
         let position = i32::try_from(value).ok().and_then(nearest_reference).filter(inside);
-        let Some(position) = position else { return Err(self.state_refusal()) };
+        let Some(position) = position else { return Err(self.state_rejection()) };
         if !self.is_at_rest() {
             return Err(ParameterError::State);
         }
@@ -152,7 +152,7 @@ impl Drive {
         self.offset = -(self.axis.place() / TURN).floor() * TURN;
     }
 
-    pub(super) fn state_refusal(&mut self) -> ParameterError {
+    pub(super) fn state_rejection(&mut self) -> ParameterError {
         self.enter_fault(ErrorCode::INVALID_VALUE);
         ParameterError::Value
     }

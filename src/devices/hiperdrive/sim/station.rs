@@ -292,7 +292,7 @@ impl Station {
             Some(number) => {
                 let drive = self.drive(number).ok_or(ParameterError::State)?;
                 if row.check_value(own, value, drive.travel()).is_err() {
-                    return Err(drive.state_refusal());
+                    return Err(drive.state_rejection());
                 }
                 let resets = drive.is_reset_by(row.number, value);
                 drive.write(now, row.number, value)?;

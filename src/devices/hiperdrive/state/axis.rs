@@ -248,7 +248,7 @@ impl Axis {
         self.reference.map(|(position, _)| position)
     }
 
-    pub fn outcome_of(&self, place: TestTarget) -> Option<Outcome> {
+    pub fn test_outcome(&self, place: TestTarget) -> Option<Outcome> {
         self.outcomes.get(place as usize).copied().flatten()
     }
 

@@ -81,7 +81,7 @@ impl HiperdriveDevice {
             }
         }
         self.measure = kept.measure;
-        self.unsaved.add_earlier(&kept.unsaved);
+        self.unsaved.add_saved_values(&kept.unsaved);
         ExchangedValues {
             pitches: kept.pitches.clone(),
             measure: kept.measure,

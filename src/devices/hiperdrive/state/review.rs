@@ -104,7 +104,7 @@ pub(super) fn operation_texts(
     let mut words = explained::operation_texts(op);
     if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {
         let now = prepared.plan.base.image();
-        let then = now.overlaid_with(&profile::written_values(&prepared.plan));
+        let then = now.with_overlay(&profile::written_values(&prepared.plan));
         let pitch = number.drive().and_then(pitch);
         let meant = |text: &mut Text, value, image| {
             if let Some(meaning) = value_meaning(*number, value, image, pitch) {

@@ -41,7 +41,7 @@ pub struct Row {
     pub staged: Option<i64>,
     pub is_edited: bool,
     /// Value from the previous reading, or `None` if it is still the same.
-    pub changed_from: Option<i64>,
+    pub previous_value: Option<i64>,
     /// Whether the parameter has a value that can be edited.
     pub is_editable: bool,
 }
@@ -100,7 +100,7 @@ impl HiperdriveDevice {
             factory: self.factory_value(number, kind).map(|own| own.to_string()).unwrap_or_default(),
             staged,
             is_edited: self.staged.difference_of(number).is_some(),
-            changed_from: self.staged.changed_from(number),
+            previous_value: self.staged.previous_value(number),
             is_editable,
             value,
         }

@@ -163,15 +163,15 @@ impl HiperdriveDevice {
     }
 
     pub fn axis_report(&self, language: Language) -> Option<String> {
-        self.report_of(self.axis()?).map(|report| report.page(language))
+        self.create_axis_report(self.axis()?).map(|report| report.page(language))
     }
 
     /// Returns the result of a completed axis set-up for a device report.
     pub(super) fn axis_result(&self, axis: &Axis) -> Option<SessionResult> {
-        self.report_of(axis).map(AxisReport::into_session_result)
+        self.create_axis_report(axis).map(AxisReport::into_session_result)
     }
 
-    fn report_of(&self, axis: &Axis) -> Option<AxisReport> {
+    fn create_axis_report(&self, axis: &Axis) -> Option<AxisReport> {
         let own = self.drive_identity(axis.drive());
         let device = Device {
             name: self.session.name(),

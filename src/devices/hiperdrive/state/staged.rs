@@ -117,7 +117,7 @@ impl StagedEdits {
     /// Adopts a reading of some parameters. Has no effect before the first complete reading.
     pub fn refresh_partially(&mut self, read: &Image) {
         if let Some(base) = &self.base {
-            self.refresh(base.overlaid_with(read));
+            self.refresh(base.with_overlay(read));
         }
     }
 
@@ -146,7 +146,7 @@ impl StagedEdits {
     }
 
     /// Returns the value before the last reading, or `None` if that reading did not change it.
-    pub fn changed_from(&self, number: ParameterNumber) -> Option<i64> {
+    pub fn previous_value(&self, number: ParameterNumber) -> Option<i64> {
         let was = self.earlier.as_ref()?.get(number)?;
         (self.base.as_ref()?.get(number)? != was).then_some(was)
     }

@@ -65,7 +65,7 @@ impl UnsavedChanges {
         &self.before
     }
 
-    pub(super) fn add_earlier(&mut self, earlier: &BTreeMap<u16, i64>) {
+    pub(super) fn add_saved_values(&mut self, earlier: &BTreeMap<u16, i64>) {
         for (number, before) in earlier {
             self.before.entry(*number).or_insert(*before);
         }
@@ -120,13 +120,13 @@ mod tests {
             let plan = plan_edits(&state, &image(&[(366, speed)])).unwrap().without_save();
             own.begin_plan(&plan);
             own.finish_plan(&plan);
-            now = now.overlaid_with(&image(&[(366, speed)]));
+            now = now.with_overlay(&image(&[(366, speed)]));
             own.read(&values(&now));
         }
         assert_eq!(own.for_drive(three), BTreeMap::from([(166, 350)]));
         assert!(own.for_drive(DriveNumber::FIRST).is_empty());
         let mut later = UnsavedChanges::default();
-        later.add_earlier(own.saved_values());
+        later.add_saved_values(own.saved_values());
         assert_eq!(later.for_drive(three), BTreeMap::from([(166, 350)]));
         // The device has lost its supply, or the values were written back.
         later.read(&values(&factory));

@@ -141,13 +141,13 @@ const WIRING: [&str; 4] = ["hd_wiring.bus", "hd_wiring.supply", "hd_wiring.drive
 fn wiring_ui(ui: &mut Ui, theme: &Theme) {
     folding_card(ui, theme, "wiring.title", |ui| {
         for note in WIRING {
-            paragraph(ui, theme.label(with_pins_unbroken(&translate(theme, note))));
+            paragraph(ui, theme.label(with_nonbreaking_pins(&translate(theme, note))));
         }
     });
 }
 
 /// Returns the text with each pin and its signal kept on the same line, such as `2 RS-485 − green`.
-fn with_pins_unbroken(text: &str) -> String {
+fn with_nonbreaking_pins(text: &str) -> String {
     let is_pin = |part: &str| part.starts_with(|first: char| first.is_ascii_digit()) && !part.contains(". ");
     let parts = text.split_inclusive(": ").flat_map(|part| part.split_inclusive(", "));
     let join = |part: &str| {
@@ -159,13 +159,13 @@ fn with_pins_unbroken(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{WIRING, with_pins_unbroken};
+    use super::{WIRING, with_nonbreaking_pins};
     use crate::devices::hiperdrive::state::TEXTS;
     use crate::ui::wiring::assert_notes;
 
     #[test]
     fn pin_and_signal_stay_on_one_line() {
-        let kept = with_pins_unbroken("Each drive: 1 RS-485 + white, 2 RS-485 − green, 6 GND blue.");
+        let kept = with_nonbreaking_pins("Each drive: 1 RS-485 + white, 2 RS-485 − green, 6 GND blue.");
         assert_eq!(kept.replace('\u{a0}', "_"), "Each drive: 1_RS-485_+_white, 2_RS-485_−_green, 6_GND_blue.");
     }
 

@@ -143,7 +143,7 @@ impl DriveParametersUiState {
         fits && match self.shown {
             ParameterFilter::All | ParameterFilter::Scale => true,
             ParameterFilter::Written => row.is_editable || !sought.is_empty(),
-            ParameterFilter::Changed => row.is_edited || row.changed_from.is_some(),
+            ParameterFilter::Changed => row.is_edited || row.previous_value.is_some(),
         }
     }
 
@@ -237,8 +237,8 @@ fn register_row(theme: &Theme, row: &Row) -> RegisterRow {
         range: words(row.range.as_ref()),
         differs: row.is_editable && !row.factory.is_empty() && !value.is_empty() && value != row.factory,
         default: row.factory.clone(),
-        changed: row.changed_from.is_some(),
-        before: row.changed_from.map(|was| was.to_string()).unwrap_or_default(),
+        changed: row.previous_value.is_some(),
+        before: row.previous_value.map(|was| was.to_string()).unwrap_or_default(),
         edited: row.is_edited,
         kept: row.kind.saved.then(|| translate(theme, "hd_params.is_kept")),
         read_only: row.not_editable_reason().map(|why| theme.format_text(&why)),

@@ -21,7 +21,7 @@ const BANK_CACHE_TIME: Duration = Duration::from_millis(200);
 const RETRY_PAUSE: Duration = Duration::from_millis(20);
 /// Number of consecutive frames with a wrong checksum after which noise is ruled out as the cause. The number is not
 /// documented (`U`).
-const WRONG_FRAMES: u32 = 16;
+const MAX_WRONG_FRAMES: u32 = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum NoFrame {
@@ -219,7 +219,7 @@ impl<'a> Master<'a> {
         if self.station.good_frames {
             return Err(failed);
         }
-        for _ in 0..WRONG_FRAMES {
+        for _ in 0..MAX_WRONG_FRAMES {
             match self.read_bus_position_once()? {
                 Ok(reading) => return Ok(reading),
                 Err(ExchangeError::Damage(ReplyDamage::Frame(_))) => {}

@@ -428,15 +428,15 @@ fn end_procedure(master: &mut Master<'_>, description: &Description, mode: Devic
             }
             Ok(())
         }
-        ProcedureKind::WiegandTest => ignore_refusal(master.write(procedure.command, WiegandCommand::Stop.byte())),
+        ProcedureKind::WiegandTest => ignore_rejection(master.write(procedure.command, WiegandCommand::Stop.byte())),
         ProcedureKind::DataWrite if master.read(procedure.status)? == DataStatus::Open.byte() => {
-            ignore_refusal(master.write(procedure.command, DataCommand::Cancel.byte()))
+            ignore_rejection(master.write(procedure.command, DataCommand::Cancel.byte()))
         }
         ProcedureKind::DataWrite | ProcedureKind::FilterSelection | ProcedureKind::Preset => Ok(()),
     }
 }
 
-fn ignore_refusal(ended: Result<(), Error>) -> Result<(), Error> {
+fn ignore_rejection(ended: Result<(), Error>) -> Result<(), Error> {
     match ended {
         Err(Error::Refused { .. }) => Ok(()),
         // It is unknown whether the command was received. The next exchange shows whether the encoder still replies.

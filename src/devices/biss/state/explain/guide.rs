@@ -27,8 +27,8 @@ pub fn procedure_step_text(step: ProcedureStep) -> Text {
         ProcedureStep::Run(run) => match run {
             MotorRun::CalibrationCounterclockwise => TEXTS.text("guide.run_calibration_ccw"),
             MotorRun::CalibrationClockwise => TEXTS.text("guide.run_calibration_cw"),
-            MotorRun::WiegandClockwise => with_revolutions(TEXTS.text("guide.run_wiegand_cw")),
-            MotorRun::WiegandCounterclockwise => with_revolutions(TEXTS.text("guide.run_wiegand_ccw")),
+            MotorRun::WiegandClockwise => add_revolutions(TEXTS.text("guide.run_wiegand_cw")),
+            MotorRun::WiegandCounterclockwise => add_revolutions(TEXTS.text("guide.run_wiegand_ccw")),
         },
         ProcedureStep::Enter(mode) => TEXTS.text("guide.enter").with_text("mode", self::mode_text(mode)),
         ProcedureStep::Conditions => TEXTS.text("guide.conditions"),
@@ -116,13 +116,13 @@ pub fn calibration_requirements_text() -> Text {
 
 /// Returns the requirements on the motor for a Wiegand test.
 pub fn wiegand_requirements_text() -> Text {
-    with_revolutions(speed_range_text(
+    add_revolutions(speed_range_text(
         TEXTS.text("mounting_card.wiegand_words"),
         MotorRun::WiegandClockwise.allowed_speeds(),
     ))
 }
 
-fn with_revolutions(text: Text) -> Text {
+fn add_revolutions(text: Text) -> Text {
     text.with("revolutions", WiegandResult::REVOLUTIONS)
 }
 

@@ -151,7 +151,7 @@ pub enum ActionEnd {
     /// The drive is no longer permitted to move.
     Locked(MotionLock),
     /// The request was rejected, and nothing was sent.
-    Refused(MotionRefusal),
+    Refused(MotionRejection),
     /// The drive did not obey a control word and stayed in this state.
     NoAnswer(State),
     NotStarted,
@@ -179,13 +179,13 @@ impl ActionEnd {
                 | ActionEnd::Arrived
                 | ActionEnd::Stopped
                 | ActionEnd::Replaced
-                | ActionEnd::Refused(MotionRefusal::NothingToPause | MotionRefusal::NothingToResume)
+                | ActionEnd::Refused(MotionRejection::NothingToPause | MotionRejection::NothingToResume)
         )
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MotionRefusal {
+pub enum MotionRejection {
     Locked(MotionLock),
     /// The requested speed or torque is 0 %.
     NoEffort,
@@ -278,7 +278,7 @@ impl TargetState {
     pub const ALL: [TargetState; 4] =
         [TargetState::Off, TargetState::Ready, TargetState::Operational, TargetState::Enabled];
 
-    pub(super) const fn next_higher(self) -> TargetState {
+    pub(super) const fn next_level(self) -> TargetState {
         match self {
             TargetState::Off => TargetState::Ready,
             TargetState::Ready => TargetState::Operational,
@@ -340,24 +340,24 @@ impl Permit {
     /// Checks whether a motion may begin or continue. `target` is the final position, if the motion has one.
     ///
     /// # Errors
-    /// Returns the [`MotionRefusal`] if the motion is not permitted.
-    pub fn check_request(&self, request: MotionRequest, target: Option<i32>) -> Result<(), MotionRefusal> {
+    /// Returns the [`MotionRejection`] if the motion is not permitted.
+    pub fn check_request(&self, request: MotionRequest, target: Option<i32>) -> Result<(), MotionRejection> {
         if !request.needs_motion() {
             return Ok(());
         }
         if let Some(lock) = self.locks.first() {
-            return Err(MotionRefusal::Locked(*lock));
+            return Err(MotionRejection::Locked(*lock));
         }
         if request.speed_torque().is_some_and(SpeedTorque::is_none) {
-            return Err(MotionRefusal::NoEffort);
+            return Err(MotionRejection::NoEffort);
         }
         if matches!(request, MotionRequest::Run { end: RunEnd::Endless, .. }) && !self.endless {
-            return Err(MotionRefusal::Endless);
+            return Err(MotionRejection::Endless);
         }
         match (target, self.limits) {
-            (_, None) => Err(MotionRefusal::Locked(MotionLock::Unread)),
+            (_, None) => Err(MotionRejection::Locked(MotionLock::Unread)),
             (Some(target), Some((low, high))) if !(low..=high).contains(&target) => {
-                Err(MotionRefusal::Outside { target, low, high })
+                Err(MotionRejection::Outside { target, low, high })
             }
             _ => Ok(()),
         }

@@ -1,7 +1,7 @@
 //! Reasons why a running action ends early.
 
 use super::{
-    ActionEnd, CONTACT_TIMEOUT, DeadMan, MotionIntent, MotionKind, MotionLock, MotionRefusal, MotionRequest, Permit,
+    ActionEnd, CONTACT_TIMEOUT, DeadMan, MotionIntent, MotionKind, MotionLock, MotionRejection, MotionRequest, Permit,
     Stage,
 };
 use crate::devices::hiperdrive::protocol::{ActualValues, StatusBit};
@@ -33,7 +33,7 @@ impl DeadMan {
     /// Pauses or resumes the job if requested. The request must directly follow the previous one, because a stop in
     /// between may have been missed.
     fn accept_pause_or_resume(&mut self, intent: &MotionIntent, permit: &Permit, now: Moment) {
-        let mark = self.mark_now(now);
+        let mark = self.current_mark(now);
         let Some(act) = &mut self.act else { return };
         let fresh = intent.drive == self.drive && intent.number == act.number + 1 && !intent.is_stale(now);
         let job = matches!(act.motion, Some(motion) if matches!(motion.kind, MotionKind::Job { .. }));
@@ -68,7 +68,7 @@ impl DeadMan {
         let is_out_of_contact = self.received.is_none_or(|(at, _)| now.duration_since(at) > CONTACT_TIMEOUT);
         let (down, acknowledges) = match (self.stage, act.request) {
             (Stage::Lead(lead), MotionRequest::Lead(_)) => {
-                (lead.only_removes_torque(state), lead.goal() == super::TargetState::Off)
+                (lead.is_torque_removal(state), lead.goal() == super::TargetState::Off)
             }
             (_, MotionRequest::Acknowledge) => (false, true),
             _ => (false, false),
@@ -99,7 +99,7 @@ impl DeadMan {
         let motion = act.motion?;
         match permit.check_request(motion.request, motion.kind.target()) {
             Ok(()) => self.watch_motion(now, actual, permit),
-            Err(MotionRefusal::Locked(lock)) => Some(ActionEnd::Locked(lock)),
+            Err(MotionRejection::Locked(lock)) => Some(ActionEnd::Locked(lock)),
             Err(refusal) => Some(ActionEnd::Refused(refusal)),
         }
     }
@@ -119,7 +119,7 @@ impl DeadMan {
         if intent.drive == self.drive && intent.number == number && intent.request == request {
             None
         } else if intent.request == MotionRequest::Resume && permit.doubted {
-            Some(ActionEnd::Refused(MotionRefusal::Locked(MotionLock::Outdated)))
+            Some(ActionEnd::Refused(MotionRejection::Locked(MotionLock::Outdated)))
         } else if rests || intent.number < number {
             Some(ActionEnd::Stopped)
         } else {

@@ -85,12 +85,12 @@ impl StopLevel {
 
 impl DeadMan {
     pub(super) fn advance_stage(&mut self, now: Moment, actual: ActualValues) {
-        let mark = self.mark_now(now);
+        let mark = self.current_mark(now);
         let has = |bit| actual.status.is_set(bit);
         let toggled = |acknowledged| has(StatusBit::SetpointAcknowledged) != acknowledged;
         match self.stage {
             Stage::Rest { moves } => self.supervise_at_rest(now, actual, moves),
-            Stage::Lead(lead) => self.continue_lead(now, actual, lead),
+            Stage::Lead(lead) => self.continue_transition(now, actual, lead),
             Stage::Arm { since, acknowledged } => {
                 if self.is_speed_mode() || !toggled(acknowledged) {
                     // The drive has received the control word.
@@ -154,7 +154,7 @@ impl DeadMan {
         let moved = self.stage.has_motion();
         self.end_action(how);
         if moved {
-            let (begun, word) = (self.mark_now(now), self.sent.control.with_stop());
+            let (begun, word) = (self.current_mark(now), self.sent.control.with_stop());
             self.stage = Stage::Stop { level: StopLevel::Mode, since: now, begun, word };
         }
     }
@@ -190,7 +190,7 @@ impl DeadMan {
                 TargetState::Operational | TargetState::Ready => StopLevel::Off,
                 TargetState::Off => StopLevel::Close,
             };
-            let (begun, word) = (self.mark_now(now), self.rest_control_word());
+            let (begun, word) = (self.current_mark(now), self.rest_control_word());
             self.stage = Stage::Stop { level, since: now, begun, word };
         }
     }

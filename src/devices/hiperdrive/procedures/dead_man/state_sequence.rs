@@ -2,7 +2,7 @@
 //! time limit expires. See section 3 of the reference and `devices/hiperdrive/protocol/recipe`.
 
 use super::{
-    ActionEnd, DeadMan, MAX_REPORT_DELAY, MotionKind, MotionRefusal, ReportMark, STEP, Stage, TargetState, UserAction,
+    ActionEnd, DeadMan, MAX_REPORT_DELAY, MotionKind, MotionRejection, ReportMark, STEP, Stage, TargetState, UserAction,
 };
 use crate::devices::hiperdrive::protocol::{ActualValues, ControlBit, ControlWord, State, StatusBit, StatusWord};
 use crate::units::Moment;
@@ -59,7 +59,7 @@ impl StateSequencer {
     }
 
     /// Returns whether the sequence only removes torque or keeps it off, which needs no refresh.
-    pub(super) fn only_removes_torque(&self, state: State) -> bool {
+    pub(super) fn is_torque_removal(&self, state: State) -> bool {
         self.goal <= TargetState::from_state(state) || self.goal == TargetState::Off
     }
 
@@ -87,7 +87,7 @@ impl StateSequencer {
             (_, goal) if after_run && goal > TargetState::Ready => W::READY,
             (_, goal) => match TargetState::from_state(state) {
                 level if level > goal => goal.control_word(),
-                level if level < goal => level.next_higher().control_word(),
+                level if level < goal => level.next_level().control_word(),
                 // Nothing else starts before the drive is at rest.
                 _ if state == State::Moving => W::ENABLED,
                 _ if after_run && goal == TargetState::Ready && status.is_set(StatusBit::SetpointAcknowledged) => {
@@ -103,21 +103,21 @@ impl StateSequencer {
 
 impl DeadMan {
     /// Begins to bring the drive to the requested state.
-    pub(super) fn lead_to(
+    pub(super) fn begin_transition(
         &mut self,
         now: Moment,
         actual: ActualValues,
         goal: TargetState,
-    ) -> Result<(), MotionRefusal> {
+    ) -> Result<(), MotionRejection> {
         if actual.status.is_set(StatusBit::Fault) && goal != TargetState::Off {
-            return Err(MotionRefusal::Fault);
+            return Err(MotionRejection::Fault);
         }
         self.stage = Stage::Lead(StateSequencer::new(goal));
         self.advance_stage(now, actual);
         Ok(())
     }
 
-    pub(super) fn acknowledge(&mut self, now: Moment, actual: ActualValues) -> Result<(), MotionRefusal> {
+    pub(super) fn acknowledge(&mut self, now: Moment, actual: ActualValues) -> Result<(), MotionRejection> {
         if matches!(actual.status.state(), State::Fault | State::Locked) {
             self.stage = Stage::Lead(StateSequencer::out_of_fault());
             self.advance_stage(now, actual);
@@ -127,8 +127,8 @@ impl DeadMan {
         Ok(())
     }
 
-    pub(super) fn continue_lead(&mut self, now: Moment, actual: ActualValues, mut lead: StateSequencer) {
-        let mark = self.mark_now(now);
+    pub(super) fn continue_transition(&mut self, now: Moment, actual: ActualValues, mut lead: StateSequencer) {
+        let mark = self.current_mark(now);
         match lead.next_step(mark, actual.status, self.after_run) {
             StateSequenceStep::By(word) => {
                 if lead.word.is_none_or(|(sent, _)| sent != word) {
@@ -155,7 +155,7 @@ impl DeadMan {
     fn prepare_motion(&mut self, now: Moment, actual: ActualValues, kind: MotionKind) {
         let acknowledged = actual.status.is_set(StatusBit::SetpointAcknowledged);
         self.after_run |= matches!(kind, MotionKind::Run { .. });
-        self.stage = Stage::Arm { since: self.mark_now(now), acknowledged };
+        self.stage = Stage::Arm { since: self.current_mark(now), acknowledged };
     }
 
     /// Holds the current state, or a lower one, when a sequence has been abandoned.

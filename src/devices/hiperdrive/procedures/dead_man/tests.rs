@@ -5,7 +5,7 @@ use std::time::Duration;
 use proptest::prelude::*;
 
 use super::{
-    ActionEnd, DeadMan, LEVEL_TIME, LimitSide, MotionIntent, MotionLock, MotionRefusal, MotionRequest, OutsideLimits,
+    ActionEnd, DeadMan, LEVEL_TIME, LimitSide, MotionIntent, MotionLock, MotionRejection, MotionRequest, OutsideLimits,
     Permit, Phase, SpeedTorque, TargetState,
 };
 use crate::devices::hiperdrive::protocol::{
@@ -16,7 +16,7 @@ use crate::units::Moment;
 const FULL: SpeedTorque = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
 
 /// Bits that are never sent: the reserved bits 1, 2, 11 and 13 to 15, and the jog bits.
-const NEVER: u16 = 0b1110_1011_0000_0110;
+const FORBIDDEN_BITS: u16 = 0b1110_1011_0000_0110;
 
 /// Everything that happens in one interval.
 #[derive(Clone, Debug)]
@@ -202,7 +202,7 @@ const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Cloc
 /// moves. A running motion continues, and a paused one does not resume (issue 21.3).
 #[test]
 fn outdated_limits_prevent_motion_start() {
-    let doubted = ActionEnd::Refused(MotionRefusal::Locked(MotionLock::Outdated));
+    let doubted = ActionEnd::Refused(MotionRejection::Locked(MotionLock::Outdated));
     for wish in [CLOCKWISE, MotionRequest::Move { target: 500, effort: FULL }] {
         let mut looks = DeadManBench::new();
         looks.look(3, 0x2A31, 0);
@@ -263,7 +263,7 @@ fn late_pause_or_resume_reports_job_end() {
     looks.look(100, 0x2A37, 0);
     looks.act(MotionRequest::Resume);
     looks.look(5, 0x2A37, 0);
-    assert_eq!(looks.man.last_end(), Some((3, ActionEnd::Refused(MotionRefusal::NothingToResume))));
+    assert_eq!(looks.man.last_end(), Some((3, ActionEnd::Refused(MotionRejection::NothingToResume))));
 }
 
 /// Another master may change the limits, or the shaft may be pushed, just before a motion starts. A drive that is
@@ -289,7 +289,7 @@ fn drive_outside_limits_does_not_start() {
         }
         looks.permit = Permit::for_range(-100, 100);
         assert!(looks.look(1, 0x2A37, position).control.is_at_rest());
-        let refused = ActionEnd::Refused(MotionRefusal::Outward { position, low: -100, high: 100 });
+        let refused = ActionEnd::Refused(MotionRejection::Outward { position, low: -100, high: 100 });
         assert_eq!(looks.man.last_end(), Some((1, refused)));
     }
 }
@@ -366,7 +366,7 @@ proptest! {
             let permit = Permit { locks, endless, ..Permit::for_range(-1000, 1000) };
             let sent = man.next(now, heard(said), &intent, &permit);
             let word = sent.control;
-            prop_assert_eq!(word.to_u16() & NEVER, 0);
+            prop_assert_eq!(word.to_u16() & FORBIDDEN_BITS, 0);
             let own = intent.drive == DriveNumber::FIRST;
             let wanted = own && intent.request.needs_motion() && !intent.is_stale(now) && !locked;
             let faulty = said.is_some_and(|(status, _)| status & 8 != 0);

@@ -13,7 +13,7 @@
 //! repeatability of a drive is ±1° (manual, technical data; reference, section 5).
 
 use super::{
-    ActionEnd, DeadMan, Motion, MotionKind, MotionLock, MotionRefusal, MotionRequest, NOT_REACHED_TIME, Permit, Stage,
+    ActionEnd, DeadMan, Motion, MotionKind, MotionLock, MotionRejection, MotionRequest, NOT_REACHED_TIME, Permit, Stage,
 };
 use crate::devices::hiperdrive::protocol::{ActualValues, Direction, RunEnd, State, StatusBit};
 use crate::units::Moment;
@@ -195,9 +195,9 @@ impl Permit {
     /// the user allows outward motion while the button is pressed.
     ///
     /// # Errors
-    /// Returns [`MotionRefusal::Outward`] if the motion would take the drive further outside, or
-    /// [`MotionRefusal::Unclear`] if it could do so.
-    pub fn check_position_limits(&self, request: MotionRequest, actual: ActualValues) -> Result<(), MotionRefusal> {
+    /// Returns [`MotionRejection::Outward`] if the motion would take the drive further outside, or
+    /// [`MotionRejection::Unclear`] if it could do so.
+    pub fn check_position_limits(&self, request: MotionRequest, actual: ActualValues) -> Result<(), MotionRejection> {
         let direction = match request {
             MotionRequest::Jog { outward: true, .. } | MotionRequest::Run { end: RunEnd::Endless, .. } => return Ok(()),
             MotionRequest::Jog { direction, .. } | MotionRequest::Run { direction, .. } => Some(direction),
@@ -209,9 +209,9 @@ impl Permit {
             return Ok(());
         };
         match outside {
-            OutsideLimits::Unclear => Err(MotionRefusal::Unclear { position, low, high }),
+            OutsideLimits::Unclear => Err(MotionRejection::Unclear { position, low, high }),
             OutsideLimits::At(side) if direction == Some(side.outward_direction()) => {
-                Err(MotionRefusal::Outward { position, low, high })
+                Err(MotionRejection::Outward { position, low, high })
             }
             OutsideLimits::At(_) => Ok(()),
         }
@@ -220,7 +220,7 @@ impl Permit {
 
 impl DeadMan {
     pub(super) fn watch_motion(&mut self, now: Moment, actual: ActualValues, permit: &Permit) -> Option<ActionEnd> {
-        let mark = self.mark_now(now);
+        let mark = self.current_mark(now);
         let act = self.act.as_mut()?;
         let motion = act.motion.as_ref()?;
         if !self.stage.has_motion() {
@@ -229,7 +229,7 @@ impl DeadMan {
         let Some(watch) = &mut act.watch else {
             // The motion has not started yet, so the conditions for a start apply. This includes the first report after
             // the drive was brought to the required state.
-            let doubted = permit.doubted.then_some(MotionRefusal::Locked(MotionLock::Outdated));
+            let doubted = permit.doubted.then_some(MotionRejection::Locked(MotionLock::Outdated));
             let refusal = doubted.or_else(|| permit.check_position_limits(motion.request, actual).err());
             if refusal.is_none() && self.stage.has_motion() {
                 act.watch = Some(ActionMonitor::start(motion, actual, permit));

@@ -67,13 +67,13 @@ impl Master<'_> {
         ];
         let mut refused = None;
         for (layout, kind) in tries {
-            let matters = refused.as_ref().is_none_or(|refusal| avoids_refusal(refusal, layout, kind));
+            let matters = refused.as_ref().is_none_or(|refusal| avoids_rejection(refusal, layout, kind));
             if !matters {
                 continue;
             }
             match self.open_with_layout(layout, kind, port) {
                 Err(Error::Refused { refusal, .. }) => match refusal.extended.first() {
-                    Some(&extended @ (CONNECTION_IN_USE | OWNED_BY_OTHER)) if is_connection_refusal(&refusal) => {
+                    Some(&extended @ (CONNECTION_IN_USE | OWNED_BY_OTHER)) if is_connection_rejection(&refusal) => {
                         return Err(Error::OtherMaster { extended });
                     }
                     _ => refused = Some(refusal),
@@ -178,13 +178,13 @@ fn multicast_address(to: SocketAddress) -> Option<SocketAddrV4> {
     to.address.is_multicast().then(|| SocketAddrV4::new(to.address, to.port))
 }
 
-fn is_connection_refusal(refusal: &ErrorReply) -> bool {
+fn is_connection_rejection(refusal: &ErrorReply) -> bool {
     refusal.status == GeneralStatus::CONNECTION
 }
 
 /// Returns whether this layout and network type avoid the reason for the rejection.
-fn avoids_refusal(refusal: &ErrorReply, layout: Layout, kind: NetworkType) -> bool {
-    let first = refusal.extended.first().filter(|_| is_connection_refusal(refusal));
+fn avoids_rejection(refusal: &ErrorReply, layout: Layout, kind: NetworkType) -> bool {
+    let first = refusal.extended.first().filter(|_| is_connection_rejection(refusal));
     match first {
         Some(code) if KINDS.contains(code) => kind == NetworkType::Multicast,
         Some(code) if SIZES.contains(code) => !layout.pkw,

@@ -18,7 +18,7 @@ impl Master<'_> {
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
-    pub(super) fn find_refusal_reason(
+    pub(super) fn find_rejection_reason(
         &mut self,
         requested: RequestedItem,
         number: ParameterNumber,
@@ -55,7 +55,7 @@ impl Master<'_> {
         }
     }
 
-    pub(super) fn write_refusal_reason(
+    pub(super) fn write_rejection_reason(
         &mut self,
         number: ParameterNumber,
         value: i64,
@@ -71,7 +71,7 @@ impl Master<'_> {
                     None => Error::Refused { requested: RequestedItem::Set(number), refusal },
                 })
             }
-            _ => self.find_refusal_reason(RequestedItem::Set(number), number, refusal),
+            _ => self.find_rejection_reason(RequestedItem::Set(number), number, refusal),
         }
     }
 

@@ -56,7 +56,7 @@ fn writes_and_saves_differences_once() {
 
 #[test]
 fn volatile_parameters_need_no_save() {
-    let device = image(&[1]).overlaid_with(&image_with_values(&[(170, 4096)]));
+    let device = image(&[1]).with_overlay(&image_with_values(&[(170, 4096)]));
     let plan = plan_edits(&device, &image_with_values(&[(170, 100)]), &Positions::new()).unwrap();
     assert_eq!((steps(&plan), plan.write_cycles()), (vec![(170, 100)], 0));
 }
@@ -71,7 +71,7 @@ fn writes_scale_before_speed_and_limits() {
 
 #[test]
 fn requests_drive_first_and_releases_last() {
-    let device = image(&[1, 3]).overlaid_with(&image_with_values(&[(152, 0)]));
+    let device = image(&[1, 3]).with_overlay(&image_with_values(&[(152, 0)]));
     let wanted = image_with_values(&[(24, 1), (152, 1), (166, 200), (352, 0), (366, 200)]);
     let plan = plan_edits(&device, &wanted, &Positions::new()).unwrap();
     assert_eq!(steps(&plan), [(152, 1), (24, 1), (166, 200), (366, 200), (352, 0), (47, 1)]);
@@ -92,7 +92,7 @@ fn writes_limits_in_accepted_order() {
         ("the drive above, overlapping", (-100, 100), 200, (0, 300), [160, 158]),
     ];
     for (name, old, position, new, order) in cases {
-        let device = image(&[1]).overlaid_with(&image_with_values(&[(158, old.0), (160, old.1)]));
+        let device = image(&[1]).with_overlay(&image_with_values(&[(158, old.0), (160, old.1)]));
         let wanted = image_with_values(&[(158, new.0), (160, new.1)]);
         let plan = plan_edits(&device, &wanted, &at(1, position)).unwrap();
         let (mut lower, mut upper) = old;
@@ -120,7 +120,7 @@ proptest::proptest! {
         position in -110i32..110,
     ) {
         let (old, new) = ((old.0, old.0 + old.1), (new.0, new.0 + new.1));
-        let device = image(&[1]).overlaid_with(&image_with_values(&[(158, old.0), (160, old.1)]));
+        let device = image(&[1]).with_overlay(&image_with_values(&[(158, old.0), (160, old.1)]));
         let plan = plan_edits(&device, &image_with_values(&[(158, new.0), (160, new.1)]), &at(1, position));
         let is_inside = (new.0..=new.1).contains(&i64::from(position));
         // Without differences, nothing is checked.
@@ -171,7 +171,7 @@ fn rejects_crossed_limits() {
 #[test]
 fn rejects_unwritable_parameters() {
     let device =
-        image(&[1]).overlaid_with(&image_with_values(&[(101, 0), (104, 0), (105, 0), (107, 0), (47, 0), (199, 0)]));
+        image(&[1]).with_overlay(&image_with_values(&[(101, 0), (104, 0), (105, 0), (107, 0), (47, 0), (199, 0)]));
     let refused = |own, value| plan_edits(&device, &image_with_values(&[(own, value)]), &Positions::new()).unwrap_err();
     let item = |own| Item(parameter(own));
     assert_eq!(refused(101, 0x0400), PlanError::Moves { item: item(101) });
@@ -192,8 +192,8 @@ fn rejects_unwritable_parameters() {
 /// of the keys on the drive can be up to the whole travel of 1024 turns (issue 21.10).
 #[test]
 fn plans_no_limit_beyond_travel() {
-    let jogs = |image: Image| image.overlaid_with(&image_with_values(&[(170, 4096), (176, -4096)]));
-    let scaled = image(&[1, 3]).overlaid_with(&image_with_values(&[(154, 400), (156, 256), (158, -1000), (160, 1000)]));
+    let jogs = |image: Image| image.with_overlay(&image_with_values(&[(170, 4096), (176, -4096)]));
+    let scaled = image(&[1, 3]).with_overlay(&image_with_values(&[(154, 400), (156, 256), (158, -1000), (160, 1000)]));
     let factory = image(&[1, 3]);
     type Case<'c> = (&'c Image, &'c [(u16, i64)], Option<(u16, i64)>);
     let cases: [Case<'_>; 12] = [
@@ -236,7 +236,7 @@ fn plans_no_limit_beyond_travel() {
         assert!(matches!(error.range, ParameterRange::Within(_, high) if high == most), "{variant:?}");
     }
     // Even if a change of scale moves the limits beyond the travel, no position beyond the travel can be set.
-    let moved = image(&[1]).overlaid_with(&image_with_values(&[(154, 400), (156, 256)]));
+    let moved = image(&[1]).with_overlay(&image_with_values(&[(154, 400), (156, 256)]));
     let PlanError::OutOfRange(error) = plan_set_position(&moved, drive(1), 300_000).unwrap_err() else { panic!() };
     assert_eq!((error.number, error.range), (parameter(198), ParameterRange::Within(-204_800, 204_800)));
 }
@@ -276,7 +276,7 @@ fn rounds_position_to_multiple_of_64() {
 
 #[test]
 fn rejects_set_position_beyond_limits() {
-    let device = image(&[1]).overlaid_with(&image_with_values(&[(158, 0), (160, 100)]));
+    let device = image(&[1]).with_overlay(&image_with_values(&[(158, 0), (160, 100)]));
     let refused = |position| plan_set_position(&device, drive(1), position).map(|plan| steps(&plan)).unwrap_err();
     let outside =
         |position, becomes| PlanError::ReferenceOutside { drive: drive(1), position, becomes, lower: 0, upper: 100 };

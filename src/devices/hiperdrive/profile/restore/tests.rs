@@ -30,7 +30,7 @@ fn written(restore: &Restore) -> Vec<u16> {
 #[test]
 fn writes_only_differences() {
     let mut device = device();
-    device.image = device.image.overlaid_with(&image_with_values(&[(166, 100), (398, 64)]));
+    device.image = device.image.with_overlay(&image_with_values(&[(166, 100), (398, 64)]));
     let restore = plan_restore(&profile(), &device, NONE).unwrap();
     assert_eq!(written(&restore), [166]);
     assert_eq!(restore.plan.ops.last(), Some(&Op::Service(Service::Save)));
@@ -44,7 +44,7 @@ fn writes_only_differences() {
 #[test]
 fn skips_and_names_empty_ports() {
     let mut device = device();
-    device.image = image(&[1]).overlaid_with(&image_with_values(&[(166, 100)]));
+    device.image = image(&[1]).with_overlay(&image_with_values(&[(166, 100)]));
     device.identity = identity("100", &[(1, "4711")]);
     let restore = plan_restore(&profile(), &device, NONE).unwrap();
     assert_eq!((written(&restore), restore.missing.len()), (vec![166], 13));
@@ -73,7 +73,7 @@ fn rejects_other_device_or_drive() {
 fn rejects_other_device_or_drive_type() {
     let mut device = device();
     device.identity.topology = Some(Topology::Adapter);
-    device.image = image(&[1]).overlaid_with(&image_with_values(&[(166, 100)]));
+    device.image = image(&[1]).with_overlay(&image_with_values(&[(166, 100)]));
     let error = plan_restore(&profile(), &device, OTHER).unwrap_err();
     assert_eq!(error, TypeMismatch::Device { profile: Topology::Hub4, device: Topology::Adapter }.into());
     assert_eq!(error.to_string(), "the profile is for a HIPERDRIVE HUB-4, but the device is a HIPERDRIVE SINGLE");
@@ -102,7 +102,7 @@ fn marked_parameters_stay_on_own_drive() {
     let mark = |own| MountingMark { item: Item(parameter(own)), meaning: String::new(), unknown: Default::default() };
     marked.mounting.extend([mark(160), mark(360)]);
     let mut device = device();
-    device.image = device.image.overlaid_with(&image_with_values(&[(160, 1000), (360, 1000)]));
+    device.image = device.image.with_overlay(&image_with_values(&[(160, 1000), (360, 1000)]));
     device.identity = identity("100", &[(1, "4711"), (3, "5000")]);
     let restore = plan_restore(&marked, &device, OTHER).unwrap();
     assert_eq!((written(&restore), restore.mounting_left), (vec![160], vec![Item(parameter(360))]));
@@ -115,7 +115,7 @@ fn marked_parameters_stay_on_own_drive() {
 #[test]
 fn names_differences_by_drive() {
     let mut right = profile();
-    right.image = image(&[1, 3, 4]).overlaid_with(&image_with_values(&[(24, 1), (166, 100), (366, 200)]));
+    right.image = image(&[1, 3, 4]).with_overlay(&image_with_values(&[(24, 1), (166, 100), (366, 200)]));
     right.image.values.remove(&parameter(190));
     let comparison = profile().compare(&right);
     let differences = comparison.differences();
@@ -154,7 +154,7 @@ fn supplied_profiles_plan_expected_writes() {
         };
         assert_eq!(restore.plan.ops.iter().filter_map(write).collect::<Vec<_>>(), writes, "{name}");
         assert_eq!((restore.missing, restore.mounting_left), (Vec::new(), Vec::new()), "{name}");
-        let after = now.image.overlaid_with(&profile.image);
+        let after = now.image.with_overlay(&profile.image);
         assert_eq!(after.scale(drive(1)).map(|scale| scale.steps_per_turn()), Some(steps), "{name}");
     }
 }

@@ -231,7 +231,7 @@ fn converts_steps_to_turns_and_millimetres() {
         [(256, 1, 1.0, 183), (400, 256, 1.0, 2), (400, 256, 5.0, 6), (20, 256, 1.0, 1), (65_535, 1, 1e12, u32::MAX)]
     {
         let scale = PositionScale::new(numerator, denominator).unwrap();
-        assert_eq!(scale.steps_of_degrees(degrees), steps);
+        assert_eq!(scale.degrees_to_steps(degrees), steps);
     }
     let scale = |pitch, step| PositionScale::for_spindle(millimetres(pitch), millimetres(step));
     let factors = |scale: PositionScale| (scale.numerator(), scale.denominator());

@@ -207,7 +207,7 @@ impl Axis {
             && act == ended_act
             && let (Some(position), Some(scale)) = (seen.position, seen.scale)
         {
-            let allowed = scale.steps_of_degrees(1.0).into();
+            let allowed = scale.degrees_to_steps(1.0).into();
             let outcome = Outcome { target, position, ended, allowed };
             if let Some(place) = self.outcomes.get_mut(place as usize) {
                 *place = Some(outcome);

@@ -244,7 +244,7 @@ impl Axis {
                 lacks(seen.limits == Some(taught), "hd_axis.needs_limits")
             }
             AxisStep::Test => {
-                let reached = |place| self.outcome_of(place).is_some_and(|own| own.is_good());
+                let reached = |place| self.test_outcome(place).is_some_and(|own| own.is_good());
                 lacks(TestTarget::ALL.into_iter().all(reached), "hd_axis.needs_test")
             }
             AxisStep::Save => lacks(self.saved, "hd_axis.needs_save"),

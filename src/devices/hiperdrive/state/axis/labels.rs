@@ -102,7 +102,8 @@ pub fn finding_text(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Te
             Some(TEXTS.text("hd_axis.found_lower").with_text("position", mm(axis.entries.lower_limit(ruler).ok()?)))
         }
         AxisStep::Test => {
-            let good = TestTarget::ALL.into_iter().filter_map(|place| axis.outcome_of(place)).filter(Outcome::is_good);
+            let good =
+                TestTarget::ALL.into_iter().filter_map(|place| axis.test_outcome(place)).filter(Outcome::is_good);
             let worst = good.clone().map(|own| own.position_deviation().abs()).max()?;
             let text = TEXTS.text("hd_axis.found_test").with("count", good.count());
             Some(text.with_text("missed", millimetres_text(ruler, worst)))

@@ -85,7 +85,7 @@ fn step_texts(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> (Text, Vec<Text
     let outcomes: Vec<Text> = TestTarget::ALL
         .into_iter()
         .filter_map(|place| {
-            let outcome = axis.outcome_of(place)?;
+            let outcome = axis.test_outcome(place)?;
             let line = TEXTS.text("hd_axis.report_place").with_text("place", labels::target_text(place));
             Some(line.with_text("outcome", labels::outcome_text(&outcome, seen)))
         })

@@ -75,7 +75,7 @@ impl StandstillMonitor {
 
 fn shift(before: &StandstillReading, now: &StandstillReading, is_interrupted: bool) -> Option<PositionChange> {
     let way = i64::from(now.position) - i64::from(before.position);
-    let allowed = |degrees: f64| way.abs() <= i64::from(now.scale.steps_of_degrees(degrees));
+    let allowed = |degrees: f64| way.abs() <= i64::from(now.scale.degrees_to_steps(degrees));
     // Each session has its own clock.
     let elapsed = now.at.zip(before.at).filter(|_| !is_interrupted).map(|(now, before)| now.duration_since(before));
     let turned = |elapsed: Duration| FASTEST_RPM * 6.0 * (elapsed + MAX_REPORT_DELAY).as_secs_f64();

@@ -106,7 +106,7 @@ impl Power {
             before,
             kept: before.scale == seen.scale && before.limits == seen.limits && seen.requested == Some(true),
             moved: position.zip(before.position).map(|(now, own)| i64::from(now) - i64::from(own)),
-            allowed: scale.steps_of_degrees(READJUSTMENT_DEG).into(),
+            allowed: scale.degrees_to_steps(READJUSTMENT_DEG).into(),
             restart,
         }
     }

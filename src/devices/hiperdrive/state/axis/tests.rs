@@ -335,20 +335,21 @@ fn missed_target_fails_test() {
     let (mut axis, mut seen) = at_test_step();
     // 1° at 400 steps per turn is 1.1 steps, rounded up to two.
     go(&mut axis, &mut seen, TestTarget::Middle, 503);
-    assert!(!axis.outcome_of(TestTarget::Middle).unwrap().is_good());
+    assert!(!axis.test_outcome(TestTarget::Middle).unwrap().is_good());
     go(&mut axis, &mut seen, TestTarget::Middle, 498);
-    assert!(axis.outcome_of(TestTarget::Middle).unwrap().is_good());
+    assert!(axis.test_outcome(TestTarget::Middle).unwrap().is_good());
     let DriveRequest::Move(target) = axis.request(AxisButton::Go(TestTarget::Upper), &seen).unwrap() else {
         panic!("no move")
     };
     axis.record_test_move_start(TestTarget::Upper, target, 9);
     // The end of an earlier action does not count for this one.
     axis.update(&seen);
-    assert_eq!((axis.running_test_target(), axis.outcome_of(TestTarget::Upper)), (Some(TestTarget::Upper), None));
+    assert_eq!((axis.running_test_target(), axis.test_outcome(TestTarget::Upper)), (Some(TestTarget::Upper), None));
     seen.ended = Some((9, ActionEnd::Stopped));
     axis.update(&seen);
     assert!(
-        axis.outcome_of(TestTarget::Upper).is_some_and(|own| !own.is_good()) && axis.check_can_continue(&seen).is_err()
+        axis.test_outcome(TestTarget::Upper).is_some_and(|own| !own.is_good())
+            && axis.check_can_continue(&seen).is_err()
     );
 }
 

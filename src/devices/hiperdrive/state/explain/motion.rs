@@ -5,7 +5,7 @@ use crate::app::explain::link_error_text;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::MotionSnapshot;
 use crate::devices::hiperdrive::procedures::cyclic::{ConnectionLoss, ParameterReading, ParameterResult};
-use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock, MotionRefusal, Phase, TargetState};
+use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock, MotionRejection, Phase, TargetState};
 use crate::devices::hiperdrive::protocol::{ParameterNumber, State};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -22,31 +22,31 @@ pub fn lock_text(lock: MotionLock) -> Text {
 }
 
 /// Explains why a request was rejected and what to do. `place` formats a position in the user's unit.
-pub fn refusal_text(refusal: MotionRefusal, place: impl Fn(i32) -> Text) -> Text {
+pub fn refusal_text(refusal: MotionRejection, place: impl Fn(i32) -> Text) -> Text {
     match refusal {
-        MotionRefusal::Locked(own) => lock_text(own),
-        MotionRefusal::NoEffort => TEXTS.text("hd_refused.no_effort"),
-        MotionRefusal::Outside { target, low, high } => TEXTS
+        MotionRejection::Locked(own) => lock_text(own),
+        MotionRejection::NoEffort => TEXTS.text("hd_refused.no_effort"),
+        MotionRejection::Outside { target, low, high } => TEXTS
             .text("hd_refused.outside")
             .with_text("target", place(target))
             .with_text("low", place(low))
             .with_text("high", place(high)),
-        MotionRefusal::Outward { position, low, high } => TEXTS
+        MotionRejection::Outward { position, low, high } => TEXTS
             .text("hd_refused.outward")
             .with_text("position", place(position))
             .with_text("low", place(low))
             .with_text("high", place(high)),
-        MotionRefusal::Unclear { position, low, high } => TEXTS
+        MotionRejection::Unclear { position, low, high } => TEXTS
             .text("hd_refused.unclear")
             .with_text("position", place(position))
             .with_text("low", place(low))
             .with_text("high", place(high)),
-        MotionRefusal::Endless => TEXTS.text("hd_refused.endless"),
-        MotionRefusal::Fault => TEXTS.text("hd_refused.fault"),
-        MotionRefusal::SwitchOnLock => TEXTS.text("hd_refused.lock"),
-        MotionRefusal::NothingToPause => TEXTS.text("hd_refused.nothing_to_pause"),
-        MotionRefusal::NothingToResume => TEXTS.text("hd_refused.nothing_to_resume"),
-        MotionRefusal::Absent => TEXTS.text("hd_refused.absent"),
+        MotionRejection::Endless => TEXTS.text("hd_refused.endless"),
+        MotionRejection::Fault => TEXTS.text("hd_refused.fault"),
+        MotionRejection::SwitchOnLock => TEXTS.text("hd_refused.lock"),
+        MotionRejection::NothingToPause => TEXTS.text("hd_refused.nothing_to_pause"),
+        MotionRejection::NothingToResume => TEXTS.text("hd_refused.nothing_to_resume"),
+        MotionRejection::Absent => TEXTS.text("hd_refused.absent"),
     }
 }
 

@@ -6,7 +6,7 @@ use super::{device_error_text, end_severity, end_text, lock_text, plan_error_tex
 use crate::app::explain::literal_text;
 use crate::app::{Language, Severity, Text};
 use crate::buses::ethernet_ip::protocol::{AddressError, GeneralStatus, Service};
-use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock, MotionRefusal};
+use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock, MotionRejection};
 use crate::devices::hiperdrive::procedures::{
     Error, ErrorReply as Refused, LateReplyError, ReplyDamage, RequestedItem, WrongLength,
 };
@@ -156,14 +156,14 @@ fn plan_errors_and_motion_ends_show_remedy() {
     warnings.iter().for_each(|own| assert_complete(&warning_text(own), 2));
     let locks = [MotionLock::Unread, MotionLock::NoTimeout, MotionLock::LimitsUnconfirmed, MotionLock::NotRequested];
     let refusals = [
-        MotionRefusal::NoEffort,
-        MotionRefusal::Outside { target: 3, low: 1, high: 2 },
-        MotionRefusal::Endless,
-        MotionRefusal::Fault,
-        MotionRefusal::SwitchOnLock,
-        MotionRefusal::NothingToPause,
-        MotionRefusal::NothingToResume,
-        MotionRefusal::Absent,
+        MotionRejection::NoEffort,
+        MotionRejection::Outside { target: 3, low: 1, high: 2 },
+        MotionRejection::Endless,
+        MotionRejection::Fault,
+        MotionRejection::SwitchOnLock,
+        MotionRejection::NothingToPause,
+        MotionRejection::NothingToResume,
+        MotionRejection::Absent,
     ];
     let bad = [
         ActionEnd::RangeEnd,

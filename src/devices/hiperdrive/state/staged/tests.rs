@@ -110,8 +110,8 @@ fn edits_survive_rereading() {
     now.values.extend(image(&[(24, 7), (186, 30)]).values);
     staged.refresh(now);
     assert_eq!(staged.changed_values(), image(&[(166, 200)]), "24 is as it was wanted");
-    assert_eq!((staged.value(number(186)), staged.changed_from(number(186))), (Some(30), Some(20)));
-    assert_eq!(staged.changed_from(number(166)), None);
+    assert_eq!((staged.value(number(186)), staged.previous_value(number(186))), (Some(30), Some(20)));
+    assert_eq!(staged.previous_value(number(166)), None);
     staged.undo();
     assert_eq!(staged.value(number(186)), Some(30), "in the steps before too");
     let mut without = read();

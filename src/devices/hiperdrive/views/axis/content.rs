@@ -84,7 +84,7 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, ent
         AxisStep::Reference => reference_ui(ui, theme, shown, entries),
         AxisStep::Test => {
             for own in TestTarget::ALL {
-                let Some(outcome) = shown.axis.outcome_of(own) else { continue };
+                let Some(outcome) = shown.axis.test_outcome(own) else { continue };
                 let ink = if outcome.is_good() { theme.palette.good } else { theme.palette.bad };
                 let place = theme.format_text(&labels::target_text(own));
                 let words = theme.format_text(&labels::outcome_text(&outcome, shown.seen));
@@ -233,7 +233,7 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
             });
             if shown.axis.running_test_target() == Some(own) {
                 ui.label(theme.label(translate(theme, "hd_axis.goes")));
-            } else if let Some(outcome) = shown.axis.outcome_of(own) {
+            } else if let Some(outcome) = shown.axis.test_outcome(own) {
                 let (icon, ink) = match outcome.is_good() {
                     true => (icons::CHECK, theme.palette.good),
                     false => (icons::X, theme.palette.bad),

@@ -59,7 +59,7 @@ fn changed_value_undoes_later_steps() {
     let tested = || {
         let (mut axis, mut seen) = at_test_step();
         go(&mut axis, &mut seen, TestTarget::Middle, 500);
-        assert!(axis.outcome_of(TestTarget::Middle).is_some());
+        assert!(axis.test_outcome(TestTarget::Middle).is_some());
         (axis, seen)
     };
     let done =
@@ -79,7 +79,7 @@ fn changed_value_undoes_later_steps() {
         change(&mut seen);
         axis.update(&seen);
         assert_eq!((axis.invalidated_step(), done(&axis)), (Some(falls), falls.index()), "{label}");
-        assert!(axis.outcome_of(TestTarget::Middle).is_none(), "{label}");
+        assert!(axis.test_outcome(TestTarget::Middle).is_none(), "{label}");
         assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""), "{label}");
         assert!(axis.request(AxisButton::Go(TestTarget::Upper), &seen).is_err(), "{label}");
     }
@@ -99,7 +99,7 @@ fn changed_value_undoes_later_steps() {
     (0..2).for_each(|_| axis.go_back(&seen));
     axis.set_entries(LengthEntries { lower: "-9".to_owned(), ..axis.entries().clone() });
     next(&mut axis, &seen, AxisStep::Upper);
-    assert!(axis.outcome_of(TestTarget::Middle).is_none() && axis.check_can_continue(&seen).is_err());
+    assert!(axis.test_outcome(TestTarget::Middle).is_none() && axis.check_can_continue(&seen).is_err());
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(158, -900), (160, 2000)]));
     next(&mut axis, &seen, AxisStep::Test);
     assert_eq!(axis.invalidated_step(), None, "the review of their plan confirms them");
@@ -109,7 +109,7 @@ fn changed_value_undoes_later_steps() {
     for step in [AxisStep::Reference, AxisStep::Lower, AxisStep::Upper, AxisStep::Test] {
         next(&mut axis, &seen, step);
     }
-    assert!(axis.outcome_of(TestTarget::Middle).is_some());
+    assert!(axis.test_outcome(TestTarget::Middle).is_some());
 }
 
 /// Motion counts as a jog only while a button is held, and a jump of the position never does (issue 21.6 b).
