@@ -11,6 +11,7 @@ use super::file_question::FileQuestion;
 use super::logbook::LogbookMatches;
 use super::logbook_server::ServerExchange;
 use super::payload::Payload;
+use super::profile_library::{LibraryAction, LibraryListing};
 use super::recorder::{self, ExportResult};
 use super::review::Permit;
 use super::server_form::ServerAction;
@@ -76,6 +77,7 @@ pub enum Action {
     /// Use the file chosen in a system dialog. It may be replaced without asking again.
     Chosen(FileQuestion, PathBuf),
     Comparison(ComparisonAction),
+    Library(LibraryAction),
     /// Show the logbook entries that match a filter.
     SearchLogbook(EntryFilter),
     /// Add a note about a device to the logbook.
@@ -147,6 +149,8 @@ pub enum TaskResult {
         path: PathBuf,
         result: Result<Box<ProfileDocument>, ReadError>,
     },
+    /// The profiles of the library were read. The number identifies the reading.
+    LibraryRead(u64, LibraryListing),
     /// The backups and logbook entries that can be compared with a kind of device were listed.
     ComparisonCandidates(Box<ComparisonCandidates>),
     Written {

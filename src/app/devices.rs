@@ -10,7 +10,7 @@ mod selection;
 
 pub use command::DeviceCommand;
 pub(crate) use kind::OpenProfile;
-pub use kind::{DeviceKind, DeviceType};
+pub use kind::{DeviceKind, DeviceType, ProfileSubject};
 pub use memory::DeviceMemory;
 pub(crate) use model::PrepareFn;
 pub use model::{ActionContext, DeviceModel, MotionControl};

@@ -7,11 +7,11 @@ use jiff::Timestamp;
 use super::action::{Action, ReadError, TaskResult};
 use super::devices::OpenProfile;
 use super::kinds::KindRegistry;
-use super::session::{DraftOutcome, ProfileFile, Source, file_key};
+use super::session::{DraftOutcome, ProfileFile, SaveRequest, Source, file_key};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text, explain};
 use crate::profile::{Body, ProfileDocument, ProfileError, ProfileFormats};
-use crate::store::{Store, read_file};
+use crate::store::{FileError, Store, read_file};
 
 impl Studio {
     pub(super) fn read(
@@ -33,16 +33,18 @@ impl Studio {
                 }
                 let own =
                     |device: &&AnyDevice| matches!(device.source(), Source::File { key: own, .. } if *own == file.key);
+                let path = file.path.clone();
                 let open = self.devices.iter().map(Box::as_ref).find(own).map(|device| device.id());
                 let id = open.unwrap_or_else(|| self.new_id());
                 if open.is_some() {
                     self.with_device(id, |device, _| device.apply_document(file, *document));
                 } else {
-                    let (path, found) = (file.path.clone(), document.device());
+                    let found = document.device();
                     let Some(opens) = opens else { return self.report_unsupported_kind(&path, found) };
                     let device = opens(id, file, *document, &mut self.services);
                     self.devices.push(device);
                 }
+                self.remember_profile(&path);
                 if let Some(tab) = self.device(id).map(|device| device.tab()) {
                     self.show(tab, id);
                 }
@@ -53,6 +55,21 @@ impl Studio {
                 None,
             ),
         }
+    }
+
+    /// Handles the result of a task that saves a profile.
+    pub(super) fn finish_profile_save(
+        &mut self,
+        saving: SaveRequest,
+        file: ProfileFile,
+        result: Result<(), FileError>,
+    ) {
+        if result.is_ok() {
+            self.remember_profile(&file.path);
+        }
+        self.with_device(saving.session, |device, services| {
+            device.handle_profile_written(saving, file, result, services);
+        });
     }
 
     /// Reports that the window does not support the profile's kind of device.

@@ -31,6 +31,7 @@ mod payload;
 mod pending;
 mod picture;
 mod press;
+mod profile_library;
 pub(crate) mod question;
 #[cfg(test)]
 pub(crate) mod recorded;
@@ -67,7 +68,7 @@ pub use comparison::{
 };
 pub(crate) use devices::PrepareFn;
 pub use devices::{ActionContext, DeviceMemory, DeviceModel, MotionControl};
-pub use devices::{AnyDevice, DeviceCommand, DeviceKind, DeviceType, OpenDevice};
+pub use devices::{AnyDevice, DeviceCommand, DeviceKind, DeviceType, OpenDevice, ProfileSubject};
 pub use kinds::KindRegistry;
 pub use tool::{Tool, ToolAction, ToolContext, ToolKind};
 
@@ -86,6 +87,7 @@ pub(crate) use pending::{EditHistoryParts, SnapshotEdits};
 pub use pending::{EditStep, PendingEdits};
 pub use picture::Picture;
 pub use press::{KeyStates, PressKey};
+pub use profile_library::{LibraryAction, LibraryEntry, LibraryProblem, LibrarySection, ListedProfile, ProfileLibrary};
 pub use question::Question;
 pub use recording::Recording;
 pub use server_form::{ServerAction, ServerForm};

@@ -56,7 +56,7 @@ impl Studio {
     /// Ends a jog or run whose panel is hidden by another tab or device, a dialog or a question.
     pub(super) fn stop_hidden_motion(&mut self) {
         let asks = self.question.is_some() || self.services.file_question.is_some();
-        let is_covered = self.connect.is_some() || self.has_form() || asks;
+        let is_covered = self.connect.is_some() || self.has_form() || self.profile_library().is_some() || asks;
         let tab = self.settings.tab;
         let seen = self.shown.session_in_tab(tab).filter(|_| !is_covered);
         for device in &mut self.devices {

@@ -1,4 +1,4 @@
-//! Settings stored between runs: appearance, language, links and panel layout. If they cannot be read, the defaults
+//! Settings stored between runs: appearance, language, links, recent profiles and panel layout. If they cannot be read, the defaults
 //! apply. This module does not access files.
 
 use std::collections::BTreeMap;
@@ -53,6 +53,9 @@ pub struct Settings {
     /// Address of the server for a shared logbook, empty without a server. It contains no password.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub logbook: String,
+    /// Paths of the profiles opened or saved most recently, newest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    recent_profiles: Vec<String>,
     /// Stored data about drives, by the name of the device to which they are connected.
     drives: BTreeMap<String, RememberedDrives>,
 }
@@ -73,6 +76,7 @@ impl Default for Settings {
             company_logo: None,
             user_name: UserName::default(),
             logbook: String::new(),
+            recent_profiles: Vec::new(),
             drives: BTreeMap::new(),
         }
     }
@@ -84,7 +88,8 @@ impl Settings {
         Settings { tab: kinds.first_tab(), ..Settings::default() }
     }
 
-    const LINKS: usize = 12;
+    /// Maximum number of links of a tab, and of recent profiles.
+    const REMEMBERED: usize = 12;
 
     /// Parses settings.
     ///
@@ -136,6 +141,7 @@ impl Settings {
                 ron::from_str::<Own>(text).map_or(UserName::Off, |own| own.user_name)
             },
             logbook: entry!(logbook: String, usual.logbook),
+            recent_profiles: entry!(recent_profiles: Vec<String>, usual.recent_profiles),
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
                 // Unconfirmed limits stay unconfirmed, even if other parts are invalid.
@@ -170,9 +176,11 @@ impl Settings {
         );
         self.apply_drive_changes(known, ours);
         for tab in ours.links.tabs() {
-            let used = recently_used_links(known.links_of(tab), ours.links_of(tab));
+            let used = recently_used_entries(known.links_of(tab), ours.links_of(tab));
             used.iter().rev().for_each(|link| self.use_link(tab, link));
         }
+        let used = recently_used_entries(&known.recent_profiles, &ours.recent_profiles);
+        used.iter().rev().for_each(|path| self.use_profile(path));
         self
     }
 
@@ -237,11 +245,16 @@ impl Settings {
     }
 
     pub fn use_link(&mut self, tab: Tab, link: &str) {
-        self.links.edit_links(tab, |links| {
-            links.retain(|known| known != link);
-            links.insert(0, link.to_owned());
-            links.truncate(Self::LINKS);
-        });
+        self.links.edit_links(tab, |links| put_first(links, link, Self::REMEMBERED));
+    }
+
+    /// Returns the paths of the profiles opened or saved most recently, newest first.
+    pub fn recent_profiles(&self) -> &[String] {
+        &self.recent_profiles
+    }
+
+    pub fn use_profile(&mut self, path: &str) {
+        put_first(&mut self.recent_profiles, path, Self::REMEMBERED);
     }
 }
 
@@ -339,12 +352,19 @@ impl<'de> Deserialize<'de> for Links {
     }
 }
 
-/// Returns the links in `ours` that were used since `known`. They precede the unchanged ones.
-fn recently_used_links<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
+/// Moves an entry to the beginning of a list of at most `limit` entries.
+fn put_first(list: &mut Vec<String>, entry: &str, limit: usize) {
+    list.retain(|known| known != entry);
+    list.insert(0, entry.to_owned());
+    list.truncate(limit);
+}
+
+/// Returns the entries of `ours` that were used since `known`. They precede the unchanged ones.
+fn recently_used_entries<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
     let is_rest = |at: &usize| {
         let (used, rest) = ours.split_at(*at);
-        let mut before = known.iter().filter(|link| !used.contains(link));
-        rest.iter().all(|link| before.next() == Some(link))
+        let mut before = known.iter().filter(|entry| !used.contains(entry));
+        rest.iter().all(|entry| before.next() == Some(entry))
     };
     let used = (0..=ours.len()).find(is_rest).unwrap_or(ours.len());
     ours.get(..used).unwrap_or(ours)

@@ -12,6 +12,7 @@ use super::documents::read_document;
 use super::file_question::FileQuestion;
 use super::logbook::{LOGBOOK_TAB, LogbookPage};
 use super::logbook_server::ServerThread;
+use super::profile_library::ProfileLibrary;
 use super::question::{FollowUpAction, Question};
 use super::server_form::ServerForm;
 use super::services::{Services, StudioEnvironment};
@@ -43,6 +44,7 @@ pub struct Studio {
     pub(super) waited: Option<ShutdownWait>,
     path_question: Option<FileQuestion>,
     pub(super) comparison: Option<Box<ComparisonView>>,
+    pub(super) library: ProfileLibrary,
     pub(super) logbook: LogbookPage,
     pub(super) server_thread: Option<ServerThread>,
     pub(super) server_form: Option<ServerForm>,
@@ -71,6 +73,7 @@ impl Studio {
             waited: None,
             path_question: None,
             comparison: None,
+            library: ProfileLibrary::default(),
             logbook: LogbookPage::default(),
             server_thread: None,
             server_form: None,
@@ -139,6 +142,7 @@ impl Studio {
                     Some(if is_tool { FileQuestion::OpenCapture } else { FileQuestion::Open });
             }
             Action::Open(path) => {
+                self.close_library();
                 if let Err(path) = self.open_in_tool(path) {
                     let (store, kinds) = (self.services.world.store.clone(), self.services.world.kinds);
                     self.services.opening_files.push(path.clone());
@@ -150,6 +154,7 @@ impl Studio {
             Action::Typed(question, path) => self.handle_typed_path(question, path),
             Action::Chosen(question, path) => self.handle_chosen_path(question, path),
             Action::Comparison(action) => self.apply_comparison_action(action),
+            Action::Library(action) => self.apply_library_action(action),
             Action::Recorder(owner, action) => self.apply_recorder_action(owner, action),
             Action::AskClearRecording(owner) => self.confirm_discard_recording(owner),
             Action::AskTable { owner, visible } => self.ask_table_path(owner, visible),
@@ -347,6 +352,7 @@ impl Studio {
             }
             TaskResult::Read { file, result, open } => self.read(file, result, open),
             TaskResult::Compare { side, path, result } => self.show_compared_profile(side, path, result),
+            TaskResult::LibraryRead(number, listing) => self.show_library(number, listing),
             TaskResult::ComparisonCandidates(candidates) => self.show_candidates(*candidates),
             TaskResult::Waited(what) => self.waited = self.waited.max(Some(what)),
             TaskResult::TargetChecked { question, path, exists: true } => {
@@ -361,9 +367,7 @@ impl Studio {
             TaskResult::FileSaved { message, path, result } => self.finish_file_save(message, &path, result),
             // It has been handled by polling.
             TaskResult::Left => {}
-            TaskResult::Written { saving, file, result } => self.with_device(saving.session, |device, services| {
-                device.handle_profile_written(*saving, file, result, services);
-            }),
+            TaskResult::Written { saving, file, result } => self.finish_profile_save(*saving, file, result),
             TaskResult::Diverged(diverged) => self.show_conflict(*diverged),
             TaskResult::WouldLose(saving, lost) => self.confirm_comment_loss(*saving, &lost),
             TaskResult::SettingsRead(read) => self.settings_store.adopt(read, &mut self.settings, &mut self.services),
@@ -421,7 +425,7 @@ impl Studio {
             self.close_dialog();
             return;
         }
-        if self.server_form.take().is_some() || self.company_form.take().is_some() {
+        if self.close_library() || self.server_form.take().is_some() || self.company_form.take().is_some() {
             return;
         }
         if let Some(id) = self.selected_device().filter(|device| device.is_reviewing()).map(|device| device.id()) {

@@ -8,6 +8,7 @@ mod drafts;
 mod file_error;
 mod file_lock;
 mod file_names;
+mod file_search;
 mod files;
 mod folders;
 mod leftovers;
@@ -24,6 +25,7 @@ pub use device_files::read_folder;
 pub use drafts::{Claim, Drafts};
 pub use file_error::{FileError, FileErrorKind, FileOperation};
 pub use file_lock::update_text;
+pub use file_search::FileSearch;
 pub use files::{
     MAX_TEXT, create_folder_and_write, overwrite_text, read_bytes, read_file, read_text, write_atomically,
     write_atomically_with,
@@ -123,6 +125,11 @@ impl Store {
         &self.server
     }
 
+    /// Returns whether a file or folder is in one of the program's folders.
+    pub fn contains(&self, path: &Path) -> bool {
+        path.starts_with(&self.data) || path.starts_with(&self.config)
+    }
+
     /// Returns the path of the file with user-defined devices of a kind. The file need not exist.
     pub fn device_file(&self, kind: &str) -> PathBuf {
         self.config.join("devices").join(kind).with_extension("ron")
@@ -161,6 +168,7 @@ mod tests {
             "config/devices/hiperface.ron",
             "config/devices/biss",
         ];
+        assert!(paths.iter().all(|path| store.contains(path)) && !store.contains(root.path()));
         assert_eq!(paths, expected.map(|path| root.path().join(path)));
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0);
     }

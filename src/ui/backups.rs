@@ -9,7 +9,7 @@ use super::controls::{
 };
 use super::{Theme, icons};
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, ComparisonSource, DeviceCommand, Studio, Text, explain};
+use crate::app::{Action, AnyDevice, ComparisonSource, DeviceCommand, LibraryAction, Studio, Text, explain};
 use crate::store::{AssetName, Entry, Outcome};
 
 const COMPARE: &str = icons::ARROWS_OUT_LINE_HORIZONTAL;
@@ -44,6 +44,9 @@ fn profile_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
             }
             if labelled_button(ui, icons::FOLDER_OPEN, &theme.translate("profile_card.open")).clicked() {
                 actions.push(Action::AskOpen);
+            }
+            if labelled_button(ui, icons::FILE_TEXT, &theme.translate("shell.profiles")).clicked() {
+                actions.push(Action::Library(LibraryAction::Open));
             }
             let comparable = device.is_comparable();
             if enabled_button(ui, comparable, COMPARE, &theme.translate("shell.compare")).clicked() {

@@ -10,8 +10,8 @@ use super::device_view::DeviceView;
 use super::{Theme, Views};
 use crate::app::session::Phase;
 use crate::app::{
-    Action, AnyDevice, ColorScheme, CompanyAction, DeviceCommand, Language, RecorderOwner, ServerAction, SessionId,
-    Studio, Tab, Text, connect,
+    Action, AnyDevice, ColorScheme, CompanyAction, DeviceCommand, Language, LibraryAction, RecorderOwner, ServerAction,
+    SessionId, Studio, Tab, Text, connect,
 };
 use crate::store::{Backup, UserName};
 
@@ -116,6 +116,7 @@ fn program_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Comman
     let act = |word: &'static str, action| command(word, CommandEffect::Act(action));
     let mut commands = vec![
         act("shell.open", Action::AskOpen).with_shortcut(COMMAND, Key::O),
+        act("shell.profiles", Action::Library(LibraryAction::Open)),
         act("shell.connect", Action::Connect(connect::ConnectAction::Open)),
         act("shell.virtual_device", Action::OpenVirtual),
         act(if studio.has_drives() { "shell.stop_all" } else { "shell.stop" }, Action::Stop)

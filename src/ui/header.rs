@@ -8,7 +8,8 @@ use super::stop_debounce::{press_began, press_time, register_stop_press};
 use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{
-    Action, AnyDevice, ColorScheme, CompanyAction, ComparisonAction, DeviceCommand, Language, Studio, Text, connect,
+    Action, AnyDevice, ColorScheme, CompanyAction, ComparisonAction, DeviceCommand, Language, LibraryAction, Studio,
+    Text, connect,
 };
 
 /// Width of the STOP button in points while no motion is in progress.
@@ -57,6 +58,9 @@ fn tools_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, acti
     };
     if tool(ui, true, icons::FOLDER_OPEN, "shell.open").clicked() {
         actions.push(Action::AskOpen);
+    }
+    if icon_button(ui, true, icons::FILE_TEXT, &theme.translate("shell.profiles")).clicked() {
+        actions.push(Action::Library(LibraryAction::Open));
     }
     let savable = studio.selected_device().is_some_and(AnyDevice::is_savable);
     if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(theme.translate("shell.save_hint")).clicked() {

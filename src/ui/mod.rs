@@ -24,6 +24,7 @@ mod navigation;
 pub mod page;
 pub(crate) mod panels;
 pub mod plot;
+mod profile_library;
 mod renderer;
 mod review;
 mod row_selection;

@@ -7,6 +7,7 @@ use super::dialogs::{CompanyView, ConnectView, FileView, PaletteUiState, ServerV
 use super::logbook::{self, LogbookView};
 use super::panels::TraceView;
 use super::plot;
+use super::profile_library::LibraryView;
 use crate::app::{AnyDevice, LOGBOOK_TAB, SessionId, Studio, Tab};
 
 pub struct Views {
@@ -16,6 +17,7 @@ pub struct Views {
     pub(super) connect: ConnectView,
     pub(super) server: ServerView,
     pub(super) company: CompanyView,
+    pub(super) library: LibraryView,
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
     /// Whether a comparison is shown as a picture instead of a list of items.
@@ -38,6 +40,7 @@ impl Views {
             connect: ConnectView::default(),
             server: ServerView::default(),
             company: CompanyView::default(),
+            library: LibraryView::default(),
             file: None,
             about: false,
             compares_pictures: false,

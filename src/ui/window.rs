@@ -14,7 +14,7 @@ use super::live_pace::LivePace;
 use super::navigation::navigation_ui;
 use super::page::with_stable_ids;
 use super::widgets::{HoldButtonContext, set_hold_button_context};
-use super::{Theme, Views, comparison, header, review, status_line, stop_debounce};
+use super::{Theme, Views, comparison, header, profile_library, review, status_line, stop_debounce};
 use crate::app::{Action, AnyDevice, Studio, ThemeData};
 
 pub struct Window {
@@ -139,6 +139,7 @@ impl Window {
         dialogs::connect_ui(ctx, theme, &self.studio, forms, actions);
         dialogs::server_ui(ctx, theme, &self.studio, &mut self.views.server, actions);
         dialogs::company_ui(ctx, theme, &self.studio, &mut self.views.company, actions);
+        profile_library::library_ui(ctx, theme, &self.studio, &mut self.views.library, actions);
         if let Some(file) = &mut self.views.file
             && dialogs::file_ui(ctx, theme, file, actions)
         {
@@ -304,7 +305,8 @@ impl Window {
         let dialog = self.views.file.is_some()
             || self.views.about
             || self.views.palette.is_some()
-            || self.studio.comparison().is_some();
+            || self.studio.comparison().is_some()
+            || self.studio.profile_library().is_some();
         self.studio.connect.is_some() || self.studio.has_form() || self.is_asking() || dialog
     }
 

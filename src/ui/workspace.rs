@@ -9,7 +9,7 @@ use super::page::with_stable_ids;
 use super::panels::plot_ui;
 use super::views::device_in_tab;
 use super::{Theme, Views, icons};
-use crate::app::{Action, LOGBOOK_TAB, Studio, connect};
+use crate::app::{Action, LOGBOOK_TAB, LibraryAction, Studio, connect};
 
 /// Fraction of the height left empty above the options in an empty tab.
 const EMPTY_TAB_TOP_SHARE: f32 = 0.22;
@@ -58,6 +58,9 @@ fn empty_page_ui(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, acti
             }
             if labelled_button(ui, icons::FOLDER_OPEN, &theme.translate("profile_card.open")).clicked() {
                 actions.push(Action::AskOpen);
+            }
+            if labelled_button(ui, icons::FILE_TEXT, &theme.translate("shell.profiles")).clicked() {
+                actions.push(Action::Library(LibraryAction::Open));
             }
             if let Some(view) = view {
                 view.empty_ui(ui, theme, actions);

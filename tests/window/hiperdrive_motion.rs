@@ -6,7 +6,7 @@ use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::{Action, Language, Severity, Studio, connect};
+use encoder_studio::app::{Action, Language, LibraryAction, Severity, Studio, connect};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{MotionLock, SpeedTorque, TargetState};
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord, Value,
@@ -115,10 +115,11 @@ fn frozen_window_stops_motion() {
 #[test]
 fn hiding_jog_pad_ends_jog() {
     type Cover = fn(&mut Desk);
-    let covers: [(&str, Cover); 14] = [
+    let covers: [(&str, Cover); 15] = [
         ("focus", |desk| desk.act(Action::ReleaseMotion)),
         ("tab", |desk| desk.act(Action::ShowTab(crate::tabs::BISS))),
         ("dialog", |desk| desk.connect(connect::ConnectAction::Open)),
+        ("profile library", |desk| desk.act(Action::Library(LibraryAction::Open))),
         // The jog ends with the request for the dialog, because the system may take half a second to show it.
         ("file dialog", |desk| desk.act(Action::AskOpen)),
         ("file dialog of the device", |desk| command(desk, DeviceCommand::AskSave)),

@@ -41,6 +41,7 @@ mod novo;
 mod page_height;
 mod palette;
 mod pressing;
+mod profile_library;
 mod profiles;
 mod recording;
 mod remembering;

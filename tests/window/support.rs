@@ -171,7 +171,8 @@ impl Outside {
                 .with_value(DiscoveryStub::new(move || Ok(found.clone()))),
             ports: Arc::new(|| Ok(Vec::new())),
             patience: self.patience,
-            folders: BaseFolders::with_base_folders(&self.path("work"), &self.path("home")),
+            folders: BaseFolders::with_base_folders(&self.path("work"), &self.path("home"))
+                .with_program_folder(&self.path("program/bin")),
             ..StudioEnvironment::production(self.store(), self.program.studio)
         }
     }

@@ -95,6 +95,10 @@ pub(crate) fn check_all(studio: &Studio) {
         }
         crate::tabs::search(dialog).into_iter().filter_map(|search| search.end.as_ref()).for_each(check);
     }
+    if let Some(library) = studio.profile_library() {
+        library.entries().filter_map(|entry| entry.problem()).for_each(|problem| check(problem.text()));
+        library.preview().and_then(|preview| preview.as_ref().err()).into_iter().for_each(check);
+    }
     studio.signals().problem().into_iter().for_each(check);
     studio.signals().source().problem().into_iter().for_each(check);
     studio.devices().iter().filter_map(|own| own.get()).for_each(check_encoder);

@@ -126,7 +126,8 @@ impl Studio {
         (!device.is_writing() && !device.is_reviewing()).then_some(device)
     }
 
-    fn kind_of(&self, device: &AnyDevice) -> Option<&'static str> {
+    /// Returns the keyword for the kind of a device.
+    pub(super) fn kind_of(&self, device: &AnyDevice) -> Option<&'static str> {
         self.services.world.kinds.kind_for_tab(device.tab()).map(|kind| kind.keyword())
     }
 

@@ -22,6 +22,17 @@ use crate::profile::{Cause, Profile, ProfileDocument, ProfileFormat};
 use crate::store::Store;
 use crate::worker::OpenError;
 
+/// The device or layout that a profile describes, as shown in lists of profiles. Each part may be empty.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ProfileSubject {
+    /// Name that the user gave to the profile.
+    pub name: String,
+    /// Type of the device, with its maker if the profile states one.
+    pub device_type: String,
+    /// Serial number of the device.
+    pub serial_number: String,
+}
+
 /// A kind of device. Each device folder implements it once.
 pub trait DeviceType: DeviceModel + Sized {
     /// Entry in the list of device kinds.
@@ -105,6 +116,11 @@ pub trait DeviceType: DeviceModel + Sized {
         Box::new(|_, _| None)
     }
 
+    /// Returns the device or layout that a profile describes, for lists of profiles.
+    fn profile_subject(_profile: &Self::Profile) -> ProfileSubject {
+        ProfileSubject::default()
+    }
+
     /// Returns the values of a profile and what they mean, for a report.
     ///
     /// # Errors
@@ -165,6 +181,8 @@ pub trait DeviceKind: Sync {
     /// Returns a function that describes the values of a profile. For a profile of another kind of device, it describes
     /// nothing.
     fn item_values(&self, document: &ProfileDocument) -> ItemValues;
+    /// Returns the device or layout that a profile describes. It is empty for a profile of another kind of device.
+    fn profile_subject(&self, document: &ProfileDocument) -> ProfileSubject;
     /// Returns the values of a profile and what they mean, for a report. Returns `None` for a profile of another kind
     /// of device.
     fn report(&self, document: &ProfileDocument, context: &ReportContext<'_>) -> Option<Result<ReportContent, Text>>;
@@ -231,6 +249,10 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
             Some(profile) => M::item_values(profile, document),
             None => Box::new(|_, _| None),
         }
+    }
+
+    fn profile_subject(&self, document: &ProfileDocument) -> ProfileSubject {
+        document.body.get().map(M::profile_subject).unwrap_or_default()
     }
 
     fn report(&self, document: &ProfileDocument, context: &ReportContext<'_>) -> Option<Result<ReportContent, Text>> {

@@ -184,3 +184,23 @@ fn lists_latest_link_first() {
     assert_eq!(settings.links_of(HIPERFACE).len(), 12);
     assert_eq!(settings.links_of(HIPERFACE)[..3], ["tcp:host:15", "tcp:host:19", "tcp:host:18"]);
 }
+
+/// Profiles that another window has used are kept, and older settings have none.
+#[test]
+fn recent_profiles_are_merged_newest_first() {
+    let of = |paths: &[&str]| {
+        let mut settings = Settings::default();
+        paths.iter().rev().for_each(|path| settings.use_profile(path));
+        settings
+    };
+    let merged = of(&["/x", "/a"]).with_changes(&of(&["/a"]), &of(&["/b", "/a"]));
+    assert_eq!(merged.recent_profiles(), ["/b", "/x", "/a"]);
+    assert_eq!(Settings::parse(&merged.emit()), Ok(merged.clone()));
+    let broken = merged.emit().replace("theme: Dark", "theme: Mauve");
+    assert_eq!(Settings::parse_partial(&broken).recent_profiles(), merged.recent_profiles());
+    assert!(Settings::parse("(theme: Light)").unwrap().recent_profiles().is_empty());
+    let many: Vec<String> = (0..20).map(|at| format!("/{at}")).collect();
+    let many: Vec<&str> = many.iter().map(String::as_str).collect();
+    assert_eq!(of(&many).recent_profiles().len(), 12);
+    assert_eq!(of(&many).recent_profiles()[..2], ["/0", "/1"]);
+}

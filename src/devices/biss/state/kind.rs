@@ -6,7 +6,7 @@ use super::{BissForm, Encoder, items, report};
 use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
-use crate::app::{DeviceType, ItemValues, Text};
+use crate::app::{DeviceType, ItemValues, ProfileSubject, Text};
 use crate::devices::biss::jobs::{Biss, check_link, load_descriptions};
 use crate::devices::biss::procedures::{BusParameters, FrameParameters, LineParameters, PinParameters};
 use crate::devices::biss::profile::BissProfile;
@@ -44,6 +44,15 @@ impl DeviceType for Encoder {
     fn item_values(profile: &BissProfile, _document: &ProfileDocument) -> ItemValues {
         let profile = profile.clone();
         Box::new(move |item, value| items::item_value(&profile, item, value))
+    }
+
+    fn profile_subject(profile: &BissProfile) -> ProfileSubject {
+        let identity = &profile.identity;
+        ProfileSubject {
+            name: String::new(),
+            device_type: identity.description.clone(),
+            serial_number: identity.serial_number.clone(),
+        }
     }
 
     fn report(

@@ -4,10 +4,11 @@ use super::{HiperdriveDevice, HiperdriveForm, items, report};
 use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
-use crate::app::{DeviceType, ItemValues, Text};
+use crate::app::{DeviceType, ItemValues, ProfileSubject, Text};
 use crate::devices::hiperdrive::jobs::{Hiperdrive, check_link};
 use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
+use crate::devices::hiperdrive::protocol::Topology;
 use crate::devices::hiperdrive::sim::Config;
 use crate::devices::hiperdrive::state::explain;
 use crate::link::LinkUrl;
@@ -40,6 +41,20 @@ impl DeviceType for HiperdriveDevice {
 
     fn item_values(profile: &HiperdriveProfile, document: &ProfileDocument) -> ItemValues {
         items::item_values(profile, document)
+    }
+
+    fn profile_subject(profile: &HiperdriveProfile) -> ProfileSubject {
+        let identity = &profile.identity;
+        let category = identity.topology.map(Topology::category);
+        let drives = identity.drives.iter().map(|drive| drive.name.as_str()).filter(|name| !name.is_empty());
+        let mut parts: Vec<&str> = category.into_iter().chain(drives).collect();
+        // A hub has several drives of the same type.
+        parts.dedup();
+        ProfileSubject {
+            name: String::new(),
+            device_type: parts.join(" · "),
+            serial_number: identity.serial_number.clone(),
+        }
     }
 
     fn report(

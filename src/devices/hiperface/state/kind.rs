@@ -4,7 +4,7 @@ use super::{Encoder, LinkForm, items, report};
 use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
-use crate::app::{DeviceType, ItemValues, Severity, Text};
+use crate::app::{DeviceType, ItemValues, ProfileSubject, Severity, Text};
 use crate::devices::hiperface::jobs::{self, Hiperface, check_link, encoder_types};
 use crate::devices::hiperface::procedures::{LinkParameters, recorded_identity};
 use crate::devices::hiperface::profile::HiperfaceProfile;
@@ -50,6 +50,15 @@ impl DeviceType for Encoder {
 
     fn item_values(_profile: &HiperfaceProfile, _document: &ProfileDocument) -> ItemValues {
         Box::new(items::item_value)
+    }
+
+    fn profile_subject(profile: &HiperfaceProfile) -> ProfileSubject {
+        let identity = &profile.identity;
+        ProfileSubject {
+            name: String::new(),
+            device_type: identity.encoder_name.clone(),
+            serial_number: identity.serial_number.clone(),
+        }
     }
 
     fn report(

@@ -5,8 +5,8 @@ use super::{Encoder, InterbusForm, items, report};
 use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::Session;
-use crate::app::{DeviceType, ItemValues, Text};
-use crate::devices::interbus::jobs::{Interbus, check_link};
+use crate::app::{DeviceType, ItemValues, ProfileSubject, Text};
+use crate::devices::interbus::jobs::{Interbus, check_link, logbook_key};
 use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::interbus::sim::Config;
@@ -42,6 +42,11 @@ impl DeviceType for Encoder {
     fn item_values(profile: &InterbusProfile, _document: &ProfileDocument) -> ItemValues {
         let profile = profile.clone();
         Box::new(move |item, _| items::item_value(&profile, item))
+    }
+
+    fn profile_subject(profile: &InterbusProfile) -> ProfileSubject {
+        let key = logbook_key(&profile.identity.serial_number, false);
+        ProfileSubject { name: String::new(), device_type: key.device_type, serial_number: key.serial_number }
     }
 
     fn report(

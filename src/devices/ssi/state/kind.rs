@@ -9,7 +9,7 @@ use crate::app::report::{ReportContent, ReportContext};
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, Session, Source};
 use crate::app::studio::SessionId;
-use crate::app::{DeviceType, ItemValues, Text};
+use crate::app::{DeviceType, ItemValues, ProfileSubject, Text};
 use crate::devices::ssi::jobs::{Ssi, check_link};
 use crate::devices::ssi::procedures::LinkParameters;
 use crate::devices::ssi::profile::SsiProfile;
@@ -46,6 +46,14 @@ impl DeviceType for Encoder {
     fn item_values(profile: &SsiProfile, _document: &ProfileDocument) -> ItemValues {
         let profile = profile.clone();
         Box::new(move |item, value| items::item_value(&profile, item, value))
+    }
+
+    fn profile_subject(profile: &SsiProfile) -> ProfileSubject {
+        ProfileSubject {
+            name: profile.name.clone(),
+            device_type: profile.family.clone().unwrap_or_default(),
+            serial_number: String::new(),
+        }
     }
 
     fn report(
