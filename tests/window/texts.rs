@@ -2,7 +2,8 @@
 //! and no ID occurs twice.
 
 use crate::tabs::Tabs as _;
-use std::collections::{BTreeMap, BTreeSet};
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::LazyLock;
 
 use encoder_studio::app::review::OperationDescription;
@@ -53,9 +54,17 @@ fn places(template: &str) -> impl Iterator<Item = &str> {
     template.split('{').skip(1).filter_map(|part| part.split_once('}')).map(|(name, _)| name)
 }
 
+thread_local! {
+    /// The last text that was checked for each ID. The same texts are displayed for many frames.
+    static CHECKED: RefCell<HashMap<&'static str, Text>> = RefCell::default();
+}
+
 /// Checks that a text is in its catalogue, has all arguments, and is not empty in either language.
 #[track_caller]
 pub(crate) fn check(text: &Text) {
+    if CHECKED.with_borrow(|checked| checked.get(text.id()) == Some(text)) {
+        return;
+    }
     let row = TABLE.get(text.id()).unwrap_or_else(|| panic!("{} is not in the table", text.id()));
     let arguments = format!("{text:?}");
     for template in [&row.en, &row.de, &row.terminal] {
@@ -66,6 +75,7 @@ pub(crate) fn check(text: &Text) {
     for words in [text.to_string_in(Language::English), text.to_string_in(Language::German), text.terminal_text()] {
         assert!(!words.is_empty() && !words.contains('{'), "{}: {words}", text.id());
     }
+    CHECKED.with_borrow_mut(|checked| checked.insert(text.id(), text.clone()));
 }
 
 fn check_notice(notice: &Notice) {
