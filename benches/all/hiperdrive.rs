@@ -117,12 +117,12 @@ trait DeviceConnection {
 type OpenConnection = fn() -> (Box<dyn DeviceConnection>, Target);
 
 /// The program's own connection.
-struct Ours {
+struct ProgramConnection {
     motion: Motion,
     _cyclic: Cyclic,
 }
 
-impl DeviceConnection for Ours {
+impl DeviceConnection for ProgramConnection {
     fn name(&self) -> &'static str {
         "absolute deadlines"
     }
@@ -197,7 +197,7 @@ fn ours() -> (Box<dyn DeviceConnection>, Target) {
     motion
         .publish_limits(DriveNumber::FIRST, DriveLimits::from_rules(rules, (Topology::Adapter, Variant::new(7)), read));
     let cyclic = Cyclic::start(packets, &opened(target.port), &[DriveNumber::FIRST], clock, &motion).unwrap();
-    (Box::new(Ours { motion, _cyclic: cyclic }), target)
+    (Box::new(ProgramConnection { motion, _cyclic: cyclic }), target)
 }
 
 fn naive() -> (Box<dyn DeviceConnection>, Target) {

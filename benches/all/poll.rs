@@ -21,7 +21,7 @@ const SETTINGS: [u8; 2] = [0xE4, 0xE6];
 
 /// Returns the minimum time for command 42h in milliseconds: a request of three characters, silence, processing, a
 /// reply of seven characters, and silence. A character has 11 bits.
-fn least_ms(baud: f64) -> f64 {
+fn min_command_ms(baud: f64) -> f64 {
     (3.0 * 11.0 + 44.0 + 7.0 * 11.0 + 44.0) * 1000.0 / baud + PROCESSING
 }
 
@@ -73,7 +73,7 @@ pub(crate) fn run() {
     println!("{:<10} {:<8} {:>9} {:>9} {:>8}", "way", "time", "baud", "cycle", "share");
     for settings in SETTINGS {
         let baud = LineSettings::from_byte(settings).baud().unwrap().bits_per_second();
-        let least = least_ms(f64::from(baud));
+        let least = min_command_ms(f64::from(baud));
         let row = |way: &str, time: &str, cycle: f64| {
             println!("{way:<10} {time:<8} {baud:>9} {cycle:>9.3} {:>6.1} %", least / cycle * 100.0);
         };

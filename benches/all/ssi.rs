@@ -81,12 +81,12 @@ pub(crate) fn run() {
     let families = Families::built_in();
     let seconds = median(ROUNDS, || find(black_box(&turning), 25, &families));
     println!("\nthe layout of 2000 frames of 25 bits is found in {:.0} ms", seconds * 1e3);
-    thousand_recordings(&families);
+    measure_layout_detection(&families);
 }
 
 /// Measures, for independently generated recordings, how often the top class of layouts contains the correct one, and
 /// how often a result reported as certain is wrong.
-fn thousand_recordings(families: &Families) {
+fn measure_layout_detection(families: &Families) {
     let begun = Instant::now();
     let (mut first, mut ticks, mut wrong) = (0, 0, 0);
     for seed in 0..1000 {

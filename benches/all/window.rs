@@ -65,12 +65,14 @@ pub(crate) fn run(parts: &[String]) {
     end(&mut child);
     let mut child = display.start(own.to_str().unwrap(), &["window", "stream"], folder.path());
     let result = folder.path().join("stream.txt");
-    wait_for_up_to(STREAMED * 4, || fs::read_to_string(&result).ok().filter(|text| text.ends_with('\n')).map(|_| 0));
+    wait_for_up_to(STREAMING_TIME * 4, || {
+        fs::read_to_string(&result).ok().filter(|text| text.ends_with('\n')).map(|_| 0)
+    });
     print!("{}", fs::read_to_string(&result).unwrap());
     end(&mut child);
 }
 
-const STREAMED: Duration = Duration::from_secs(15);
+const STREAMING_TIME: Duration = Duration::from_secs(15);
 
 /// Runs the complete window with a plot of the position of a virtual BiSS encoder, while the virtual adapter streams 20
 /// 000 frames per second.
@@ -80,13 +82,13 @@ fn stream() {
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
 
-    struct Streaming {
+    struct StreamingApp {
         window: Window,
         began: Option<Instant>,
         /// Duration of each frame in microseconds.
         took: Vec<u64>,
     }
-    impl eframe::App for Streaming {
+    impl eframe::App for StreamingApp {
         fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
             let studio = self.window.studio();
             let ready = studio
@@ -108,12 +110,12 @@ fn stream() {
             else {
                 return;
             };
-            if self.began.is_some_and(|began| began.elapsed() >= STREAMED) {
+            if self.began.is_some_and(|began| began.elapsed() >= STREAMING_TIME) {
                 let (pictures, positions, lost) =
                     (self.took.len(), encoder.record.position_count(), encoder.record.dropped_count());
                 let middle = median(&mut self.took) as f64 / 1e3;
                 let most = self.took[self.took.len() - 1] as f64 / 1e3;
-                let seconds = STREAMED.as_secs();
+                let seconds = STREAMING_TIME.as_secs();
                 let text = format!(
                     "a stream of 20 000 frames/s, {seconds} s:       {positions} frames shown, {lost} lost; {pictures} pictures, \
                      {middle:.1} ms each, median, {most:.1} at most\n"
@@ -143,7 +145,7 @@ fn stream() {
             // At 2 MHz, a frame of 43 clocks takes 21.5 µs plus 27 µs of waiting.
             studio.start_with(Some("sim:?bridge=on&clock=2000000&rpm=300".parse()?), None);
             let window = Window::new(studio, ThemeData::built_in()?, program().tabs);
-            Ok(Box::new(Streaming { window, began: None, took: Vec::new() }))
+            Ok(Box::new(StreamingApp { window, began: None, took: Vec::new() }))
         }),
     )
     .unwrap();
@@ -173,15 +175,15 @@ fn plot() {
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
 
-    const PICTURES: usize = 150;
+    const MEASURED_FRAMES: usize = 150;
     use encoder_studio::signals::state::Signals;
 
-    struct Plotting {
+    struct PlottingApp {
         window: Window,
         /// Time at which each frame was drawn.
         times: Vec<Instant>,
     }
-    impl eframe::App for Plotting {
+    impl eframe::App for PlottingApp {
         fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
             let studio = self.window.studio();
             if studio.tool_as::<Signals>().and_then(Signals::measurement).is_some() {
@@ -210,7 +212,7 @@ fn plot() {
             }
             self.window.draw(ui);
             ui.ctx().request_repaint();
-            if self.times.len() > PICTURES {
+            if self.times.len() > MEASURED_FRAMES {
                 // The first frames lay out letters and fill the memory, so they are left out.
                 let mut took: Vec<u64> =
                     self.times.windows(2).skip(20).map(|pair| (pair[1] - pair[0]).as_micros() as u64).collect();
@@ -247,7 +249,7 @@ fn plot() {
         options,
         Box::new(move |cc| {
             install_fonts(&cc.egui_ctx);
-            Ok(Box::new(Plotting { window: Window::new(studio, look, program().tabs), times: Vec::new() }))
+            Ok(Box::new(PlottingApp { window: Window::new(studio, look, program().tabs), times: Vec::new() }))
         }),
     )
     .unwrap();

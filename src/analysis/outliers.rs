@@ -23,9 +23,9 @@ pub struct Outliers {
 
 /// A sample is left out if its distance exceeds this number of robust deviations. Normally distributed noise exceeds it
 /// in one of 10¹⁵ samples.
-pub const DEVIATIONS: f64 = 8.0;
+pub const OUTLIER_DEVIATIONS: f64 = 8.0;
 /// Distance, as a fraction of the amplitude, within which a sample is never an outlier, however low the noise is.
-pub const MIN_SHARE: f64 = 0.02;
+pub const MIN_OUTLIER_DISTANCE: f64 = 0.02;
 /// Maximum fraction of outliers. If more samples deviate, they are considered part of the signal.
 pub const MAX_OUTLIER_SHARE: f64 = 0.05;
 /// Minimum number of samples required to recognise outliers.
@@ -66,7 +66,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
     let start = match (all, upright) {
         (Some(all), Some(upright)) => {
             let off = median_deviation(&ys, &xs, all);
-            let misses = off > MIN_SHARE * upright.amplitude_v && off > median_deviation(&ys, &xs, &upright);
+            let misses = off > MIN_OUTLIER_DISTANCE * upright.amplitude_v && off > median_deviation(&ys, &xs, &upright);
             if misses { upright } else { *all }
         }
         (Some(all), None) => *all,
@@ -76,8 +76,8 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
     let mut ellipse = start;
     let mut excluded_ranges: Vec<Range<usize>> = Vec::new();
     for round in 0..MAX_FITS {
-        let limit = (DEVIATIONS * NORMAL_DEVIATION_RATIO * median_deviation(&ys, &xs, &ellipse))
-            .max(MIN_SHARE * ellipse.amplitude_v);
+        let limit = (OUTLIER_DEVIATIONS * NORMAL_DEVIATION_RATIO * median_deviation(&ys, &xs, &ellipse))
+            .max(MIN_OUTLIER_DISTANCE * ellipse.amplitude_v);
         let found = find_outliers(sine, cosine, &ellipse, limit);
         let left_out: usize = found.iter().map(Range::len).sum();
         if left_out as f64 > MAX_OUTLIER_SHARE * count as f64 {
@@ -88,7 +88,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
         }
         excluded_ranges = found;
         let scale = Scale::new(ellipse.offset_sine_v, ellipse.offset_cosine_v, ellipse.amplitude_v);
-        match fit_excluding(sine, cosine, &excluded_ranges, scale) {
+        match fit_remaining_samples(sine, cosine, &excluded_ranges, scale) {
             Ok(better) => ellipse = better,
             Err(_) => return OutlierResult::Nothing,
         }
@@ -119,7 +119,12 @@ pub(crate) fn remaining_ranges(length: usize, left_out: &[Range<usize>]) -> impl
     starts.zip(ends).filter(|(start, end)| start < end).map(|(start, end)| start..end)
 }
 
-fn fit_excluding(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale: Scale) -> Result<Ellipse, FitError> {
+fn fit_remaining_samples(
+    sine: &[f64],
+    cosine: &[f64],
+    left_out: &[Range<usize>],
+    scale: Scale,
+) -> Result<Ellipse, FitError> {
     let mut moments = Moments::new(scale);
     for part in remaining_ranges(sine.len().min(cosine.len()), left_out) {
         moments.add_samples(sine.get(part.clone()).unwrap_or_default(), cosine.get(part).unwrap_or_default())?;

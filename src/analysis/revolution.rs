@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn finds_both_parts_in_either_direction() {
+    fn separates_nonlinearity_in_either_direction() {
         let spike = std::iter::once(7_777..7_778).collect::<Vec<_>>();
         for sign in [1.0, -1.0] {
             let (mut sine, cosine, reference) = made(sign);
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn accepts_coarse_reference_not_constant() {
+    fn accepts_coarse_but_not_constant_reference() {
         let (sine, cosine, mut reference) = made(1.0);
         let standing = vec![12.0; reference.len()];
         let told = Revolution::from_samples(&sine, &cosine, &standing, &[], &ELLIPSE, 128);

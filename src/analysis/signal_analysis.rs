@@ -124,9 +124,9 @@ impl Analysis {
 fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
     /// Maximum RMS scatter of one channel at rest, relative to the distance of the point from zero. It corresponds to
     /// 6° (U).
-    const SCATTER: f64 = 0.1;
+    const MAX_REST_SCATTER: f64 = 0.1;
     /// Minimum distance from zero in volts. Below it, there may be no signal (U).
-    const MIN_V: f64 = 0.1;
+    const MIN_REST_DISTANCE_V: f64 = 0.1;
     let of = |values: &[f64]| {
         let count = values.len().max(1) as f64;
         let mean = values.iter().sum::<f64>() / count;
@@ -134,7 +134,7 @@ fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
     };
     let ((sine, sine_rms), (cosine, cosine_rms)) = (of(sine_v), of(cosine_v));
     let away = sine.hypot(cosine);
-    away >= MIN_V && sine_rms.max(cosine_rms) <= SCATTER * away
+    away >= MIN_REST_DISTANCE_V && sine_rms.max(cosine_rms) <= MAX_REST_SCATTER * away
 }
 
 /// Returns the median angle between consecutive samples, in degrees.

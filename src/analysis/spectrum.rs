@@ -36,7 +36,7 @@ pub enum SpectrumError {
 
 const MIN_SAMPLES: usize = 8;
 /// Number of lines on each side of a peak that belong to it in a Hann window.
-const PEAK_REACH: usize = 2;
+const PEAK_HALF_WIDTH: usize = 2;
 
 impl Spectrum {
     /// Calculates the spectrum of samples taken at `rate_hz`, after removing their mean.
@@ -77,7 +77,7 @@ impl Spectrum {
     /// that belong to a higher peak are skipped, as are those around 0 Hz, which belong to the mean.
     pub fn highest_peaks(&self, most: usize) -> Vec<SpectralLine> {
         let lines = &self.amplitudes_v;
-        let mut order: Vec<usize> = (PEAK_REACH..lines.len())
+        let mut order: Vec<usize> = (PEAK_HALF_WIDTH..lines.len())
             .filter(|at| {
                 let height = |at: usize| lines.get(at).copied().unwrap_or(0.0);
                 height(*at) > 0.0 && height(*at) >= height(at - 1) && height(*at) > height(at + 1)
@@ -92,7 +92,7 @@ impl Spectrum {
             if taken.len() == most {
                 break;
             }
-            if taken.iter().all(|other| other.abs_diff(at) > PEAK_REACH) {
+            if taken.iter().all(|other| other.abs_diff(at) > PEAK_HALF_WIDTH) {
                 taken.push(at);
             }
         }

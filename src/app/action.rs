@@ -200,7 +200,7 @@ pub enum TaskResult {
         state: ServerExchange,
     },
     /// A backup was read, or could not be read.
-    Backup(SessionId, Box<ReadBackup>),
+    Backup(SessionId, Box<BackupReadResult>),
     /// A task started by a device has ended. See `TaskResult::device`.
     Device(SessionId, Payload),
     /// A task of a tool has ended. See [`TaskResult::from_tool`].
@@ -268,7 +268,7 @@ pub enum OpenFailure {
 pub(crate) type SharedResultHandler = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice>]) + Send>;
 
 /// A backup read for a restore, or the error.
-pub struct ReadBackup {
+pub struct BackupReadResult {
     pub of: DeviceKey,
     pub path: PathBuf,
     /// Logbook entry to be undone by restoring the backup, if any.

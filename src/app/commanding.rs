@@ -18,7 +18,7 @@ impl Studio {
     pub(super) fn command(&mut self, id: SessionId, command: DeviceCommand) {
         match command {
             DeviceCommand::Reconnect => self.reconnect(id),
-            DeviceCommand::WriteInto(target) => self.write_profile_to(id, target),
+            DeviceCommand::WriteInto(target) => self.write_profile_to_device(id, target),
             DeviceCommand::AskRestore => self.services.file_question = Some(FileQuestion::Restore(id)),
             DeviceCommand::AskCompare => self.compare_session(id, None),
             DeviceCommand::AskReport => self.ask_report_path(RecorderOwner::Device(id)),
@@ -55,7 +55,7 @@ impl Studio {
         }
     }
 
-    fn write_profile_to(&mut self, id: SessionId, target: SessionId) {
+    fn write_profile_to_device(&mut self, id: SessionId, target: SessionId) {
         // A device without a memory is never written to, so it can adopt a read-only profile.
         let is_written = self.device(id).is_some_and(|device| device.memory().is_some());
         if is_written && self.reject_if_read_only(id) {

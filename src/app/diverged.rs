@@ -159,7 +159,7 @@ impl Studio {
     }
 
     pub(super) fn show_conflict(&mut self, diverged: ProfileConflict) {
-        self.with_device(diverged.session(), |device, _| device.mark_save_waiting());
+        self.with_device(diverged.session(), |device, _| device.pause_save_for_question());
         if let Some(tab) = self.device(diverged.session()).map(|device| device.tab()) {
             self.show(tab, diverged.session());
             self.diverged = Some(diverged);
@@ -168,7 +168,7 @@ impl Studio {
 
     /// Asks for confirmation before comments are lost.
     pub(super) fn confirm_comment_loss(&mut self, mut saving: SaveRequest, lost: &[String]) {
-        self.with_device(saving.session, |device, _| device.mark_save_waiting());
+        self.with_device(saving.session, |device, _| device.pause_save_for_question());
         saving.may_lose = true;
         let text =
             Text::new("question.comments").with("path", saving.path.display()).with("comments", lost.join(" · "));

@@ -177,7 +177,7 @@ mod tests {
 
     /// A new mark locks limits that were confirmed here. The mark that was confirmed does not lock them again.
     #[test]
-    fn compares_marks_by_number() {
+    fn detects_new_limit_marks() {
         let of = |text: &str| ron::from_str::<RememberedDrives>(&format!("({text})")).unwrap();
         let cases: [(&str, &str, &[u8]); 7] = [
             ("unconfirmed: [1], marks: {1: 1}", "", &[1]),

@@ -16,7 +16,7 @@ use crate::store::{DeviceKey, Entry, EntryFilter, EntryKind, Logbook, LogbookErr
 pub const LOGBOOK_TAB: Tab = Tab::named("Logbook");
 
 /// Maximum number of characters of a note.
-pub const MAX_NOTE: usize = 1_000;
+pub const MAX_NOTE_CHARS: usize = 1_000;
 
 /// State of the logbook page.
 #[derive(Debug, Default)]
@@ -197,7 +197,7 @@ impl Studio {
 
     /// Starts a task that adds a note about a device. Empty notes are ignored.
     pub(super) fn add_note(&mut self, device: DeviceKey, note: &str) {
-        let note: String = note.trim().chars().take(MAX_NOTE).collect();
+        let note: String = note.trim().chars().take(MAX_NOTE_CHARS).collect();
         if note.is_empty() || self.logbook.is_saving_note {
             return;
         }

@@ -131,7 +131,7 @@ impl Studio {
             let text = vec![explain::server_error_text(&problem)];
             // The page of the logbook shows it beside its entries.
             if self.settings.tab == LOGBOOK_TAB {
-                self.services.log_only(Severity::Warning, text, None);
+                self.services.log_without_display(Severity::Warning, text, None);
             } else {
                 self.services.notify(Severity::Warning, text, None);
             }

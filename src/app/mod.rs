@@ -60,7 +60,7 @@ mod trace;
 pub mod track;
 mod type_map;
 
-pub use action::{Action, OpenedConnection, ReadBackup, RecorderOwner, ReviewAction, TaskResult};
+pub use action::{Action, BackupReadResult, OpenedConnection, RecorderOwner, ReviewAction, TaskResult};
 pub use brakes::{DriveStopHandle, DriveStopHandles};
 pub use comparison::{
     ComparedGroup, ComparedRow, ComparedRows, ComparedSide, ComparisonAction, ComparisonSource, ComparisonView,
@@ -78,7 +78,7 @@ pub use edits::{EditBase, Edits};
 pub use file_question::{DeviceFile, FileQuestion};
 pub use hold::{HoldContext, HoldEvent, HoldInput, HoldState};
 pub use live_session::{JobProgress, LiveSession, RunningJob};
-pub use logbook::{LOGBOOK_TAB, LogbookMatches, LogbookPage, MAX_NOTE, entry_kind_text, outcome_text};
+pub use logbook::{LOGBOOK_TAB, LogbookMatches, LogbookPage, MAX_NOTE_CHARS, entry_kind_text, outcome_text};
 pub use logbook_server::ServerExchange;
 pub use notices::{Notice, NoticeLog, Severity};
 pub use number::{parse_decimal, significant_decimals};
@@ -99,7 +99,7 @@ pub use sine_cosine::{SineCosineOrigin, SineCosineRange, SineCosineReading, Sine
 pub use stop_press::StopPressTracker;
 pub use studio::{SessionId, Studio};
 pub use tab::Tab;
-pub use tasks::{ActionMailbox, TaskRunner, Wake};
+pub use tasks::{ActionMailbox, TaskRunner, WakeCallback};
 pub use texts::{COMMON, Catalogue, Language, Text, format_decimal};
 pub use theme_data::{Palette, Rgb, SpacingSizes, TextSizes, ThemeData};
 pub use trace::{FrameExplanation, TraceFault, TraceFilter, TraceLine, TraceLog, TraceMatches};

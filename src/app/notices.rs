@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn success_expires_errors_stay() {
+    fn errors_outlast_success_notices() {
         let left = |severity: Severity| severity.display_time(Duration::from_millis(5_500));
         assert_eq!(left(Severity::Note), Some(Duration::from_millis(500)));
         assert_eq!(left(Severity::Good), left(Severity::Note));
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn removes_settled_notice() {
+    fn removes_resolved_notice() {
         let mut log = NoticeLog::default();
         let texts = vec![Text::new("session.not_connected")];
         log.add(Notice {

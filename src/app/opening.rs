@@ -10,7 +10,7 @@ use super::session::{Kind, PendingOpen, Phase, Source};
 use super::shutdown::is_same_connection;
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
-use super::tasks::Wake;
+use super::tasks::WakeCallback;
 use super::type_map::LinkOpener;
 use super::{AnyDevice, Severity, Text};
 use crate::link::{LinkScheme, LinkUrl, TraceEntry, UrlError};
@@ -222,7 +222,7 @@ fn open<D: Kind>(
     world: &StudioEnvironment,
     url: &LinkUrl,
     prepare: impl FnOnce(&mut Session<D>),
-    wake: Wake,
+    wake: WakeCallback,
     turn: Sender<()>,
 ) -> Result<Box<OpenedConnection<D>>, Box<OpenFailure>> {
     let began = (world.now)();
@@ -249,7 +249,7 @@ fn open<D: Kind>(
 }
 
 /// A guard that wakes the window when the thread of a session ends for any reason.
-struct WakeOnDrop(Wake);
+struct WakeOnDrop(WakeCallback);
 
 impl Drop for WakeOnDrop {
     fn drop(&mut self) {

@@ -41,7 +41,7 @@ pub struct KeyStates {
 
 impl KeyStates {
     /// The state with both keys known to be up.
-    pub const ALL_UP: KeyStates = KeyStates { space: KeyState::Up, enter: KeyState::Up };
+    pub const ALL_RELEASED: KeyStates = KeyStates { space: KeyState::Up, enter: KeyState::Up };
 
     /// Discards the known key states because the keyboard focus has moved or serves another purpose now.
     pub fn reset_keys(&mut self) {
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn immediate_press_after_release_is_repeat() {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
-            let mut keys = KeyStates::ALL_UP;
+            let mut keys = KeyStates::ALL_RELEASED;
             assert!(keys.is_fresh_press(Enter));
             let _ = keys.finish_ui_frame(0.0);
             for number in 1..30 {
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn press_after_requested_frame_is_fresh() {
         for apart in [0.001, 0.016, 0.05, 1.0] {
-            let mut keys = KeyStates::ALL_UP;
+            let mut keys = KeyStates::ALL_RELEASED;
             assert!(keys.is_fresh_press(Enter));
             assert_eq!(keys.finish_ui_frame(0.0), None, "it is down, and nothing is to be waited for");
             keys.release(Enter, 1.0);
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn other_key_ends_unknown_repeats() {
+    fn another_key_resolves_unknown_state() {
         let mut keys = KeyStates::default();
         keys.record_other_key_press(1.0);
         assert!(!keys.is_fresh_press(Enter), "at once");
@@ -217,14 +217,14 @@ mod tests {
     /// Enter typed by a barcode scanner immediately after another key is not fresh.
     #[test]
     fn press_after_other_key_is_not_fresh() {
-        let mut keys = KeyStates::ALL_UP;
+        let mut keys = KeyStates::ALL_RELEASED;
         keys.restart_release_delay(1.0);
         assert!(!keys.is_fresh_press(Enter), "in the same picture");
-        let mut keys = KeyStates::ALL_UP;
+        let mut keys = KeyStates::ALL_RELEASED;
         keys.restart_release_delay(1.0);
         let _ = keys.finish_ui_frame(1.0);
         assert!(!keys.is_fresh_press(Enter), "in the next one, whenever that is");
-        let mut keys = KeyStates::ALL_UP;
+        let mut keys = KeyStates::ALL_RELEASED;
         keys.restart_release_delay(1.0);
         pictures(&mut keys, 1.0, 0.05, 2);
         assert!(keys.is_fresh_press(Enter), "a person's");

@@ -125,7 +125,7 @@ impl<K: Reviewable> Review<K> {
     }
 
     /// Returns whether a plan has been requested or is ready, but has not been started.
-    pub(in crate::app) fn is_pending_plan(&self) -> bool {
+    pub(in crate::app) fn has_pending_plan(&self) -> bool {
         matches!(self.state, ReviewState::Planning | ReviewState::Ready(_))
     }
 

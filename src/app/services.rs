@@ -14,7 +14,7 @@ use super::notices::{Notice, NoticeLog, Severity};
 use super::remote::is_remote_session;
 use super::shutdown::{ClosingSession, GracePeriods};
 use super::studio::SessionId;
-use super::tasks::{TaskRunner, Wake};
+use super::tasks::{TaskRunner, WakeCallback};
 use super::type_map::TypeMap;
 use crate::link::{LinkError, PortInfo};
 use crate::store::{BaseFolders, Store};
@@ -87,7 +87,7 @@ pub struct Services {
 }
 
 impl Services {
-    const JOBS: usize = 500;
+    const MAX_JOB_RECORDS: usize = 500;
 
     /// Returns the value of this type that is shared by all sessions of a kind of device, if any.
     pub fn shared_data<T: Any>(&self) -> Option<&T> {
@@ -99,7 +99,7 @@ impl Services {
         self.shared.insert(TypeId::of::<T>(), Box::new(value));
     }
 
-    pub(crate) fn new(world: StudioEnvironment, wake: Wake) -> Self {
+    pub(crate) fn new(world: StudioEnvironment, wake: WakeCallback) -> Self {
         let (log, jobs) = (NoticeLog::default(), VecDeque::new());
         let (tasks, closing_sessions) = (TaskRunner::new(wake), Vec::new());
         let opening_files = Vec::new();
@@ -130,7 +130,7 @@ impl Services {
     }
 
     /// Adds a notice about one part of a device to the log, and displays it in the window.
-    pub(crate) fn notify_part(
+    pub(crate) fn notify_device_part(
         &mut self,
         severity: Severity,
         texts: Vec<Text>,
@@ -140,7 +140,7 @@ impl Services {
     }
 
     /// Adds a notice to the log only, because the window already shows the same text elsewhere.
-    pub(crate) fn log_only(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
+    pub(crate) fn log_without_display(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.add_to_log(self.create_notice(severity, texts, about));
     }
 
@@ -163,7 +163,7 @@ impl Services {
             end: JobState::Running,
             key: (session, id),
         });
-        if self.jobs.len() > Self::JOBS {
+        if self.jobs.len() > Self::MAX_JOB_RECORDS {
             self.jobs.pop_front();
         }
     }

@@ -89,7 +89,7 @@ impl Settings {
     }
 
     /// Maximum number of links of a tab, and of recent profiles.
-    const REMEMBERED: usize = 12;
+    const MAX_RECENT_ENTRIES: usize = 12;
 
     /// Parses settings.
     ///
@@ -241,11 +241,11 @@ impl Settings {
         if !kinds.has_tab(self.tab) {
             self.tab = kinds.first_tab();
         }
-        self.links.move_old_links(kinds.first_tab());
+        self.links.migrate_old_links(kinds.first_tab());
     }
 
     pub fn use_link(&mut self, tab: Tab, link: &str) {
-        self.links.edit_links(tab, |links| put_first(links, link, Self::REMEMBERED));
+        self.links.edit_links(tab, |links| move_to_front(links, link, Self::MAX_RECENT_ENTRIES));
     }
 
     /// Returns the paths of the profiles opened or saved most recently, newest first.
@@ -254,7 +254,7 @@ impl Settings {
     }
 
     pub fn use_profile(&mut self, path: &str) {
-        put_first(&mut self.recent_profiles, path, Self::REMEMBERED);
+        move_to_front(&mut self.recent_profiles, path, Self::MAX_RECENT_ENTRIES);
     }
 }
 
@@ -317,7 +317,7 @@ impl Links {
     }
 
     /// Moves links from an old file to the first tab. Such a file dates from when there was only one kind of device.
-    fn move_old_links(&mut self, first: Tab) {
+    fn migrate_old_links(&mut self, first: Tab) {
         let Some(at) = self.0.iter().position(|(tab, _)| *tab == Tab::default()) else { return };
         let (_, links) = self.0.remove(at);
         self.edit_links(first, |own| drop(own.splice(0..0, links)));
@@ -353,7 +353,7 @@ impl<'de> Deserialize<'de> for Links {
 }
 
 /// Moves an entry to the beginning of a list of at most `limit` entries.
-fn put_first(list: &mut Vec<String>, entry: &str, limit: usize) {
+fn move_to_front(list: &mut Vec<String>, entry: &str, limit: usize) {
     list.retain(|known| known != entry);
     list.insert(0, entry.to_owned());
     list.truncate(limit);

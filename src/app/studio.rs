@@ -19,7 +19,7 @@ use super::services::{Services, StudioEnvironment};
 use super::settings_store::SettingsStore;
 use super::sine_cosine::SineCosineSource;
 use super::tab::Tab;
-use super::tasks::{ActionMailbox, Wake};
+use super::tasks::{ActionMailbox, WakeCallback};
 use super::tool::{Tool, ToolKind};
 use super::{Settings, Severity, Text, explain};
 use crate::link::LinkUrl;
@@ -53,7 +53,7 @@ pub struct Studio {
 
 impl Studio {
     /// Creates the application state from the stored settings. `wake` is called when there are new events.
-    pub fn new(world: StudioEnvironment, wake: Wake) -> Self {
+    pub fn new(world: StudioEnvironment, wake: WakeCallback) -> Self {
         let mut services = Services::new(world, wake);
         let kinds = services.world.kinds;
         let (settings, settings_store) = SettingsStore::load(&mut services);
@@ -120,7 +120,7 @@ impl Studio {
             Action::Stop => self.stop(),
             Action::StopMotion => self.stop_motion(),
             Action::ReleaseMotion => self.release_jogs(),
-            Action::Escape => self.press_escape(),
+            Action::Escape => self.handle_escape_key(),
             Action::Close => self.close(),
             Action::Quit => self.force_quit(),
             Action::Confirm => self.confirm_question(),
@@ -170,7 +170,7 @@ impl Studio {
             Action::Tool(tab, action) => self.apply_tool_action(tab, action),
             Action::Done(done) => self.handle_result(done),
             Action::NoThread(why) => {
-                self.devices.iter_mut().for_each(|device| device.mark_save_waiting());
+                self.devices.iter_mut().for_each(|device| device.pause_save_for_question());
                 let text = Text::new("session.no_thread").with("why", why);
                 self.services.notify(Severity::Error, vec![text], None);
             }
@@ -407,7 +407,7 @@ impl Studio {
         self.tools.iter_mut().for_each(|(_, tool)| tool.stop(&mut self.services));
     }
 
-    fn press_escape(&mut self) {
+    fn handle_escape_key(&mut self) {
         // Escape stops a motion before anything else.
         if self.is_requested_motion_running() {
             return self.stop_motion();

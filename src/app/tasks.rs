@@ -9,24 +9,24 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use super::Action;
 
 /// A callback that wakes the window when there are new events.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
+pub type WakeCallback = Arc<dyn Fn() + Send + Sync>;
 
 /// A runner for tasks on threads. The result of each task is delivered as an action.
 pub struct TaskRunner {
     sender: Sender<Action>,
     receiver: Receiver<Action>,
-    wake: Wake,
+    wake: WakeCallback,
 }
 
 /// A mailbox that accepts actions for the application state from any thread.
 #[derive(Clone)]
 pub struct ActionMailbox {
     sender: Sender<Action>,
-    wake: Wake,
+    wake: WakeCallback,
 }
 
 impl TaskRunner {
-    pub(crate) fn new(wake: Wake) -> Self {
+    pub(crate) fn new(wake: WakeCallback) -> Self {
         // The channel needs no limit, because each thread sends only once and is started by an action of the user.
         let (sender, receiver) = unbounded();
         TaskRunner { sender, receiver, wake }
@@ -46,7 +46,7 @@ impl TaskRunner {
     }
 
     /// Returns the callback that sessions use to wake the window.
-    pub(crate) fn wake_callback(&self) -> Wake {
+    pub(crate) fn wake_callback(&self) -> WakeCallback {
         self.wake.clone()
     }
 

@@ -64,10 +64,10 @@ pub struct ThemeData {
 }
 
 static BUILT_IN: LazyLock<Result<ThemeData, String>> =
-    LazyLock::new(|| ron::from_str(ThemeData::SOURCE).map_err(|error| error.to_string()));
+    LazyLock::new(|| ron::from_str(ThemeData::THEME_SOURCE).map_err(|error| error.to_string()));
 
 impl ThemeData {
-    pub const SOURCE: &'static str = include_str!("../../assets/theme.ron");
+    pub const THEME_SOURCE: &'static str = include_str!("../../assets/theme.ron");
 
     /// Returns the built-in theme.
     ///

@@ -302,7 +302,7 @@ impl<W: Watchable> DeviceRecorder<W> {
 
     /// Discards the recording of the previous device, unless it contains minutes of unexported data. The selected
     /// values are kept.
-    pub fn clear_unless_long(&mut self) {
+    pub fn discard_short_recording(&mut self) {
         let watched = self.watched_values();
         if self.recorder.unexported_duration() >= LONG_RECORDING_NS {
             self.set_watched(&[]);

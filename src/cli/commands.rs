@@ -12,7 +12,7 @@ use super::simulate::ServableDevice;
 use super::{Failure, Result};
 use crate::app::report::{DeviceReading, ReportContext};
 use crate::app::{Text, TypeMap};
-use crate::profile::{Body, KeptItem};
+use crate::profile::{Body, IrreversibleItem};
 use crate::report::Report;
 
 /// Commands that a device kind may support.
@@ -179,7 +179,7 @@ pub trait ProfileCommands: Sync {
 
     /// Returns an instruction with the command that writes back an item that an undo leaves unchanged. Returns `None`
     /// if this kind has no such command.
-    fn redo_command(&self, _kept: &KeptItem) -> Option<String> {
+    fn redo_command(&self, _kept: &IrreversibleItem) -> Option<String> {
         None
     }
 

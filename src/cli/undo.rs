@@ -9,7 +9,7 @@ use super::log::{check_bench, entry_with_number, local_time, no_backup};
 use super::output::Output;
 use super::profiles::load_profile_to_write;
 use super::{Failure, Result};
-use crate::profile::{ChangedSince, KeptItem, Redo, UndoneWrite};
+use crate::profile::{IrreversibleItem, LaterChange, Redo, UndoableWrite};
 use crate::store::{DeviceKey, Entry, EntryId, EntryUid, UndoObstacle};
 use crate::worker::commit::PlannedWrite;
 
@@ -22,7 +22,7 @@ pub(crate) struct UndoneEntry {
     entry: EntryId,
     uid: EntryUid,
     device: DeviceKey,
-    write: UndoneWrite,
+    write: UndoableWrite,
     /// Items that cannot be undone, each with an instruction for the user.
     kept: Vec<(String, String)>,
 }
@@ -36,7 +36,7 @@ pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Res
     if profile.kind() != kind.name() {
         return Err(Failure::Failed(vec![format!("{} is not a profile of {}.", file.display(), kind.name())]));
     }
-    let write = UndoneWrite::new(&entry.items, &mut profile);
+    let write = UndoableWrite::new(&entry.items, &mut profile);
     let kept: Vec<_> = write.kept().iter().map(|own| (own.item.clone(), instruction(kind, own))).collect();
     if !write.has_effect() {
         let lines = kept.iter().map(|(item, instead)| format!("{item} cannot be undone: {instead}."));
@@ -55,7 +55,7 @@ pub(super) fn undo(common: &CommonArgs, output: &Output, undo: &UndoArgs) -> Res
 }
 
 /// Returns an instruction for an item that cannot be undone, with a command if this device kind has one.
-fn instruction(kind: &dyn DeviceCommands, kept: &KeptItem) -> String {
+fn instruction(kind: &dyn DeviceCommands, kept: &IrreversibleItem) -> String {
     let general = match &kept.redo {
         Redo::Write(value) => format!("write {value} again"),
         Redo::WriteUnknown => "write its previous value again, which could not be read".to_owned(),
@@ -134,7 +134,7 @@ impl UndoneEntry {
     }
 }
 
-fn describe(changed: &ChangedSince) -> String {
+fn describe(changed: &LaterChange) -> String {
     let value = |value: &Option<String>| value.clone().unwrap_or_else(|| "no value".to_owned());
     format!("{}: expected {}, found {}.", changed.item, value(&changed.expected), value(&changed.found))
 }

@@ -76,9 +76,9 @@ mod tests {
 
     /// A clock whose sleeps end only at ticks of 15.625 ms.
     #[derive(Default)]
-    struct Ticking(VirtualClock);
+    struct TickingClock(VirtualClock);
 
-    impl Clock for Ticking {
+    impl Clock for TickingClock {
         fn now(&self) -> Moment {
             self.0.now()
         }
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn measures_timer_step() {
         assert_eq!(measure_timer_step(&VirtualClock::default()), Duration::from_millis(1));
-        let ticking = Ticking::default();
+        let ticking = TickingClock::default();
         ticking.0.sleep_until(Moment::from_elapsed(Duration::from_micros(14_000)));
         assert_eq!(measure_timer_step(&ticking), Duration::from_micros(15_625));
     }

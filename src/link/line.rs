@@ -27,7 +27,7 @@ const CANCEL_CHECK_INTERVAL: Duration = Duration::from_millis(50);
 /// Duration of continuous reception after which waiting for silence fails.
 const MAX_CONTINUOUS_RECEPTION: Duration = Duration::from_secs(2);
 /// Maximum number of unexpected bytes to keep. A socket can deliver unlimited noise.
-pub(crate) const MAX_KEPT_BYTES: usize = 4096;
+pub(crate) const MAX_UNEXPECTED_BYTES: usize = 4096;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LineError {
@@ -93,7 +93,7 @@ impl<'a> SerialLine<'a> {
         Ok(())
     }
 
-    /// Receives for the given duration without sending. At most [`MAX_KEPT_BYTES`] bytes are returned.
+    /// Receives for the given duration without sending. At most [`MAX_UNEXPECTED_BYTES`] bytes are returned.
     pub(crate) fn receive_pending(&mut self, duration: Duration) -> Result<Vec<u8>, LineError> {
         let end = self.now() + duration;
         let mut heard = Vec::new();
@@ -101,7 +101,7 @@ impl<'a> SerialLine<'a> {
             self.check_cancel()?;
             let slice = (self.now() + CANCEL_CHECK_INTERVAL).min(end);
             self.ctx.wire.receive(slice, &mut heard)?;
-            heard.truncate(MAX_KEPT_BYTES);
+            heard.truncate(MAX_UNEXPECTED_BYTES);
         }
         self.trace_hidden_bytes(end, heard.len());
         Ok(heard)
@@ -164,10 +164,10 @@ impl<'a> SerialLine<'a> {
         self.recorded_bytes.take().unwrap_or_default()
     }
 
-    /// Skips bytes that are not part of a reply. During recording, the first [`MAX_KEPT_BYTES`] bytes are kept.
+    /// Skips bytes that are not part of a reply. During recording, the first [`MAX_UNEXPECTED_BYTES`] bytes are kept.
     pub(crate) fn skip_bytes(&mut self, bytes: &[u8]) {
         if let Some(recorded) = &mut self.recorded_bytes {
-            recorded.extend(bytes.iter().take(MAX_KEPT_BYTES.saturating_sub(recorded.len())));
+            recorded.extend(bytes.iter().take(MAX_UNEXPECTED_BYTES.saturating_sub(recorded.len())));
         }
     }
 

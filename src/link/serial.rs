@@ -191,7 +191,7 @@ fn parity(parity: Parity) -> serialport::Parity {
 }
 
 /// System error message for a file without a baud rate, such as /dev/null.
-const NOT_A_TERMINAL: &str = "Not a typewriter";
+const NOT_A_TERMINAL_MESSAGE: &str = "Not a typewriter";
 
 fn open_error_kind(path: &str, error: &serialport::Error) -> LinkErrorKind {
     match error.kind {
@@ -199,7 +199,9 @@ fn open_error_kind(path: &str, error: &serialport::Error) -> LinkErrorKind {
         serialport::ErrorKind::Io(ErrorKind::PermissionDenied) => platform::permission_error(path),
         serialport::ErrorKind::NoDevice if platform::path_exists(path) => LinkErrorKind::Busy,
         serialport::ErrorKind::NoDevice => LinkErrorKind::NotFound,
-        _ if platform::is_not_serial_port(path) || error.description == NOT_A_TERMINAL => LinkErrorKind::NotAPort,
+        _ if platform::is_not_serial_port(path) || error.description == NOT_A_TERMINAL_MESSAGE => {
+            LinkErrorKind::NotAPort
+        }
         serialport::ErrorKind::InvalidInput => LinkErrorKind::Format(error.description.clone()),
         _ => LinkErrorKind::Other(error.description.clone()),
     }

@@ -159,13 +159,13 @@ fn merges_document_into_text_and_document() {
 fn cause_keeps_error_type() {
     #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
     #[error("{0} lamps are too many")]
-    struct TooMany(u32);
+    struct TooManyLamps(u32);
 
-    let cause = Cause::new(TooMany(3));
-    assert_eq!((cause.to_string(), cause.get()), ("3 lamps are too many".to_owned(), Some(&TooMany(3))));
+    let cause = Cause::new(TooManyLamps(3));
+    assert_eq!((cause.to_string(), cause.get()), ("3 lamps are too many".to_owned(), Some(&TooManyLamps(3))));
     assert_eq!(cause.get::<ProfileError>(), None);
     assert_eq!(cause, cause.clone());
-    assert_ne!(cause, Cause::new(TooMany(4)));
+    assert_ne!(cause, Cause::new(TooManyLamps(4)));
     let error = ProfileError::Refused { path: "lamps".to_owned(), cause };
     assert_eq!(error.to_string(), "lamps: 3 lamps are too many");
 }

@@ -18,7 +18,7 @@ struct Change {
 
 /// A value that has changed since a write.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ChangedSince {
+pub struct LaterChange {
     /// Name of the value.
     pub item: String,
     /// Value directly after the write. `None` if the item did not exist.
@@ -50,7 +50,7 @@ pub enum Redo {
 
 /// A written item that cannot be undone.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct KeptItem {
+pub struct IrreversibleItem {
     /// Name of the item.
     pub item: String,
     /// Instruction for the user.
@@ -59,27 +59,27 @@ pub struct KeptItem {
 
 /// A write that can be undone by restoring its backup.
 #[derive(Clone, Debug)]
-pub struct UndoneWrite {
+pub struct UndoableWrite {
     changes: ValueChanges,
-    kept: Vec<KeptItem>,
+    kept: Vec<IrreversibleItem>,
     item_count: usize,
     single_values: fn(&ChangedItem) -> Vec<ChangedItem>,
 }
 
-impl UndoneWrite {
+impl UndoableWrite {
     /// Prepares to undo a write of these items. All values that the write did not change are removed from the backup.
     pub fn new(items: &[ChangedItem], backup: &mut Body) -> Self {
-        let kept = |item: &ChangedItem| Some(KeptItem { item: item.item.clone(), redo: backup.redo(item)? });
-        let kept: Vec<KeptItem> = items.iter().filter_map(kept).collect();
+        let kept = |item: &ChangedItem| Some(IrreversibleItem { item: item.item.clone(), redo: backup.redo(item)? });
+        let kept: Vec<IrreversibleItem> = items.iter().filter_map(kept).collect();
         backup.keep_items(items);
         let single_values = backup.single_values();
         let single = items.iter().flat_map(single_values);
         let changes = ValueChanges::of(single.filter(|value| kept.iter().all(|own| own.item != value.item)));
-        UndoneWrite { changes, kept, item_count: items.len(), single_values }
+        UndoableWrite { changes, kept, item_count: items.len(), single_values }
     }
 
     /// Returns the items that cannot be undone.
-    pub fn kept(&self) -> &[KeptItem] {
+    pub fn kept(&self) -> &[IrreversibleItem] {
         &self.kept
     }
 
@@ -97,7 +97,7 @@ impl UndoneWrite {
 
     /// Returns the values that have changed since the write. `planned` are the changes that restoring the backup would
     /// make.
-    pub fn changed_since(&self, planned: impl IntoIterator<Item = ChangedItem>) -> Vec<ChangedSince> {
+    pub fn changed_since(&self, planned: impl IntoIterator<Item = ChangedItem>) -> Vec<LaterChange> {
         let planned = ValueChanges::of(planned.into_iter().flat_map(|item| (self.single_values)(&item)));
         self.changes.changed_since(&planned)
     }
@@ -137,11 +137,11 @@ impl ValueChanges {
 
     /// Compares a write with the operations that would undo it, and returns the values that have changed since,
     /// including those that the write did not change.
-    pub fn changed_since(&self, undoing: &ValueChanges) -> Vec<ChangedSince> {
+    pub fn changed_since(&self, undoing: &ValueChanges) -> Vec<LaterChange> {
         let changed = undoing.0.iter().filter_map(|(item, Change { old: found, new: back })| {
             // The write did not change this value, so it left the value that would be written back.
             let expected = self.0.get(item).map_or(back, |change| &change.new);
-            (expected != found).then(|| ChangedSince {
+            (expected != found).then(|| LaterChange {
                 item: item.clone(),
                 expected: expected.clone(),
                 found: found.clone(),
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn names_values_changed_since() {
+    fn names_values_changed_after_write() {
         let write = changes(&[("a", "1", "2"), ("b", "5", "6"), ("c", "", "7")]);
         let since = |undoing: &[(&str, &str, &str)]| {
             let text = |value: Option<String>| value.unwrap_or_default();

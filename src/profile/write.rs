@@ -132,7 +132,7 @@ pub struct InterruptedWrite<Op, E, Done, Left> {
     pub end_state: Left,
 }
 
-pub(crate) type InterruptedWriteOf<W> =
+pub(crate) type WriteInterruption<W> =
     InterruptedWrite<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::EndState>;
 
 impl<'p, Base: Hash, Op: Clone + Hash> ConfirmedPlan<'p, Base, Op> {
@@ -158,7 +158,7 @@ impl<'p, Base: Hash, Op: Clone + Hash> ConfirmedPlan<'p, Base, Op> {
         &self,
         write: &mut W,
         tell: &mut dyn FnMut(usize, &Op),
-    ) -> Result<W::Written, Box<InterruptedWriteOf<W>>> {
+    ) -> Result<W::Written, Box<WriteInterruption<W>>> {
         let (mut at, mut done) = (0, W::Written::default());
         let mut execute = || {
             write.begin()?;

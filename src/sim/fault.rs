@@ -106,14 +106,14 @@ impl SimulatedFaults {
     }
 
     /// Returns the number of the save during which the power fails, counted from 1.
-    pub fn failing_store(&self) -> Option<u32> {
+    pub fn save_with_power_failure(&self) -> Option<u32> {
         self.die_in_store
     }
 
     /// Passes a byte over the noisy line.
     pub fn transmit_byte(&self, rng: &mut Rng, byte: u8) -> ByteTransfer {
-        let inserted = is_hit(self.garbage, rng).then(|| rng.u8(..));
-        let carried = (!is_hit(self.drop, rng)).then(|| match is_hit(self.flip, rng) {
+        let inserted = random_event_occurs(self.garbage, rng).then(|| rng.u8(..));
+        let carried = (!random_event_occurs(self.drop, rng)).then(|| match random_event_occurs(self.flip, rng) {
             true => ReceivedByte { byte: byte ^ 1 << rng.u8(..8), flipped: true },
             false => ReceivedByte { byte, flipped: false },
         });
@@ -121,7 +121,7 @@ impl SimulatedFaults {
     }
 }
 
-fn is_hit(probability: f64, rng: &mut Rng) -> bool {
+fn random_event_occurs(probability: f64, rng: &mut Rng) -> bool {
     // f64() is below 1, so a probability of 1 always applies and 0 never does.
     rng.f64() < probability
 }
@@ -179,7 +179,7 @@ mod tests {
             "drop:0.01, flip:1,garbage:0,delay:25,silent-after:0,die-in-store:2".parse().unwrap();
         assert_eq!((faults.drop, faults.flip, faults.garbage), (0.01, 1.0, 0.0));
         assert_eq!(faults.reply_delay(), Duration::from_millis(25));
-        assert_eq!((faults.silent_after(), faults.failing_store()), (Some(0), Some(2)));
+        assert_eq!((faults.silent_after(), faults.save_with_power_failure()), (Some(0), Some(2)));
         assert_eq!("".parse(), Ok(SimulatedFaults::default()));
     }
 

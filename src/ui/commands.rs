@@ -71,7 +71,7 @@ pub(super) fn shortcut_commands(theme: &Theme, studio: &Studio, views: &Views) -
 /// Returns all commands, with their names in both languages.
 pub(super) fn all_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = in_language(theme, studio, views);
-    let others = in_language(&theme.with_other_language(), studio, views);
+    let others = in_language(&theme.with_toggled_language(), studio, views);
     for (own, other) in commands.iter_mut().zip(others) {
         own.other_name = other.name;
     }

@@ -128,11 +128,11 @@ pub trait TypedDeviceView: Sync + 'static {
     }
 
     /// Draws both profiles in one picture.
-    fn compared_picture_ui(_ui: &mut Ui, _theme: &Theme, _left: &ProfileOf<Self>, _right: &ProfileOf<Self>) {}
+    fn compared_picture_ui(_ui: &mut Ui, _theme: &Theme, _left: &ViewedProfile<Self>, _right: &ViewedProfile<Self>) {}
 }
 
 /// Profile type of the devices that a view displays.
-pub type ProfileOf<V> = <<V as TypedDeviceView>::Device as DeviceType>::Profile;
+pub type ViewedProfile<V> = <<V as TypedDeviceView>::Device as DeviceType>::Profile;
 
 /// Object-safe view of one kind of device. For a device of another kind, it draws nothing and reports no edits.
 pub trait DeviceView: Sync {

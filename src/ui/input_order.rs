@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn text_after_click_or_tab_waits() {
+    fn defers_text_after_click_or_tab() {
         let events = [button(true), button(false), text("12"), key(Key::Tab, true), key(Key::Tab, false), text("3")];
         let expected = [
             vec![button(true), button(false)],

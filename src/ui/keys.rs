@@ -16,7 +16,7 @@ pub(super) struct KeyboardFilter {
 
 impl KeyboardFilter {
     pub(super) fn new() -> Self {
-        KeyboardFilter { fresh: KeyStates::ALL_UP, asked: false }
+        KeyboardFilter { fresh: KeyStates::ALL_RELEASED, asked: false }
     }
 
     /// Removes the events that no widget may receive from the current frame. Returns whether all motion must stop.

@@ -8,7 +8,7 @@ use super::Theme;
 const DEFAULT_LABEL_WIDTH: f32 = 132.0;
 /// Maximum width of the label column as a fraction of the card width. The first value is the default, and the second is
 /// for long labels.
-const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
+const MAX_LABEL_WIDTH_FRACTIONS: (f32, f32) = (0.4, 0.55);
 
 #[derive(Clone, Copy, Default)]
 struct LabelColumn {
@@ -51,7 +51,7 @@ pub(crate) fn with_label_column<R>(ui: &mut Ui, heading: &str, content: impl FnO
 }
 
 pub(crate) fn label_width(ui: &Ui) -> f32 {
-    let (usual, most) = LABEL_SHARES;
+    let (usual, most) = MAX_LABEL_WIDTH_FRACTIONS;
     let room = ui.available_width().max(0.0);
     DEFAULT_LABEL_WIDTH.min(room * usual).max(LabelColumn::load(ui).longest.min(room * most))
 }

@@ -41,7 +41,7 @@ pub(crate) mod workspace;
 
 pub use commands::NamedAction;
 pub use device_view::{
-    DeviceView, PageInfo, ProfileOf, SessionView, TabPage, TabViews, ToolPages, ToolView, TypedDeviceView,
+    DeviceView, PageInfo, SessionView, TabPage, TabViews, ToolPages, ToolView, TypedDeviceView, ViewedProfile,
 };
 pub use dialogs::connect::{ConnectForm, TypedConnectForm};
 pub use run::run;

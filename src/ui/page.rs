@@ -6,7 +6,7 @@ use super::Theme;
 
 const NARROW_WIDTH: f32 = 720.0;
 /// Space above a page, and maximum space below it.
-const SPACE_ABOVE: i8 = 16;
+const PAGE_TOP_MARGIN: i8 = 16;
 
 pub(crate) fn side_margin(ui: &Ui, theme: &Theme) -> i8 {
     let narrow = ui.available_width() < NARROW_WIDTH;
@@ -15,7 +15,7 @@ pub(crate) fn side_margin(ui: &Ui, theme: &Theme) -> i8 {
 
 pub(crate) fn page_margin(ui: &Ui, theme: &Theme) -> Margin {
     let sides = side_margin(ui, theme);
-    Margin { left: sides, right: sides, top: SPACE_ABOVE, bottom: sides.min(SPACE_ABOVE) }
+    Margin { left: sides, right: sides, top: PAGE_TOP_MARGIN, bottom: sides.min(PAGE_TOP_MARGIN) }
 }
 
 /// Draws a page that scrolls as a whole. `id` must differ from the ids of other pages. The scroll bar is in the margin,

@@ -18,7 +18,7 @@ pub(super) fn review_ui(ctx: &egui::Context, theme: &Theme, device: &AnyDevice, 
     let Some(sheet) = device.review_sheet() else { return };
     let width = (ctx.content_rect().width() - 64.0).min(760.0);
     // Show as many operations as fit beside the texts of the dialog.
-    let room = (ctx.content_rect().height() - OTHER_HEIGHT).clamp(MIN_LIST_HEIGHT, MAX_LIST_HEIGHT);
+    let room = (ctx.content_rect().height() - REVIEW_CHROME_HEIGHT).clamp(MIN_LIST_HEIGHT, MAX_LIST_HEIGHT);
     modal(ctx, theme, "review", width, |ui| {
         ui.label(theme.heading(theme.format_text(&sheet.title)));
         ui.label(theme.label(device.name()));
@@ -242,7 +242,7 @@ fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeDescription, heads: [&'s
 /// everything around it.
 const MIN_LIST_HEIGHT: f32 = 200.0;
 const MAX_LIST_HEIGHT: f32 = 440.0;
-const OTHER_HEIGHT: f32 = 424.0;
+const REVIEW_CHROME_HEIGHT: f32 = 424.0;
 /// Width of the icon before an item, including the gap after the icon.
 const ICON_WIDTH: f32 = 24.0;
 /// Width of the column for the "old" and "new" labels.

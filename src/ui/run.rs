@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::live_pace::processor_time;
 use super::renderer::renderers_to_try;
 use super::{TabViews, Window, install_fonts, termination};
-use crate::app::{KindRegistry, Studio, StudioEnvironment, ThemeData, Wake, explain};
+use crate::app::{KindRegistry, Studio, StudioEnvironment, ThemeData, WakeCallback, explain};
 use crate::cli::Window as Start;
 use crate::store::{LogFile, Store};
 
@@ -22,7 +22,7 @@ pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), Stri
 fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String> {
     let began = Instant::now();
     if !has_display() {
-        return Err(NO_DISPLAY.to_owned());
+        return Err(NO_DISPLAY_MESSAGE.to_owned());
     }
     let store = Store::for_user().map_err(|error| explain::store_error_text(&error).terminal_text())?;
     let log = LogFile::start(&store.log_path());
@@ -33,7 +33,7 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
     // The window is created after the application state. Until then, no window has to be woken.
     let context: Arc<OnceLock<egui::Context>> = Arc::default();
     let waker = context.clone();
-    let wake: Wake = Arc::new(move || {
+    let wake: WakeCallback = Arc::new(move || {
         if let Some(context) = waker.get() {
             context.request_repaint();
         }
@@ -116,7 +116,7 @@ impl eframe::App for StudioApp {
 }
 
 const ICON: &[u8] = include_bytes!("../../assets/icon/64.png");
-const NO_DISPLAY: &str = "There is no display for the window (DISPLAY and WAYLAND_DISPLAY are not set); without one: \
+const NO_DISPLAY_MESSAGE: &str = "There is no display for the window (DISPLAY and WAYLAND_DISPLAY are not set); without one: \
                           encoder-studio identify, status, position, save, diff, restore, verify, read, write, do, \
                           find, decode, analyse, simulate, ports (see encoder-studio help).";
 #[cfg(windows)]

@@ -36,7 +36,7 @@ impl Theme {
     }
 
     /// Returns the same theme with the texts of the other language.
-    pub(crate) fn with_other_language(&self) -> Self {
+    pub(crate) fn with_toggled_language(&self) -> Self {
         let language = match self.language {
             Language::English => Language::German,
             Language::German => Language::English,
@@ -64,7 +64,7 @@ impl Theme {
 
     /// Formats a number with as many decimals as it needs, up to twelve significant digits. Further digits would only
     /// show rounding errors.
-    pub fn format_plain(&self, value: f64) -> String {
+    pub fn format_significant_digits(&self, value: f64) -> String {
         self.format_number(value, significant_decimals(value))
     }
 

@@ -18,8 +18,8 @@ pub use undo::Undo;
 use super::{JobError, Progress, SessionLog};
 pub use crate::analysis::check::CycleCount;
 use crate::profile::{
-    Body, ChangedItem, ConfirmedPlan, Consent, InterruptedWriteOf, Operation, OperationError, Plan, ProfileDocument,
-    Write, WriteRecord,
+    Body, ChangedItem, ConfirmedPlan, Consent, Operation, OperationError, Plan, ProfileDocument, Write,
+    WriteInterruption, WriteRecord,
 };
 use crate::store::{DeviceKey, EntryId, EntryKind, EntryUid, FileError, Intent, Logbook, LogbookError, Outcome, Store};
 
@@ -124,7 +124,7 @@ pub trait PlannedWrite {
 
     /// Returns how each operation can be undone, or `None` for an operation that changes nothing.
     fn undos(&self) -> Vec<Option<Undo>> {
-        Undo::of_plan(self)
+        Undo::for_write_plan(self)
     }
 
     /// Returns the plan to write.
@@ -162,7 +162,7 @@ pub struct PlanHeader<'p, P: PlannedWrite + ?Sized> {
 
 /// The error of a write that did not begin or was interrupted. If the base has changed, it is the device's own error.
 type WritePlanError<P, W, E> =
-    JobError<<<W as Write>::Error as OperationError>::Device, E, InterruptedWriteOf<W>, <P as PlannedWrite>::Kind>;
+    JobError<<<W as Write>::Error as OperationError>::Device, E, WriteInterruption<W>, <P as PlannedWrite>::Kind>;
 
 /// Writes a plan to which the user has consented. Each operation is reported before it begins. A plan without
 /// operations always succeeds.

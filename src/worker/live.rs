@@ -37,7 +37,7 @@ impl LiveRequests {
     }
 
     /// Sets the job that the next stop cancels.
-    pub(super) fn set_job_cancel(&self, cancel: CancelToken) {
+    pub(super) fn set_job_cancel_token(&self, cancel: CancelToken) {
         self.lock().job = cancel;
     }
 

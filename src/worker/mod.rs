@@ -277,7 +277,7 @@ impl<D: Device> Worker<D> {
         // Each job has its own cancellation token, which is never reset, so the cancellation of an earlier job does not
         // affect it.
         let cancel = CancelToken::default();
-        self.live.set_job_cancel(cancel.clone());
+        self.live.set_job_cancel_token(cancel.clone());
         if self.jobs.try_send(SubmittedJob { id, job, cancel }).is_err() {
             self.busy.store(false, Ordering::SeqCst);
             return Err(SubmitError::Ended);

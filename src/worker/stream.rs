@@ -26,7 +26,7 @@ use crate::link::Clock;
 /// Maximum duration of a single wait in a producer, after which a stop or a change takes effect.
 pub(crate) const MAX_WAIT: Duration = Duration::from_millis(20);
 /// Minimum interval between two wake-ups of the window.
-const WAKE: Duration = Duration::from_millis(50);
+const WAKE_INTERVAL: Duration = Duration::from_millis(50);
 
 /// A series of samples at equal intervals.
 #[derive(Clone, Debug, PartialEq)]
@@ -245,7 +245,7 @@ fn run_loop<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock,
             }
         }
         let now = clock.now();
-        if unread && woken.is_none_or(|woken| now.duration_since(woken) >= WAKE) {
+        if unread && woken.is_none_or(|woken| now.duration_since(woken) >= WAKE_INTERVAL) {
             (end.wake)();
             (woken, unread) = (Some(now), false);
         }

@@ -13,10 +13,10 @@ mod places;
 mod words;
 
 use paths::{Used, paths};
-use places::{Owner, Place, modules_of};
+use places::{Owner, Place, module_path_segments};
 
 /// The only file that lists all devices and the parts added by buses and Signals.
-const LIST_OF_KINDS: &str = "src/kinds.rs";
+const KINDS_FILE: &str = "src/kinds.rs";
 
 struct Source {
     path: String,
@@ -62,7 +62,7 @@ fn sources() -> Vec<Source> {
         .into_iter()
         .map(|file| {
             let inside = file.strip_prefix(&root).unwrap().to_str().unwrap();
-            let (path, modules) = (format!("src/{inside}"), modules_of(inside));
+            let (path, modules) = (format!("src/{inside}"), module_path_segments(inside));
             let place = Place::of(&modules).unwrap_or_else(|| panic!("{path} has no place: see ARCHITECTURE.md"));
             let is_loose = matches!(place.owner, Owner::Device(_)) && place.layer == "kinds" && modules.len() > 2;
             assert!(!is_loose, "{path} stands in no module of its device: see ARCHITECTURE.md");
@@ -84,7 +84,7 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
 
 /// Returns whether a path is the list of devices for the virtual adapter, which is needed to open an adapter. Devices,
 /// bus tests and Signals may use no other part of the list of kinds.
-fn is_attachable_kinds(path: &[String]) -> bool {
+fn is_attachable_kinds_path(path: &[String]) -> bool {
     path == ["kinds", "attachable_kinds"]
 }
 
@@ -92,7 +92,7 @@ fn is_attachable_kinds(path: &[String]) -> bool {
 fn layers_use_only_lower_layers() {
     for source in sources() {
         for (used, place) in source.uses(source.without_tests()) {
-            let up = place.floor() > source.place.floor() && !is_attachable_kinds(&used.path);
+            let up = place.floor() > source.place.floor() && !is_attachable_kinds_path(&used.path);
             assert!(!up, "{}:{} reaches up to {}", source.path, used.line, used.path.join("::"));
         }
     }
@@ -100,7 +100,7 @@ fn layers_use_only_lower_layers() {
 
 /// Layers on the same level may use each other only as listed here.
 #[test]
-fn same_level_uses_are_listed() {
+fn same_level_dependencies_are_listed() {
     const ALLOWED: [(&str, &str); 4] =
         [("profile", "protocol"), ("link", "sim"), ("worker", "procedures"), ("cli", "app")];
     for source in sources().iter().filter(|source| source.place.floor() < 6) {
@@ -140,7 +140,7 @@ fn core_folders_are_acyclic() {
 #[test]
 fn device_and_bus_uses_are_allowed() {
     for source in sources() {
-        let lists = source.path == LIST_OF_KINDS || source.path.starts_with("src/kinds/");
+        let lists = source.path == KINDS_FILE || source.path.starts_with("src/kinds/");
         for (used, place) in source.uses(&source.text) {
             let allowed = match (&source.place.owner, &place.owner) {
                 (_, Owner::Core) => true,
@@ -201,7 +201,7 @@ fn only_front_ends_give_consent() {
 
 /// Operations require a confirmed plan. The only function that confirms a plan also saves the backup.
 #[test]
-fn only_write_plan_confirms() {
+fn only_commit_module_confirms_plans() {
     let confirms = |source: &Source| source.code().any(|(_, code)| code.contains("ConfirmedPlan::confirm("));
     let found: Vec<String> = sources().into_iter().filter(confirms).map(|source| source.path).collect();
     assert_eq!(found, ["src/worker/commit.rs"]);
@@ -221,7 +221,7 @@ fn modules_are_documented_and_short() {
 }
 
 /// Returns the text IDs in an owner's catalogue.
-fn ids_of(owner: &Owner) -> BTreeSet<String> {
+fn catalogue_ids(owner: &Owner) -> BTreeSet<String> {
     let name = match owner {
         Owner::Core => "common",
         Owner::Device(name) | Owner::Bus(name) => name,
@@ -238,10 +238,10 @@ struct Known(Vec<(Owner, BTreeSet<String>)>);
 
 impl Known {
     fn read(sources: &[Source]) -> Self {
-        let mut known = vec![(Owner::Core, ids_of(&Owner::Core))];
+        let mut known = vec![(Owner::Core, catalogue_ids(&Owner::Core))];
         for source in sources {
             if known.iter().all(|(owner, _)| *owner != source.place.owner) {
-                known.push((source.place.owner.clone(), ids_of(&source.place.owner)));
+                known.push((source.place.owner.clone(), catalogue_ids(&source.place.owner)));
             }
         }
         let names = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/texts")).unwrap().count();

@@ -26,7 +26,7 @@ const LAYERS: [(&str, u8); 21] = [
 ];
 
 /// Layers that the core must not have, because it does not know the bytes or procedures of any device.
-const NEVER_OF_THE_CORE: [&str; 2] = ["protocol", "procedures"];
+const NON_CORE_LAYERS: [&str; 2] = ["protocol", "procedures"];
 
 /// The modules of a device, a bus and Signals, with their layers.
 const MODULES: [(&str, &str); 8] = [
@@ -69,12 +69,12 @@ impl Place {
             ["devices", name] => place(Owner::Device((*name).to_owned()), "kinds"),
             // Anything that is not a module of a device is a type that `mod.rs` re-exports.
             ["devices", name, module, ..] => {
-                place(Owner::Device((*name).to_owned()), layer_of_module(module).unwrap_or("kinds"))
+                place(Owner::Device((*name).to_owned()), module_layer(module).unwrap_or("kinds"))
             }
             ["buses", name] => place(Owner::Bus((*name).to_owned()), "lib"),
-            ["buses", name, module, ..] => place(Owner::Bus((*name).to_owned()), layer_of_module(module)?),
-            ["signals", module, ..] => place(Owner::Signals, layer_of_module(module)?),
-            [first, ..] => place(Owner::Core, layer_of_the_core(first)?),
+            ["buses", name, module, ..] => place(Owner::Bus((*name).to_owned()), module_layer(module)?),
+            ["signals", module, ..] => place(Owner::Signals, module_layer(module)?),
+            [first, ..] => place(Owner::Core, core_layer(first)?),
         }
     }
 
@@ -83,17 +83,17 @@ impl Place {
     }
 }
 
-fn layer_of_the_core(name: &str) -> Option<&'static str> {
+fn core_layer(name: &str) -> Option<&'static str> {
     let layer = LAYERS.iter().map(|(layer, _)| *layer).find(|layer| *layer == name)?;
-    (!NEVER_OF_THE_CORE.contains(&layer)).then_some(layer)
+    (!NON_CORE_LAYERS.contains(&layer)).then_some(layer)
 }
 
-fn layer_of_module(name: &str) -> Option<&'static str> {
+fn module_layer(name: &str) -> Option<&'static str> {
     MODULES.iter().find(|(module, _)| *module == name).map(|(_, layer)| *layer)
 }
 
 /// Returns the module path for a file path in `src`: `app`, `hiperface` for `app/hiperface/mod.rs`.
-pub(crate) fn modules_of(path: &str) -> Vec<String> {
+pub(crate) fn module_path_segments(path: &str) -> Vec<String> {
     let mut modules: Vec<String> = path.trim_end_matches(".rs").split('/').map(ToOwned::to_owned).collect();
     if matches!(modules.last().map(String::as_str), Some("mod" | "lib")) {
         modules.pop();
@@ -103,7 +103,7 @@ pub(crate) fn modules_of(path: &str) -> Vec<String> {
 
 #[test]
 fn module_has_one_owner_and_layer() {
-    let place = |path| Place::of(&modules_of(path));
+    let place = |path| Place::of(&module_path_segments(path));
     let device = |name: &str, layer| Some(Place { owner: Owner::Device(name.to_owned()), layer });
     let bus = |name: &str, layer| Some(Place { owner: Owner::Bus(name.to_owned()), layer });
     let core = |layer| Some(Place { owner: Owner::Core, layer });

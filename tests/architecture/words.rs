@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const ENGLISH: &[&str] = &[
+const FORBIDDEN_ENGLISH: &[&str] = &[
     "nobody",
     "somebody",
     "whoever",
@@ -25,7 +25,7 @@ const ENGLISH: &[&str] = &[
     "on its desk",
 ];
 /// Words that must not appear in comments: see CONTRIBUTING.md.
-const COMMENTS: &[&str] = &[
+const FORBIDDEN_IN_COMMENTS: &[&str] = &[
     "nobody",
     "somebody",
     "anew",
@@ -39,8 +39,8 @@ const COMMENTS: &[&str] = &[
     "endures",
     "early end",
 ];
-const BEGINNINGS: &[&str] = &["Who ", "Where ", "That ", "Nobody ", "Somebody ", "Whoever "];
-const GERMAN: &[&str] = &["jemand", "lampe", "lampen", "leuchte", "leuchten", "verbindungsangabe"];
+const FORBIDDEN_OPENINGS: &[&str] = &["Who ", "Where ", "That ", "Nobody ", "Somebody ", "Whoever "];
+const FORBIDDEN_GERMAN: &[&str] = &["jemand", "lampe", "lampen", "leuchte", "leuchten", "verbindungsangabe"];
 
 /// Returns whether a text contains the given words, matching only whole words.
 fn has(text: &str, words: &str) -> bool {
@@ -70,7 +70,7 @@ fn texts_contain_no_forbidden_words() {
         for line in fs::read_to_string(&path).unwrap().lines() {
             for (language, text) in texts(line) {
                 read += 1;
-                let given_up = if language == "de" { GERMAN } else { ENGLISH };
+                let given_up = if language == "de" { FORBIDDEN_GERMAN } else { FORBIDDEN_ENGLISH };
                 let words = given_up.iter().filter(|words| has(text, words));
                 found.extend(words.map(|words| format!("{}: \"{words}\" in {text}", path.display())));
             }
@@ -113,8 +113,8 @@ fn comments_contain_no_forbidden_words() {
                 continue;
             };
             read += 1;
-            let begins = is_doc && !goes_on && BEGINNINGS.iter().any(|beginning| text.starts_with(beginning));
-            if begins || COMMENTS.iter().any(|words| has(text, words)) {
+            let begins = is_doc && !goes_on && FORBIDDEN_OPENINGS.iter().any(|beginning| text.starts_with(beginning));
+            if begins || FORBIDDEN_IN_COMMENTS.iter().any(|words| has(text, words)) {
                 found.push(format!("{}:{}: {text}", path.display(), number + 1));
             }
             goes_on = true;

@@ -152,7 +152,7 @@ fn virtual_encoder_passes_guided_procedures() {
     let command = ["do", "biss", "mounting", "wiegand-test", "save", "--yes", "--json", "--link", link];
     let ran = bench.run(&command);
     assert!(ran.err.contains("mounting failed"), "{ran:?}");
-    let tested = ran.json_with(1);
+    let tested = ran.json_with_status(1);
     let result = &tested["results"][0];
     assert_eq!((&result["ok"], &result["lowest_cw_v"], &result["saved"]), (&json!(false), &json!(5.2), &json!(true)));
 }

@@ -95,14 +95,14 @@ fn corrupt_frame_names_failed_checksum() {
         let arguments: Vec<&str> = bytes.split(' ').collect();
         let command = [&["decode", "biss"], &arguments[..]].concat();
         bench.run(&command).fails(1, words);
-        let told = bench.run(&[&command[..], &["--json"]].concat()).json_with(1);
+        let told = bench.run(&[&command[..], &["--json"]].concat()).json_with_status(1);
         assert!(told["frames"].as_array().unwrap().iter().all(|frame| frame["valid"] == json!(false)), "{told}");
     }
     // The adapter has read a frame with a wrong CRC, but the packet that contains it is valid.
     let packet = "06 07 A1 41 42 0F 01 01 01 01 01 02 CE 04 80 69 24 01 01 03 85 9D 00";
     bench.run(&["decode", "biss", packet]).fails(1, &["CRC-6", "024698000CE"]);
     // Valid frames are printed even if the same command contains invalid ones.
-    let mixed = bench.run(&["decode", "biss", "024698000CF", "024698000CE", "--json"]).json_with(1);
+    let mixed = bench.run(&["decode", "biss", "024698000CF", "024698000CE", "--json"]).json_with_status(1);
     let valid: Vec<&Value> = mixed["frames"].as_array().unwrap().iter().map(|frame| &frame["valid"]).collect();
     assert_eq!(valid, [&json!(true), &json!(false)]);
     for words in [&["xy"][..], &[""], &["0xG24"], &["0x"]] {
@@ -133,7 +133,7 @@ fn compares_profiles_offline() {
     let other =
         PROFILE.replace("(bank: 0x24, bytes: [\"00", "(bank: 0x24, bytes: [\"A1").replace("0x03, // b", "0x04, // b");
     let right = bench.write("right.ron", other);
-    let told = bench.run(&["diff", &left, &right, "--json"]).json_with(3);
+    let told = bench.run(&["diff", &left, &right, "--json"]).json_with_status(3);
     let differences = json!([
         {"item": "0x6E", "left": "03", "right": "04"},
         {"item": "0x24:0x00", "left": "00", "right": "A1"},

@@ -36,7 +36,7 @@ fn identify_prints_every_key() {
 }
 
 #[test]
-fn configuration_pin_echo_and_byte_order() {
+fn configuration_pin_handles_echo_and_byte_order() {
     let bench = Bench::new();
     let Some(echoing) = bench.kit(&["--echo", "--order", "big"]) else { return };
     for parameters in ["", "?echo=on&order=high-first", "?timeout=300&margin=20"] {
@@ -92,7 +92,8 @@ fn check_judges_encoder_diagnostics() {
         let expected = good.map(|step| format!("{step} {}", if step == "Wiegand test" { "skipped" } else { "good" }));
         assert_eq!(verdicts(&told), expected, "{told}");
     }
-    let ill = check("sim:?bridge=on&errors=0x12&temperature=106&supply=switched&voltage=4.9&noise=0.2").json_with(1);
+    let ill =
+        check("sim:?bridge=on&errors=0x12&temperature=106&supply=switched&voltage=4.9&noise=0.2").json_with_status(1);
     let expected = [
         "identity good",
         "status bad",

@@ -47,7 +47,7 @@ fn examine(path: &str) {
     assert_eq!(replies, expected);
 }
 
-const WARM: [&str; 2] = ["--set", "temperature=25"];
+const TEMPERATURE_SETTING: [&str; 2] = ["--set", "temperature=25"];
 
 #[test]
 fn configuration_pin_answers_reference_frames() {
@@ -55,7 +55,8 @@ fn configuration_pin_answers_reference_frames() {
     if python("ubicom_host.py").is_none() {
         return;
     }
-    let terminal = Simulated::start(&bench, &[&["biss", "--pty", &bench.file("enc")], &WARM[..]].concat());
+    let terminal =
+        Simulated::start(&bench, &[&["biss", "--pty", &bench.file("enc")], &TEMPERATURE_SETTING[..]].concat());
     assert!(bench.path("enc").is_symlink());
     examine(&terminal.place);
     // The next client finds the mode that the first one has set.
@@ -63,7 +64,7 @@ fn configuration_pin_answers_reference_frames() {
     assert_eq!(mode, ["80 01 01 01 00 07 75"]);
     terminal.end("INT");
     assert!(!bench.path("enc").is_symlink());
-    let port = Simulated::start(&bench, &[&["biss", "--listen", "127.0.0.1:0"], &WARM[..]].concat());
+    let port = Simulated::start(&bench, &[&["biss", "--listen", "127.0.0.1:0"], &TEMPERATURE_SETTING[..]].concat());
     examine(&format!("tcp:{}", port.place));
     port.end("TERM");
 }
@@ -72,7 +73,8 @@ fn configuration_pin_answers_reference_frames() {
 #[test]
 fn link_sets_baud_rate() {
     let bench = Bench::new();
-    let terminal = Simulated::start(&bench, &[&["biss", "--pty", &bench.file("enc")], &WARM[..]].concat());
+    let terminal =
+        Simulated::start(&bench, &[&["biss", "--pty", &bench.file("enc")], &TEMPERATURE_SETTING[..]].concat());
     let ask = |parameters: &str| {
         let link = format!("serial:{}?{parameters}", terminal.place);
         bench.run(&["read", "biss", "0x66", "--link", &link, "--json"])
@@ -163,7 +165,8 @@ fn adapter_reads_frames_and_all_banks() {
     if python("bridge_host.py").is_none() {
         return;
     }
-    let bridge = |more: &[&str]| Simulated::start(&bench, &[&["biss", "--bridge"], more, &WARM[..]].concat());
+    let bridge =
+        |more: &[&str]| Simulated::start(&bench, &[&["biss", "--bridge"], more, &TEMPERATURE_SETTING[..]].concat());
     let port = bridge(&["--listen", "127.0.0.1:0"]);
     examine_adapter(&format!("tcp:{}", port.place));
     port.end("INT");

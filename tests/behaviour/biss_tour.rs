@@ -20,7 +20,7 @@ fn reads_saves_compares_and_restores() {
     assert_eq!((&written["written"], &written["write_cycles"]), (&json!(4), &json!(1)));
 
     let differences = json!([{"item": "0x24:0x10+4", "left": "00000000", "right": "C0FFEE01"}]);
-    let told = run(&["diff", &file]).json_with(3);
+    let told = run(&["diff", &file]).json_with_status(3);
     assert_eq!((&told["differences"], &told["missing"]), (&differences, &json!([])));
     let dry = run(&["restore", &file, "--dry-run"]).json();
     assert_eq!((&dry["operations"][0]["new"], &dry["write_cycles"]), (&json!("00000000"), &json!(1)));

@@ -211,7 +211,7 @@ fn rejects_unwritable_values() {
 }
 
 #[test]
-fn does_not_write_data_while_turning() {
+fn does_not_write_data_while_shaft_turns() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&["--rpm", "30"]) else { return };
     ask(&bench, &encoder, &["write", "biss", "0x24:0x00", "1", "--yes"]).fails(1, &["Stop the shaft"]);

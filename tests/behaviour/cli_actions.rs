@@ -66,7 +66,7 @@ fn sets_position_in_phase_or_exactly() {
 }
 
 #[test]
-fn sets_address_despite_reply_form() {
+fn accepts_all_address_reply_variants() {
     let bench = Bench::new();
     for reply in [&[][..], &["--reply-from", "new"], &["--no-repeat"], &["--reply-from", "new", "--no-repeat"]] {
         let Some(encoder) = bench.encoder(reply) else { return };

@@ -99,7 +99,7 @@ fn noise_error_stays_within_statistics() {
 }
 
 #[test]
-fn columns_and_units() {
+fn detects_columns_and_units() {
     let bench = Bench::new();
     let rows = rows(&REFERENCE, 500, 0.0, 3.0);
     let plain = bench.run(&["analyse", &bench.write("p.csv", table("", &rows)), "--json"]).json();

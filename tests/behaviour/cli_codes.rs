@@ -73,8 +73,8 @@ fn code_opens_field_and_stays_secret() {
     assert!(bench.read("t.trace").lines().any(|line| line.ends_with("> 40 4A 01 00 02 ** **")), "{shown}");
 
     // Profiles, backups, the logbook and traces contain neither the codes nor a checksum calculated from them.
-    shown.push_str(&bench.everything_kept());
-    let shown = bench.without_folder(&shown).to_uppercase();
+    shown.push_str(&bench.all_text_files());
+    let shown = bench.with_folder_removed(&shown).to_uppercase();
     for secret in ["A7", "B3"] {
         let found = shown.lines().find(|line| {
             line.split(|c: char| !c.is_ascii_hexdigit()).any(|word| word == secret || word == format!("0X{secret}"))
@@ -127,5 +127,5 @@ fn recording_does_not_reveal_code() {
     let ran = bench.run(&["read", "hiperface", "field:1@0+2", "--code", "2=A7", "--link", &replay, "--json"]);
     ran.fails(1, &["recording", "40 4A 01"]);
     let sum = frame("40 4A 01 00 02 A7").split_off(18);
-    assert!(!bench.without_folder(&ran.err).contains("A7") && !ran.err.contains(&format!(" {sum}")), "{ran:?}");
+    assert!(!bench.with_folder_removed(&ran.err).contains("A7") && !ran.err.contains(&format!(" {sum}")), "{ran:?}");
 }

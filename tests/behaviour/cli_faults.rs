@@ -97,7 +97,7 @@ fn second_restore_completes_after_power_loss() {
 
     let text = std::fs::read_to_string(backup).unwrap();
     assert!(text.contains("GB0450179") && text.contains("08 15 FF"), "{text}");
-    let told = bench.run(&["diff", backup, &file, "--json"]).json_with(3);
+    let told = bench.run(&["diff", backup, &file, "--json"]).json_with_status(3);
     assert!(
         told["differences"].as_array().unwrap().iter().any(|item| item["left"].as_str().unwrap().starts_with("0815"))
     );

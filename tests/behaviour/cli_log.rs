@@ -145,7 +145,7 @@ fn reading_needs_no_logbook() {
 }
 
 #[test]
-fn asset_selects_entries() {
+fn filters_entries_by_asset() {
     let bench = Bench::new();
     let write = |value: &str, options: &[&str]| {
         let command = ["write", "hiperface", "field:0@3+2", value, "--yes", "--link", "sim:"];

@@ -31,7 +31,10 @@ fn prints_one_header_and_line_per_reading() {
 fn prints_millimetre_and_status_columns() {
     let bench = Bench::new();
     // Type 90h has periods of 1 mm. 0E0531h is 918833 steps of 1/32 mm.
-    let Some(encoder) = bench.encoder(&["--type", "90", "--status", "1C08"]).map(Foreign::waited_for) else { return };
+    let Some(encoder) = bench.encoder(&["--type", "90", "--status", "1C08"]).map(Foreign::with_long_reply_margin)
+    else {
+        return;
+    };
     let arguments = ["position", "hiperface", "--link", &encoder.url, "--csv", "--count", "2", "--interval", "0"];
     let ran = bench.run(&arguments);
     let lines: Vec<&str> = ran.out.lines().collect();

@@ -9,20 +9,20 @@ const IDENTIFY: [&str; 4] = ["identify", "hiperface", "--link", "sim:"];
 /// A write to an encoder whose memory wears out quickly.
 const WRITE: [&str; 7] = ["write", "interbus", "preset", "7", "--yes", "--link", "sim:"];
 
-fn bench_with(settings: &str) -> Bench {
+fn bench_with_settings(settings: &str) -> Bench {
     let bench = Bench::new();
     std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
     bench.write("config/encoder-studio/settings.ron", settings);
     bench
 }
 
-fn user_of_the_last_entry(bench: &Bench) -> Value {
+fn last_entry_user(bench: &Bench) -> Value {
     bench.run(&["log", "--json", "--limit", "1"]).json()["user"].clone()
 }
 
 #[test]
 fn broken_settings_count_as_unreachable_server() {
-    let bench = bench_with("(\n    user_name: Initials,\n    logbook: postgres,\n)");
+    let bench = bench_with_settings("(\n    user_name: Initials,\n    logbook: postgres,\n)");
     let ran = bench.run(&IDENTIFY);
     assert_eq!(ran.status, Some(0), "{ran:?}");
     for words in
@@ -30,29 +30,29 @@ fn broken_settings_count_as_unreachable_server() {
     {
         assert_eq!(ran.err.matches(words).count(), 1, "{words}: {ran:?}");
     }
-    assert_ne!(user_of_the_last_entry(&bench), Value::Null, "the rule about names can be read");
+    assert_ne!(last_entry_user(&bench), Value::Null, "the rule about names can be read");
     bench.run(&WRITE).fails(1, &["at least 0 of", "--force-wear"]);
     assert_eq!(bench.run(&[&WRITE[..], &["--force-wear"]].concat()).status, Some(0));
 }
 
 #[test]
 fn unreadable_rule_hides_user() {
-    let bench = bench_with("(user_name: Initials");
+    let bench = bench_with_settings("(user_name: Initials");
     let ran = bench.run(&IDENTIFY);
     assert!(ran.status == Some(0) && ran.err.contains("line 1, column "), "{ran:?}");
-    assert_eq!(user_of_the_last_entry(&bench), Value::Null);
+    assert_eq!(last_entry_user(&bench), Value::Null);
     // A folder in its place cannot be read at all.
     let bench = Bench::new();
     std::fs::create_dir_all(bench.path("config/encoder-studio/settings.ron")).unwrap();
     let ran = bench.run(&IDENTIFY);
     assert!(ran.status == Some(0) && ran.err.contains("The settings could not be read."), "{ran:?}");
-    assert_eq!(user_of_the_last_entry(&bench), Value::Null);
+    assert_eq!(last_entry_user(&bench), Value::Null);
     bench.run(&WRITE).fails(1, &["at least 0 of"]);
 }
 
 #[test]
-fn misspelt_setting_is_located() {
-    let bench = bench_with("(theme: Dark,\n  logbok: \"postgres://db.plant/logs\")");
+fn reports_location_of_misspelt_setting() {
+    let bench = bench_with_settings("(theme: Dark,\n  logbok: \"postgres://db.plant/logs\")");
     let ran = bench.run(&IDENTIFY);
     assert!(ran.status == Some(0) && ran.err.contains("line 2, column 3: logbok is not a setting"), "{ran:?}");
 }
@@ -60,7 +60,7 @@ fn misspelt_setting_is_located() {
 /// A broken setting is reported, but ignored if it does not concern the logbook.
 #[test]
 fn unrelated_broken_setting_allows_write() {
-    let bench = bench_with("(theme: Pink)");
+    let bench = bench_with_settings("(theme: Pink)");
     let ran = bench.run(&WRITE);
     assert!(ran.status == Some(0) && ran.err.contains("line 1, column ") && ran.err.contains("Pink"), "{ran:?}");
     assert!(!ran.err.contains("shared"), "{ran:?}");
@@ -69,7 +69,7 @@ fn unrelated_broken_setting_allows_write() {
 #[test]
 fn environment_server_needs_no_settings() {
     let Some(server) = Postgres::start() else { return };
-    let bench = bench_with("(");
+    let bench = bench_with_settings("(");
     let ran = bench.run_with_server(&server.url(), &WRITE);
     assert!(ran.status == Some(0) && !ran.err.contains("shared"), "{ran:?}");
     assert_eq!(server.sql("SELECT what FROM event ORDER BY id"), ["connected", "write"]);

@@ -149,7 +149,7 @@ fn finds_layout_of_recorded_frames() {
 
 /// The layout of any frame can be written as one word, in the notation printed by `ssi find` (issue 22.22).
 #[test]
-fn one_word_specifies_any_frame() {
+fn frame_notation_specifies_any_layout() {
     let bench = Bench::new();
     let decoded = |layout: &str, frame: &str| bench.run(&["ssi", "decode", "--json", "--layout", layout, frame]).json();
     // Section 8 of the reference: AHM36 in Gray code, and the same with swapped wires.

@@ -225,7 +225,7 @@ fn compares_with_logbook_entry() {
     let moment = format!("log:{entry}");
     let differences = device.run(&["diff", &moment]);
     assert_eq!(differences.status, Some(3), "{differences:?}");
-    let found = differences.json_with(3)["differences"].clone();
+    let found = differences.json_with_status(3)["differences"].clone();
     let (left, right): (String, String) =
         found.as_array().unwrap().iter().fold(Default::default(), |(left, right), own| {
             (left + own["left"].as_str().unwrap(), right + own["right"].as_str().unwrap())

@@ -111,7 +111,7 @@ fn restores_changes_by_another_host() {
         {"item": "field:0@31+1", "left": "FF", "right": "00"},
     ]);
     for command in ["diff", "verify"] {
-        let told = bench.run(&[&[command, &file], &link[..]].concat()).json_with(3);
+        let told = bench.run(&[&[command, &file], &link[..]].concat()).json_with_status(3);
         assert_eq!((&told["equal"], &told["differences"]), (&json!(false), &differences), "{command}");
     }
     encoder.requests();
@@ -144,7 +144,7 @@ fn compares_files_offline() {
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     let left = save(&bench, &encoder, "left.ron");
     let right = bench.write("right.ron", bench.read("left.ron").replace("\"08 15", "\"08 16"));
-    let told = bench.run(&["diff", &left, &right, "--json"]).json_with(3);
+    let told = bench.run(&["diff", &left, &right, "--json"]).json_with_status(3);
     assert_eq!(told["differences"], json!([{"item": "field:0@1+1", "left": "15", "right": "16"}]));
     let text = bench.run(&["diff", &left, &right]);
     assert_eq!(text.status, Some(3));
@@ -195,7 +195,7 @@ fn creates_missing_and_keeps_surplus_fields() {
     let with_two = save(&bench, &two, "two.ron");
     let with_none = save(&bench, &none, "none.ron");
 
-    let told = bench.run(&["diff", &with_two, "--link", &none.url, "--json"]).json_with(3);
+    let told = bench.run(&["diff", &with_two, "--link", &none.url, "--json"]).json_with_status(3);
     assert_eq!((&told["equal"], &told["missing"]), (&json!(false), &json!(["field:0", "field:1"])));
     none.requests();
     bench.run(&["restore", &with_two, "--yes", "--link", &none.url, "--json"]).json();

@@ -1,6 +1,6 @@
 //! HIPERDRIVE commands that must fail. Each case ends with one clear sentence, and nothing is set.
 
-use super::hiperdrive_tap::Tapped;
+use super::hiperdrive_tap::TappedDevice;
 use super::support::Bench;
 
 #[test]
@@ -48,7 +48,7 @@ fn unwritable_value_is_rejected_with_reason() {
         (&["900", "1"], 2, &["900"]),
         (&["158 drive 2", "1"], 1, &["2"]),
     ];
-    let device = Tapped::start(&bench, &[]);
+    let device = TappedDevice::start(&bench, &[]);
     for (words, status, said) in cases {
         let ran = device.ask(&bench, &[&["write", "hiperdrive"], words, &["--yes"]].concat());
         ran.fails(status, said);
@@ -123,7 +123,7 @@ fn rejects_options_of_other_devices() {
 #[test]
 fn writes_nothing_without_consent() {
     let bench = Bench::new();
-    let device = Tapped::start(&bench, &[]);
+    let device = TappedDevice::start(&bench, &[]);
     for words in
         [&["write", "hiperdrive", "170", "1"][..], &["do", "hiperdrive", "save"], &["do", "hiperdrive", "acknowledge"]]
     {

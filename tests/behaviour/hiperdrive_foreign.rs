@@ -113,7 +113,7 @@ fn commands_work_with_independent_target() {
     let written = ask(&["write", "hiperdrive", "166", "120", "--drive", "2", "--yes"]);
     assert_eq!((written.status, foreign.requests().join(", ")), (Some(0), "SET 266 120, SET 47 1, STORE".to_owned()));
     assert_eq!(ask(&["save", "hiperdrive", "-o", &after]).status, Some(0));
-    let found = bench.run(&["diff", &before, &after, "--json"]).json_with(3);
+    let found = bench.run(&["diff", &before, &after, "--json"]).json_with_status(3);
     assert_eq!(found["differences"].as_array().map(Vec::len), Some(1), "{found}");
     let restored = ask(&["restore", &before, "--yes", "--json"]).json();
     assert_eq!((restored["written"].as_u64(), restored["write_cycles"].as_u64()), (Some(1), Some(1)), "{restored}");

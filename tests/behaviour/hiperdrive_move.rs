@@ -76,14 +76,14 @@ fn incomplete_move_reports_position() {
         bench.run(&["move", "hiperdrive", "9000000", "--yes", "--json", "--timeout", seconds, "--link", link])
     };
     let late = run("sim:", "1");
-    let position = late.json_with(1)["position"].as_i64().unwrap();
+    let position = late.json_with_status(1)["position"].as_i64().unwrap();
     assert!(0 < position && position < 9_000_000, "{late:?}");
-    assert_eq!(late.json_with(1)["reached"], false);
+    assert_eq!(late.json_with_status(1)["reached"], false);
     late.assert_stderr(&["1 s", "--timeout", &position.to_string()]);
     assert!(late.took < Duration::from_secs(10), "{late:?}");
     run("sim:?s3=1", "5").assert_stderr(&["S3", "at 0"]);
     // A following error is 8203h, or 33283 (reference 4).
     let blocked = run("sim:?load=120", "5");
     blocked.assert_stderr(&["fault", "at 0", "0x8203"]);
-    assert_eq!(blocked.json_with(1)["error"]["code"], 33_283);
+    assert_eq!(blocked.json_with_status(1)["error"]["code"], 33_283);
 }

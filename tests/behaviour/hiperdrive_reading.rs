@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::hiperdrive_tap::Tapped;
+use super::hiperdrive_tap::TappedDevice;
 use super::support::{Bench, Ran};
 
 fn ask(bench: &Bench, link: &str, words: &[&str]) -> Ran {
@@ -53,9 +53,9 @@ fn healthy_device_reports_no_errors() {
 /// If the lower limit is above the upper one, the device rejects the value with 09 and keeps 8501 as the drive's error
 /// (reference 4).
 #[test]
-fn past_errors_are_notes() {
+fn past_errors_are_reported_as_notes() {
     let bench = Bench::new();
-    let device = Tapped::start(&bench, &["--hub", "4", "--set", "drives=0,1", "--set", "requested=1"]);
+    let device = TappedDevice::start(&bench, &["--hub", "4", "--set", "drives=0,1", "--set", "requested=1"]);
     // Parameter 258, the lower limit of drive 2, is set to 7FFFFFFFh.
     let refused = device.request(&[0x10, 3, 0x20, 0x66, 0x24, 1, 0x30, 0x9E, 0xFF, 0xFF, 0xFF, 0x7F]);
     assert_eq!(refused[..3], [0x90, 0, 9]);
@@ -77,7 +77,7 @@ fn past_errors_are_notes() {
 #[test]
 fn writing_0_to_197_acknowledges_one_drive() {
     let bench = Bench::new();
-    let device = Tapped::start(&bench, &["--hub", "4", "--set", "drives=1,1", "--set", "requested=1"]);
+    let device = TappedDevice::start(&bench, &["--hub", "4", "--set", "drives=1,1", "--set", "requested=1"]);
     // Parameter 258, the lower limit of drive 2, is set to 7FFFFFFFh.
     let refused = device.request(&[0x10, 3, 0x20, 0x66, 0x24, 1, 0x30, 0x9E, 0xFF, 0xFF, 0xFF, 0x7F]);
     assert_eq!(refused[..3], [0x90, 0, 9]);
@@ -129,7 +129,7 @@ fn check_reports_each_fact_once() {
 #[test]
 fn units_match_manual() {
     let bench = Bench::new();
-    let device = Tapped::start(&bench, &[]);
+    let device = TappedDevice::start(&bench, &[]);
     let read = |number: &str| device.ask(&bench, &["read", "hiperdrive", number]).json();
     assert_eq!(read("106")["unit"], json!("0.1 rpm"));
     // Parameter 162 is set to 100.
@@ -224,7 +224,7 @@ fn saved_profile_is_human_readable() {
     let moved = HUB.replace("requested=1", "requested=1&position=5000&supply=22");
     assert_eq!(ask(&bench, &moved, &["diff", &file]).json()["equal"], json!(true));
     let slower = HUB.replace("requested=1", "requested=1&speed=200");
-    let told = ask(&bench, &slower, &["diff", &file]).json_with(3);
+    let told = ask(&bench, &slower, &["diff", &file]).json_with_status(3);
     let expected = json!([
         {"item": "166", "left": "350", "right": "200"},
         {"item": "166 drive 3", "left": "350", "right": "200"},
@@ -232,7 +232,7 @@ fn saved_profile_is_human_readable() {
     assert_eq!(told["differences"], expected);
     // One slot of the hub has become empty.
     let fewer = HUB.replace("1,0,1", "1,0,0");
-    let told = ask(&bench, &fewer, &["verify", &file]).json_with(3);
+    let told = ask(&bench, &fewer, &["verify", &file]).json_with_status(3);
     assert_eq!((&told["compared"], &told["missing"][0]), (&json!(23), &json!("152 drive 3")), "{told}");
 }
 
@@ -244,7 +244,7 @@ fn reading_writes_nothing() {
     let file = bench.file("drive.ron");
     let changed =
         bench.write("changed.ron", r#"(schema: 1, device: "hiperdrive", parameters: {166: 200, 158: -1000000})"#);
-    let device = Tapped::start(&bench, &["--set", "position=100"]);
+    let device = TappedDevice::start(&bench, &["--set", "position=100"]);
     for words in [
         &["identify", "hiperdrive"][..],
         &["status", "hiperdrive"],
@@ -272,7 +272,7 @@ fn reading_writes_nothing() {
 #[test]
 fn finds_devices_by_address() {
     let bench = Bench::new();
-    let device = Tapped::start(&bench, &["--set", "hub=8", "--set", "serial=77"]);
+    let device = TappedDevice::start(&bench, &["--set", "hub=8", "--set", "serial=77"]);
     let url = device.url();
     let told = bench.run(&["find", "hiperdrive", "--link", &url, "--json"]).json();
     let found = &told["devices"][0];
@@ -283,7 +283,7 @@ fn finds_devices_by_address() {
 
 /// A terminal shows a progress bar and a note about the network. A script receives neither.
 #[test]
-fn slow_device_stays_quiet_in_scripts() {
+fn scripts_receive_no_progress_output() {
     let bench = Bench::new();
     let ran = ask(&bench, "sim:?fault=delay:200", &["status", "hiperdrive"]);
     assert!(ran.json()["ok"] == json!(true) && ran.err.is_empty(), "{ran:?}");

@@ -23,7 +23,7 @@ use wires::{Transport, Wires};
 /// Additional time allowed for a busy computer.
 const BUSY: Duration = Duration::from_secs(1);
 /// Time without a report after which the user interface counts as frozen.
-const FROZEN: Duration = Duration::from_millis(300);
+const UI_FREEZE_TIMEOUT: Duration = Duration::from_millis(300);
 /// The requested packet interval in milliseconds. It is long enough for a busy computer.
 const RPI: &str = "rpi=50";
 /// Eight packet intervals plus the braking time.
@@ -146,7 +146,7 @@ fn frozen_window_stops_drive() {
     let host = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     host.jogs(&mut drive);
     // No further reports are sent.
-    drive.stops_within(FROZEN + WATCHDOG);
+    drive.stops_within(UI_FREEZE_TIMEOUT + WATCHDOG);
     assert_eq!(host.ended(), Some(ActionEnd::Stale));
     // When the window responds again and the button is still pressed, the drive does not move.
     let stood = drive.actual().position;
@@ -235,7 +235,7 @@ fn release_stops_drive_during_flood() {
     let flood = wires.flood();
     host.holds(Duration::from_millis(300));
     host.motion.stop();
-    drive.stops_within(WATCHDOG + FROZEN);
+    drive.stops_within(WATCHDOG + UI_FREEZE_TIMEOUT);
     assert!(flood.end() > 1000);
     let figures = host.motion.snapshot().link;
     assert!(figures.malformed > 0, "{figures:?}");

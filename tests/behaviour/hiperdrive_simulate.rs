@@ -85,7 +85,7 @@ fn enables_moves_and_jogs_drive() {
 
 /// Parameter 852 (Requested) enables the eighth drive of a hub. The process data contain no parameter words.
 #[test]
-fn hub_drive_moves_alone() {
+fn hub_moves_only_selected_drive() {
     let bench = Bench::new();
     if python("enip_client.py").is_none() {
         return;

@@ -8,7 +8,7 @@ use std::thread;
 use super::support::{Bench, Ran, Simulated};
 
 /// A virtual device behind a recording proxy.
-pub(crate) struct Tapped {
+pub(crate) struct TappedDevice {
     device: Simulated,
     url: String,
     heard: Arc<Mutex<Vec<String>>>,
@@ -17,9 +17,9 @@ pub(crate) struct Tapped {
 /// Length of a frame header in bytes (reference 7).
 const HEADER: usize = 24;
 /// Number of bytes before a request in SendRRData.
-const BEFORE_REQUEST: usize = 16;
+const REQUEST_OFFSET: usize = 16;
 
-impl Tapped {
+impl TappedDevice {
     /// Starts the device. `arguments` are appended to `simulate hiperdrive --listen …`.
     pub(crate) fn start(bench: &Bench, arguments: &[&str]) -> Self {
         let device = Simulated::start(bench, &[&["hiperdrive", "--listen", "127.0.0.1:0"], arguments].concat());
@@ -36,7 +36,7 @@ impl Tapped {
                 thread::spawn(move || listen(asks, device, &log));
             }
         });
-        Tapped { device, url, heard }
+        TappedDevice { device, url, heard }
     }
 
     /// Returns the requests since the last call.
@@ -75,7 +75,7 @@ impl Tapped {
         let mut data = vec![0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0xB2, 0];
         data.extend(u16::try_from(request.len()).unwrap().to_le_bytes());
         data.extend(request);
-        send(0x6F, session, &data).1.split_off(BEFORE_REQUEST)
+        send(0x6F, session, &data).1.split_off(REQUEST_OFFSET)
     }
 
     /// Returns the link that bypasses the proxy.
@@ -95,7 +95,7 @@ fn listen(asks: TcpStream, device: TcpStream, log: &Mutex<Vec<String>>) {
             }
             let frame: Vec<u8> = pending.drain(..length).collect();
             if frame[0] == 0x6F {
-                let request = &frame[HEADER + BEFORE_REQUEST..];
+                let request = &frame[HEADER + REQUEST_OFFSET..];
                 let hex: Vec<String> = request.iter().map(|byte| format!("{byte:02X}")).collect();
                 log.lock().unwrap().push(hex.join(" "));
             }

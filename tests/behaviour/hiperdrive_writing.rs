@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::hiperdrive_tap::Tapped;
+use super::hiperdrive_tap::TappedDevice;
 use super::support::Bench;
 
 /// The request that saves: parameter 47 is set to 1 (reference 9).
@@ -11,7 +11,7 @@ const SAVE: &str = "10 03 20 64 24 01 30 2F 01 00";
 #[test]
 fn writes_parameter_and_saves_once() {
     let bench = Bench::new();
-    let device = Tapped::start(&bench, &[]);
+    let device = TappedDevice::start(&bench, &[]);
     let told = device.ask(&bench, &["write", "hiperdrive", "158", "-1000000", "--yes"]).json();
     let operations = json!([
         {"item": "158", "old": -33_488_896, "new": -1_000_000, "write_cycles": 0},
@@ -38,7 +38,7 @@ fn writes_parameter_and_saves_once() {
 #[test]
 fn does_not_save_volatile_parameters() {
     let bench = Bench::new();
-    let device = Tapped::start(&bench, &["--set", "hub=4", "--set", "drives=0,1", "--set", "requested=1"]);
+    let device = TappedDevice::start(&bench, &["--set", "hub=4", "--set", "drives=0,1", "--set", "requested=1"]);
     let told = device.ask(&bench, &["write", "hiperdrive", "170", "100", "--drive", "2", "--yes"]).json();
     assert_eq!((&told["item"], &told["write_cycles"]), (&json!("170 drive 2"), &json!(0)), "{told}");
     // Parameter 270 is in class 66h.
@@ -53,7 +53,7 @@ fn restore_writes_scale_before_limits() {
     let parameters = "24: 5, 154: 400, 156: 256, 158: 500, 160: 2000, 166: 200, 198: 640, 186: 20";
     let profile = format!("(schema: 1, device: \"hiperdrive\", parameters: {{{parameters}}})");
     let file = bench.write("spindle.ron", profile);
-    let device = Tapped::start(&bench, &["--set", "position=163840"]);
+    let device = TappedDevice::start(&bench, &["--set", "position=163840"]);
     let dry = device.ask(&bench, &["restore", &file, "--dry-run"]).json();
     let items: Vec<&str> =
         dry["operations"].as_array().unwrap().iter().map(|op| op["item"].as_str().unwrap()).collect();
@@ -102,7 +102,7 @@ fn restore_writes_scale_before_limits() {
 #[test]
 fn does_not_change_drive_outside_new_limits() {
     let bench = Bench::new();
-    let device = Tapped::start(&bench, &["--set", "position=100"]);
+    let device = TappedDevice::start(&bench, &["--set", "position=100"]);
     let file =
         bench.write("limits.ron", r#"(schema: 1, device: "hiperdrive", parameters: {24: 1, 158: 200, 160: 300})"#);
     for words in [
@@ -118,7 +118,7 @@ fn does_not_change_drive_outside_new_limits() {
 #[test]
 fn sets_position_in_steps_of_64() {
     let bench = Bench::new();
-    let device = Tapped::start(&bench, &["--set", "position=5000"]);
+    let device = TappedDevice::start(&bench, &["--set", "position=5000"]);
     let ran = device.ask(&bench, &["do", "hiperdrive", "set-position", "100", "--yes"]);
     assert_eq!(ran.json()["write_cycles"], json!(1));
     ran.assert_stderr(&["100 becomes 128"]);
@@ -136,7 +136,7 @@ fn sets_position_in_steps_of_64() {
 #[test]
 fn services_write_parameter_47() {
     let bench = Bench::new();
-    let device = Tapped::start(&bench, &[]);
+    let device = TappedDevice::start(&bench, &[]);
     device.ask(&bench, &["write", "hiperdrive", "166", "200", "--yes"]).json();
     device.sets();
     for (words, sent, cost) in [
@@ -165,7 +165,7 @@ fn restore_skips_empty_ports() {
     let hub = |serial: &str, drives: &str| {
         let (serial, drives) = (format!("serial={serial}"), format!("drives={drives}"));
         let own = ["--set", "hub=4", "--set", "requested=1", "--set", "speed=100", "--set", &serial, "--set", &drives];
-        Tapped::start(&bench, &own)
+        TappedDevice::start(&bench, &own)
     };
     let mine = hub("10", "1,0,1");
     mine.ask(&bench, &["save", "hiperdrive", "-o", &file]).json();
@@ -203,7 +203,7 @@ fn names_values_that_trigger_actions() {
 }
 
 #[test]
-fn unknown_parameter_number_is_located() {
+fn reports_location_of_unknown_parameter_number() {
     let bench = Bench::new();
     let file = bench.write("slip.ron", r#"(schema: 1, device: "hiperdrive", parameters: {166: 200, 999: 7})"#);
     bench.run(&["restore", &file, "--yes", "--link", "sim:"]).fails(1, &["parameters.999"]);

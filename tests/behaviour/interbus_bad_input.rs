@@ -104,7 +104,7 @@ fn gateway_exceptions_name_settings() {
 }
 
 #[test]
-fn swapped_words_suggest_other_order() {
+fn swapped_words_suggest_word_order_setting() {
     let bench = Bench::new();
     for order in [["--order=low-first", "order=high-first"], ["--order=high-first", "order=low-first"]] {
         for (position, found) in [

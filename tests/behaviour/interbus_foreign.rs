@@ -175,7 +175,7 @@ fn skips_stale_echoes() {
 /// The gateway delays each change of OUT. Writing a parameter takes four changes: set, store, read back and leave
 /// (issue 22.2).
 #[test]
-fn parameter_takes_four_lags() {
+fn parameter_write_takes_four_gateway_delays() {
     let bench = Bench::new();
     let Some(foreign) = bench.gateway(&["--steps=3600", "--lag=250"]) else { return };
     let mut session = session(&bench, &foreign, "");

@@ -86,7 +86,8 @@ fn rejects_illegal_and_invalid_words() {
     let legal: Vec<&Value> = readings.iter().map(|reading| &reading["legal"]).collect();
     assert_eq!(legal, [&json!(false), &json!(true)], "{told}");
     // Valid words are printed even if the same command contains invalid ones.
-    let mixed = bench.run(&["decode", "interbus", "--direction", "out", "80000000", "10000000", "--json"]).json_with(1);
+    let mixed =
+        bench.run(&["decode", "interbus", "--direction", "out", "80000000", "10000000", "--json"]).json_with_status(1);
     let valid: Vec<&Value> = mixed["frames"].as_array().unwrap().iter().map(|frame| &frame["valid"]).collect();
     assert_eq!(valid, [&json!(true), &json!(false)]);
     let cases: [(&[&str], &[&str]); 8] = [

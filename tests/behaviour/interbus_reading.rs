@@ -108,7 +108,7 @@ fn position_stays_within_programmed_turns() {
 /// Words with cam states, a speed or an error must not be printed as a position. In the first case, the position window
 /// shows 1000 of 3600, and cam 3 is on from 900 (reference 5).
 #[test]
-fn prints_no_position_without_one() {
+fn prints_only_position_words_as_position() {
     let bench = Bench::new();
     let programs = r#"{"2": {"mask": 8, "cams": {"3": [900, 1100]}}}"#;
     let position = ["--position=2276", "--steps=3600"];
@@ -173,12 +173,12 @@ fn saved_profile_matches_encoder() {
             zero_shift: 0))"#,
     );
     encoder.requests();
-    let told = ask(&bench, &encoder, &["verify", &short]).json_with(3);
+    let told = ask(&bench, &encoder, &["verify", &short]).json_with_status(3);
     assert_eq!(told["differences"], json!([{"item": "direction", "left": "ccw", "right": "cw"}]), "{told}");
     let selected = done(&encoder).into_iter().filter(|line| line.starts_with("W 2080"));
     assert!(selected.clone().all(|line| line == "W 20800003"), "{:?}", selected.collect::<Vec<_>>());
     // Comparing two files does not require an encoder.
-    let told = bench.run(&["diff", &file, &short, "--json"]).json_with(3);
+    let told = bench.run(&["diff", &file, &short, "--json"]).json_with_status(3);
     assert_eq!((&told["compared"], told["missing"].as_array().map(Vec::len)), (&json!(5), Some(1 + 8 * 9)), "{told}");
 }
 

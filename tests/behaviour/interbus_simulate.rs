@@ -8,7 +8,7 @@ fn host_replies(place: &str, things: &[&str]) -> Vec<String> {
 }
 
 /// The worked example of reference 4: 5000 of 8192 steps become 155 of 255 steps, followed by the preset.
-const WORKED: [(&str, &str); 9] = [
+const WORKED_EXAMPLES: [(&str, &str); 9] = [
     ("in", "00001388"),
     ("020000FF", "C20000FF"),
     ("04000001", "C4000001"),
@@ -67,7 +67,7 @@ fn examples_match_reference() {
     }
     let gear = ["steps=8192", "revolutions=1", "position=5000", "busy=20", "stale=2"];
     let port = virtual_gateway(&bench, &gear);
-    walk(&port.place, &WORKED);
+    walk(&port.place, &WORKED_EXAMPLES);
     // The next client finds the encoder as the first one has left it.
     walk(&port.place, &[("in", "00000000"), ("20210001", "A00000FF"), ("00000000", "00000000")]);
     port.end("INT");
@@ -82,7 +82,7 @@ fn independent_encoder_matches_reference() {
     let bench = Bench::new();
     let Some(foreign) = bench.gateway(&["--position", "5000", "--busy", "20", "--stale", "2"]) else { return };
     assert_eq!(foreign.url, format!("modbus:{}", foreign.place));
-    walk(&foreign.place, &WORKED);
+    walk(&foreign.place, &WORKED_EXAMPLES);
     let kept: Vec<String> = foreign.requests().into_iter().filter(|line| line != "R").collect();
     let words = ["W 020000FF", "W 04000001", "W 06000003", "W 08000000", "W 80000000", "STORE parameters"];
     assert_eq!(kept, [&words[..], &["W 00000000", "W 40000000", "PRESET 0", "W 00000000"]].concat());

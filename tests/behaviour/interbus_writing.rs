@@ -51,7 +51,7 @@ const PARAMETERS: &str = r#"steps: 3600, revolutions: 1, direction: "cw", preset
 
 /// Restores 64 cams and 8 masks to an encoder that already has 60 of the cams.
 #[test]
-fn cams_store_once_per_program() {
+fn cams_are_stored_once_per_program() {
     let bench = Bench::new();
     let (there, _) = cams(|_, _| None);
     let moved = |program, cam| match (program, cam) {
@@ -113,7 +113,7 @@ fn cams_store_once_per_program() {
 /// All parameters are written with a single store, in an order that keeps each intermediate value valid. The preset is
 /// stored but not triggered (reference 3).
 #[test]
-fn parameters_store_once() {
+fn parameters_are_stored_once() {
     let bench = Bench::new();
     let parameters = r#"steps: 36000, revolutions: 10, direction: "ccw", preset: 20000, zero_shift: 0"#;
     let file = bench.write("gear.ron", profile("4000", parameters, ""));
@@ -176,7 +176,7 @@ fn preset_triggers_at_standstill() {
 }
 
 #[test]
-fn default_is_experimental() {
+fn restoring_defaults_is_experimental() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600"]) else { return };
     let ran = ask(&bench, &encoder, &["do", "interbus", "default", "--yes"]);

@@ -71,7 +71,7 @@ fn undo_names_its_entry_on_every_bench() {
 
 /// The setting has the same effect as the environment variable.
 #[test]
-fn setting_names_server() {
+fn server_is_read_from_settings() {
     let Some(server) = Postgres::start() else { return };
     let bench = Bench::new();
     std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
@@ -176,7 +176,7 @@ fn command_announces_its_device() {
 
 /// A locked keyring prompts the user, who may be absent.
 #[test]
-fn keyring_is_asked_once() {
+fn keyring_is_queried_once() {
     let Some(server) = Postgres::start() else { return };
     let bench = Bench::new();
     let bus = UnixListener::bind(bench.path("bus")).unwrap();
@@ -277,7 +277,7 @@ fn explains_server_problems() {
     server.sql("ALTER ROLE bench PASSWORD 'k3y@/?:%'");
     check(&url.replace('@', ":k3y%40%2F%3F%3A%25@"), "", &[]);
     assert_eq!(count("event"), written + 4, "this password was accepted");
-    let kept = bench.everything_kept();
+    let kept = bench.all_text_files();
     assert!(!kept.contains("k3y") && !kept.contains("wr0ng"), "{kept}");
 }
 

@@ -54,8 +54,8 @@ impl Postgres {
             .unwrap();
         assert!(init.status.success(), "{}", String::from_utf8_lossy(&init.stderr));
         server.run(options);
-        server.sql_in("postgres", &format!("CREATE ROLE bench LOGIN PASSWORD '{PASSWORD}'"));
-        server.sql_in("postgres", "CREATE DATABASE logs OWNER bench");
+        server.run_sql_in_database("postgres", &format!("CREATE ROLE bench LOGIN PASSWORD '{PASSWORD}'"));
+        server.run_sql_in_database("postgres", "CREATE DATABASE logs OWNER bench");
         Some(server)
     }
 
@@ -124,11 +124,11 @@ impl Postgres {
     /// Executes SQL as the administrator and returns one line per row.
     #[track_caller]
     pub(crate) fn sql(&self, sql: &str) -> Vec<String> {
-        self.sql_in("logs", sql)
+        self.run_sql_in_database("logs", sql)
     }
 
     #[track_caller]
-    fn sql_in(&self, database: &str, sql: &str) -> Vec<String> {
+    fn run_sql_in_database(&self, database: &str, sql: &str) -> Vec<String> {
         let output = self.psql(database, sql).stdout(Stdio::piped()).output().unwrap();
         assert!(output.status.success(), "{sql}");
         String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect()

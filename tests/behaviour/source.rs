@@ -58,8 +58,8 @@ fn recovers_parameters() {
 #[test]
 fn diagnoses_each_injected_fault() {
     let base = Settings::default;
-    type IsIt = fn(&FindingKind) -> bool;
-    let cases: [(&str, Settings, IsIt); 10] = [
+    type IsExpectedFinding = fn(&FindingKind) -> bool;
+    let cases: [(&str, Settings, IsExpectedFinding); 10] = [
         ("hum", Settings { hum_v: 0.01, ..base() }, |what| {
             matches!(what, FindingKind::Hum { mains_hz: 50.0, common: true, .. })
         }),

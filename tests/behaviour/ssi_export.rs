@@ -163,12 +163,12 @@ const REFERENCE: [(&str, u64, &str); 12] = [
     ("kh53", 0xFF_FFFE, "16777214 0 16777214 0"),
 ];
 
-fn decoders_of_32_bits(layout: &Layout) -> [(&'static str, Result<String, TooWideError>); 2] {
+fn decoders_for_32_bit_targets(layout: &Layout) -> [(&'static str, Result<String, TooWideError>); 2] {
     [("st", structured_text_32(layout, "title")), ("scl", scl_source(layout, "title"))]
 }
 
 /// Runs an exported 32-bit decoder on the frames in Python and returns its results, or `None` if Python is missing.
-fn run_32(text: &str, frames: &[u64]) -> Option<Vec<String>> {
+fn run_32_bit_decoder(text: &str, frames: &[u64]) -> Option<Vec<String>> {
     let folder = tempfile::tempdir().unwrap();
     let source = folder.path().join("decoder.txt");
     std::fs::write(&source, text).unwrap();
@@ -187,8 +187,8 @@ fn run_32(text: &str, frames: &[u64]) -> Option<Vec<String>> {
 #[test]
 fn decoders_32_bit_read_reference_frames() {
     for (spec, frame, meant) in REFERENCE {
-        for (name, text) in decoders_of_32_bits(&family(spec)) {
-            let Some(lines) = run_32(&text.unwrap(), &[frame]) else { return };
+        for (name, text) in decoders_for_32_bit_targets(&family(spec)) {
+            let Some(lines) = run_32_bit_decoder(&text.unwrap(), &[frame]) else { return };
             assert_eq!(lines, [meant], "{spec} as {name}, frame {frame:X}");
         }
     }
@@ -197,12 +197,12 @@ fn decoders_32_bit_read_reference_frames() {
 #[test]
 fn decoders_32_bit_match_program() {
     for (title, layout) in layouts() {
-        for (name, text) in decoders_of_32_bits(&layout) {
+        for (name, text) in decoders_for_32_bit_targets(&layout) {
             let text = text.unwrap_or_else(|error| panic!("{title}: {error}"));
             let mut frames = frames(&layout);
             let all = u64::MAX >> (64 - layout.clock_count());
             frames.iter_mut().for_each(|frame| *frame &= all);
-            let Some(lines) = run_32(&text, &frames) else { return };
+            let Some(lines) = run_32_bit_decoder(&text, &frames) else { return };
             assert_eq!(lines.len(), frames.len(), "{title}");
             for (frame, line) in frames.iter().zip(lines) {
                 assert_eq!(line, expected_line(&layout, layout.decode(*frame)), "{title} as {name}, frame {frame:X}");
@@ -216,7 +216,7 @@ fn rejects_layouts_wider_than_32_bits() {
     let wide = Layout::new(FrameDescriptor::binary(12, 22)).unwrap();
     let axis = family("atm60,steps=8000000,revolutions=4095/4");
     for (layout, error) in [(wide, TooWideError::Position { bits: 34 }), (axis, TooWideError::RoundAxis)] {
-        for (_, text) in decoders_of_32_bits(&layout) {
+        for (_, text) in decoders_for_32_bit_targets(&layout) {
             assert_eq!(text, Err(error));
         }
     }

@@ -101,7 +101,7 @@ fn encoder_follows_layout() {
 
 /// The program's own host reads the encoder over both transports.
 #[test]
-fn own_host_reads_encoder() {
+fn position_command_reads_simulated_encoder() {
     let bench = Bench::new();
     let port = Simulated::start(&bench, &["ssi", "--listen", "127.0.0.1:0", "--layout", "ahm36"]);
     let terminal = Simulated::start(&bench, &["ssi", "--pty", &bench.file("adapter"), "--layout", "ahm36"]);

@@ -18,7 +18,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// Time limit that is longer than any program takes. A program that runs longer has hung.
-const HANGS: Duration = Duration::from_secs(60);
+const HANG_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// A temporary folder that contains all files of a test.
 pub(crate) struct Bench {
@@ -94,30 +94,30 @@ impl Bench {
     }
 
     /// Returns the content of all text files in the folder and its subfolders.
-    pub(crate) fn everything_kept(&self) -> String {
+    pub(crate) fn all_text_files(&self) -> String {
         let mut text = String::new();
         collect(self.folder.path(), &mut text);
         text
     }
 
     /// Returns the text without the random folder name.
-    pub(crate) fn without_folder(&self, text: &str) -> String {
+    pub(crate) fn with_folder_removed(&self, text: &str) -> String {
         text.replace(self.folder.path().to_str().unwrap(), "")
     }
 
     /// Starts an independent HIPERFACE encoder. If this is not possible, prints a line and returns `None`.
     pub(crate) fn encoder(&self, arguments: &[&str]) -> Option<Foreign> {
-        self.on_terminal("encoder.py", "serial:", arguments)
+        self.start_on_terminal("encoder.py", "serial:", arguments)
     }
 
     /// Starts an independent kit encoder with UBICOM. If this is not possible, prints a line and returns `None`.
     pub(crate) fn kit(&self, arguments: &[&str]) -> Option<Foreign> {
-        self.on_terminal("ubicom_encoder.py", "serial:", arguments)
+        self.start_on_terminal("ubicom_encoder.py", "serial:", arguments)
     }
 
     /// Starts an independent adapter on a pseudo-terminal, with the kit encoder connected to it.
     pub(crate) fn adapter_on_terminal(&self, arguments: &[&str]) -> Option<Foreign> {
-        self.on_terminal("bridge_adapter.py", "bridge:", arguments)
+        self.start_on_terminal("bridge_adapter.py", "bridge:", arguments)
     }
 
     /// Starts an independent adapter on a TCP port, with the kit encoder connected to it.
@@ -155,7 +155,7 @@ impl Bench {
         self.foreign("moving_target.py", &[&["--record", &record], arguments].concat())
     }
 
-    fn on_terminal(&self, script: &str, scheme: &str, arguments: &[&str]) -> Option<Foreign> {
+    fn start_on_terminal(&self, script: &str, scheme: &str, arguments: &[&str]) -> Option<Foreign> {
         let number = self.encoders.load(Ordering::SeqCst);
         let link = self.file(&format!("enc{number}"));
         let mut foreign = self.foreign(script, &[&["--link", &link], arguments].concat())?;
@@ -219,7 +219,7 @@ pub(crate) fn ended(mut child: Child, begun: Instant) -> Ran {
         if let Some(status) = child.try_wait().unwrap() {
             break status;
         }
-        if begun.elapsed() > HANGS {
+        if begun.elapsed() > HANG_TIMEOUT {
             child.kill().unwrap();
         }
         sleep(Duration::from_millis(5));
@@ -235,12 +235,12 @@ impl Ran {
     #[track_caller]
     pub(crate) fn json(&self) -> Value {
         assert_eq!(self.status, Some(0), "{self:?}");
-        self.json_with(0)
+        self.json_with_status(0)
     }
 
     /// Checks the exit status, and returns the JSON object the program printed.
     #[track_caller]
-    pub(crate) fn json_with(&self, status: i32) -> Value {
+    pub(crate) fn json_with_status(&self, status: i32) -> Value {
         assert_eq!(self.status, Some(status), "{self:?}");
         serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {self:?}"))
     }
@@ -300,7 +300,7 @@ impl Foreign {
 
     /// Extends the time to wait for replies on a busy computer. A reply that comes too late would lose the data that it
     /// removed from the encoder.
-    pub(crate) fn waited_for(mut self) -> Self {
+    pub(crate) fn with_long_reply_margin(mut self) -> Self {
         self.url.push_str("?margin=1500");
         self
     }
@@ -390,13 +390,13 @@ impl Drop for Simulated {
 }
 
 /// Python code that runs its arguments as a command on a pseudo-terminal, with stdin as the typed input.
-const ON_A_TERMINAL: &str = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))";
+const PTY_SCRIPT: &str = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))";
 
 /// Runs the program on a pseudo-terminal and types an answer.
 pub(crate) fn run_on_terminal(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
     let program = bench.program(arguments);
     let mut command = Command::new(interpreter().unwrap());
-    command.args(["-c", ON_A_TERMINAL]).arg(program.get_program()).args(program.get_args());
+    command.args(["-c", PTY_SCRIPT]).arg(program.get_program()).args(program.get_args());
     command.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     child.stdin.as_mut().unwrap().write_all(answer.as_bytes()).unwrap();

@@ -11,7 +11,7 @@ use encoder_studio::units::Moment;
 use crate::{fuzz, hex_lines};
 
 /// Maximum number of bytes that a device may send in 1.5 s. An adapter that streams at full speed sends the most.
-const MOST: usize = 1_500_000;
+const MAX_SENT_BYTES: usize = 1_500_000;
 
 /// Passes an input to a device nine bytes at a time, polls it for another second, and returns the number of bytes sent.
 fn receive(device: &mut dyn ByteDevice, bytes: &[u8]) -> usize {
@@ -47,7 +47,7 @@ fn virtual_devices() {
             [&mut bus, &mut port, &mut adapter, &mut gateway.new_connection(), &mut connection];
         for device in devices {
             let sent = receive(device, bytes);
-            assert!(sent <= MOST, "{sent} bytes");
+            assert!(sent <= MAX_SENT_BYTES, "{sent} bytes");
         }
     });
 }

@@ -3,7 +3,7 @@
 use fastrand::Rng;
 
 /// Values at the limits of fields, and characters with a meaning in the text formats.
-const SPECIAL: &[&[u8]] = &[
+const SPECIAL_BYTES: &[&[u8]] = &[
     &[0],
     &[0xFF],
     &[0x7F],
@@ -60,7 +60,7 @@ pub(crate) fn mutate(example: &[u8], other: &[u8], rng: &mut Rng) -> Vec<u8> {
                 bytes.splice(at..end, part);
             }
             7 => {
-                let special = rng.choice(SPECIAL).unwrap();
+                let special = rng.choice(SPECIAL_BYTES).unwrap();
                 let end = (at + rng.usize(..=special.len())).min(bytes.len());
                 bytes.splice(at..end, special.iter().copied());
             }

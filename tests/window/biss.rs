@@ -174,7 +174,7 @@ fn link_opens_in_requesting_tab() {
 
 #[test]
 fn click_shows_and_reads_bank() {
-    let mut screen = Screen::opened_in(crate::tabs::BISS, "sim:?bridge=on", [1440.0, 900.0]);
+    let mut screen = Screen::open_in_tab(crate::tabs::BISS, "sim:?bridge=on", [1440.0, 900.0]);
     screen.until("it is read", is_read);
     screen.click("page.registers");
     assert_eq!(screen.studio().biss().unwrap().memory.read(at("0x04:0x3F")), None);

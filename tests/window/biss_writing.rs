@@ -41,7 +41,7 @@ fn plan(desk: &mut Desk, change: Change) {
 
 /// Polls until the procedure prompts for `task` and the prompt is ready, or not yet ready if `ready` is false.
 #[track_caller]
-fn until_asked(desk: &mut Desk, task: OperatorTask, ready: bool) {
+fn wait_for_operator_prompt(desk: &mut Desk, task: OperatorTask, ready: bool) {
     desk.until("it is asked", |studio| {
         let guide = studio.biss().and_then(|own| own.guide.as_ref());
         let demand = guide.and_then(|guide| guide.operator_prompt());
@@ -110,7 +110,7 @@ fn calibration() -> Change {
     Change::Guided { run, motor: MotorSource::Other }
 }
 
-fn turn_of(studio: &Studio) -> Option<OperatorTask> {
+fn current_operator_task(studio: &Studio) -> Option<OperatorTask> {
     Some(studio.biss()?.guide.as_ref()?.operator_prompt()?.task)
 }
 
@@ -119,18 +119,18 @@ fn guides_calibration_step_by_step() {
     let mut desk = open("sim:?bridge=on&calibration=0.2");
     plan(&mut desk, calibration());
     write(&mut desk);
-    desk.until("it waits", |studio| turn_of(studio).is_some());
-    let first = turn_of(&desk.studio).unwrap();
-    until_asked(&mut desk, first, false);
+    desk.until("it waits", |studio| current_operator_task(studio).is_some());
+    let first = current_operator_task(&desk.studio).unwrap();
+    wait_for_operator_prompt(&mut desk, first, false);
     // The motor has not been turned yet, so nothing starts.
     ask(&mut desk, Biss::Answer(first, OperatorAnswer::Go));
     ask(&mut desk, Biss::Turn(-500.0));
-    until_asked(&mut desk, first, true);
+    wait_for_operator_prompt(&mut desk, first, true);
     ask(&mut desk, Biss::Answer(first, OperatorAnswer::Go));
-    desk.until("the second run is asked for", |studio| turn_of(studio).is_some_and(|task| task != first));
-    let second = turn_of(&desk.studio).unwrap();
+    desk.until("the second run is asked for", |studio| current_operator_task(studio).is_some_and(|task| task != first));
+    let second = current_operator_task(&desk.studio).unwrap();
     ask(&mut desk, Biss::Turn(500.0));
-    until_asked(&mut desk, second, true);
+    wait_for_operator_prompt(&mut desk, second, true);
     ask(&mut desk, Biss::Answer(second, OperatorAnswer::Go));
     desk.until("it is over", |studio| is_read(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
     let ProcedureEnd::Done(outcomes) = encoder(&desk).guide.as_ref().unwrap().end.clone().unwrap() else { panic!() };
@@ -147,11 +147,11 @@ fn stopped_procedure_returns_to_operation() {
     let mut desk = open("sim:?bridge=on&rpm=-500");
     plan(&mut desk, calibration());
     write(&mut desk);
-    desk.until("it waits", |studio| turn_of(studio).is_some());
-    let first = turn_of(&desk.studio).unwrap();
-    until_asked(&mut desk, first, true);
+    desk.until("it waits", |studio| current_operator_task(studio).is_some());
+    let first = current_operator_task(&desk.studio).unwrap();
+    wait_for_operator_prompt(&mut desk, first, true);
     ask(&mut desk, Biss::Answer(first, OperatorAnswer::Go));
-    desk.until("it runs", |studio| turn_of(studio).is_none());
+    desk.until("it runs", |studio| current_operator_task(studio).is_none());
     std::thread::sleep(Duration::from_millis(200));
     desk.act(Action::Stop);
     desk.until("it is over", |studio| studio.biss().unwrap().guide.as_ref().is_some_and(|own| !own.is_running()));
@@ -189,7 +189,7 @@ fn live_panel_waits_for_job() {
     let words = "Paused while a job is running: ";
     assert!(!screen.shows(words));
     screen.act(Action::Review(id, ReviewAction::Write(own)));
-    screen.until("it waits", |studio| turn_of(studio).is_some());
+    screen.until("it waits", |studio| current_operator_task(studio).is_some());
     let began = Instant::now();
     screen.until("a second passes", |_| began.elapsed() > Duration::from_secs(1));
     assert!(screen.shows(words));
@@ -215,7 +215,7 @@ fn presets_position_at_standstill() {
     let value = PresetValue::new(0x8000, 7);
     plan(&mut desk, Change::Preset { value, parts: Some(PresetParts::Both) });
     write(&mut desk);
-    until_asked(&mut desk, OperatorTask::HoldAtPresetAngle, true);
+    wait_for_operator_prompt(&mut desk, OperatorTask::HoldAtPresetAngle, true);
     ask(&mut desk, Biss::Answer(OperatorTask::HoldAtPresetAngle, OperatorAnswer::Go));
     desk.until("it is over", |studio| is_read(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
     command(&mut desk, DeviceCommand::ReadPosition);

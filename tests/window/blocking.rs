@@ -14,7 +14,7 @@ use encoder_studio::devices::hiperface::procedures::find::FindOptions;
 use encoder_studio::devices::hiperface::state::LinkForm;
 use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState};
 
-use crate::support::{Desk, HANGING, PORT, SLOW, is_review};
+use crate::support::{Desk, HANGING_LINK, PORT, SLOW, is_review};
 
 /// Creates a named pipe with no reader or writer, so opening it waits forever.
 fn pipe(path: &Path) {
@@ -25,7 +25,7 @@ fn pipe(path: &Path) {
 #[test]
 fn hung_link_does_not_block() {
     let mut desk = Desk::fresh("");
-    desk.open(HANGING);
+    desk.open(HANGING_LINK);
     desk.settle();
     assert_eq!(*desk.phase(), Phase::Opening);
     let hanging = desk.encoder().session.id;
@@ -66,7 +66,7 @@ fn cancelled_opening_drops_late_result() {
 #[test]
 fn can_cancel_search_on_hung_link() {
     let mut desk = Desk::fresh("");
-    let hanging = LinkForm::from_url(&HANGING.parse().unwrap());
+    let hanging = LinkForm::from_url(&HANGING_LINK.parse().unwrap());
     desk.connect(Connect::Open);
     desk.connect(Connect::edit_form(hanging));
     desk.connect(crate::tabs::search_for(FindOptions::default()));
@@ -125,7 +125,7 @@ fn hung_disk_does_not_delay_closing() {
 /// The disk does not even respond to the search for a draft. Closing the window waits only for a limited time.
 #[cfg(unix)]
 #[test]
-fn hung_draft_does_not_delay_closing() {
+fn hung_draft_file_does_not_delay_closing() {
     let mut desk = Desk::fresh("");
     pipe(&desk.outside.path("data/drafts/hiperface-virtual/37-GB0450179.ron"));
     desk.studio.start_with(None, None);
@@ -139,7 +139,7 @@ fn hung_draft_does_not_delay_closing() {
 
 #[cfg(unix)]
 #[test]
-fn hung_settings_do_not_delay_start() {
+fn hung_settings_file_does_not_delay_start() {
     let desk = Desk::fresh("");
     pipe(&desk.outside.store().settings_path());
     let mut desk = desk.crash();
@@ -202,7 +202,7 @@ fn write_without_logbook_needs_permission() {
 }
 
 /// Waits for a condition without processing events, so they stay unread.
-fn without_polling(condition: impl Fn() -> bool) {
+fn wait_without_polling(condition: impl Fn() -> bool) {
     let began = Instant::now();
     while !condition() {
         assert!(began.elapsed() < Duration::from_secs(20));
@@ -215,7 +215,7 @@ fn keeps_newest_unread_samples_and_frames() {
     let mut desk = Desk::new_form("rpm=60");
     let wire = desk.wire();
     desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
-    without_polling(|| wire.count(0x42) > 10_500);
+    wait_without_polling(|| wire.count(0x42) > 10_500);
     desk.studio.poll();
     let (dropped, positions) = (desk.encoder().recording().dropped_count(), desk.encoder().record.position_count());
     assert!(dropped > 0 && positions >= 4_096, "{dropped} {positions}");
@@ -239,7 +239,7 @@ fn traces_2000_frames_per_second() {
     let mut longest = 0;
     for _ in 0..10 {
         let since = wire.count(0x42);
-        without_polling(|| wire.count(0x42) >= since + 1_000);
+        wait_without_polling(|| wire.count(0x42) >= since + 1_000);
         desk.studio.poll();
         longest = longest.max(wire.count(0x42) - since);
     }
@@ -267,7 +267,7 @@ fn background_search_reports_its_end() {
     desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.until("it has begun", |_| wire.sent() > 0);
     // The search reports the progress of hundreds of attempts, and the reports stay unread.
-    without_polling(|| {
+    wait_without_polling(|| {
         let sent = wire.sent();
         std::thread::sleep(Duration::from_millis(150));
         wire.sent() == sent

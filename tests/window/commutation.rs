@@ -17,7 +17,7 @@ use crate::texts;
 
 /// A virtual SKM36 at rest, 100.75 periods from zero, with 128 periods per turn. Its sine and cosine counts are 409 and
 /// 511.
-const AT_REST: &str = "position=3224";
+const STATIONARY_ENCODER_QUERY: &str = "position=3224";
 
 impl Desk {
     fn assist(&mut self, action: Assistant) {
@@ -76,7 +76,7 @@ impl Desk {
 
 #[test]
 fn reads_nothing_before_checklist_is_complete() {
-    let mut desk = Desk::new_form(AT_REST);
+    let mut desk = Desk::new_form(STATIONARY_ENCODER_QUERY);
     let before = desk.wire().sent();
     for (change, why) in [
         ((|_| {}) as fn(&mut Form), "commutation.unprepared"),
@@ -102,7 +102,7 @@ fn reads_nothing_before_checklist_is_complete() {
 
 #[test]
 fn complete_run_stores_offset() {
-    let mut desk = Desk::new_form(AT_REST);
+    let mut desk = Desk::new_form(STATIONARY_ENCODER_QUERY);
     desk.prepare();
     // The readings take place while the position is polled.
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::ZERO)));
@@ -240,7 +240,7 @@ fn second_vector_reveals_wiring_faults() {
 
 #[test]
 fn method_2_sets_position_in_phase() {
-    let mut desk = Desk::new_form(AT_REST);
+    let mut desk = Desk::new_form(STATIONARY_ENCODER_QUERY);
     desk.prepare();
     desk.read(VectorSlot::OneSide);
     desk.read(VectorSlot::OtherSide);
@@ -266,7 +266,7 @@ fn method_2_sets_position_in_phase() {
 /// With 16 periods and 5 pole pairs, a step is 112.5° electrical. With 128 and 4, it is 14° (reference, section 5).
 #[test]
 fn method_2_rejects_large_step() {
-    let mut desk = Desk::new_form(AT_REST);
+    let mut desk = Desk::new_form(STATIONARY_ENCODER_QUERY);
     desk.prepare();
     desk.type_in(VectorSlot::OneSide, "3.47");
     for (periods, pairs, result) in [
@@ -342,7 +342,7 @@ fn reports_position_out_of_phase() {
 
 #[test]
 fn readings_survive_lost_cable() {
-    let mut desk = Desk::at_port(AT_REST);
+    let mut desk = Desk::connected_at_port(STATIONARY_ENCODER_QUERY);
     desk.prepare();
     desk.read(VectorSlot::OneSide);
     desk.wire().unplug();

@@ -17,7 +17,7 @@ use crate::screen::Screen;
 use crate::support::Desk;
 
 /// The connected encoder and the path of a profile in which the byte at address 0 of field 0 is X instead of E.
-fn with_changed_profile() -> (Desk, PathBuf) {
+fn encoder_and_changed_profile() -> (Desk, PathBuf) {
     let mut desk = Desk::new_form("");
     let path = desk.outside.path("mine.ron");
     desk.ask(Hiperface::Save(path.clone()));
@@ -69,7 +69,7 @@ fn bytes(bytes: &[u8]) -> Option<ItemValue> {
 
 #[test]
 fn comparison_lists_differences_only() {
-    let (mut desk, path) = with_changed_profile();
+    let (mut desk, path) = encoder_and_changed_profile();
     let session = desk.studio.selected_device().unwrap().id();
     let requests = desk.wire().count(0x4A);
     desk.command(DeviceCommand::AskCompare);
@@ -105,12 +105,12 @@ fn compares_files_offline() {
     desk.act(Action::Comparison(ComparisonAction::Open { left, right }));
     desk.until("it is compared", is_compared);
     assert!(differing(&desk.studio).iter().any(|row| row.item == "family"));
-    assert!(desk.studio.edited_side().is_none());
+    assert!(desk.studio.editable_device().is_none());
 }
 
 #[test]
 fn compares_with_logbook_entry() {
-    let (mut desk, _) = with_changed_profile();
+    let (mut desk, _) = encoder_and_changed_profile();
     desk.put(0, 0, b"Y");
     desk.write();
     desk.command(DeviceCommand::AskCompare);
@@ -193,8 +193,8 @@ fn items_have_names() {
 }
 
 #[test]
-fn uncopyable_value_names_reason() {
-    let (mut desk, path) = with_changed_profile();
+fn explains_why_value_cannot_be_copied() {
+    let (mut desk, path) = encoder_and_changed_profile();
     desk.command(compare_with(&path));
     desk.until("it is compared", is_compared);
     for item in ["status:0", "field:9@0+1", "field:0@0+4096", "steps"] {
@@ -206,7 +206,7 @@ fn uncopyable_value_names_reason() {
 
 #[test]
 fn restore_is_reviewed_first() {
-    let (mut desk, path) = with_changed_profile();
+    let (mut desk, path) = encoder_and_changed_profile();
     let session = desk.studio.selected_device().unwrap().id();
     desk.command(DeviceCommand::AskRestore);
     let question = desk.studio.take_file_question().unwrap();
@@ -219,8 +219,8 @@ fn restore_is_reviewed_first() {
 }
 
 #[test]
-fn incomparable_capture_names_reason() {
-    let (mut desk, _) = with_changed_profile();
+fn incomparable_file_reports_reason() {
+    let (mut desk, _) = encoder_and_changed_profile();
     let profiles = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
     desk.command(compare_with(&profiles.join("interbus/scaled-encoder.ron")));
     let problem = |studio: &Studio| match studio.comparison().and_then(|view| view.rows()) {
@@ -236,7 +236,7 @@ fn incomparable_capture_names_reason() {
 
 #[test]
 fn comparison_leads_to_review() {
-    let (desk, path) = with_changed_profile();
+    let (desk, path) = encoder_and_changed_profile();
     let Desk { outside, studio, .. } = desk;
     let mut screen = Screen::of(outside, studio, [1024.0, 640.0]);
     screen.command(compare_with(&path));

@@ -91,13 +91,13 @@ fn search_asks_about_drive_before_first_byte() {
 }
 
 /// Makes one entry of the form invalid.
-type Slip = fn(&mut LinkForm);
+type InvalidateEntry = fn(&mut LinkForm);
 
 #[test]
 fn rejects_invalid_entries() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
-    let cases: [(Slip, &str); 9] = [
+    let cases: [(InvalidateEntry, &str); 9] = [
         (|form| form.kind = LinkKind::Serial, "form.port_missing"),
         (|form| form.kind = LinkKind::Tcp, "form.host_missing"),
         (|form| (form.kind, form.host) = (LinkKind::Tcp, "moxa".to_owned()), "form.tcp_port_missing"),
@@ -318,7 +318,7 @@ fn closing_dialog_ends_search() {
 
 #[test]
 fn search_closes_open_wire_first() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     let link = format!("serial:{PORT}");
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(2))));
     desk.connect(Connect::Open);

@@ -176,7 +176,7 @@ fn two_paths_open_one_session() {
 
 #[test]
 fn drafts_differ_by_type() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
     desk.wire().unplug();
@@ -194,7 +194,7 @@ fn drafts_differ_by_type() {
 
 #[test]
 fn missing_serial_number_prevents_drafts() {
-    let mut desk = Desk::at_port("serial= ");
+    let mut desk = Desk::connected_at_port("serial= ");
     assert_eq!(desk.encoder().identity.as_ref().unwrap().serial.serial_number, "");
     desk.put(0, 0, b"X");
     desk.put(0, 1, b"Y");

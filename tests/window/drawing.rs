@@ -17,11 +17,11 @@ const SIZE: [f32; 2] = [1280.0, 900.0];
 /// Duration of an observation in seconds.
 const WATCHED: f64 = 10.0;
 /// Delay in seconds up to which a repaint counts as immediate.
-const AT_ONCE: f64 = 1.0 / 60.0;
+const IMMEDIATE_REPAINT_DELAY: f64 = 1.0 / 60.0;
 /// Maximum number of frames for a text cursor, which blinks at most once per second.
-const BLINKS: usize = 2 * WATCHED as usize + 2;
+const MAX_CURSOR_FRAMES: usize = 2 * WATCHED as usize + 2;
 /// Maximum number of frames for live values, which are drawn every 50 ms.
-const LIVE: usize = (WATCHED / 0.05) as usize + 2;
+const MAX_LIVE_FRAMES: usize = (WATCHED / 0.05) as usize + 2;
 
 /// A named state of the window, and the function that puts the window into it.
 type Situation = (&'static str, fn(&mut Screen));
@@ -49,13 +49,13 @@ fn pictures(screen: &mut Screen) -> usize {
     let (mut passed, mut count) = (0.0, 0);
     loop {
         let next = screen.harness.output().viewport_output[&ViewportId::ROOT].repaint_delay.as_secs_f64();
-        passed += next.max(AT_ONCE);
+        passed += next.max(IMMEDIATE_REPAINT_DELAY);
         if passed > WATCHED {
             screen.harness.input_mut().time = None;
             return count;
         }
         let now = screen.harness.ctx.input(|input| input.time);
-        screen.harness.input_mut().time = Some(now + next.max(AT_ONCE));
+        screen.harness.input_mut().time = Some(now + next.max(IMMEDIATE_REPAINT_DELAY));
         screen.harness.step();
         count += 1;
     }
@@ -91,7 +91,7 @@ fn draws_nothing_while_idle() {
         settle(&mut screen);
         let wakes = screen.outside.wakes.load(Ordering::SeqCst);
         let count = pictures(&mut screen);
-        let most = if ["connecting", "a path is typed"].contains(&what) { BLINKS } else { 0 };
+        let most = if ["connecting", "a path is typed"].contains(&what) { MAX_CURSOR_FRAMES } else { 0 };
         assert!(count <= most, "{what}: {count} pictures in {WATCHED} s");
         // A frame does not cause the next one through a thread either.
         for _ in 0..50 {
@@ -139,7 +139,7 @@ fn redraws_changes_without_polling() {
         (crate::tabs::HIPERDRIVE, "sim:", |studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some())),
     ];
     for (tab, link, is_read) in kinds {
-        let mut screen = Screen::opened_in(tab, link, SIZE);
+        let mut screen = Screen::open_in_tab(tab, link, SIZE);
         screen.until("it is read", |studio| is_read(studio) && !studio.is_working());
         if screen.studio().is_live() {
             screen.click("live.pause");
@@ -164,7 +164,7 @@ fn background_window_keeps_frame_rate() {
         begin(&mut screen);
         screen.steps();
         let count = pictures(&mut screen);
-        assert!(count <= LIVE, "{what}: {count} pictures in {WATCHED} s");
+        assert!(count <= MAX_LIVE_FRAMES, "{what}: {count} pictures in {WATCHED} s");
         screen.harness.input_mut().focused = true;
     }
 }

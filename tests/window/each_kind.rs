@@ -152,7 +152,7 @@ impl Case {
 impl Case {
     /// Saves the content of the device as a profile.
     pub(crate) fn save(&self, desk: &mut Desk, path: &Path) {
-        self.ask_to_save(desk, path);
+        self.save_via_question(desk, path);
         desk.until("it is saved", |_| path.exists());
     }
 
@@ -175,7 +175,7 @@ impl Case {
         }
     }
 
-    fn ask_to_save(&self, desk: &mut Desk, path: &Path) {
+    fn save_via_question(&self, desk: &mut Desk, path: &Path) {
         command(desk, DeviceCommand::AskSave);
         let question = desk.studio.take_file_question().unwrap();
         desk.act(Action::Chosen(question, path.to_path_buf()));
@@ -230,7 +230,7 @@ pub(crate) fn until_ready(desk: &mut Desk) {
 }
 
 #[track_caller]
-fn until_lost(desk: &mut Desk) {
+fn wait_for_connection_loss(desk: &mut Desk) {
     desk.until("it is lost", |studio| matches!(shown(studio).unwrap().phase(), Phase::Lost(_)));
 }
 
@@ -300,13 +300,13 @@ fn edits_survive_pulled_cable() {
         case.edit(&mut desk, &[0x5A]);
         until_kept(&mut desk);
         wire.unplug();
-        until_lost(&mut desk);
+        wait_for_connection_loss(&mut desk);
         assert_eq!(desk.notice_ids(Severity::Error), ["link.lost"], "once");
         case.edit(&mut desk, &[0x5A, 0x5B]);
         command(&mut desk, DeviceCommand::Review);
         assert_eq!(desk.notice_count("session.not_connected"), 1);
         command(&mut desk, DeviceCommand::Reconnect);
-        until_lost(&mut desk);
+        wait_for_connection_loss(&mut desk);
         wire.plug();
         case.reconnect(&mut desk);
         assert_eq!(shown(&desk.studio).unwrap().edit_count(), 2);
@@ -335,7 +335,7 @@ fn cable_pulled_during_write_keeps_edits() {
         wire.unplug();
         wire.release();
         until_stage(&mut desk, |stage| matches!(stage, Stage::Failed { begun: true, .. }));
-        until_lost(&mut desk);
+        wait_for_connection_loss(&mut desk);
         assert_eq!(shown(&desk.studio).unwrap().edit_count(), 1);
         review(&mut desk, ReviewAction::Close);
         wire.plug();
@@ -413,7 +413,7 @@ fn edited<F: FormModel>(dialog: &Dialog) -> Connect {
 }
 
 #[test]
-fn link_opens_device_typed_or_from_form() {
+fn typed_and_form_links_open_device() {
     let links = [
         (crate::tabs::HIPERFACE, "sim:".to_owned()),
         (crate::tabs::HIPERFACE, format!("serial:{PORT}")),
@@ -514,7 +514,7 @@ fn saves_values_after_line_loss() {
             }
             case.edit(&mut desk, &[0x5A]);
             case.wire(&desk).unplug();
-            until_lost(&mut desk);
+            wait_for_connection_loss(&mut desk);
             assert!(shown(&desk.studio).unwrap().is_savable());
             let path = desk.outside.path(&format!("lost-{all}.ron"));
             // The loss of the connection may be reported again meanwhile.
@@ -523,7 +523,7 @@ fn saves_values_after_line_loss() {
                 let own = notices.rfind(|notice| notice.texts.iter().any(|text| text.id() == id));
                 own.map(|notice| notice.texts.clone())
             };
-            case.ask_to_save(&mut desk, &path);
+            case.save_via_question(&mut desk, &path);
             match missing.filter(|_| !all) {
                 Some(missing) => {
                     desk.until("it is refused", |studio| told(studio, "session.not_all_read").is_some());

@@ -168,7 +168,7 @@ fn writes_edit_after_review() {
 }
 
 #[test]
-fn limits_excluding_position_are_not_written() {
+fn rejects_limits_excluding_position() {
     let mut desk = read("sim:");
     edit(&mut desk, Edit::Limits { drive: ONE, lower: 65_536, upper: 131_072 });
     assert!(

@@ -29,7 +29,7 @@ pub(crate) const ATTEMPTS: usize = 20;
 
 /// Waits until a drive may move. Threads read the motion rules repeatedly, and a press before that is rejected.
 #[track_caller]
-pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
+pub(crate) fn wait_until_motion_allowed(desk: &mut Desk, drive: DriveNumber) {
     let began = Instant::now();
     while let Err(why) = unit(desk).may_move(drive) {
         assert!(
@@ -79,7 +79,7 @@ pub(crate) fn act_until(
 
 /// Starts a long move of the displayed drive and waits until the drive moves.
 #[track_caller]
-pub(crate) fn set_off(desk: &mut Desk) {
+pub(crate) fn start_long_move(desk: &mut Desk) {
     drive_until(
         desk,
         |_| MotorCommand::Move { target: 30_000_000 },
@@ -94,12 +94,12 @@ pub(crate) fn set_off(desk: &mut Desk) {
 /// Returns the value of `look` while the selected drive moves. The motion and the observation are repeated if the
 /// motion ends because it was not refreshed.
 #[track_caller]
-pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk) -> T) -> T {
+pub(crate) fn observe_while_moving<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk) -> T) -> T {
     let shown = unit(desk).drive();
     for _ in 0..ATTEMPTS {
         act(desk, Hiperdrive::SelectDrive(shown));
-        until_free(desk, shown);
-        set_off(desk);
+        wait_until_motion_allowed(desk, shown);
+        start_long_move(desk);
         let before = last_end(&desk.studio, shown);
         let seen = look(desk);
         desk.studio.poll();

@@ -29,7 +29,7 @@ use bench::*;
 
 #[test]
 fn millimetre_setup_survives_power_cycle() {
-    let mut desk = until_saved(FRESH, 1);
+    let mut desk = setup_at_power_cycle(FRESH, 1);
     assert_eq!(unit(&desk).session.cycles, Some(encoder_studio::worker::commit::CycleCount::complete(1)));
     let limits = unit(&desk).limits(DriveNumber::FIRST).unwrap();
     run(&mut desk, Run::Press(AxisButton::Give));
@@ -49,7 +49,7 @@ fn millimetre_setup_survives_power_cycle() {
 }
 
 #[test]
-fn moves_nothing_before_limits_are_confirmed() {
+fn prevents_motion_until_limits_are_confirmed() {
     let mut desk = at_jog_step();
     run(&mut desk, Run::Next);
     assert_eq!(axis(&desk).step(), AxisStep::Confirm);
@@ -105,7 +105,7 @@ fn does_not_confirm_outdated_limits() {
 fn cancelling_stops_drive_without_saving() {
     let mut desk = confirmed();
     let press = MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false };
-    held_until(&mut desk, press, "it moves", HiperdriveDevice::is_moving);
+    hold_jog_until(&mut desk, press, "it moves", HiperdriveDevice::is_moving);
     run(&mut desk, Run::Cancel);
     until_stopped(&mut desk);
     let own = axis(&desk);
@@ -129,7 +129,7 @@ fn cancelling_stops_drive_without_saving() {
 /// A recall (parameter 47 = −2) affects only the adapter. The drive keeps its scale and limits, and no text claims
 /// otherwise (issue 21.6 d).
 #[test]
-fn recall_does_not_change_drive() {
+fn recall_preserves_drive_parameters() {
     let mut desk = confirmed();
     act(&mut desk, Hiperdrive::Plan(Box::new(Change::Do(Service::Recall))));
     write(&mut desk);
@@ -142,7 +142,7 @@ fn recall_does_not_change_drive() {
 
 /// The set-up and the Motion page have separate speed and torque settings for their jog pads (issue 21.6 a).
 #[test]
-fn setup_jog_pads_have_separate_effort() {
+fn setup_jog_has_separate_speed_and_torque() {
     let mut desk = new_form("sim:");
     let percent = |value| Percent::new(value).unwrap();
     let chosen = SpeedTorque { speed: percent(80), torque: percent(100) };
@@ -157,7 +157,7 @@ fn setup_jog_pads_have_separate_effort() {
         (MotorCommand::SlowJogPress { direction: Direction::Clockwise, repeated: false }, 10, 25),
         (MotorCommand::JogPress { direction: Direction::Clockwise, repeated: false }, 80, 100),
     ] {
-        held_until(&mut desk, press, "it turns", |own| own.moves.held_jog(own.drive()).is_some());
+        hold_jog_until(&mut desk, press, "it turns", |own| own.moves.held_jog(own.drive()).is_some());
         let sent = unit(&desk).moves.last_setpoint(unit(&desk).drive()).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (speed, torque));
         act(&mut desk, Hiperdrive::Drive(MotorCommand::JogRelease));
@@ -175,7 +175,7 @@ fn pitch_applies_after_confirmation() {
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| own.pitch = "4".to_owned());
     assert_eq!(unit(&desk).spindle_pitch(unit(&desk).drive()), None);
-    step_with_write(&mut desk);
+    press_and_commit_write(&mut desk);
     assert_eq!(unit(&desk).spindle_pitch(unit(&desk).drive()), None);
     next(&mut desk, AxisStep::Confirm);
     assert_eq!(unit(&desk).spindle_pitch(unit(&desk).drive()).map(|own| own.nanometres), Some(4_000_000));
@@ -215,9 +215,9 @@ fn new_run_lists_aborted_changes() {
 /// A reconnection is not mistaken for a power cycle. Only a changed value that was never saved proves a restart
 /// (issue 21.6 e).
 #[test]
-fn reconnection_is_no_power_cycle() {
-    let mut desk = until_saved("sim:?requested=0&timeout=250", 1);
-    step_with_write(&mut desk);
+fn reconnection_does_not_count_as_power_cycle() {
+    let mut desk = setup_at_power_cycle("sim:?requested=0&timeout=250", 1);
+    press_and_commit_write(&mut desk);
     assert_eq!(number(&desk, 182), 1001);
     run(&mut desk, Run::Press(AxisButton::Give));
     desk.until("without control", |studio| {
@@ -318,7 +318,7 @@ fn saves_result_as_report() {
 /// (issue 21.6).
 #[test]
 fn sets_up_hub_drive_despite_failures() {
-    let desk = until_saved_with("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3, true);
+    let desk = setup_at_power_cycle_with_faults("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3, true);
     let three = DriveNumber::new(3).unwrap();
     assert_eq!(unit(&desk).drive(), three);
     assert_eq!([352, 354, 356].map(|own| read(&desk, own)), [1, 400, 256]);
@@ -330,9 +330,9 @@ fn sets_up_hub_drive_despite_failures() {
 /// supply is switched off (issue 21.6).
 #[test]
 fn checks_hub_power_cycle_despite_failures() {
-    let mut desk = until_saved("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3);
+    let mut desk = setup_at_power_cycle("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3);
     assert_eq!(unit(&desk).axis_report(Language::English), None, "it goes on");
-    step_with_writes(&mut desk, 182, true);
+    run_step_with_write_faults(&mut desk, 182, true);
     // The connection was lost after the write had arrived. The value is read back, and no restart can be claimed.
     assert_eq!((read(&desk, 382), read(&desk, 182)), (1001, 1000));
     assert_eq!(axis(&desk).check_can_continue(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");

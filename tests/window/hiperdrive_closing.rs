@@ -12,7 +12,7 @@ use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiper
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, unit};
-use crate::hiperdrive_acts::{drive_until, set_off};
+use crate::hiperdrive_acts::{drive_until, start_long_move};
 use crate::hiperdrive_motion::in_control;
 use crate::support::{Desk, LONG};
 
@@ -27,12 +27,12 @@ fn drive_state(desk: &Desk) -> (State, bool, bool) {
 
 fn moving() -> Desk {
     let mut desk = in_control("sim:");
-    set_off(&mut desk);
+    start_long_move(&mut desk);
     desk
 }
 
 #[track_caller]
-fn until_released(desk: &Desk) {
+fn wait_for_drive_release(desk: &Desk) {
     let began = Instant::now();
     while drive_state(desk).2 {
         assert!(began.elapsed() < LONG, "the connection is open");
@@ -53,7 +53,7 @@ fn closing_window_releases_drives_first() {
         assert!(!desk.studio.can_close(), "{closes}: the drive is in hand");
         drive(&mut desk, MotorCommand::Move { target: 1 });
         desk.until("it may close", |studio| studio.can_close());
-        until_released(&desk);
+        wait_for_drive_release(&desk);
         assert!(!unit(&desk).moves.motion().unwrap().is_connected(), "{closes}");
         drive(&mut desk, MotorCommand::Lead(TargetState::Enabled));
         desk.settle();
@@ -86,7 +86,7 @@ fn stops_drives_before_close_question() {
     desk.act(Action::Close);
     desk.act(Action::Confirm);
     desk.until("it may close", |studio| studio.can_close());
-    until_released(&desk);
+    wait_for_drive_release(&desk);
 }
 
 /// A termination signal closes the window without a question (issue 21.1).
@@ -99,7 +99,7 @@ fn signal_closes_without_asking() {
     desk.act(Action::Quit);
     assert!(desk.studio.question.is_none());
     desk.until("it may close", |studio| studio.can_close());
-    until_released(&desk);
+    wait_for_drive_release(&desk);
 }
 
 /// Drives are released even if the window is not updated, such as when the display hangs (issue 21.1).
@@ -110,7 +110,7 @@ fn releases_drives_without_window() {
     assert!(!brakes.is_done() && !brakes.has_begun());
     brakes.begin_stop();
     assert!(brakes.wait_for_disconnect(LONG) && brakes.has_begun());
-    until_released(&desk);
+    wait_for_drive_release(&desk);
     assert!(!brakes.wait_for_window(Duration::ZERO));
 }
 

@@ -16,7 +16,7 @@ use encoder_studio::devices::hiperdrive::state::{
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit};
-use crate::hiperdrive_acts::{drive_until, set_off};
+use crate::hiperdrive_acts::{drive_until, start_long_move};
 use crate::hiperdrive_motion::in_control;
 use crate::support::Desk;
 
@@ -142,7 +142,7 @@ fn scale_change_found_by_save_locks_motion() {
 }
 
 #[test]
-fn moves_nothing_until_everything_is_reread() {
+fn prevents_motion_until_parameters_are_read() {
     let mut desk = read("sim:");
     act(&mut desk, Hiperdrive::Take);
     desk.until("the connection is open", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
@@ -181,9 +181,9 @@ fn table_shows_live_values() {
 }
 
 #[test]
-fn discards_reports_from_before_loss() {
+fn discards_reports_received_before_loss() {
     let mut desk = in_control("sim:");
-    set_off(&mut desk);
+    start_long_move(&mut desk);
     fall_silent(&desk);
     desk.until("the loss is known", |studio| !is_open(studio));
     desk.until("nothing moves as far as is known", |studio| !studio.is_moving());
@@ -256,7 +256,7 @@ fn stopped_reading_names_missing_values() {
 }
 
 #[test]
-fn reads_missing_values_after_giving_up_control() {
+fn reads_missing_values_after_releasing_control() {
     let mut desk = read("sim:");
     set(&desk, 160, 65_536);
     act(&mut desk, Hiperdrive::Take);
@@ -273,7 +273,7 @@ fn reads_missing_values_after_giving_up_control() {
 }
 
 #[test]
-fn discards_positions_from_before_reconnect() {
+fn discards_positions_read_before_reconnect() {
     let mut desk = in_control("sim:");
     command(&mut desk, DeviceCommand::Reconnect);
     desk.until("it is connected", |studio| studio.hiperdrive().unwrap().session.live_session().is_some());

@@ -13,7 +13,9 @@ use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive,
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, unit};
-use crate::hiperdrive_acts::{drive_until, has_lapsed, last_end, set_off, until_free, warned, while_it_moves};
+use crate::hiperdrive_acts::{
+    drive_until, has_lapsed, last_end, observe_while_moving, start_long_move, wait_until_motion_allowed, warned,
+};
 use crate::hiperdrive_motion::in_control;
 use crate::screen::Screen;
 
@@ -40,7 +42,7 @@ fn settings_apply_to_one_drive() {
     drive(&mut desk, MotorCommand::JogEffort(slow));
     drive(&mut desk, MotorCommand::Expert(true));
     act(&mut desk, Hiperdrive::SelectDrive(two()));
-    until_free(&mut desk, two());
+    wait_until_motion_allowed(&mut desk, two());
     let moves = &unit(&desk).moves;
     assert_eq!(
         (moves.move_speed_torque(two()), moves.jog_speed_torque(two())),
@@ -64,14 +66,14 @@ fn settings_apply_to_one_drive() {
 #[test]
 fn second_motion_waits_for_first() {
     let mut desk = in_control(HUB);
-    until_free(&mut desk, ONE);
+    wait_until_motion_allowed(&mut desk, ONE);
     // The second request comes before the drive itself has reported its motion.
     drive(&mut desk, MotorCommand::Move { target: 30_000_000 });
     drive(&mut desk, MotorCommand::Step { by: 64 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.still_moves"]);
     drive(&mut desk, MotorCommand::Stop);
     desk.until("it stands", |studio| !studio.is_moving());
-    let told = while_it_moves(&mut desk, |desk| {
+    let told = observe_while_moving(&mut desk, |desk| {
         let before = warned(desk).len();
         drive(desk, MotorCommand::Step { by: 64 });
         drive(desk, MotorCommand::Move { target: 0 });
@@ -81,7 +83,7 @@ fn second_motion_waits_for_first() {
     assert_eq!(told, ["hd_refused.still_moves"; 3]);
     drive(&mut desk, MotorCommand::Stop);
     desk.until("it stands", |studio| !studio.is_moving());
-    let seen = while_it_moves(&mut desk, |desk| {
+    let seen = observe_while_moving(&mut desk, |desk| {
         act(desk, Hiperdrive::SelectDrive(two()));
         desk.until("the other one is read", |studio| {
             studio.hiperdrive().unwrap().moves.limits(two()).is_some_and(|own| own.limits().is_some())
@@ -103,7 +105,7 @@ fn second_motion_waits_for_first() {
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     drive(&mut desk, MotorCommand::Stop);
     desk.until("it stands", |studio| !studio.is_moving());
-    until_free(&mut desk, two());
+    wait_until_motion_allowed(&mut desk, two());
     let to_64 = |own: &HiperdriveDevice| MotorCommand::Step { by: 64 - own.actual_values(two()).unwrap().position };
     drive_until(&mut desk, to_64, "now it may", |studio| {
         studio.hiperdrive().unwrap().actual_values(two()).is_some_and(|own| own.position == 64)
@@ -112,10 +114,10 @@ fn second_motion_waits_for_first() {
 
 /// A request to another drive does not discard a paused move (issue 21.7).
 #[test]
-fn other_drive_keeps_paused_job() {
+fn paused_move_survives_request_to_second_drive() {
     let mut desk = in_control(HUB);
-    until_free(&mut desk, ONE);
-    let seen = while_it_moves(&mut desk, |desk| {
+    wait_until_motion_allowed(&mut desk, ONE);
+    let seen = observe_while_moving(&mut desk, |desk| {
         let before = last_end(&desk.studio, ONE);
         let lapsed = |studio: &Studio| has_lapsed(studio, ONE, before);
         drive(desk, MotorCommand::Pause);
@@ -128,7 +130,7 @@ fn other_drive_keeps_paused_job() {
         drive(desk, MotorCommand::Lead(TargetState::Ready));
         let told = warned(desk).split_off(told);
         act(desk, Hiperdrive::SelectDrive(ONE));
-        until_free(desk, ONE);
+        wait_until_motion_allowed(desk, ONE);
         drive(desk, MotorCommand::Resume);
         desk.until("it goes on", |studio| moves(studio, ONE) || lapsed(studio));
         (told, moves(&desk.studio, ONE))
@@ -144,8 +146,8 @@ fn messages_name_drive() {
     for (link, own, named) in [(HUB, two(), Some("drive 2")), ("sim:", ONE, None)] {
         let mut desk = in_control(link);
         act(&mut desk, Hiperdrive::SelectDrive(own));
-        until_free(&mut desk, own);
-        set_off(&mut desk);
+        wait_until_motion_allowed(&mut desk, own);
+        start_long_move(&mut desk);
         let target = unit(&desk).target.clone().unwrap();
         target.with_station(|station| {
             station.drive(own).unwrap().inject_error(Moment::default(), ErrorCode::BLOCK_FORWARD)
@@ -164,14 +166,14 @@ fn messages_name_drive() {
 #[test]
 fn shows_pending_and_sent_speed() {
     let mut desk = in_control("sim:");
-    until_free(&mut desk, ONE);
+    wait_until_motion_allowed(&mut desk, ONE);
     let (before, after) = (
         SpeedTorque { speed: percent(40), ..SpeedTorque::DEFAULT_MOVE },
         SpeedTorque { speed: percent(20), ..SpeedTorque::DEFAULT_MOVE },
     );
     assert_eq!(unit(&desk).moves.running_move_speed_torque(ONE), None);
     drive(&mut desk, MotorCommand::MoveEffort(before));
-    let seen = while_it_moves(&mut desk, |desk| {
+    let seen = observe_while_moving(&mut desk, |desk| {
         drive(desk, MotorCommand::MoveEffort(after));
         desk.settle();
         let moves = &unit(desk).moves;
@@ -192,8 +194,8 @@ fn shows_pending_and_sent_speed() {
 }
 
 /// Returns a window with a hub whose drives are under control.
-fn on_screen() -> Screen {
-    let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, HUB, [1280.0, 900.0]);
+fn hub_screen_in_control() -> Screen {
+    let mut screen = Screen::open_in_tab(crate::tabs::HIPERDRIVE, HUB, [1280.0, 900.0]);
     screen.until("it is read", |studio| {
         studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready() && own.status.is_some())
     });
@@ -224,7 +226,11 @@ fn target(screen: &Screen) -> Node<'_> {
 
 /// Moves drive 1, runs `then`, and returns what `look` observes while the drive still moves. Several attempts may be
 /// needed, because a delayed window stops its motion.
-fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: impl Fn(&Screen) -> bool) -> bool {
+fn act_and_observe_while_moving(
+    screen: &mut Screen,
+    then: impl Fn() -> Hiperdrive,
+    look: impl Fn(&Screen) -> bool,
+) -> bool {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     let own = |action| Action::device(id, action);
     for _ in 0..20 {
@@ -246,7 +252,7 @@ fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: i
 /// Text typed for one drive stays with that drive (issue 21.7).
 #[test]
 fn keeps_typed_values_per_drive() {
-    let mut screen = on_screen();
+    let mut screen = hub_screen_in_control();
     target(&screen).focus();
     screen.steps();
     target(&screen).type_text("12345");
@@ -266,9 +272,9 @@ fn has_entry(screen: &Screen, text: &str) -> bool {
 /// Each button that selects a drive shows that drive's state, whichever drive is selected (issue 21.7).
 #[test]
 fn drive_buttons_show_states() {
-    let mut screen = on_screen();
+    let mut screen = hub_screen_in_control();
     let says = |screen: &Screen, words: &str| screen.harness.query_by_label(words).is_some();
-    let shown = while_it_moves_on(
+    let shown = act_and_observe_while_moving(
         &mut screen,
         || Hiperdrive::SelectDrive(two()),
         |screen| says(screen, "drive 1, Moving") && says(screen, "drive 1 moving"),
@@ -287,11 +293,11 @@ fn drive_buttons_show_states() {
 /// A speed typed during a motion is marked as not sent (issue 21.7).
 #[test]
 fn marks_unsent_speed_during_motion() {
-    let mut screen = on_screen();
+    let mut screen = hub_screen_in_control();
     let slower = MotorCommand::MoveEffort(SpeedTorque { speed: percent(20), ..SpeedTorque::DEFAULT_MOVE });
     let waits = "sent: 25 %";
     assert!(!screen.shows(waits));
-    assert!(while_it_moves_on(&mut screen, || Hiperdrive::Drive(slower), |screen| screen.shows(waits)));
+    assert!(act_and_observe_while_moving(&mut screen, || Hiperdrive::Drive(slower), |screen| screen.shows(waits)));
     screen.act(Action::StopMotion);
     screen.until("it stands", |studio| !studio.is_moving());
     screen.steps();

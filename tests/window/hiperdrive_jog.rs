@@ -15,13 +15,13 @@ use crate::screen::Screen;
 use crate::tabs::Tabs as _;
 
 /// Height of the open lower panel, in points.
-const BELOW: f32 = 170.0;
+const LOWER_PANEL_HEIGHT: f32 = 170.0;
 /// Height of everything above the page, in points.
-const ABOVE: f32 = 155.0;
+const HEIGHT_ABOVE_PAGE: f32 = 155.0;
 
 /// Opens a window of this size with control over the drives of a virtual device.
-pub(crate) fn in_control_on_screen(link: &str, size: [f32; 2]) -> Screen {
-    let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, link, size);
+pub(crate) fn screen_in_control(link: &str, size: [f32; 2]) -> Screen {
+    let mut screen = Screen::open_in_tab(crate::tabs::HIPERDRIVE, link, size);
     screen.until("it is read", |studio| {
         studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready())
     });
@@ -57,7 +57,7 @@ fn typed_speed(screen: &Screen) -> Node<'_> {
 }
 
 /// Returns the smallest rectangle around the pads, the state indicators and the travel bar.
-fn what_is_needed(screen: &Screen) -> Rect {
+fn essential_controls_rect(screen: &Screen) -> Rect {
     let pads = ["hd_jog.down", "hd_jog.up"].map(|id| screen.button(id).rect());
     let states = ["Moving", "Fault"].map(|name| screen.harness.get_by_role_and_label(Role::Button, name).rect());
     [pads, states].into_iter().flatten().fold(travel(screen).rect(), Rect::union)
@@ -67,17 +67,17 @@ fn what_is_needed(screen: &Screen) -> Rect {
 /// after at most one scroll (issue 26.2).
 #[test]
 fn shows_pads_state_and_travel_together() {
-    let needed = what_is_needed(&in_control_on_screen("sim:", [1280.0, 800.0]));
-    assert!(needed.top() > 48.0 && needed.bottom() <= 800.0 - BELOW, "{needed:?}");
-    let needed = what_is_needed(&in_control_on_screen("sim:", [1024.0, 640.0]));
-    let page = 640.0 - BELOW - ABOVE;
-    assert!(needed.bottom() <= ABOVE + 2.0 * page, "{needed:?}");
+    let needed = essential_controls_rect(&screen_in_control("sim:", [1280.0, 800.0]));
+    assert!(needed.top() > 48.0 && needed.bottom() <= 800.0 - LOWER_PANEL_HEIGHT, "{needed:?}");
+    let needed = essential_controls_rect(&screen_in_control("sim:", [1024.0, 640.0]));
+    let page = 640.0 - LOWER_PANEL_HEIGHT - HEIGHT_ABOVE_PAGE;
+    assert!(needed.bottom() <= HEIGHT_ABOVE_PAGE + 2.0 * page, "{needed:?}");
 }
 
 /// Tab moves on from a speed preset that was clicked (issue 26).
 #[test]
 fn tab_continues_after_clicked_preset() {
-    let mut screen = in_control_on_screen("sim:", [1280.0, 800.0]);
+    let mut screen = screen_in_control("sim:", [1280.0, 800.0]);
     preset(&screen, "50").click();
     screen.steps();
     assert!(preset(&screen, "50").accesskit_node().is_focused());
@@ -89,7 +89,7 @@ fn tab_continues_after_clicked_preset() {
 /// (issue 26.2).
 #[test]
 fn preset_sets_speed_without_moving() {
-    let mut screen = in_control_on_screen("sim:", [1280.0, 900.0]);
+    let mut screen = screen_in_control("sim:", [1280.0, 900.0]);
     let speed = |screen: &Screen| screen.studio().hiperdrive().unwrap().moves.jog_speed_torque(ONE).speed.get();
     assert_eq!(speed(&screen), 10);
     for percent in ["1", "50", "100", "10"] {
@@ -114,7 +114,7 @@ fn preset_sets_speed_without_moving() {
 
 /// The jog speed is 10 % after every connection, not only after a program start (issue 26.2).
 #[test]
-fn every_connection_starts_slowly() {
+fn reconnecting_resets_jog_speed() {
     let mut desk = in_control("sim:");
     let fast = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
     drive(&mut desk, MotorCommand::JogEffort(fast));
@@ -129,15 +129,15 @@ fn every_connection_starts_slowly() {
 /// The travel bar shows the limits, the position and the target in the user's unit. If the position is outside the
 /// limits, it shows the way back (issue 26.2).
 #[test]
-fn travel_bar_names_way_back() {
-    let inside = in_control_on_screen("sim:?position=65536", [1280.0, 800.0]);
+fn travel_bar_shows_return_direction() {
+    let inside = screen_in_control("sim:?position=65536", [1280.0, 800.0]);
     let said = travel_text(&inside);
     assert!(said.contains("65536 steps") && said.contains("-33488896 steps … 33488896 steps"), "{said}");
     assert!(!said.contains(&inside.say("hd_outside.short")), "{said}");
     for (link, way) in
         [("sim:?position=40000000", "hd_travel.back_down"), ("sim:?position=-40000000", "hd_travel.back_up")]
     {
-        let screen = in_control_on_screen(link, [1280.0, 800.0]);
+        let screen = screen_in_control(link, [1280.0, 800.0]);
         assert!(travel_text(&screen).starts_with(&screen.say(way)), "{}", travel_text(&screen));
         let pads = ["hd_jog.down", "hd_jog.up"].map(|id| screen.is_enabled(id));
         assert_eq!(pads, if way == "hd_travel.back_down" { [true, false] } else { [false, true] });

@@ -46,7 +46,7 @@ fn leave(screen: &mut Screen, key: Key) {
     picture(screen, [event(key, false), Event::WindowFocused(false)]);
 }
 
-fn come_back(screen: &mut Screen) {
+fn regain_focus(screen: &mut Screen) {
     screen.harness.input_mut().focused = true;
     picture(screen, [Event::WindowFocused(true)]);
 }
@@ -69,7 +69,7 @@ fn is_held(screen: &Screen) -> bool {
 }
 
 /// Returns a window with the keyboard focus on a jog pad. Space has been released, so the next press counts.
-fn on_pad() -> Screen {
+fn screen_with_focused_jog_pad() -> Screen {
     let mut screen = in_hand();
     focus(&mut screen, "hd_jog.up");
     down(&mut screen, Key::Space);
@@ -81,11 +81,11 @@ fn on_pad() -> Screen {
 /// The key is pressed in another window and still held when this window gets the keyboard focus. Before the fix, the
 /// drive ran in 8 of 8 attempts (issue 21.2).
 #[test]
-fn key_held_elsewhere_moves_nothing() {
+fn key_held_before_focus_starts_no_motion() {
     for key in [Key::Space, Key::Enter] {
-        let mut screen = on_pad();
+        let mut screen = screen_with_focused_jog_pad();
         leave(&mut screen, Key::A);
-        come_back(&mut screen);
+        regain_focus(&mut screen);
         repeats(&mut screen, key);
         assert!(!is_motion_active(screen.studio()), "{key:?}");
         up(&mut screen, key);
@@ -99,13 +99,13 @@ fn key_held_elsewhere_moves_nothing() {
 
 /// When the window loses the keyboard focus, the jog ends. It must not restart while the key is held (issue 21.2).
 #[test]
-fn window_change_ends_jog_for_good() {
-    let mut screen = on_pad();
+fn held_key_does_not_resume_jog() {
+    let mut screen = screen_with_focused_jog_pad();
     down(&mut screen, Key::Space);
     assert!(is_held(&screen));
     leave(&mut screen, Key::Space);
     assert!(!is_held(&screen) && !is_motion_active(screen.studio()));
-    come_back(&mut screen);
+    regain_focus(&mut screen);
     repeats(&mut screen, Key::Space);
     assert!(!is_motion_active(screen.studio()));
     until_stopped(&screen);
@@ -129,7 +129,7 @@ fn key_repeat_presses_no_button() {
     step(&mut screen);
     screen.steps();
     leave(&mut screen, Key::A);
-    come_back(&mut screen);
+    regain_focus(&mut screen);
     repeats(&mut screen, Key::Enter);
     assert!(!is_motion_active(screen.studio()));
     up(&mut screen, Key::Enter);
@@ -145,7 +145,7 @@ fn key_repeat_presses_no_button() {
 /// A key held on a speed preset sets the speed once and moves nothing. Its repeats press no pad when the focus moves on
 /// (issue 26).
 #[test]
-fn key_held_on_preset_moves_nothing() {
+fn key_held_on_preset_starts_no_motion() {
     for key in [Key::Enter, Key::Space] {
         let mut screen = in_hand();
         let label = format!("{}: 100 %", screen.say("hd_jog.speed"));
@@ -168,7 +168,7 @@ fn key_held_on_preset_moves_nothing() {
 /// Some systems repeat a key as a release followed by a press. Even if the two arrive in frames that are far apart,
 /// they start no motion (issue 21.2).
 #[test]
-fn split_key_repeat_moves_nothing() {
+fn split_key_repeat_starts_no_motion() {
     let split = |screen: &mut Screen, key| {
         for _ in 0..8 {
             picture(screen, [event(key, false)]);
@@ -176,7 +176,7 @@ fn split_key_repeat_moves_nothing() {
             assert!(!is_motion_active(screen.studio()));
         }
     };
-    let mut screen = on_pad();
+    let mut screen = screen_with_focused_jog_pad();
     down(&mut screen, Key::Space);
     assert!(is_held(&screen));
     split(&mut screen, Key::Space);
@@ -286,7 +286,7 @@ fn review_accepts_key_after_release() {
 /// A barcode scanner sends Enter within milliseconds of the last digit, in the same frame or the next. Even with the
 /// focus on *Write*, nothing is written (issue 22.29).
 #[test]
-fn barcode_scanner_writes_nothing() {
+fn barcode_scanner_cannot_trigger_write() {
     let mut screen = in_hand();
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));

@@ -17,7 +17,7 @@ use encoder_studio::devices::hiperdrive::state::{
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit, write};
-use crate::hiperdrive_acts::{drive_until, hold_pad_until, hold_until, set_off, warned, while_it_moves};
+use crate::hiperdrive_acts::{drive_until, hold_pad_until, hold_until, observe_while_moving, start_long_move, warned};
 use crate::support::{Desk, LONG};
 
 /// Returns the status word of the drive itself, independent of the window.
@@ -59,7 +59,7 @@ fn jog(desk: &mut Desk) {
 
 /// Waits for standstill without polling the window, because the stop has already been requested.
 #[track_caller]
-fn until_standstill(desk: &Desk) {
+fn wait_for_standstill(desk: &Desk) {
     let began = Instant::now();
     while !is_at_standstill(desk) {
         assert!(began.elapsed() < LONG, "it still moves");
@@ -78,7 +78,7 @@ fn held_jog_turns_drive() {
     assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
     drive(&mut desk, MotorCommand::JogRelease);
     assert!(!unit(&desk).moves.is_held(), "at once");
-    until_standstill(&desk);
+    wait_for_standstill(&desk);
     desk.until("the window knows it", |studio| !studio.is_moving());
     let where_it_stands = unit(&desk).actual_values(ONE).unwrap().position;
     assert!(where_it_stands != 0);
@@ -107,8 +107,8 @@ fn stale_jog_ends() {
 #[test]
 fn frozen_window_stops_motion() {
     let mut desk = in_control("sim:");
-    set_off(&mut desk);
-    until_standstill(&desk);
+    start_long_move(&mut desk);
+    wait_for_standstill(&desk);
     assert!(status(&desk).is_set(StatusBit::Standstill) && !status(&desk).is_set(StatusBit::TargetReached));
 }
 
@@ -167,7 +167,7 @@ fn hiding_jog_pad_ends_jog() {
 #[test]
 fn move_continues_in_another_tab() {
     let mut desk = in_control("sim:");
-    let goes_on = while_it_moves(&mut desk, |desk| {
+    let goes_on = observe_while_moving(&mut desk, |desk| {
         desk.act(Action::ShowTab(crate::tabs::BISS));
         desk.act(Action::ReleaseMotion);
         for _ in 0..400 {
@@ -178,7 +178,7 @@ fn move_continues_in_another_tab() {
     });
     assert!(goes_on, "{}", crate::support::log(&desk.studio));
     desk.act(Action::Escape);
-    until_standstill(&desk);
+    wait_for_standstill(&desk);
     desk.until("the window knows it", |studio| !studio.is_moving());
     assert!(desk.studio.selected_device().is_none() || desk.studio.settings.tab == crate::tabs::BISS);
 }
@@ -288,7 +288,7 @@ fn hiding_panel_ends_run() {
     let run = MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
     drive_until(&mut desk, |_| run, "it runs", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
     desk.act(Action::ShowTab(crate::tabs::BISS));
-    until_standstill(&desk);
+    wait_for_standstill(&desk);
     desk.until("the window knows it", |studio| !studio.is_moving());
 }
 
@@ -316,7 +316,7 @@ fn reads_limits_before_motion() {
 /// The pad that leads further out is blocked and shows the reason. The user can permit it for one press at a time, at
 /// 10 % speed and 25 % torque (issue 21.4).
 #[test]
-fn enables_only_inward_pad_from_outside() {
+fn enables_only_inward_pad_outside_limits() {
     let mut desk = in_control("sim:?position=33488896&defect=runs-on");
     let target = unit(&desk).target.clone().unwrap();
     target.with_station(|station| station.drive(ONE).unwrap().turn_by_hand(Moment::default(), 20_000.0));

@@ -30,7 +30,7 @@ fn positions(desk: &Desk) -> u64 {
 }
 
 #[track_caller]
-fn until_recorded(desk: &mut Desk, more: u64) {
+fn wait_for_new_samples(desk: &mut Desk, more: u64) {
     let before = positions(desk);
     desk.until("some is recorded", |studio| {
         let own = studio.hiperdrive().unwrap();
@@ -43,16 +43,16 @@ fn until_recorded(desk: &mut Desk, more: u64) {
 fn each_hub_drive_has_recording() {
     let mut desk = read("sim:?hub=4&drives=1,0,1");
     let three = DriveNumber::new(3).unwrap();
-    until_recorded(&mut desk, 3);
+    wait_for_new_samples(&mut desk, 3);
     let before = positions(&desk);
     act(&mut desk, Hiperdrive::SelectDrive(three));
     assert_eq!(positions(&desk), 0, "that was another drive");
-    until_recorded(&mut desk, 3);
+    wait_for_new_samples(&mut desk, 3);
     let third = positions(&desk);
     act(&mut desk, Hiperdrive::SelectDrive(ONE));
     assert!(unit(&desk).record.last().is_none(), "where it is now is not known yet");
     assert_eq!(positions(&desk), before);
-    until_recorded(&mut desk, 2);
+    wait_for_new_samples(&mut desk, 2);
     act(&mut desk, Hiperdrive::SelectDrive(three));
     assert_eq!(positions(&desk), third);
 }
@@ -61,13 +61,13 @@ fn each_hub_drive_has_recording() {
 #[test]
 fn recording_survives_unit_and_scale_changes() {
     let mut desk = read("sim:");
-    until_recorded(&mut desk, 3);
+    wait_for_new_samples(&mut desk, 3);
     let before = positions(&desk);
     act(&mut desk, Hiperdrive::SetPitch(ONE, Some(Length { nanometres: 4_000_000 })));
     act(&mut desk, Hiperdrive::SetMeasure(PositionUnit::Millimetres));
-    until_recorded(&mut desk, 1);
+    wait_for_new_samples(&mut desk, 1);
     act(&mut desk, Hiperdrive::SetPitch(ONE, None));
-    until_recorded(&mut desk, 1);
+    wait_for_new_samples(&mut desk, 1);
     assert!(positions(&desk) >= before + 2);
     assert!(recorder(&desk).series().iter().all(|line| !line.ended));
     let before = positions(&desk);
@@ -86,9 +86,9 @@ fn recording_survives_unit_and_scale_changes() {
 
 /// One drive's exported table is complete even if another drive is selected during the export (issue 21.12).
 #[test]
-fn exports_table_while_showing_another_drive() {
+fn table_export_survives_drive_selection() {
     let mut desk = read("sim:?hub=4&drives=1,0,1");
-    until_recorded(&mut desk, 5);
+    wait_for_new_samples(&mut desk, 5);
     let path = desk.outside.path("table.csv");
     let whose = Whose::Device(unit(&desk).session.id);
     let question = FileQuestion::Table { owner: whose, visible: false, suggested: path.clone() };

@@ -44,7 +44,7 @@ fn remote_session_ends_jog() {
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
     for motor in [PRESS, MotorCommand::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd }] {
         drive(&mut desk, motor);
-        assert_eq!(unit(&desk).may_move_until_stopped(ONE).unwrap_err().id(), "hd_refused.remote");
+        assert_eq!(unit(&desk).check_can_move_until_stopped(ONE).unwrap_err().id(), "hd_refused.remote");
         assert!(warned(&desk).contains(&"hd_refused.remote") && !unit(&desk).moves.is_motion_active());
     }
     // A move to a target ends by itself, so it is allowed.
@@ -52,7 +52,7 @@ fn remote_session_ends_jog() {
     drive_until(&mut desk, |_| MotorCommand::Move { target: 30_000_000 }, "it moves", moves);
 
     remote.store(false, Ordering::SeqCst);
-    desk.until("it may be jogged", |studio| studio.hiperdrive().unwrap().may_move_until_stopped(ONE).is_ok());
+    desk.until("it may be jogged", |studio| studio.hiperdrive().unwrap().check_can_move_until_stopped(ONE).is_ok());
 }
 
 #[test]

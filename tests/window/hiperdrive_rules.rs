@@ -22,7 +22,7 @@ use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::Session;
 
 use crate::hiperdrive::{ONE, act, drive, number, unit, until_read};
-use crate::hiperdrive_acts::{drive_until, set_off};
+use crate::hiperdrive_acts::{drive_until, start_long_move};
 use crate::hiperdrive_motion::in_control;
 use crate::screen::Screen;
 use crate::support::{Desk, LONG, Outside};
@@ -79,9 +79,9 @@ fn selected_drive_needs_fresh_limits() {
 }
 
 /// A connection that damages every reply while the flag is set. Cyclic packets are unchanged.
-struct Damaging(Box<dyn ByteLink>, Arc<AtomicBool>);
+struct CorruptingLink(Box<dyn ByteLink>, Arc<AtomicBool>);
 
-impl ByteLink for Damaging {
+impl ByteLink for CorruptingLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         self.0.send(bytes)
     }
@@ -105,7 +105,7 @@ impl ByteLink for Damaging {
     }
 }
 
-fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
+fn desk_with_corrupting_link() -> (Desk, Arc<AtomicBool>) {
     let bad = Arc::new(AtomicBool::default());
     let outside = Outside::new("");
     let is_bad = bad.clone();
@@ -115,7 +115,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
             let target = Target::new(&Config::from_pairs(&[]).unwrap());
             let connection = Arc::new(Mutex::new(target.connect_from(Ipv4Addr::UNSPECIFIED)));
             let stream = Box::new(SimLink::connect(connection, clock.clone()));
-            let wire = Box::new(Damaging(stream, is_bad.clone()));
+            let wire = Box::new(CorruptingLink(stream, is_bad.clone()));
             let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone()));
             let station = Station::from_query(&url.query, None, Duration::from_millis(20))?;
             let way = DeviceConnection { wire, port: Some(port), station, target: Some(target) };
@@ -134,8 +134,8 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
 
 #[test]
 fn unreadable_limits_stop_motion() {
-    let (mut desk, bad) = over_a_bad_stream();
-    set_off(&mut desk);
+    let (mut desk, bad) = desk_with_corrupting_link();
+    start_long_move(&mut desk);
     bad.store(true, Ordering::SeqCst);
     desk.until("it stands", |studio| !studio.is_moving());
     desk.until("that is told", |studio| {
@@ -163,8 +163,8 @@ fn has_rules_notice(studio: &Studio) -> bool {
 }
 
 #[test]
-fn unreadable_limits_notice_ends_with_control() {
-    let (mut desk, bad) = over_a_bad_stream();
+fn releasing_control_clears_unreadable_limits_notice() {
+    let (mut desk, bad) = desk_with_corrupting_link();
     bad.store(true, Ordering::SeqCst);
     desk.until("that is told", has_rules_notice);
     // The connection works again before the next reading.
@@ -189,16 +189,16 @@ fn has_fault_notice(studio: &Studio) -> bool {
 
 /// Drive 1 failed while it moved, and drive 2 failed earlier. The notice about drive 1 must stay when drive 2 recovers.
 #[test]
-fn other_drive_recovery_keeps_fault_notice() {
+fn recovery_clears_only_own_fault_notice() {
     let mut desk = in_control("sim:?hub=4&drives=1,1&requested=1");
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(two()).is_ok());
-    set_off(&mut desk);
+    start_long_move(&mut desk);
     fail(&desk, two());
     desk.until("its fault is told", has_fault_notice);
     act(&mut desk, Hiperdrive::SelectDrive(ONE));
     desk.until("the other may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
-    set_off(&mut desk);
+    start_long_move(&mut desk);
     fail(&desk, ONE);
     desk.until("both have failed", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Fault));
     desk.until("that is told", |studio| has_fault_notice(studio) && studio.hiperdrive().unwrap().session.is_ready());
@@ -218,10 +218,10 @@ fn other_drive_recovery_keeps_fault_notice() {
 
 /// A reading of all states that began before the fault must not end the notice of the fault.
 #[test]
-fn earlier_reading_keeps_fault_notice() {
+fn outdated_reading_does_not_clear_fault_notice() {
     let mut desk = in_control("sim:?hub=4&drives=1,1,1,1&requested=1");
     for _ in 0..3 {
-        set_off(&mut desk);
+        start_long_move(&mut desk);
         act(&mut desk, Hiperdrive::ReadStatus);
         // The first drive has been read by now.
         std::thread::sleep(Duration::from_millis(40));
@@ -242,7 +242,7 @@ fn earlier_reading_keeps_fault_notice() {
 /// Even if a drive is locked for two reasons, its limits are confirmed in only one place.
 #[test]
 fn confirms_limits_in_one_place() {
-    let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
+    let mut screen = Screen::open_in_tab(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
     let is_ready = |studio: &Studio, open: bool| {
         let own = studio.hiperdrive();
         own.is_some_and(|own| own.survey.is_some() && own.session.is_ready() && own.moves.is_open() == open)

@@ -9,7 +9,7 @@ use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, command, drive, number, unit};
 use crate::hiperdrive_acts::drive_until;
-use crate::hiperdrive_jog::in_control_on_screen;
+use crate::hiperdrive_jog::screen_in_control;
 use crate::hiperdrive_motion::in_control;
 use crate::screen::Screen;
 use crate::tabs::Tabs as _;
@@ -23,7 +23,7 @@ fn effort(speed: u8, torque: u8) -> SpeedTorque {
 /// A run has its own speed and torque, which start as low as those of a jog. Previously, it used those of a move, which
 /// start at 25 % speed and 100 % torque (issue 26).
 #[test]
-fn run_has_own_speed_and_torque() {
+fn endless_run_has_separate_speed_and_torque() {
     let mut desk = in_control("sim:");
     drive(&mut desk, MotorCommand::MoveEffort(effort(90, 80)));
     assert_eq!(unit(&desk).moves.run_speed_torque(ONE), effort(10, 25), "slow, as a jog");
@@ -55,7 +55,7 @@ fn shows(screen: &Screen, words: &str) -> bool {
 /// The endless run card always shows the condition and names the parameters that do not meet it (issue 26).
 #[test]
 fn card_shows_endless_run_condition() {
-    let mut screen = in_control_on_screen("sim:", [1280.0, 1400.0]);
+    let mut screen = screen_in_control("sim:", [1280.0, 1400.0]);
     let condition = screen.say("hd_run.condition");
     assert!(shows(&screen, &condition));
     // 511 turns of 65,536 steps are 33,488,896 steps.

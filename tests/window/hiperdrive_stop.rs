@@ -95,7 +95,7 @@ pub(crate) fn until_stopped(screen: &Screen) {
 }
 
 /// Returns a window whose drive was stopped with STOP, and the position of the button, which is still down.
-fn stopped_by_a_press() -> (Screen, Pos2) {
+fn screen_stopped_by_press() -> (Screen, Pos2) {
     let mut screen = moving();
     let place = stop(&screen);
     screen.harness.hover_at(place);
@@ -106,8 +106,8 @@ fn stopped_by_a_press() -> (Screen, Pos2) {
 }
 
 #[test]
-fn stopping_click_stops_nothing_else() {
-    let (mut screen, place) = stopped_by_a_press();
+fn stopping_click_affects_only_motion() {
+    let (mut screen, place) = screen_stopped_by_press();
     // Two frames of a quarter of a second each are still a click.
     screen.harness.step();
     screen.harness.step();
@@ -121,8 +121,8 @@ fn stopping_click_stops_nothing_else() {
 }
 
 #[test]
-fn quick_second_click_stops_nothing_else() {
-    let (mut screen, place) = stopped_by_a_press();
+fn quick_second_click_is_ignored() {
+    let (mut screen, place) = screen_stopped_by_press();
     for pressed in [false, true, false] {
         pointer(&mut screen, place, pressed);
     }
@@ -157,7 +157,7 @@ fn held_escape_stops_only_motion() {
 }
 
 #[test]
-fn click_after_page_stop_stops_nothing_else() {
+fn click_after_page_stop_is_ignored() {
     let mut screen = moving();
     let [above, page] = places(&screen, "hd_bar.stop")[..] else { panic!() };
     screen.harness.hover_at(page);
@@ -235,8 +235,8 @@ fn held_escape_stops_new_motion() {
 }
 
 /// Returns a window that polls a drive moved by another master.
-fn moved_by_another_master() -> Screen {
-    let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
+fn screen_with_external_motion() -> Screen {
+    let mut screen = Screen::open_in_tab(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
     let own = |studio: &Studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready());
     screen.until("it is read", own);
     let target = screen.studio().hiperdrive().unwrap().target.clone().unwrap();
@@ -250,8 +250,8 @@ fn moved_by_another_master() -> Screen {
 
 /// Esc cannot stop the other master's motion, so it closes the open dialog.
 #[test]
-fn escape_closes_dialogs_during_other_masters_motion() {
-    let mut screen = moved_by_another_master();
+fn escape_closes_dialogs_during_external_motion() {
+    let mut screen = screen_with_external_motion();
     screen.key(Key::F1);
     screen.key(Key::Escape);
     assert!(screen.studio().hiperdrive().unwrap().session.is_polling(), "the help is closed, and it is still watched");
@@ -262,7 +262,7 @@ fn escape_closes_dialogs_during_other_masters_motion() {
 /// STOP is disabled because it cannot stop the drive. A click on it does not end polling either.
 #[test]
 fn stop_ignores_motion_by_another_master() {
-    let mut screen = moved_by_another_master();
+    let mut screen = screen_with_external_motion();
     let is_disabled = |screen: &Screen| {
         let label = screen.say("hd_bar.stop");
         let mut buttons = screen.harness.get_all_by_label(&label);
@@ -284,7 +284,7 @@ fn stop_ignores_motion_by_another_master() {
 
 /// The action cannot apply to a device of this kind. It is reported, and the motion stops (issue 23).
 #[test]
-fn misdirected_action_stops_motion() {
+fn action_for_wrong_device_stops_motion() {
     let mut screen = moving();
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, encoder_studio::devices::ssi::state::SsiAction::Check));

@@ -111,7 +111,7 @@ fn reads_virtual_encoder_automatically() {
 }
 
 #[test]
-fn edits_take_fewest_stores() {
+fn edits_need_minimum_eeprom_writes() {
     let mut desk = read(CAMS);
     edit(&mut desk, Edit::Gear { steps: 7200, revolutions: 2 });
     edit(&mut desk, Edit::Cam { program: program(2), cam: cam(5), start: 7000, stop: 40, on: true });

@@ -13,7 +13,7 @@ use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, Re
 use crate::support::{Desk, PORT, SLOW, is_review};
 
 /// Closes a session while it writes two bytes. The cable is held before the first of them.
-fn closed_while_writing(mut desk: Desk) -> Desk {
+fn close_during_write(mut desk: Desk) -> Desk {
     desk.put(0, 0, b"X");
     desk.put(0, 2, b"Y");
     desk.command(DeviceCommand::Review);
@@ -30,7 +30,7 @@ fn closed_while_writing(mut desk: Desk) -> Desk {
 
 #[test]
 fn awaits_write_of_closed_session() {
-    let mut desk = closed_while_writing(Desk::at_port(""));
+    let mut desk = close_during_write(Desk::connected_at_port(""));
     desk.act(Action::Close);
     desk.settle();
     assert!(!desk.studio.can_close(), "it still writes");
@@ -44,7 +44,7 @@ fn awaits_write_of_closed_session() {
 
 #[test]
 fn reopens_wire_after_write() {
-    let mut desk = closed_while_writing(Desk::at_port(""));
+    let mut desk = close_during_write(Desk::connected_at_port(""));
     let sent = desk.wire().sent();
     desk.open(&format!("serial:{PORT}"));
     desk.settle();
@@ -97,7 +97,7 @@ fn discards_link_from_earlier_attempt() {
 
 #[test]
 fn dead_thread_loses_session_and_job() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     desk.put(0, 0, b"X");
     desk.wire().kill();
     let wakes = desk.outside.wakes.load(Ordering::SeqCst);
@@ -133,7 +133,7 @@ fn closing_waits_longer_for_write_than_job() {
     assert!(began.elapsed() >= patience.job && began.elapsed() < patience.write);
     desk.wire().release();
 
-    let mut desk = closed_while_writing(Desk::impatient(""));
+    let mut desk = close_during_write(Desk::impatient(""));
     let began = Instant::now();
     desk.act(Action::Close);
     desk.until("it may close", |studio| studio.can_close());

@@ -19,7 +19,7 @@ fn entry_count(studio: &Studio) -> Option<usize> {
 }
 
 /// Returns a screen with the logbook after a write of X instead of E at address 0 of data field 0.
-fn after_a_write() -> Screen {
+fn screen_after_write() -> Screen {
     let mut screen = Screen::new_form(SIZE);
     screen.ask(HiperfaceAction::Put { field: 0, address: 0, bytes: vec![0x58] });
     screen.command(DeviceCommand::Review);
@@ -51,7 +51,7 @@ fn first_entry_time(screen: &Screen) -> String {
 
 #[test]
 fn shows_values_and_backup_of_write() {
-    let mut screen = after_a_write();
+    let mut screen = screen_after_write();
     assert!(!screen.has_button("backups_card.restore"), "no entry is selected");
     select_first_entry(&mut screen);
     assert!(screen.shows("45  →  58"));
@@ -69,7 +69,7 @@ fn shows_values_and_backup_of_write() {
 /// A write is undone as on the command line, but with a review on the device page (issue 30).
 #[test]
 fn undoes_write_after_review() {
-    let mut screen = after_a_write();
+    let mut screen = screen_after_write();
     select_first_entry(&mut screen);
     screen.click("undo.button");
     screen.until("the way back is planned", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
@@ -87,7 +87,7 @@ fn undoes_write_after_review() {
 /// The entries of an undo and of the undone write contain links to each other (issue 30).
 #[test]
 fn links_undo_and_write() {
-    let mut screen = after_a_write();
+    let mut screen = screen_after_write();
     select_first_entry(&mut screen);
     let link = |id, entry: &Entry| {
         let at = entry.at.to_zoned(jiff::tz::TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S").to_string();
@@ -131,7 +131,7 @@ fn links_undo_and_write() {
 /// If values have changed since the write, the undo lists them and cannot be written (issue 30).
 #[test]
 fn undo_rejects_changed_value() {
-    let mut screen = after_a_write();
+    let mut screen = screen_after_write();
     let first = recorded_entries(&screen)[0].clone();
     screen.ask(HiperfaceAction::Put { field: 0, address: 0, bytes: vec![0x59] });
     screen.command(DeviceCommand::Review);
@@ -157,7 +157,7 @@ fn undo_rejects_changed_value() {
 /// An undo is not available without the device, or for an entry that wrote nothing (issue 30).
 #[test]
 fn undo_requires_device_and_write() {
-    let mut screen = after_a_write();
+    let mut screen = screen_after_write();
     let [write, connected] = recorded_entries(&screen).try_into().unwrap();
     let why = |screen: &Screen, entry: &Entry| {
         screen.studio().undo_target(entry).err().map(|text| text.to_string_in(Language::English))
@@ -180,7 +180,7 @@ fn undo_requires_device_and_write() {
 /// A missing backup is listed with the name of the computer that made the write (issue 30).
 #[test]
 fn missing_backup_names_bench() {
-    let mut screen = after_a_write();
+    let mut screen = screen_after_write();
     let path = screen.outside.store().logbook_path();
     let moved = "UPDATE event SET bench = 'bench 7', backup = '/data/of bench 7/backup.ron' WHERE what = 'write'";
     rusqlite::Connection::open(path).unwrap().execute(moved, []).unwrap();
@@ -225,7 +225,7 @@ fn recorded_entries(screen: &Screen) -> Vec<Entry> {
 
 #[test]
 fn adds_note_to_device_of_entry() {
-    let mut screen = after_a_write();
+    let mut screen = screen_after_write();
     select_first_entry(&mut screen);
     assert!(!screen.is_enabled("logbook.add_note"), "the note is empty");
     let word = screen.say("logbook.note_text");
@@ -245,7 +245,7 @@ fn adds_note_to_device_of_entry() {
 
 #[test]
 fn filter_survives_tab_change() {
-    let mut screen = after_a_write();
+    let mut screen = screen_after_write();
     let other = DeviceKey::new("biss", "6129", "7", false);
     let mut logbook = Logbook::open(&screen.outside.store().logbook_path()).unwrap();
     logbook.add_note(jiff::Timestamp::now(), &other, "spare part").unwrap();
@@ -271,7 +271,7 @@ fn filter_survives_tab_change() {
 /// (issue 26).
 #[test]
 fn finds_saved_profile_by_asset() {
-    let mut screen = after_a_write();
+    let mut screen = screen_after_write();
     assert!(!screen.shows(&screen.say("logbook.all_assets")), "there is no asset to choose");
     screen.command(DeviceCommand::Assign("Achse 7".parse().unwrap()));
     let (session, suggested) = (screen.encoder().session.id, "x.ron".into());

@@ -18,7 +18,7 @@ fn type_into(screen: &mut Screen, label: &'static str, text: &str) {
     screen.steps();
 }
 
-fn is_away(studio: &Studio) -> bool {
+fn is_server_unreachable(studio: &Studio) -> bool {
     studio.server_exchange().is_some_and(|exchange| exchange.contact.problem.is_some())
 }
 
@@ -49,7 +49,7 @@ fn enters_tests_and_saves_server() {
     // The window continues without the server and shows a message.
     screen.act(Action::Server(ServerAction::Save { address: CLOSED.to_owned(), password: None }));
     assert!(screen.studio().server_form().is_none());
-    screen.until("the server is away", is_away);
+    screen.until("the server is away", is_server_unreachable);
     let exchange = screen.studio().server_exchange().unwrap();
     assert_eq!(exchange.waiting, 1, "the connection of the encoder");
     assert!(screen.harness.query_all_by_label_contains("127.0.0.1:1/logs").next().is_some());

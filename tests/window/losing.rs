@@ -25,7 +25,7 @@ pub(crate) fn lost(studio: &Studio) -> bool {
 }
 
 /// Opens a profile that differs from the virtual encoder in four single bytes, and plans to write it.
-fn with_a_profile(desk: &mut Desk) {
+fn plan_profile_write(desk: &mut Desk) {
     let encoder = desk.encoder().session.id;
     let path = desk.outside.path("mine.ron");
     desk.ask(Hiperface::Save(path.clone()));
@@ -45,7 +45,7 @@ fn with_a_profile(desk: &mut Desk) {
 #[test]
 fn can_complete_stopped_restore() {
     let mut desk = Desk::new_form("");
-    with_a_profile(&mut desk);
+    plan_profile_write(&mut desk);
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
     assert_eq!(prepared.plan.ops.len(), 4);
     desk.wire().hold_at(0x4B, 2);
@@ -90,7 +90,7 @@ fn can_complete_stopped_restore() {
 
 #[test]
 fn cable_pulled_during_write_keeps_edits() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     for (address, byte) in [(0, b'a'), (2, b'b'), (4, b'c')] {
         desk.put(0, address, &[byte]);
     }
@@ -117,7 +117,7 @@ fn cable_pulled_during_write_keeps_edits() {
 
 #[test]
 fn reports_cable_pulled_while_reading_once() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);
     desk.wire().wait_until_held();
@@ -134,8 +134,8 @@ fn reports_cable_pulled_while_reading_once() {
 
 /// Another encoder on the same cable does not receive the edits. They return with the encoder for which they were made.
 #[test]
-fn edits_return_with_own_encoder() {
-    let mut desk = Desk::at_port("");
+fn edits_return_with_their_encoder() {
+    let mut desk = Desk::connected_at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
     desk.wire().unplug();
@@ -173,7 +173,7 @@ fn serial(studio: &Studio) -> Option<&str> {
 /// The encoder behind a connected adapter is replaced, which does not break the link.
 #[test]
 fn detects_swapped_encoder_before_planning() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
     desk.wire().exchange("serial=OTHER0001");
@@ -189,7 +189,7 @@ fn detects_swapped_encoder_before_planning() {
 /// Without edits, the notice reports only that the plan was discarded.
 #[test]
 fn swapped_encoder_discards_plan() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     desk.wire().exchange("serial=OTHER0001");
     desk.ask(Hiperface::Plan(Change::ShiftPosition { steps: 12 }));
     desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
@@ -201,7 +201,7 @@ fn swapped_encoder_discards_plan() {
 /// If the reading after a reconnection is stopped, the encoder is not identified and does not receive the edits.
 #[test]
 fn stopped_reading_offers_no_edits() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
     desk.wire().unplug();
@@ -224,7 +224,7 @@ fn stopped_reading_offers_no_edits() {
 
 #[test]
 fn new_address_persists_across_sessions() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     let address = encoder_studio::devices::hiperface::state::forms::address("41").unwrap();
     desk.ask(Hiperface::Plan(Change::SetAddress(address)));
     desk.until_planned();
@@ -245,8 +245,8 @@ fn new_address_persists_across_sessions() {
 
 /// The cable is disconnected after the address was changed and before it is read back. The new address is used.
 #[test]
-fn follows_change_by_interrupted_write() {
-    let mut desk = Desk::at_port("");
+fn uses_address_set_by_interrupted_write() {
+    let mut desk = Desk::connected_at_port("");
     let address = encoder_studio::devices::hiperface::state::forms::address("41").unwrap();
     desk.ask(Hiperface::Plan(Change::SetAddress(address)));
     desk.until_planned();
@@ -269,7 +269,7 @@ fn follows_change_by_interrupted_write() {
 
 #[test]
 fn follows_changed_settings_after_restart() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     let stored = desk.encoder().identity.as_ref().unwrap().label.settings;
     let format = CharacterFormat { baud: Baud::new(19_200).unwrap(), parity: Parity::Odd };
     let settings = encoder_studio::devices::hiperface::state::forms::settings(stored, format, true, true).unwrap();
@@ -309,7 +309,7 @@ fn follows_changed_settings_after_restart() {
 /// An open link without replies counts neither as connected nor as lost.
 #[test]
 fn silent_encoder_is_not_connected() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     desk.put(0, 0, b"X");
     desk.wire().exchange("fault=silent-after:0");
     desk.ask(Hiperface::ReadCounter);
@@ -344,8 +344,8 @@ fn silent_encoder_is_not_connected() {
 }
 
 #[test]
-fn other_encoder_receives_no_access_codes() {
-    let mut desk = Desk::at_port("codes=0:9D");
+fn swapped_encoder_receives_no_access_codes() {
+    let mut desk = Desk::connected_at_port("codes=0:9D");
     let code = encoder_studio::devices::hiperface::state::forms::access_code("9D").unwrap();
     desk.ask(Hiperface::UseCode { number: AccessCodeNumber::ZERO, code });
     desk.until_ready();
@@ -362,7 +362,7 @@ fn other_encoder_receives_no_access_codes() {
 
 #[test]
 fn rejects_reconnecting_during_write() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
     desk.until_planned();
@@ -379,7 +379,7 @@ fn rejects_reconnecting_during_write() {
 
 #[test]
 fn reconnecting_ends_read_job() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);
     desk.wire().wait_until_held();
@@ -391,8 +391,8 @@ fn reconnecting_ends_read_job() {
 }
 
 #[test]
-fn live_values_continue_around_job() {
-    let mut desk = Desk::at_port("rpm=60");
+fn live_values_resume_after_job() {
+    let mut desk = Desk::connected_at_port("rpm=60");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     assert!(desk.studio.is_live() && desk.studio.can_stop());
     desk.until("samples come", |studio| studio.hiperface().unwrap().record.position_count() > 10);
@@ -419,7 +419,7 @@ fn live_values_continue_around_job() {
 /// A late failure belongs to the earlier polling and does not end the new one.
 #[test]
 fn late_failure_keeps_newer_live_values() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     desk.until("samples come", |studio| studio.hiperface().unwrap().record.position_count() > 3);
     desk.wire().exchange("fault=silent-after:0");

@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::{Action, Language};
 use encoder_studio::devices::interbus::state::{Edit, InterbusAction as Interbus};
 
-use crate::hiperdrive_jog::in_control_on_screen;
+use crate::hiperdrive_jog::screen_in_control;
 use crate::screen::Screen;
 use crate::tabs::Tabs as _;
 
@@ -38,10 +38,10 @@ fn assert_nothing_moved(before: &[(Role, String, Rect)], after: &[(Role, String,
 }
 
 #[test]
-fn rejected_target_shifts_no_layout() {
+fn rejected_target_does_not_shift_layout() {
     // The window is so high that the button can be reached without scrolling.
     for size in SIZES.map(|[width, height]| [width, height * 2.0]) {
-        let mut screen = in_control_on_screen("sim:", size);
+        let mut screen = screen_in_control("sim:", size);
         let label = screen.say("hd_move.target");
         screen.harness.get_by_role_and_label(Role::TextInput, &label).focus();
         screen.steps();
@@ -59,10 +59,10 @@ fn rejected_target_shifts_no_layout() {
 }
 
 #[test]
-fn out_of_range_cams_shift_no_layout() {
+fn out_of_range_cams_do_not_shift_layout() {
     for size in SIZES {
         let link = "sim:?steps=3600&revolutions=1&cams=demo";
-        let mut screen = Screen::opened_in(crate::tabs::INTERBUS, link, size);
+        let mut screen = Screen::open_in_tab(crate::tabs::INTERBUS, link, size);
         screen.until("it is read", |studio| {
             studio.interbus().is_some_and(|own| own.known_program_count() == 8 && own.session.is_ready())
         });

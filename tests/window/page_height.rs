@@ -68,7 +68,7 @@ fn pages_need_at_most_one_scroll() {
         }),
     ];
     for (tab, bar, is_read) in cases {
-        let mut screen = Screen::opened_in(tab, "sim:", SIZE);
+        let mut screen = Screen::open_in_tab(tab, "sim:", SIZE);
         screen.until("it is read", is_read);
         found.extend(too_high(&mut screen, bar));
     }

@@ -61,7 +61,7 @@ fn ready(screen: &mut Screen) {
 #[test]
 fn notices_and_progress_do_not_move_buttons() {
     for (tab, scheme, port, reads) in KINDS {
-        let mut screen = Screen::opened_in(tab, &format!("{scheme}:{port}"), SIZE);
+        let mut screen = Screen::open_in_tab(tab, &format!("{scheme}:{port}"), SIZE);
         ready(&mut screen);
         let id = screen.studio().selected_device().unwrap().id();
         if tab == crate::tabs::INTERBUS {

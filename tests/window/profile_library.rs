@@ -101,7 +101,7 @@ fn profiles_are_listed_once_by_section() {
 }
 
 #[test]
-fn nothing_is_listed_without_profiles() {
+fn library_is_empty_without_profiles() {
     let mut desk = Desk::fresh("");
     open_library(&mut desk);
     assert!(library(&desk.studio).is_empty() && library(&desk.studio).selected().is_none());
@@ -148,7 +148,7 @@ fn recent_profiles_are_remembered_newest_first() {
 
 /// Backups and other files of the program are neither remembered nor listed.
 #[test]
-fn files_of_the_program_are_not_listed() {
+fn library_omits_application_files() {
     let mut desk = Desk::fresh("");
     let backup = copy(&desk.outside, SCALED, "data/backups/interbus/1/backup.ron");
     let mine = copy(&desk.outside, SCALED, "mine.ron");
@@ -161,7 +161,7 @@ fn files_of_the_program_are_not_listed() {
 }
 
 #[test]
-fn a_search_finds_kind_type_serial_number_file_and_note() {
+fn library_search_covers_profile_details() {
     let mut desk = Desk::fresh("");
     deliver(&desk.outside, &[SKM36, AFM60, SCALED, SPINDLE, SERVO]);
     open_library(&mut desk);
@@ -197,7 +197,7 @@ fn a_search_finds_kind_type_serial_number_file_and_note() {
 }
 
 #[test]
-fn an_invalid_file_is_listed_with_its_reason() {
+fn library_explains_invalid_files() {
     let mut desk = Desk::fresh("");
     let mine = copy(&desk.outside, SCALED, "plant/mine.ron");
     let cases = [
@@ -227,7 +227,7 @@ fn an_invalid_file_is_listed_with_its_reason() {
 
 /// The preview has the items of *Compare…*: all data fields of the profile, with their bytes.
 #[test]
-fn the_preview_contains_the_items_of_the_selected_profile() {
+fn preview_shows_selected_profile() {
     let mut desk = Desk::fresh("");
     deliver(&desk.outside, &[SKM36, SCALED]);
     open_library(&mut desk);
@@ -260,7 +260,7 @@ fn the_preview_contains_the_items_of_the_selected_profile() {
 }
 
 #[test]
-fn the_selected_profile_is_opened_or_compared_with_the_device() {
+fn opens_or_compares_selected_profile() {
     let mut desk = Desk::new_form("");
     deliver(&desk.outside, &[SKM36, SCALED]);
     let session = desk.encoder().session.id;
@@ -295,7 +295,7 @@ fn type_text(screen: &mut Screen, text: &str) {
     screen.steps();
 }
 
-fn until_listed(screen: &mut Screen) {
+fn wait_for_profile_list(screen: &mut Screen) {
     screen
         .until("the profiles are read", |studio| studio.profile_library().is_some_and(|library| !library.is_reading()));
 }
@@ -306,7 +306,7 @@ fn shown_selection(screen: &Screen) -> Option<String> {
 
 /// The whole way in the window, by keyboard and by mouse, in both languages.
 #[test]
-fn the_library_is_operated_by_keyboard_and_mouse() {
+fn library_supports_keyboard_and_mouse() {
     let outside = Outside::new("");
     deliver(&outside, &[SKM36, AFM60, SCALED, SPINDLE, SERVO]);
     fs::write(outside.path("program/bin/profiles/broken.ron"), "(schema: 1,, )").unwrap();
@@ -316,7 +316,7 @@ fn the_library_is_operated_by_keyboard_and_mouse() {
     screen.steps();
     type_text(&mut screen, "profile library…");
     screen.key(Key::Enter);
-    until_listed(&mut screen);
+    wait_for_profile_list(&mut screen);
     for language in [Language::German, Language::English] {
         screen.act(Action::SetLanguage(language));
         screen.check_language();
@@ -335,7 +335,7 @@ fn the_library_is_operated_by_keyboard_and_mouse() {
     assert!(screen.studio().profile_library().is_none());
     // The button in the header, a click on a row, and the comparison.
     screen.click("shell.profiles");
-    until_listed(&mut screen);
+    wait_for_profile_list(&mut screen);
     screen.act(Action::Library(LibraryAction::Search(String::new())));
     screen.harness.get_by_label("multiturn-skm36.ron: SKM36 · GB0450179").click();
     screen.steps();

@@ -47,7 +47,7 @@ fn saved_profile_matches_encoder() {
 
 #[test]
 fn locked_encoder_profile_lists_missing_values() {
-    let mut desk = Desk::at_port("codes=0:9D");
+    let mut desk = Desk::connected_at_port("codes=0:9D");
     let path = desk.outside.path("locked.ron");
     desk.ask(Hiperface::Save(path.clone()));
     let saved = |studio: &encoder_studio::app::Studio| studio.services.log.current().is_some();
@@ -92,7 +92,7 @@ fn suggests_file_named_after_encoder() {
 
 /// A save requested during another one is rejected. The first one still goes to its own file.
 #[test]
-fn rejected_save_does_not_redirect_another() {
+fn concurrent_save_is_rejected() {
     let mut desk = Desk::new_form("");
     let (first, second) = (desk.outside.path("first.ron"), desk.outside.path("second.ron"));
     desk.wire().hold_at(0x4A, 1);
@@ -193,7 +193,7 @@ fn open_profile_ignores_own_write_protection() {
 #[test]
 fn other_encoder_needs_permission() {
     let (mut desk, path) = saved();
-    refused_by_another(&mut desk, &path, &[(0, b"X")]);
+    plan_rejected_by_other_encoder(&mut desk, &path, &[(0, b"X")]);
     let mut options = desk.review().options().unwrap();
     (options.allow_other_device, options.allow_other_type) = (true, true);
     options.copy.insert(0, true);
@@ -211,7 +211,7 @@ fn sheet(desk: &Desk) -> ReviewSheet {
 }
 
 /// Edits a profile and plans to write it to another encoder, which is rejected because the serial number differs.
-fn refused_by_another(desk: &mut Desk, path: &std::path::Path, edits: &[(usize, &[u8])]) {
+fn plan_rejected_by_other_encoder(desk: &mut Desk, path: &std::path::Path, edits: &[(usize, &[u8])]) {
     desk.open(&format!("serial:{OTHER_PORT}"));
     desk.until_read();
     let other = desk.encoder().session.id;
@@ -220,35 +220,35 @@ fn refused_by_another(desk: &mut Desk, path: &std::path::Path, edits: &[(usize, 
         desk.put(0, *address, bytes);
     }
     desk.command(DeviceCommand::WriteInto(other));
-    until_refused(desk);
+    wait_for_plan_rejection(desk);
     assert_eq!(desk.encoder().session.id, other);
 }
 
-fn until_refused(desk: &mut Desk) {
+fn wait_for_plan_rejection(desk: &mut Desk) {
     desk.until("it is refused", |studio| is_review(studio, |state| matches!(state, ReviewState::Failed { .. })));
     desk.until_ready();
 }
 
 /// Plans to write a commutation offset to another encoder, and permits its serial number and type.
-fn onto_another(desk: &mut Desk, path: &std::path::Path) {
-    refused_by_another(desk, path, &[(0, b"CO1"), (20, b"?")]);
-    allow_another(desk);
+fn plan_for_other_encoder(desk: &mut Desk, path: &std::path::Path) {
+    plan_rejected_by_other_encoder(desk, path, &[(0, b"CO1"), (20, b"?")]);
+    permit_other_encoder(desk);
     desk.until_planned();
 }
 
 /// Permits another serial number and then another type, because the other encoder is an SKS36.
-fn allow_another(desk: &mut Desk) {
+fn permit_other_encoder(desk: &mut Desk) {
     desk.toggle(Permit::OtherDevice);
-    until_refused(desk);
+    wait_for_plan_rejection(desk);
     desk.toggle(Permit::TypeMismatch);
 }
 
 /// The review lists the values that depend on the mounting and must be set up again: before the write, at its end, and
 /// after an interruption (issue 22.7).
 #[test]
-fn keeps_naming_values_of_other_mounting() {
+fn review_lists_mounting_dependent_values() {
     let (mut desk, path) = saved();
-    onto_another(&mut desk, &path);
+    plan_for_other_encoder(&mut desk, &path);
     let before = sheet(&desk);
     assert!(before.redo.is_none() && before.lines.is_empty(), "nothing of it is written yet");
     desk.toggle(Permit::Mounting);
@@ -270,7 +270,7 @@ fn keeps_naming_values_of_other_mounting() {
     assert_eq!((cut.redo, cut.lines.len()), (with.redo, with.lines.len()));
     // The same write is completed without an interruption.
     let (mut desk, path) = saved();
-    onto_another(&mut desk, &path);
+    plan_for_other_encoder(&mut desk, &path);
     desk.toggle(Permit::Mounting);
     desk.until_planned();
     desk.write_as_shown();
@@ -282,7 +282,7 @@ fn keeps_naming_values_of_other_mounting() {
 #[test]
 fn review_asks_about_unknown_bytes() {
     let (mut desk, path) = saved();
-    onto_another(&mut desk, &path);
+    plan_for_other_encoder(&mut desk, &path);
     let [question] = &sheet(&desk).questions[..] else { panic!() };
     assert_eq!((question.permit, question.is_on), (Permit::Copy(0), false));
     for text in [&question.title, &question.yes, &question.no] {
@@ -303,9 +303,9 @@ fn review_asks_about_unknown_bytes() {
 #[test]
 fn other_type_needs_permission() {
     let (mut desk, path) = saved();
-    refused_by_another(&mut desk, &path, &[(0, b"X")]);
+    plan_rejected_by_other_encoder(&mut desk, &path, &[(0, b"X")]);
     desk.toggle(Permit::OtherDevice);
-    until_refused(&mut desk);
+    wait_for_plan_rejection(&mut desk);
     let ReviewState::Failed { texts, .. } = &desk.review().state else { panic!() };
     assert_eq!(texts[0].id(), "plan.other_type");
     desk.toggle(Permit::TypeMismatch);
@@ -316,7 +316,7 @@ fn other_type_needs_permission() {
 /// The file states that the values are not current (issue 22.14).
 #[test]
 fn saves_values_after_line_loss() {
-    let mut desk = Desk::at_port("");
+    let mut desk = Desk::connected_at_port("");
     let fields = desk.encoder().staged.device().to_vec();
     desk.put(0, 0, b"X");
     desk.wire().unplug();

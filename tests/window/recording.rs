@@ -42,7 +42,7 @@ fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
 
 /// At the end of the range of 4096 turns, position and speed would jump without unwrapping.
 #[test]
-fn range_wrap_is_no_spike() {
+fn range_wrap_does_not_look_like_spike() {
     let mut desk = Desk::new_form("rpm=600&position=16600000");
     desk.command(FAST);
     desk.until("the range has ended", |studio| {
@@ -70,7 +70,7 @@ fn records_linear_encoder_in_millimetres() {
 
 #[test]
 fn pulled_cable_leaves_gap() {
-    let mut desk = Desk::at_port("rpm=60");
+    let mut desk = Desk::connected_at_port("rpm=60");
     desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 20);
     let before = recorded(&desk.studio);
@@ -94,7 +94,7 @@ fn pulled_cable_leaves_gap() {
 
 #[test]
 fn another_encoder_starts_new_recording() {
-    let mut desk = Desk::at_port("rpm=60");
+    let mut desk = Desk::connected_at_port("rpm=60");
     desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 20);
     desk.wire().unplug();

@@ -103,7 +103,7 @@ fn does_not_overwrite_unreadable_settings() {
 /// Settings loaded late apply, except for those that the user has changed in the meantime.
 #[cfg(unix)]
 #[test]
-fn late_settings_apply() {
+fn applies_settings_loaded_late() {
     let desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
     let mut settings = Settings::initial(encoder_studio::kinds::program().studio);

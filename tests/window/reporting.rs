@@ -66,7 +66,7 @@ fn window_and_command_line_reports_match() {
             let own = desk.outside.path(&format!("{word}-{file}.html"));
             report(&mut desk, &own);
             let own = fs::read_to_string(own).unwrap();
-            let other = report_of_command(&desk, word, &profile);
+            let other = command_line_report(&desk, word, &profile);
             assert_eq!(without_time(&own), without_time(&other), "{name} {word}");
         }
     }
@@ -93,7 +93,7 @@ fn device_report_shows_read_values() {
 }
 
 /// Returns the report created by the command line.
-fn report_of_command(desk: &Desk, language: &str, subject: &Path) -> String {
+fn command_line_report(desk: &Desk, language: &str, subject: &Path) -> String {
     let (other, home) = (desk.outside.path("other.html"), desk.outside.path("home"));
     let ran = Command::new(env!("CARGO_BIN_EXE_encoder-studio"))
         .args(["report", "--language", language, "--force", "-o"])
@@ -123,7 +123,7 @@ fn window_and_command_line_capture_reports_match() {
     let capture = desk.outside.path("motor.csv");
     fs::write(&capture, crate::signals::circle(3)).unwrap();
     desk.act(Action::Open(capture.clone()));
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert!(desk.studio.can_report(tabs::SIGNALS));
     for (language, word) in [(Language::English, "en"), (Language::German, "de")] {
         desk.act(Action::SetLanguage(language));
@@ -132,7 +132,7 @@ fn window_and_command_line_capture_reports_match() {
         desk.until("the report is written", move |_| path.exists());
         let page = fs::read_to_string(&own).unwrap();
         assert!(page.contains("motor.csv"));
-        assert_eq!(without_time(&page), without_time(&report_of_command(&desk, word, &capture)), "{word}");
+        assert_eq!(without_time(&page), without_time(&command_line_report(&desk, word, &capture)), "{word}");
         fs::remove_file(&own).unwrap();
     }
 }

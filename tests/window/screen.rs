@@ -50,7 +50,7 @@ impl Screen {
     }
 
     /// Creates a window that connects to this link in the given tab.
-    pub(crate) fn opened_in(tab: Tab, link: &str, size: [f32; 2]) -> Self {
+    pub(crate) fn open_in_tab(tab: Tab, link: &str, size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), Some("serial:/dev/nothing"), size);
         screen.act(Action::ShowTab(tab));
         screen.act(Action::Connect(Connect::Open));
@@ -143,7 +143,7 @@ impl Screen {
     /// Checks that no visible text is in the other language, is a text ID, or has a placeholder without a value.
     #[track_caller]
     pub(crate) fn check_language(&self) {
-        let foreign = texts::foreign_to(self.language());
+        let foreign = texts::texts_of_other_language(self.language());
         let mut seen = 0;
         for node in self.harness.query_all_by(|_| true) {
             let node = node.accesskit_node();

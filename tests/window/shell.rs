@@ -60,7 +60,7 @@ fn remembers_lower_panel_state() {
 }
 
 #[test]
-fn messages_and_jobs_shift_no_widgets() {
+fn messages_and_jobs_do_not_shift_widgets() {
     for size in [LARGE, SMALL] {
         let mut screen = Screen::new_form(size);
         screen.click("page.memory");
@@ -155,7 +155,7 @@ fn stopped_live_values_stay_stopped() {
 
 /// Live values that start automatically only send requests for the position.
 #[test]
-fn automatic_live_values_only_read() {
+fn automatic_live_values_only_request_positions() {
     let mut desk = usual("", None);
     desk.until("it starts", is_live);
     let wire = desk.wire();

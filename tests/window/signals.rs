@@ -23,7 +23,7 @@ impl Desk {
 
     /// Polls until no file is being read.
     #[track_caller]
-    pub(crate) fn until_measured(&mut self) {
+    pub(crate) fn wait_for_measurement(&mut self) {
         self.until("the capture is read", |studio| studio.signals().capture_reading().is_none());
     }
 
@@ -37,7 +37,7 @@ impl Desk {
     #[track_caller]
     fn open_capture(&mut self, path: &std::path::Path) {
         self.act(Action::Open(path.to_owned()));
-        self.until_measured();
+        self.wait_for_measurement();
     }
 
     #[track_caller]
@@ -80,7 +80,7 @@ fn opens_capture_without_session() {
     assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::OpenCapture));
     let other = desk.file("table.txt", &circle(2));
     desk.act(Action::Typed(FileQuestion::OpenCapture, other.clone()));
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::File(other))));
     desk.act(Action::ShowTab(crate::tabs::HIPERFACE));
     desk.act(Action::AskOpen);
@@ -91,10 +91,10 @@ fn opens_capture_without_session() {
 fn examples_match_their_names() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert_eq!(desk.studio.signals().findings(), []);
     desk.signals(Signals::Example(ExampleCapture::WithErrors));
-    desk.until_measured();
+    desk.wait_for_measurement();
     let found = desk.studio.signals().findings();
     for (label, wanted) in [
         ("offset", (|own| matches!(own, FindingKind::Limit(Parameter::OffsetCosine(_)))) as fn(&FindingKind) -> bool),
@@ -120,7 +120,7 @@ fn is_amplitude(what: &FindingKind) -> bool {
 fn unreadable_table_names_row() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
-    desk.until_measured();
+    desk.wait_for_measurement();
     let broken = circle(2).replacen("0.05;", "0.05;x", 1);
     for (name, text, told) in [
         ("empty.csv", "", "signal.empty"),
@@ -149,7 +149,7 @@ fn unreadable_table_names_row() {
     assert!(desk.notice_ids(Severity::Error).contains(&"signal.empty"), "the log keeps it");
     assert!(desk.studio.services.log.current().is_none(), "it stands beside its cause");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert!(desk.studio.signals().problem().is_none());
 }
 
@@ -172,22 +172,22 @@ fn overrides_detected_columns() {
         (Signals::Detect, [2.5, 2.5, 2.5]),
     ] {
         desk.signals(action.clone());
-        desk.until_measured();
+        desk.wait_for_measurement();
         let found = capture(&desk).cosine_v.clone();
         let near = found.iter().zip(cosine).all(|(found, wanted)| (found - wanted).abs() < 1e-12);
         assert!(near && found.len() == 3, "{action:?}: {found:?}");
     }
     desk.signals(Signals::SetTimeUnit(TimeUnit::Microseconds));
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert!((capture(&desk).time_s[2] - 2e-6).abs() < 1e-18);
     desk.signals(Signals::SetDecimalComma(false));
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert_eq!(desk.problem(), "signal.not_a_number");
     desk.signals(Signals::SetDelimiter(Delimiter::Tab));
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::File(path))), "what was read last is still shown");
     desk.signals(Signals::Detect);
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert!(desk.studio.signals().problem().is_none());
 }
 
@@ -214,7 +214,7 @@ fn rejects_data_without_ellipse() {
 fn drops_stale_capture() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
-    desk.until_measured();
+    desk.wait_for_measurement();
     let large = desk.file("large.csv", &circle(20_000));
     desk.act(Action::Open(large.clone()));
     assert!(desk.studio.can_stop());
@@ -225,7 +225,7 @@ fn drops_stale_capture() {
             .capture_reading()
             .is_some_and(encoder_studio::signals::state::CaptureReading::is_cancelled)
     );
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(ExampleCapture::Healthy))));
     assert_eq!(desk.studio.signals().table().unwrap().place, TableSource::Example(ExampleCapture::Healthy));
     assert_eq!(desk.notice_ids(Severity::Note), ["signal.cancelled"]);
@@ -233,7 +233,7 @@ fn drops_stale_capture() {
     // The capture that was opened later is shown, whichever is read first.
     desk.act(Action::Open(large));
     desk.signals(Signals::Example(ExampleCapture::WithErrors));
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(ExampleCapture::WithErrors))));
     for _ in 0..50 {
         desk.studio.poll();
@@ -252,15 +252,15 @@ fn clamps_periods_to_range() {
 }
 
 #[test]
-fn kept_capture_stays() {
+fn kept_capture_survives_new_capture() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Keep);
     assert!(desk.studio.signals().comparison_result().is_none(), "there is nothing to keep");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
-    desk.until_measured();
+    desk.wait_for_measurement();
     desk.signals(Signals::Keep);
     desk.signals(Signals::Example(ExampleCapture::WithErrors));
-    desk.until_measured();
+    desk.wait_for_measurement();
     let kept = |studio: &Studio| studio.signals().comparison_result().map(|own| own.origin.clone());
     assert_eq!(kept(&desk.studio), Some(Origin::Table(TableSource::Example(ExampleCapture::Healthy))));
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(ExampleCapture::WithErrors))));
@@ -275,7 +275,7 @@ impl Desk {
 
     /// Polls until the virtual signal is displayed and meets the condition.
     #[track_caller]
-    fn until_live(
+    fn wait_for_live_measurement(
         &mut self,
         what: &str,
         wanted: impl Fn(&encoder_studio::analysis::signal_analysis::Analysis) -> bool,
@@ -295,22 +295,24 @@ fn measures_virtual_encoder_repeatedly() {
     assert_eq!(desk.studio.signals().signal_periods(), Some(512));
     assert!(desk.studio.can_stop());
     // 512 periods per revolution at one revolution per second, during 0.2 s at 100 kHz.
-    desk.until_live("it is measured", |own| own.samples == 20_000 && (own.frequency_hz().unwrap() - 512.0).abs() < 0.1);
+    desk.wait_for_live_measurement("it is measured", |own| {
+        own.samples == 20_000 && (own.frequency_hz().unwrap() - 512.0).abs() < 0.1
+    });
     assert!(is_good(desk.studio.signals().findings()), "{:?}", desk.studio.signals().findings());
     desk.source(SourceAction::Set(Quantity::OffsetSine, 0.05));
     desk.source(SourceAction::Set(Quantity::PhaseError, -7.0));
-    desk.until_live("the errors are seen", |own| {
+    desk.wait_for_live_measurement("the errors are seen", |own| {
         (own.ellipse.offset_sine_v - 0.05).abs() < 1e-3 && (own.ellipse.phase_error_deg() + 7.0).abs() < 0.05
     });
     desk.source(SourceAction::SetWindow(50));
-    desk.until_live("less is measured", |own| own.samples == 5_000);
+    desk.wait_for_live_measurement("less is measured", |own| own.samples == 5_000);
     // With an open wire, the receiver gets no valid signal in that channel.
     desk.source(SourceAction::SetOpenWire(Some(Wire::Sin)));
     desk.until("the open wire is refused", |studio| {
         studio.signals().measurement().is_some_and(|own| own.analysis.is_err())
     });
     desk.source(SourceAction::Reset);
-    desk.until_live("it is as new", |own| own.ellipse.offset_sine_v.abs() < 1e-3);
+    desk.wait_for_live_measurement("it is as new", |own| own.ellipse.offset_sine_v.abs() < 1e-3);
 }
 
 /// Returns whether no finding is worse than a notice.
@@ -322,7 +324,7 @@ fn is_good(findings: &[DiagnosisFinding]) -> bool {
 fn hold_freezes_measurement() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Start);
-    desk.until_live("it is measured", |own| own.ellipse.offset_cosine_v.abs() < 1e-3);
+    desk.wait_for_live_measurement("it is measured", |own| own.ellipse.offset_cosine_v.abs() < 1e-3);
     desk.source(SourceAction::Freeze(true));
     let held = desk.studio.signals().measurement().unwrap().clone();
     desk.source(SourceAction::Set(Quantity::OffsetCosine, 0.1));
@@ -330,7 +332,7 @@ fn hold_freezes_measurement() {
     desk.until("a second has passed", |_| began.elapsed().as_millis() > 1_000);
     assert!(std::sync::Arc::ptr_eq(&held, desk.studio.signals().measurement().unwrap()));
     desk.source(SourceAction::Freeze(false));
-    desk.until_live("it goes on", |own| (own.ellipse.offset_cosine_v - 0.1).abs() < 1e-3);
+    desk.wait_for_live_measurement("it goes on", |own| (own.ellipse.offset_cosine_v - 0.1).abs() < 1e-3);
     assert_eq!(desk.studio.signals().source().lost_samples(), 0);
     desk.act(Action::Escape);
     assert!(!desk.studio.signals().source().is_running() && !desk.studio.can_stop());
@@ -380,21 +382,21 @@ fn hidden_window_counts_lost_samples() {
     }
     assert!(desk.studio.signals().source().lost_samples() > 0);
     desk.source(SourceAction::Set(Quantity::Rate, 50_000.0));
-    desk.until_live("the source is measured at the lower rate", |own| own.samples == 500);
+    desk.wait_for_live_measurement("the source is measured at the lower rate", |own| own.samples == 500);
 }
 
 #[test]
 fn file_replaces_virtual_encoder() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Start);
-    desk.until_live("it is measured", |_| true);
+    desk.wait_for_live_measurement("it is measured", |_| true);
     let path = desk.file("circle.csv", &circle(4));
     desk.act(Action::Open(path.clone()));
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert!(!desk.studio.signals().source().is_running());
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::File(path))));
     desk.source(SourceAction::Start);
-    desk.until_live("it is measured again", |_| true);
+    desk.wait_for_live_measurement("it is measured again", |_| true);
     assert!(desk.studio.signals().table().is_none());
 }
 
@@ -402,7 +404,7 @@ fn file_replaces_virtual_encoder() {
 fn scope_shows_and_exports_signals() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
-    desk.until_measured();
+    desk.wait_for_measurement();
     let recorder = |studio: &Studio| {
         studio.recorder_for(encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS)).unwrap().recorded_span()
     };
@@ -436,7 +438,7 @@ fn scope_shows_and_exports_signals() {
 fn reports_findings_worse_than_kept_capture() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Start);
-    desk.until_live("it is measured", |_| true);
+    desk.wait_for_live_measurement("it is measured", |_| true);
     desk.signals(Signals::Keep);
     desk.source(SourceAction::Set(Quantity::Interference, 0.02));
     desk.until("the drive is seen", |studio| {

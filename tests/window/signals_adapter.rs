@@ -12,7 +12,7 @@ use encoder_studio::signals::state::{Origin, SignalsAction as Signals, SourceAct
 
 use crate::screen::Screen;
 use crate::served::ServedDevice;
-use crate::support::{Desk, HANGING, LONG, Outside};
+use crate::support::{Desk, HANGING_LINK, LONG, Outside};
 
 fn begin(desk: &mut Desk, link: &str, sample_hz: u32) {
     desk.signals(Signals::Source(SourceAction::SetLink(link.to_owned())));
@@ -137,7 +137,7 @@ fn remembers_only_valid_adapter_links() {
 /// The encoder supply is switched only as the user chooses. With `supply=switched`, the virtual adapter switches it on
 /// only on command. 0.3 W at 8 V are 37 mA.
 #[test]
-fn supplies_encoder_only_as_chosen() {
+fn switches_encoder_supply_only_on_request() {
     let mut desk = Desk::fresh("");
     let amplitude = |studio: &Studio| {
         let recorder = studio.recorder_for(Of::Tool(crate::tabs::SIGNALS)).unwrap();
@@ -158,7 +158,7 @@ fn supplies_encoder_only_as_chosen() {
 }
 
 #[test]
-fn source_runs_until_validly_replaced() {
+fn invalid_link_does_not_stop_source() {
     let mut desk = Desk::fresh("");
     begin(&mut desk, "sim:?rpm=6", 10_000);
     desk.until("samples come", |studio| recorded(studio).0 > 100);
@@ -181,7 +181,7 @@ fn source_runs_until_validly_replaced() {
 #[test]
 fn starts_holds_and_stops_adapter() {
     for size in [[1280.0, 800.0], [1024.0, 640.0], [960.0, 540.0]] {
-        let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
+        let mut screen = Screen::opened(Outside::new(""), Some(HANGING_LINK), size);
         screen.act(Action::ShowTab(crate::tabs::SIGNALS));
         screen.click("adapter.open");
         screen.check_signals_pages();

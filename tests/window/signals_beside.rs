@@ -10,7 +10,7 @@ use encoder_studio::signals::state::{Column, SignalsAction as Signals, SourceAct
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::screen::Screen;
-use crate::support::{Desk, HANGING, Outside};
+use crate::support::{Desk, HANGING_LINK, Outside};
 
 /// Returns a capture as text. It covers 1.25 revolutions of 64 periods each, with an eccentricity of 0.01°, an offset
 /// of 1 % and an absolute position that leads by 3 steps.
@@ -35,7 +35,7 @@ fn reference_and_periods_yield_dnl_and_inl() {
     std::fs::write(&path, table()).unwrap();
     desk.signals(Signals::SetPeriods(100));
     desk.act(Action::Open(path));
-    desk.until_measured();
+    desk.wait_for_measurement();
     let told = |desk: &Desk| desk.studio.signals().measurement().unwrap().nonlinearities.clone();
     assert!(matches!(told(&desk), Some(Err(RevolutionError::Periods { given: 100, .. }))));
     desk.signals(Signals::SetPeriods(64));
@@ -44,10 +44,10 @@ fn reference_and_periods_yield_dnl_and_inl() {
         told.is_some_and(|told| told.as_ref().is_ok_and(|told| (told.raw.integral_deg - 0.01).abs() < 1e-4))
     });
     desk.signals(Signals::SetColumn(Column::ReferenceAngle, None));
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert_eq!(told(&desk), None);
     desk.signals(Signals::SetColumn(Column::Absolute, Some(4)));
-    desk.until_measured();
+    desk.wait_for_measurement();
     assert_eq!(desk.studio.signals().problem().unwrap().id(), "signal.not_whole");
 }
 
@@ -68,7 +68,7 @@ fn virtual_encoder_has_reference() {
 
 #[test]
 fn shows_positions_and_adopts_offset() {
-    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), [1280.0, 1400.0]);
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING_LINK), [1280.0, 1400.0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     let path = screen.outside.path("reference.csv");
     std::fs::write(&path, table()).unwrap();

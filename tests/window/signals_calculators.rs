@@ -7,14 +7,14 @@ use encoder_studio::app::{Action, Language};
 use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 
 use crate::screen::Screen;
-use crate::support::{Desk, HANGING, Outside};
+use crate::support::{Desk, HANGING_LINK, Outside};
 
 /// Window size that fits a complete page.
 const TALL: [f32; 2] = [1400.0, 1600.0];
 
 impl Screen {
     fn calculator(page: &'static str) -> Self {
-        let mut screen = Screen::opened(Outside::new(""), Some(HANGING), TALL);
+        let mut screen = Screen::opened(Outside::new(""), Some(HANGING_LINK), TALL);
         screen.act(Action::ShowTab(crate::tabs::SIGNALS));
         screen.click(page);
         screen

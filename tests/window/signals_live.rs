@@ -37,7 +37,7 @@ fn hold_leaves_gap_in_scope() {
 /// Until the user enters the periods per turn, there is no speed and no error in seconds of arc. The periods of the
 /// virtual encoder do not apply to a capture (issue 22.13).
 #[test]
-fn does_not_assume_periods() {
+fn periods_have_no_default() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until("it is measured", |studio| {
@@ -119,11 +119,11 @@ fn kept_capture_keeps_no_samples() {
     let path = desk.outside.path("large.csv");
     std::fs::write(&path, circle(1_500)).unwrap();
     desk.act(Action::Open(path));
-    desk.until_measured();
+    desk.wait_for_measurement();
     let samples = std::sync::Arc::downgrade(&desk.studio.signals().measurement().unwrap().capture);
     desk.signals(Signals::Keep);
     desk.signals(Signals::Example(encoder_studio::signals::state::ExampleCapture::Healthy));
-    desk.until_measured();
+    desk.wait_for_measurement();
     desk.until("the samples are gone", |_| samples.strong_count() == 0);
     // The circle has 100 samples per period.
     assert_eq!(desk.studio.signals().comparison_result().unwrap().analysis.as_ref().unwrap().samples, 150_001);

@@ -8,7 +8,7 @@ use encoder_studio::signals::state::{ExampleCapture, Origin, SignalsAction as Si
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::screen::Screen;
-use crate::support::{HANGING, Outside};
+use crate::support::{HANGING_LINK, Outside};
 
 const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [1024.0, 640.0], [960.0, 540.0]];
 
@@ -38,7 +38,7 @@ impl Screen {
 #[test]
 fn draws_every_page_at_every_size() {
     for size in SIZES {
-        let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
+        let mut screen = Screen::opened(Outside::new(""), Some(HANGING_LINK), size);
         screen.act(Action::ShowTab(crate::tabs::SIGNALS));
         screen.check_signals_pages();
         assert!(screen.shows(&screen.say("signals.nothing")));
@@ -83,7 +83,7 @@ fn opens_tab_and_loads_example() {
 
 #[test]
 fn figure_has_accessible_value() {
-    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING_LINK), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(ExampleCapture::WithErrors));
     let value = |screen: &Screen| {
@@ -104,7 +104,7 @@ fn figure_has_accessible_value() {
 /// An error while reading a capture is shown on every page of the tab (issue 22.14).
 #[test]
 fn every_page_shows_failed_capture() {
-    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING_LINK), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     let path = screen.outside.path("broken.csv");
     std::fs::write(&path, "t,sin,cos\n0,1,2\n1,oops,3\n").unwrap();
@@ -118,7 +118,7 @@ fn every_page_shows_failed_capture() {
 
 #[test]
 fn rejects_invalid_periods() {
-    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING_LINK), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(ExampleCapture::Healthy));
     let label = screen.say("quality.periods_per_turn");
@@ -147,7 +147,7 @@ fn rejects_invalid_periods() {
 
 #[test]
 fn compares_kept_capture_in_columns() {
-    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING_LINK), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(ExampleCapture::WithErrors));
     screen.click("compare.keep");
@@ -167,7 +167,7 @@ fn compares_kept_capture_in_columns() {
 
 #[test]
 fn converts_voltages_exactly_and_by_table() {
-    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING_LINK), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(ExampleCapture::Healthy));
     screen.click("page.error");
@@ -179,7 +179,7 @@ fn converts_voltages_exactly_and_by_table() {
 #[test]
 fn starts_holds_and_stops_virtual_encoder() {
     for size in SIZES {
-        let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
+        let mut screen = Screen::opened(Outside::new(""), Some(HANGING_LINK), size);
         screen.act(Action::ShowTab(crate::tabs::SIGNALS));
         screen.click("virtual.start");
         let measured = |studio: &encoder_studio::app::Studio| {

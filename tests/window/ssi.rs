@@ -270,7 +270,7 @@ fn sends_changed_clock_count_to_adapter() {
 }
 
 #[test]
-fn adopts_layout_found_live() {
+fn adopts_layout_detected_live() {
     let mut desk = connected("sim:?ssi=afm60,code=gray&rpm=60");
     edit(&mut desk, Edit::Free);
     let clocks = encoder(&desk).clock_count();

@@ -80,7 +80,7 @@ fn each_read_succeeds() {
 }
 
 #[test]
-fn missing_value_is_no_warning() {
+fn missing_value_triggers_no_warning() {
     let mut desk = Desk::new_form("");
     desk.ask(Hiperface::ReadAnalogue(0x07));
     desk.until_ready();

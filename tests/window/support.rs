@@ -56,7 +56,7 @@ pub(crate) const PORT: &str = "/dev/enc0";
 /// A port with another encoder.
 pub(crate) const OTHER_PORT: &str = "/dev/enc1";
 /// A link that never opens.
-pub(crate) const HANGING: &str = "tcp:hanging:1";
+pub(crate) const HANGING_LINK: &str = "tcp:hanging:1";
 /// A link to the encoder at [`PORT`] that opens only on command. With another address, it opens immediately.
 pub(crate) const SLOW: &str = "tcp:slow:1";
 
@@ -151,7 +151,7 @@ impl Outside {
                     Ok(Session::from_device(Novo(Box::new(TestLink::plug_into(wire)?)), wire.clock(), store, false))
                 }))
                 .with_value(LinkOpener::new(move |url, store| {
-                    if url.to_string() == HANGING {
+                    if url.to_string() == HANGING_LINK {
                         loop {
                             std::thread::park();
                         }
@@ -245,7 +245,7 @@ impl Desk {
     }
 
     /// Creates a studio connected to the encoder at [`PORT`], which has been read.
-    pub(crate) fn at_port(query: &str) -> Self {
+    pub(crate) fn connected_at_port(query: &str) -> Self {
         let mut desk = Self::fresh(query);
         desk.open(&format!("serial:{PORT}"));
         desk.until_read();

@@ -150,7 +150,7 @@ pub(crate) fn is_name(words: &str) -> bool {
 }
 
 /// Returns texts without arguments that occur only in the other language.
-pub(crate) fn foreign_to(language: Language) -> BTreeSet<&'static str> {
+pub(crate) fn texts_of_other_language(language: Language) -> BTreeSet<&'static str> {
     let own = |row: &'static Row| if language == Language::English { &row.en } else { &row.de };
     let other = |row: &'static Row| if language == Language::English { &row.de } else { &row.en };
     let known: BTreeSet<&str> = TABLE.values().map(|row| own(row).as_str()).collect();

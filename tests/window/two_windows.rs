@@ -196,7 +196,7 @@ fn process(desk: &Desk, test: &str, name: &str) -> Child {
     own.env(FOLDER, desk.outside.folder.path()).env(NAME, name).stdout(Stdio::null()).spawn().unwrap()
 }
 
-fn studio_of_process() -> (Studio, String) {
+fn child_process_studio() -> (Studio, String) {
     let folder = env::var_os(FOLDER).expect("run by a test of this module");
     let world = StudioEnvironment::production(Store::at_root(folder.as_ref()), program().studio);
     (Studio::new(world, Arc::new(|| {})), env::var(NAME).unwrap())
@@ -205,7 +205,7 @@ fn studio_of_process() -> (Studio, String) {
 #[test]
 #[ignore = "run in processes of their own by `concurrent_processes_lose_no_settings`"]
 fn process_using_links() {
-    let (mut studio, name) = studio_of_process();
+    let (mut studio, name) = child_process_studio();
     let path = Store::at_root(env::var_os(FOLDER).unwrap().as_ref()).settings_path();
     for number in 0..6 {
         let link = format!("tcp:{name}:{number}");
@@ -236,7 +236,7 @@ fn concurrent_processes_lose_no_settings() {
 #[test]
 #[ignore = "run in a process of its own by `killed_process_leaves_complete_file`"]
 fn process_writing_forever() {
-    let (mut studio, name) = studio_of_process();
+    let (mut studio, name) = child_process_studio();
     for number in 0_u32.. {
         studio.handle_action(Action::StoreWindowSize(number, 900));
         studio.settings.use_link(crate::tabs::BISS, &format!("tcp:{name}:{}", number % 7));

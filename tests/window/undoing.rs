@@ -34,7 +34,7 @@ fn undo_texts(desk: &Desk) -> Vec<String> {
     sheet(desk).undo.iter().map(|text| text.to_string_in(Language::English)).collect()
 }
 
-fn case_of(tab: encoder_studio::app::Tab) -> Case {
+fn case_for_tab(tab: encoder_studio::app::Tab) -> Case {
     CASES.into_iter().find(|case| case.tab == tab).unwrap()
 }
 
@@ -47,10 +47,10 @@ fn plan(desk: &mut Desk, action: impl FnOnce(encoder_studio::app::SessionId) -> 
     until_ready(desk);
 }
 
-const EXACTLY: &str = "The logbook can undo this write exactly.";
+const EXACT_UNDO_TEXT: &str = "The logbook can undo this write exactly.";
 
 #[test]
-fn undo_matches_announcement() {
+fn undo_has_announced_effect() {
     for case in CASES.into_iter().filter(|case| case.tab != tabs::NOVEL) {
         let mut desk = case.desk();
         case.edit(&mut desk, &[0x5A]);
@@ -63,7 +63,7 @@ fn undo_matches_announcement() {
         until_stage(&mut desk, |stage| matches!(stage, Stage::Ready(_)));
         until_ready(&mut desk);
         let Stage::Ready(plan) = sheet(&desk).stage else { panic!("no plan") };
-        assert_eq!(undo_texts(&desk), [EXACTLY]);
+        assert_eq!(undo_texts(&desk), [EXACT_UNDO_TEXT]);
         review(&mut desk, ReviewAction::Write(plan));
         until_stage(&mut desk, |stage| matches!(stage, Stage::Done { .. }));
         until_ready(&mut desk);
@@ -76,13 +76,13 @@ fn undo_matches_announcement() {
 
 #[test]
 fn review_announces_undo() {
-    let mut desk = case_of(tabs::HIPERFACE).desk();
+    let mut desk = case_for_tab(tabs::HIPERFACE).desk();
     let hiperface = |change: HiperfaceChange| move |id| Action::device(id, Hiperface::Plan(change));
-    case_of(tabs::HIPERFACE).edit(&mut desk, &[0x5A]);
+    case_for_tab(tabs::HIPERFACE).edit(&mut desk, &[0x5A]);
     command(&mut desk, DeviceCommand::Review);
     until_stage(&mut desk, |stage| matches!(stage, Stage::Ready(_)));
     until_ready(&mut desk);
-    assert_eq!(undo_texts(&desk), [EXACTLY]);
+    assert_eq!(undo_texts(&desk), [EXACT_UNDO_TEXT]);
     let code = HiperfaceChange::ChangeCode { number: AccessCodeNumber::new(2).unwrap(), new: AccessCode::new(0xA7) };
     let position = HiperfaceChange::SetPosition { wanted: 4096, exact: false, synchronise: false, kit: false };
     for (change, words) in [
@@ -102,21 +102,21 @@ fn review_announces_undo() {
 
 #[test]
 fn procedure_review_lists_remaining_steps() {
-    let mut desk = case_of(tabs::BISS).desk();
+    let mut desk = case_for_tab(tabs::BISS).desk();
     let run = MountingSteps { calibrate: true, ..MountingSteps::default() };
     let change = BissChange::Guided { run, motor: MotorSource::Other };
     plan(&mut desk, |id| Action::device(id, Biss::Plan(Box::new(change))));
     let [text] = undo_texts(&desk).try_into().unwrap();
     assert!(text.starts_with("Cannot be undone: ") && text.ends_with("Repeat the procedure."), "{text}");
 
-    let mut desk = case_of(tabs::INTERBUS).desk();
+    let mut desk = case_for_tab(tabs::INTERBUS).desk();
     plan(&mut desk, |id| Action::device(id, Interbus::Plan(Box::new(InterbusChange::Default))));
     let [text] = undo_texts(&desk).try_into().unwrap();
     assert!(text.starts_with("Undo of ") && text.ends_with(": restore the backup."), "{text}");
     plan(&mut desk, |id| Action::device(id, Interbus::Plan(Box::new(InterbusChange::Preset { value: 7 }))));
     assert!(undo_texts(&desk).iter().any(|text| text.ends_with("Set the position again.")), "{:?}", undo_texts(&desk));
 
-    let mut desk = case_of(tabs::HIPERDRIVE).desk();
+    let mut desk = case_for_tab(tabs::HIPERDRIVE).desk();
     let change = HiperdriveChange::SetPosition { drive: DriveNumber::FIRST, position: 6400, save: true };
     plan(&mut desk, |id| Action::device(id, Hiperdrive::Plan(Box::new(change))));
     let [text] = undo_texts(&desk).try_into().unwrap();

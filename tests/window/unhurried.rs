@@ -15,23 +15,23 @@ use encoder_studio::worker::{OpenError, Session};
 use crate::support::MARGIN;
 
 /// Number of real seconds for one second of simulated time.
-const SLOWER: u32 = 2;
+const SLOWDOWN_FACTOR: u32 = 2;
 
-struct Unhurried(RealClock);
+struct SlowedClock(RealClock);
 
-impl Clock for Unhurried {
+impl Clock for SlowedClock {
     fn now(&self) -> Moment {
-        Moment::from_elapsed(self.0.now().since_start() / SLOWER)
+        Moment::from_elapsed(self.0.now().since_start() / SLOWDOWN_FACTOR)
     }
 
     fn sleep_until(&self, moment: Moment) {
-        self.0.sleep_until(Moment::from_elapsed(moment.since_start() * SLOWER));
+        self.0.sleep_until(Moment::from_elapsed(moment.since_start() * SLOWDOWN_FACTOR));
     }
 }
 
 /// Opens a session with the virtual drives of a `sim:` link, on the slower clock.
 pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenError> {
-    let clock: Arc<dyn Clock> = Arc::new(Unhurried(RealClock::start()));
+    let clock: Arc<dyn Clock> = Arc::new(SlowedClock(RealClock::start()));
     let target = Target::new(&Config::from_pairs(&url.query.without(&["rpi", "udp", "timeout"]))?);
     let connection = Arc::new(Mutex::new(target.connect_from(Ipv4Addr::UNSPECIFIED)));
     let wire = Box::new(SimLink::connect(connection, clock.clone()));

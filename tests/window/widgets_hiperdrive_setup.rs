@@ -22,7 +22,7 @@ use crate::screen::Screen;
 const TALL: [f32; 2] = [1280.0, 2400.0];
 
 fn page(link: &str, page: &'static str) -> Screen {
-    let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, link, TALL);
+    let mut screen = Screen::open_in_tab(crate::tabs::HIPERDRIVE, link, TALL);
     screen.until("it is read", |studio| {
         studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready())
     });
@@ -228,7 +228,7 @@ fn accepts_typed_parameters() {
 
 /// A second click that was meant for the previous step must not leave the new one.
 #[test]
-fn shows_step_before_leaving() {
+fn double_click_does_not_skip_step() {
     let mut screen = page("sim:", "page.axis");
     screen.click("hd_axis.begin");
     screen.steps();

@@ -24,7 +24,7 @@ fn cam(number: u8) -> CamNumber {
 
 /// Opens the cam page of an encoder with 3600 steps per turn and cams of 450 steps in program 1.
 fn page() -> Screen {
-    let mut screen = Screen::opened_in(crate::tabs::INTERBUS, "sim:?steps=3600&revolutions=1&cams=demo", TALL);
+    let mut screen = Screen::open_in_tab(crate::tabs::INTERBUS, "sim:?steps=3600&revolutions=1&cams=demo", TALL);
     screen.until("it is read", |studio| {
         studio.interbus().is_some_and(|own| own.known_program_count() == 8 && own.session.is_ready())
     });
@@ -49,13 +49,13 @@ impl Screen {
         self.steps();
     }
 
-    fn of_role<'a>(&'a self, role: Role, label: &'a str) -> Node<'a> {
+    fn node_with_role<'a>(&'a self, role: Role, label: &'a str) -> Node<'a> {
         self.harness.get_by_role_and_label(role, label)
     }
 
     /// Returns the values of an edge in the chart and in the table.
     fn edge_values(&self, label: &str) -> (String, String) {
-        let value = |role| self.of_role(role, label).accesskit_node().value().unwrap_or_default();
+        let value = |role| self.node_with_role(role, label).accesskit_node().value().unwrap_or_default();
         (value(Role::Slider), value(Role::TextInput))
     }
 }
@@ -65,7 +65,7 @@ fn edits_edge_in_chart_and_table() {
     let mut screen = page();
     let (start, stop) = screen.cam(2);
     assert_eq!(screen.edge_values("Cam 2: start"), (start.to_string(), start.to_string()));
-    screen.of_role(Role::Slider, "Cam 2: start").focus();
+    screen.node_with_role(Role::Slider, "Cam 2: start").focus();
     screen.steps();
     screen.key(Key::ArrowRight);
     assert_eq!(screen.cam(2), (start + 1, stop));
@@ -74,10 +74,10 @@ fn edits_edge_in_chart_and_table() {
     screen.steps();
     assert_eq!(screen.cam(2), (start, stop));
 
-    screen.of_role(Role::TextInput, "Cam 2: stop").focus();
+    screen.node_with_role(Role::TextInput, "Cam 2: stop").focus();
     screen.steps();
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    screen.of_role(Role::TextInput, "Cam 2: stop").type_text("1234");
+    screen.node_with_role(Role::TextInput, "Cam 2: stop").type_text("1234");
     screen.key(Key::Enter);
     assert_eq!((screen.cam(2), screen.edge_values("Cam 2: stop").0), ((start, 1234), "1234".to_owned()));
 }
@@ -86,7 +86,7 @@ fn edits_edge_in_chart_and_table() {
 fn drag_is_one_undo_step() {
     let mut screen = page();
     let before = screen.cam(0);
-    let from = screen.of_role(Role::Slider, "Cam 0: stop").rect().center();
+    let from = screen.node_with_role(Role::Slider, "Cam 0: stop").rect().center();
     screen.harness.drag_at(from);
     screen.steps();
     for part in [20.0, 40.0, 60.0, 80.0] {
@@ -155,7 +155,7 @@ fn ring_edits_same_cams() {
     let mut screen = page();
     screen.click("ib_cams.ring");
     let (start, stop) = screen.cam(3);
-    screen.of_role(Role::Slider, "Cam 3: stop, on the ring").focus();
+    screen.node_with_role(Role::Slider, "Cam 3: stop, on the ring").focus();
     screen.steps();
     screen.key(Key::ArrowLeft);
     assert_eq!(screen.cam(3), (start, stop - 1));

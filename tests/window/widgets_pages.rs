@@ -13,7 +13,7 @@ use encoder_studio::devices::interbus::state::InterbusAction as Interbus;
 use encoder_studio::devices::ssi::state::{Edit, Field, FieldInput, SsiAction as Ssi};
 
 use crate::screen::Screen;
-use crate::support::{GATE, HANGING, KIT, Outside, PORT};
+use crate::support::{GATE, HANGING_LINK, KIT, Outside, PORT};
 
 const LARGE: [f32; 2] = [1280.0, 800.0];
 const SMALL: [f32; 2] = [1024.0, 640.0];
@@ -58,7 +58,7 @@ fn draws_pages_with_virtual_encoder() {
 #[test]
 fn draws_pages_with_virtual_biss_encoder() {
     for (link, size) in [("sim:?bridge=on", LARGE), ("sim:?errors=0x12&temperature=120", SMALL)] {
-        let mut screen = Screen::opened_in(crate::tabs::BISS, link, size);
+        let mut screen = Screen::open_in_tab(crate::tabs::BISS, link, size);
         screen.until("it is read", |studio| {
             studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
         });
@@ -113,7 +113,7 @@ fn rejected_position_keeps_panel_in_window() {
 fn draws_pages_with_virtual_ssi_encoder() {
     for (link, size) in [("sim:?ssi=afm60,code=gray&rpm=6", LARGE), ("sim:?ssi=kh53&ssi-error=overspeed-or-gap", SMALL)]
     {
-        let mut screen = Screen::opened_in(crate::tabs::SSI, link, size);
+        let mut screen = Screen::open_in_tab(crate::tabs::SSI, link, size);
         screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.last().is_some()));
         let id = screen.studio().ssi().unwrap().session.id;
         screen.act(Action::device(id, Ssi::Check));
@@ -126,7 +126,7 @@ fn draws_pages_with_virtual_ssi_encoder() {
 fn draws_pages_with_virtual_interbus_encoder() {
     for (link, size) in [("sim:?steps=3600&revolutions=1&cams=demo&rpm=6", LARGE), ("sim:?program=3&cams=demo", SMALL)]
     {
-        let mut screen = Screen::opened_in(crate::tabs::INTERBUS, link, size);
+        let mut screen = Screen::open_in_tab(crate::tabs::INTERBUS, link, size);
         screen.until("it is read", |studio| {
             studio.interbus().is_some_and(|own| own.known_program_count() == 8 && own.session.is_ready())
         });
@@ -139,7 +139,7 @@ fn draws_pages_with_virtual_interbus_encoder() {
 
 #[test]
 fn draws_pages_before_standstill_confirmation() {
-    let mut screen = Screen::opened_in(crate::tabs::INTERBUS, &format!("modbus:{GATE}"), SMALL);
+    let mut screen = Screen::open_in_tab(crate::tabs::INTERBUS, &format!("modbus:{GATE}"), SMALL);
     screen.until("a word is read", |studio| studio.interbus().is_some_and(|own| own.record.last().is_some()));
     check_every_page(&mut screen, SMALL);
 }
@@ -167,7 +167,7 @@ fn draws_pages_of_ssi_layout() {
 
 #[test]
 fn draws_pages_with_missing_biss_encoder() {
-    let mut screen = Screen::opened_in(crate::tabs::BISS, "serial:/dev/nothing", SMALL);
+    let mut screen = Screen::open_in_tab(crate::tabs::BISS, "serial:/dev/nothing", SMALL);
     screen.until("it is told", |studio| studio.biss().is_some_and(|own| matches!(own.session.phase, Phase::Lost(_))));
     check_every_page(&mut screen, SMALL);
 }
@@ -187,7 +187,7 @@ fn draws_pages_without_device() {
 
 #[test]
 fn draws_pages_while_link_opens() {
-    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SMALL);
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING_LINK), SMALL);
     check_every_page(&mut screen, SMALL);
     assert!(screen.shows(&screen.say("shell.opening")));
 }

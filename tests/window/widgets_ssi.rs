@@ -35,8 +35,8 @@ fn key_undoes_moved_boundary() {
 }
 
 #[test]
-fn incoming_words_keep_typed_text() {
-    let mut screen = Screen::opened_in(crate::tabs::SSI, "sim:?ssi=afs60&rpm=6", SIZE);
+fn incoming_words_do_not_overwrite_typed_text() {
+    let mut screen = Screen::open_in_tab(crate::tabs::SSI, "sim:?ssi=afs60&rpm=6", SIZE);
     screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.is_showing_live()));
     let id = screen.studio().ssi().unwrap().session.id;
     let last = |screen: &Screen| screen.studio().ssi().unwrap().last().unwrap().decoded.as_ref().unwrap().frame;

@@ -3,7 +3,7 @@
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::DeviceHistory;
-use encoder_studio::app::{Action, Language, PendingEdits, ReadBackup, Severity, TaskResult, Text};
+use encoder_studio::app::{Action, BackupReadResult, Language, PendingEdits, Severity, TaskResult, Text};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::profile::{FieldRange, Op};
@@ -163,7 +163,7 @@ fn does_not_write_edits_after_planning() {
 }
 
 #[test]
-fn does_not_write_encoder_changed_since_plan() {
+fn exchanged_encoder_prevents_planned_write() {
     let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -234,7 +234,7 @@ fn rejects_changes_that_discard_edits() {
 
 #[test]
 fn field_with_unknown_code_stays_unchanged() {
-    let mut desk = Desk::at_port("codes=0:9D");
+    let mut desk = Desk::connected_at_port("codes=0:9D");
     let why = crate::texts::text("rules.code_unknown").with("field", 0).with("number", AccessCodeNumber::ZERO);
     let small = FieldSize::from_bytes(16).unwrap();
     let sent = desk.wire().sent();
@@ -252,7 +252,7 @@ fn field_with_unknown_code_stays_unchanged() {
 
 #[test]
 fn checks_and_hides_access_code() {
-    let mut desk = Desk::at_port("codes=0:9D");
+    let mut desk = Desk::connected_at_port("codes=0:9D");
     for (code, id) in [("1C", "session.code_wrong"), ("9D", "session.code_fits")] {
         let code = forms::access_code(code).unwrap();
         desk.ask(Hiperface::UseCode { number: AccessCodeNumber::ZERO, code });
@@ -297,7 +297,7 @@ fn drops_late_results_for_another_encoder() {
     let document = Box::new(ProfileDocument::parse(&read_text(&path).unwrap(), program().studio.formats).unwrap());
     desk.act(Action::Done(TaskResult::Backup(
         id,
-        Box::new(ReadBackup { of: other, path, undone: None, result: Ok(document) }),
+        Box::new(BackupReadResult { of: other, path, undone: None, result: Ok(document) }),
     )));
     assert!(desk.encoder().session.review.is_none() && !desk.encoder().session.is_busy());
 }
@@ -336,7 +336,7 @@ fn refused(desk: &mut Desk, change: Change) -> Text {
 }
 
 #[test]
-fn rejects_changes_against_field_rules() {
+fn rejects_changes_violating_field_rules() {
     let mut desk = with_two_fields();
     let memory = desk.encoder().identity.as_ref().unwrap().memory.unwrap();
     let first = desk.encoder().field(0).unwrap().clone();
@@ -399,7 +399,7 @@ fn rejects_edit_outside_field() {
 
 #[test]
 fn protected_field_opens_with_code() {
-    let mut desk = Desk::at_port("codes=0:9D");
+    let mut desk = Desk::connected_at_port("codes=0:9D");
     assert_eq!(desk.encoder().field(0).unwrap().bytes, None);
     desk.put(0, 0, b"X");
     assert_eq!(desk.notice_ids(Severity::Error), ["encoder.code_unknown"]);

@@ -130,9 +130,9 @@ impl ErrorCode {
     /// The adapter is busy with a stream.
     pub const BUSY: ErrorCode = ErrorCode(3);
     /// The encoder does not reply.
-    pub const NO_ANSWER: ErrorCode = ErrorCode(4);
+    pub const NO_REPLY: ErrorCode = ErrorCode(4);
     /// The control frame of the encoder has a CRC error.
-    pub const WRONG_ANSWER: ErrorCode = ErrorCode(5);
+    pub const INVALID_REPLY: ErrorCode = ErrorCode(5);
     /// The adapter was too slow to keep up.
     pub const OVERRUN: ErrorCode = ErrorCode(6);
 

@@ -78,7 +78,7 @@ impl<'a> FieldReader<'a> {
     }
 
     /// Parses a byte that must be 0 (off) or 1 (on).
-    pub(super) fn take_switch(&mut self, field: &'static str) -> Result<bool, BodyError> {
+    pub(super) fn take_bool(&mut self, field: &'static str) -> Result<bool, BodyError> {
         match self.u8()? {
             0 => Ok(false),
             1 => Ok(true),

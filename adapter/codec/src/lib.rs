@@ -42,4 +42,4 @@ pub use request::{Operation, Request, SsiFlags};
 pub const VERSION: u8 = 1;
 /// Time without a reply after which a request is sent a second time. If there is again no reply for this time, the
 /// request has failed.
-pub const REPEAT_AFTER: Duration = Duration::from_millis(200);
+pub const REQUEST_RETRY_TIMEOUT: Duration = Duration::from_millis(200);

@@ -41,7 +41,7 @@ impl Packet {
     /// Number of bytes in a packet in addition to its body.
     const OVERHEAD: usize = 4;
     /// Maximum length of a stuffed packet in bytes.
-    pub(super) const MAX_STUFFED: usize = MAX_BODY + Self::OVERHEAD + (MAX_BODY + Self::OVERHEAD) / 254 + 1;
+    pub(super) const MAX_STUFFED_LEN: usize = MAX_BODY + Self::OVERHEAD + (MAX_BODY + Self::OVERHEAD) / 254 + 1;
 
     /// Parses the bytes between two 00 bytes.
     ///
@@ -135,7 +135,7 @@ mod tests {
         fn emitted_packets_parse_back(seq: u8, op: u8, body in proptest::collection::vec(any::<u8>(), 0..=MAX_BODY)) {
             let packet = Packet { seq, op, body };
             let bytes = packet.emit();
-            prop_assert!(bytes.len() <= Packet::MAX_STUFFED + 1);
+            prop_assert!(bytes.len() <= Packet::MAX_STUFFED_LEN + 1);
             prop_assert_eq!(Packet::parse(&bytes[..bytes.len() - 1]), Ok(packet));
         }
 

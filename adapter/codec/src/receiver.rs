@@ -29,7 +29,7 @@ impl Receiver {
             let behind = self.bytes.get(self.search_index..).unwrap_or_default();
             let Some(end) = behind.iter().position(|byte| *byte == 0) else {
                 self.search_index = self.bytes.len();
-                self.overlong |= self.bytes.len() > Packet::MAX_STUFFED;
+                self.overlong |= self.bytes.len() > Packet::MAX_STUFFED_LEN;
                 if self.overlong {
                     (self.bytes, self.search_index) = (Vec::new(), 0);
                 }
@@ -38,7 +38,7 @@ impl Receiver {
             let end = self.search_index + end;
             let parsed = match self.bytes.get(..end) {
                 Some([]) if !self.overlong => None,
-                Some(stuffed) if !self.overlong && end <= Packet::MAX_STUFFED => Some(Packet::parse(stuffed)),
+                Some(stuffed) if !self.overlong && end <= Packet::MAX_STUFFED_LEN => Some(Packet::parse(stuffed)),
                 _ => Some(Err(PacketError::Length(end))),
             };
             let packet: Vec<u8> = self.bytes.drain(..=end).collect();
@@ -113,7 +113,7 @@ mod tests {
         let mut receiver = Receiver::default();
         for _ in 0..100 {
             assert_eq!(packets(&mut receiver, &[0x55; 100]), []);
-            assert!(receiver.bytes.len() <= Packet::MAX_STUFFED + 100);
+            assert!(receiver.bytes.len() <= Packet::MAX_STUFFED_LEN + 100);
         }
         let good = packet(1, 20).emit();
         assert_eq!(packets(&mut receiver, &good), [], "the first 00 ends the noise");

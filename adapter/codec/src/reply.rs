@@ -294,7 +294,7 @@ impl Reply {
                 })
             }
             Operation::Supply => {
-                Reply::Supply { on: fields.take_switch("on")?, millivolt: fields.u16()?, milliampere: fields.u16()? }
+                Reply::Supply { on: fields.take_bool("on")?, millivolt: fields.u16()?, milliampere: fields.u16()? }
             }
             Operation::Status => Reply::Status(AdapterStatus {
                 t_us: fields.u64()?,
@@ -320,7 +320,7 @@ impl Reply {
                 full_scale_microvolt: fields.u32()?,
                 bits: fields.u8()?,
             },
-            Operation::AnalogStream => Reply::AnalogStream { on: fields.take_switch("on")? },
+            Operation::AnalogStream => Reply::AnalogStream { on: fields.take_bool("on")? },
             Operation::AnalogSkew => Reply::AnalogSkew { skew_ns: fields.u16()? },
             Operation::UartConfig => Reply::UartConfig { baud: fields.u32()? },
             Operation::UartTransfer => Reply::UartTransfer { t_us: fields.u64()?, rx: fields.take_rest().to_vec() },

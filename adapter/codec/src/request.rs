@@ -278,7 +278,7 @@ impl Request {
         let mut fields = FieldReader::new(packet.op, &packet.body);
         let request = match operation {
             Operation::Hello => Request::Hello,
-            Operation::Supply => Request::Supply { on: fields.take_switch("on")?, millivolt: fields.u16()? },
+            Operation::Supply => Request::Supply { on: fields.take_bool("on")?, millivolt: fields.u16()? },
             Operation::Status => Request::Status,
             Operation::SsiConfig => Request::SsiConfig {
                 clocks: fields.u8()?,
@@ -301,7 +301,7 @@ impl Request {
             }
             Operation::BissStream => Request::BissStream { period_us: fields.u32()? },
             Operation::AnalogConfig => Request::AnalogConfig { sample_hz: fields.u32()? },
-            Operation::AnalogStream => Request::AnalogStream { on: fields.take_switch("on")? },
+            Operation::AnalogStream => Request::AnalogStream { on: fields.take_bool("on")? },
             Operation::AnalogSkew => Request::AnalogSkew,
             Operation::UartConfig => {
                 Request::UartConfig { baud: fields.u32()?, parity: fields.u8()?, turnaround_us: fields.u16()? }

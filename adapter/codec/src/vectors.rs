@@ -113,7 +113,7 @@ fn message_vectors() -> Vec<(u8, Message, &'static str)> {
         ),
         (
             7,
-            Message::Error { op: 0x21, code: ErrorCode::NO_ANSWER, text: "no slave".to_owned() },
+            Message::Error { op: 0x21, code: ErrorCode::NO_REPLY, text: "no slave".to_owned() },
             "10 07 FF 21 04 08 6E 6F 20 73 6C 61 76 65 4E E1 00",
         ),
         (
@@ -240,7 +240,7 @@ fn version_mismatch_names_both_versions() {
 }
 
 #[test]
-fn reports_or_keeps_unknown_codes() {
+fn rejects_unknown_operations_but_keeps_error_codes() {
     let packet = |op, body: &[u8]| Packet { seq: 0, op, body: body.to_vec() };
     assert_eq!(Request::parse(&packet(0x50, &[])), Err(BodyError::Operation(0x50)));
     assert_eq!(Request::parse(&packet(0x81, &[])), Err(BodyError::Operation(0x81)));

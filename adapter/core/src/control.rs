@@ -41,11 +41,11 @@ impl ControlError {
     /// Returns the error code and message to send to the host.
     pub const fn refusal(self) -> (ErrorCode, &'static str) {
         match self {
-            ControlError::NoFrame => (ErrorCode::NO_ANSWER, "the encoder does not answer"),
-            ControlError::NoSlave => (ErrorCode::NO_ANSWER, "no encoder with this number answers"),
-            ControlError::Refused => (ErrorCode::NO_ANSWER, "the encoder refuses the register"),
-            ControlError::NotReady => (ErrorCode::NO_ANSWER, "the encoder does not provide the register"),
-            ControlError::Checksum => (ErrorCode::WRONG_ANSWER, "CRC of the control frame"),
+            ControlError::NoFrame => (ErrorCode::NO_REPLY, "the encoder does not answer"),
+            ControlError::NoSlave => (ErrorCode::NO_REPLY, "no encoder with this number answers"),
+            ControlError::Refused => (ErrorCode::NO_REPLY, "the encoder refuses the register"),
+            ControlError::NotReady => (ErrorCode::NO_REPLY, "the encoder does not provide the register"),
+            ControlError::Checksum => (ErrorCode::INVALID_REPLY, "CRC of the control frame"),
         }
     }
 }

@@ -16,7 +16,7 @@ const SAMPLE_LIMIT_BYTES: usize = 24 * 1024;
 /// Additional space in bytes for the replies to all requests in a USB packet.
 const REPLIES: usize = 8 * 1024;
 /// Time in microseconds after which a host that fetches nothing is considered lost.
-const HOST_LOST_US: u64 = 2_000_000;
+const HOST_TIMEOUT_US: u64 = 2_000_000;
 
 impl Default for Outbox {
     /// Allocates all memory at once, because a small heap has no room for reallocation.
@@ -56,7 +56,7 @@ impl Outbox {
 
     /// Returns whether the host has fetched nothing for too long.
     pub(crate) fn is_stuck(&self, now_us: u64) -> bool {
-        !self.bytes.is_empty() && now_us.saturating_sub(self.progress_us) > HOST_LOST_US
+        !self.bytes.is_empty() && now_us.saturating_sub(self.progress_us) > HOST_TIMEOUT_US
     }
 }
 

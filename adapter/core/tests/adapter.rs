@@ -65,7 +65,7 @@ fn reads_register_by_control_bits() {
     // If no encoder responds, nothing is written.
     bench.model().cdm.clear();
     let write = Request::BissRegisterWrite { slave: 0, address: 0x6B, value: 0x2A };
-    assert_eq!(refusal(bench.ask(&write)), (0x23, ErrorCode::NO_ANSWER));
+    assert_eq!(refusal(bench.ask(&write)), (0x23, ErrorCode::NO_REPLY));
     assert_eq!(bench.model().cdm.len(), 14 + 16, "the access ends with its header");
     for (slave, address) in [(8, 0), (0, 0x80)] {
         assert_eq!(refusal(bench.ask(&Request::BissRegisterRead { slave, address })).1, ErrorCode::BAD_ARGUMENT);
@@ -73,7 +73,7 @@ fn reads_register_by_control_bits() {
 }
 
 #[test]
-fn stream_has_every_sample_on_time() {
+fn stream_samples_are_complete_and_on_time() {
     let mut bench = Bench::new();
     bench.ask(&SSI_25);
     let Message::Reply(Reply::SsiStream { period_us }) = bench.ask(&Request::SsiStream { period_us: 1 }) else {
@@ -100,7 +100,7 @@ fn stream_has_every_sample_on_time() {
 
 /// A word of 64 clocks fills two of the three 32-bit words of a frame.
 #[test]
-fn stream_keeps_long_words() {
+fn streams_words_longer_than_32_bits() {
     let mut bench = Bench::new();
     bench.model().ssi = |t_us| 0x8000_0001_0000_0000 | t_us;
     bench.ask(&Request::SsiConfig { clocks: 64, clock_hz: 4_000_000, pause_us: 0, flags: SsiFlags::FALLING_EDGE });
@@ -117,7 +117,7 @@ fn stream_keeps_long_words() {
 }
 
 #[test]
-fn counts_samples_lost_to_late_host() {
+fn counts_samples_lost_to_slow_host() {
     let mut bench = Bench::new();
     bench.ask(&BISS_41);
     bench.ask(&Request::BissStream { period_us: 100 });

@@ -11,4 +11,4 @@ pub(crate) const DIRECTION: u8 = 10;
 /// ADC input that measures the voltage at the input of the supply switch, through a divider.
 pub(crate) const SUPPLY_INPUT: u32 = 2;
 /// Signal between the two state machines of BiSS. The pin must not be connected.
-pub(crate) const DONE: u8 = 5;
+pub(crate) const BISS_DONE_PIN: u8 = 5;

@@ -136,6 +136,6 @@ fn USBCTRL_IRQ() {
 }
 
 /// Ends the current or next sleep; see `wake`.
-pub(crate) fn note_event() {
+pub(crate) fn cancel_sleep() {
     EVENT.store(true, Ordering::Relaxed);
 }

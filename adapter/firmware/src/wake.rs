@@ -38,5 +38,5 @@ fn TIMER_IRQ_0() {
             alarm.clear_interrupt();
         }
     });
-    crate::usb::note_event();
+    crate::usb::cancel_sleep();
 }

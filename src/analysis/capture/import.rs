@@ -290,10 +290,11 @@ impl ColumnChoice {
 /// Returns whether a field marks a missing value in the notation of an instrument. Such a field is empty, has only
 /// dashes, or reports an overload.
 pub(super) fn is_missing_value(field: &[u8]) -> bool {
-    const KNOWN_WORDS: [&str; 10] =
+    const MISSING_VALUE_MARKERS: [&str; 10] =
         ["overload", "overrange", "overflow", "ovld", "ol", "over", "clipped", "\u{221e}", "-\u{221e}", "n/a"];
     let text = String::from_utf8_lossy(field).to_lowercase();
-    text.chars().all(|sign| matches!(sign, '-' | '*' | '?')) && text.len() != 1 || KNOWN_WORDS.contains(&text.as_str())
+    text.chars().all(|sign| matches!(sign, '-' | '*' | '?')) && text.len() != 1
+        || MISSING_VALUE_MARKERS.contains(&text.as_str())
 }
 
 /// Returns the value as an integer. Returns `None` beyond 2⁵³, where an `f64` cannot hold every integer.

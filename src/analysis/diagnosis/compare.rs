@@ -5,7 +5,7 @@
 use std::mem::discriminant;
 
 use super::lines::Interference;
-use super::{Diagnosis, DiagnosisFinding, FindingKind, MIN_LINE, OutOfLimits, Severity, severity};
+use super::{Diagnosis, DiagnosisFinding, FindingKind, MIN_INTERFERENCE_FRACTION, OutOfLimits, Severity, severity};
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DiagnosisChanges {
@@ -156,7 +156,7 @@ fn increase_finding(
     let same = earlier.iter().filter(|other| (other.frequency_hz - line.frequency_hz).abs() <= 2.0 * spacing_hz);
     let from_v = same.map(|other| other.volts).fold(0.0, f64::max);
     let to_v = line.volts;
-    if to_v < DISTURBANCE_INCREASE * from_v || to_v - from_v < MIN_LINE * amplitude {
+    if to_v < DISTURBANCE_INCREASE * from_v || to_v - from_v < MIN_INTERFERENCE_FRACTION * amplitude {
         return None;
     }
     let (frequency_hz, common) = (line.frequency_hz, line.common);

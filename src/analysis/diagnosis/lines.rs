@@ -9,7 +9,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use super::MIN_LINE;
+use super::MIN_INTERFERENCE_FRACTION;
 use crate::analysis::ellipse::EllipseCorrection;
 use crate::analysis::position_error::Samples;
 use crate::analysis::signal_analysis::Analysis;
@@ -17,12 +17,12 @@ use crate::analysis::spectrum::{Spectrum, sample_rate_hz};
 
 pub(super) const MAINS_HZ: [f64; 2] = [50.0, 60.0];
 /// Highest multiple of the mains frequency that is attributed to the mains.
-const MULTIPLES: f64 = 10.0;
+const MAX_MAINS_HARMONIC: f64 = 10.0;
 /// Largest line spacing of the spectrum at which lines are attributed to the mains.
 const MAINS_SPACING_HZ: f64 = 10.0;
 
 /// Preferred minimum length of the examined record in seconds, equal to ten periods of 50 Hz mains.
-const PREFERRED_SECONDS: f64 = 0.2;
+const PREFERRED_RECORD_LENGTH_S: f64 = 0.2;
 /// Minimum and maximum number of samples in the spectrum.
 const SAMPLES: (usize, usize) = (1 << 16, 1 << 20);
 /// Minimum number of signal periods. With fewer, the signal's own line would cover the whole spectrum.
@@ -35,7 +35,7 @@ const HARMONIC_HALF_WIDTH: usize = 3;
 /// Fraction of the signal's peak above which neighbouring lines belong to the signal.
 const SIGNAL_PEAK_FRACTION: f64 = 0.01;
 /// Number of neighbouring lines on each side from which the noise is determined.
-const NEIGHBOURS: usize = 50;
+const NEIGHBOURS_PER_SIDE: usize = 50;
 /// Minimum ratio of a line to the median of its neighbours. Below it, the line is noise.
 const LINE_TO_NOISE_RATIO: f64 = 6.0;
 /// Maximum number of lines reported.
@@ -79,7 +79,7 @@ pub(super) struct SpectrumContent {
 pub(super) fn find_interference(samples: &Samples<'_>, analysis: &Analysis) -> Option<SpectrumContent> {
     let count = samples.sine_v.len().min(samples.cosine_v.len()).min(samples.time_s.len());
     let all = samples.time_s.get(..count)?;
-    let wanted = (PREFERRED_SECONDS * count.saturating_sub(1) as f64 / (all.last()? - all.first()?)) as usize;
+    let wanted = (PREFERRED_RECORD_LENGTH_S * count.saturating_sub(1) as f64 / (all.last()? - all.first()?)) as usize;
     let length = wanted.clamp(SAMPLES.0, SAMPLES.1).min(count);
     // The middle of the record is used, because the motion is steadiest there.
     let start = (count - length) / 2;
@@ -116,7 +116,7 @@ pub(super) fn find_interference(samples: &Samples<'_>, analysis: &Analysis) -> O
             let spectrum = if louder(at) { &spectra.0 } else { &spectra.1 };
             projector.strong_line_at(spectrum.interpolate_peak(at).frequency_hz)
         })
-        .filter(|found| found.line.volts >= MIN_LINE * analysis.ellipse.amplitude_v)
+        .filter(|found| found.line.volts >= MIN_INTERFERENCE_FRACTION * analysis.ellipse.amplitude_v)
         .collect();
     found.sort_by(|a, b| b.line.volts.total_cmp(&a.line.volts));
     found.truncate(MAX_LINES);
@@ -173,14 +173,14 @@ fn peak_candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usiz
         .filter(|at| {
             let own = magnitude_at(both, *at);
             let peak = own >= magnitude_at(both, at - 1) && own > magnitude_at(both, at + 1);
-            free(*at) && peak && own >= MIN_LINE / 2.0 * amplitude
+            free(*at) && peak && own >= MIN_INTERFERENCE_FRACTION / 2.0 * amplitude
         })
         .collect();
     found.sort_by(|a, b| magnitude_at(both, *b).total_cmp(&magnitude_at(both, *a)));
     let mut taken: Vec<usize> = Vec::new();
     // Lines at noise level are never reported, no matter how many exist.
     for at in found.into_iter().take(4 * MAX_LINES) {
-        let near = (at.saturating_sub(NEIGHBOURS)..at + NEIGHBOURS)
+        let near = (at.saturating_sub(NEIGHBOURS_PER_SIDE)..at + NEIGHBOURS_PER_SIDE)
             .filter(|other| free(*other) && other.abs_diff(at) > HARMONIC_HALF_WIDTH);
         let floor = median(near.map(|other| magnitude_at(both, other)).collect()).unwrap_or(0.0);
         if magnitude_at(both, at) >= LINE_TO_NOISE_RATIO * floor
@@ -195,9 +195,9 @@ fn peak_candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usiz
 /// Returns the white noise of one channel from the median line of both channels combined. The power of such a line is
 /// a sum of four squared normal variables, whose median is 3.3567 times their variance.
 fn noise_from_median(median: f64, samples: usize) -> f64 {
-    const MEDIAN: f64 = 3.356_694;
+    const MEDIAN_VARIANCE_RATIO: f64 = 3.356_694;
     // A line is 4/n times a sum whose real and imaginary parts each have the variance σ²·Σw²/2, where Σw² = 3n/8.
-    median * samples as f64 / 4.0 / (MEDIAN * 3.0 * samples as f64 / 16.0).sqrt()
+    median * samples as f64 / 4.0 / (MEDIAN_VARIANCE_RATIO * 3.0 * samples as f64 / 16.0).sqrt()
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {
@@ -213,7 +213,8 @@ fn assign_mains_frequencies(lines: &mut [Interference], spacing_hz: f64) {
     }
     let is_of = |line: &Interference, mains: f64| {
         let times = (line.frequency_hz / mains).round();
-        (1.0..=MULTIPLES).contains(&times) && (line.frequency_hz - times * mains).abs() <= (0.2 * spacing_hz).max(0.5)
+        (1.0..=MAX_MAINS_HARMONIC).contains(&times)
+            && (line.frequency_hz - times * mains).abs() <= (0.2 * spacing_hz).max(0.5)
     };
     let of = MAINS_HZ.map(|mains| lines.iter().filter(|line| is_of(line, mains)).count());
     let [fifty, sixty] = MAINS_HZ;

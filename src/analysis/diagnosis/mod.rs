@@ -22,18 +22,18 @@ use super::signal_analysis::{Analysis, AnalysisError};
 use super::wiring::Wire;
 
 /// Hum and interference below this fraction of the amplitude are not reported.
-pub const MIN_LINE: f64 = 0.002;
+pub const MIN_INTERFERENCE_FRACTION: f64 = 0.002;
 /// A disturbance of at least this fraction of the amplitude is a warning instead of a notice. It corresponds to an
 /// error of 0.6 electrical degrees.
 pub const WARNING_SHARE: f64 = 0.01;
 /// Range of the amplitude ratio for which the weaker channel has probably lost one of its two wires.
 const HALF_AMPLITUDE_RATIO: (f64, f64) = (0.4, 0.6);
 /// Maximum voltage difference between two wires at the same level.
-const SAME_LEVEL_V: f64 = 0.1;
+const SAME_LEVEL_TOLERANCE_V: f64 = 0.1;
 /// Levels in volts: a wire below the first is shorted to ground, and a wire above the second to a supply.
 const RAILS_V: (f64, f64) = (0.5, 4.5);
 /// Fraction of samples excluded from the fit above which spikes are reported as a warning.
-const MANY_SPIKES: f64 = 1e-3;
+const SPIKE_WARNING_FRACTION: f64 = 1e-3;
 /// Minimum number of consecutive outliers that indicate an intermittent contact. Fewer outliers count as a spike.
 const INTERMITTENT_SAMPLES: usize = 16;
 /// Thresholds of the amplitude modulation over a revolution, for a notice and for a warning.
@@ -193,7 +193,7 @@ fn stuck_level(record: &Record<'_>, channel: SignalChannel) -> StuckLevel {
     let wires = level.map(|level| [(wires.0, level + difference), (wires.1, level)]);
     let at = |is: fn(f64) -> bool| wires.and_then(|wires| wires.into_iter().find(|(_, level)| is(*level)));
     match (at(|level| level < RAILS_V.0), at(|level| level > RAILS_V.1)) {
-        _ if difference.abs() <= SAME_LEVEL_V => StuckLevel::Together,
+        _ if difference.abs() <= SAME_LEVEL_TOLERANCE_V => StuckLevel::Together,
         (Some((wire, _)), _) => StuckLevel::Ground(wire),
         (None, Some((wire, _))) => StuckLevel::Supply(wire),
         (None, None) => StuckLevel::Apart(difference),
@@ -281,7 +281,7 @@ fn report_shape(
         say(severity, FindingKind::Modulation { share });
     }
     if let Some(outliers) = &analysis.outliers {
-        let many = outliers.count as f64 > MANY_SPIKES * analysis.samples as f64;
+        let many = outliers.count as f64 > SPIKE_WARNING_FRACTION * analysis.samples as f64;
         let severity = if many { Severity::Warning } else { Severity::Notice };
         if outliers.longest >= INTERMITTENT_SAMPLES {
             let (count, longest) = (outliers.count, outliers.longest);

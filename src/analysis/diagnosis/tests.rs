@@ -254,7 +254,7 @@ fn diagnoses_broken_wires() {
 }
 
 #[test]
-fn family_limits_reference_levels() {
+fn checks_reference_levels_against_family_limits() {
     let mut capture = made(steady, |_, _, signal| signal);
     capture.references = Some((vec![2.3; COUNT], vec![3.2; COUNT]));
     let finding = capture.finding_text();

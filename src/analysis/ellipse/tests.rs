@@ -87,7 +87,7 @@ fn noise_shifts_parameters_as_predicted() {
 }
 
 #[test]
-fn fit_ignores_unit_level_and_rest() {
+fn fit_is_independent_of_unit_and_offset() {
     // Converter counts, a signal of millivolts on 2.5 V, and ten thousand samples of a shaft at rest.
     let wide = Ellipse { amplitude_v: 31_000.0, offset_cosine_v: 32_768.0, offset_sine_v: 32_700.0, ..REFERENCE };
     let (sine, cosine) = signals(&wide, 1000, 0.0, 1.0);
@@ -147,7 +147,7 @@ fn rejects_data_without_ellipse() {
 }
 
 #[test]
-fn outline_circles_center_once() {
+fn outline_encircles_center_once() {
     let ellipse = Ellipse {
         amplitude_v: 0.5,
         offset_cosine_v: 0.25,

@@ -42,7 +42,7 @@ impl BitOrAssign for Flags {
 }
 
 /// Number of samples that share one summary. A block has as many groups as a `u64` has bits.
-const GROUP: usize = BLOCK / u64::BITS as usize;
+const SAMPLES_PER_GROUP: usize = BLOCK / u64::BITS as usize;
 
 const KINDS: [Flags; 3] = [Flags::BREAK, Flags::BAD, Flags::WARNING];
 
@@ -76,7 +76,7 @@ impl FlagBlock {
             *place |= flags;
         }
         for (groups, kind) in self.groups.iter_mut().zip(KINDS) {
-            *groups |= u64::from(flags.contains(kind)) << (at / GROUP);
+            *groups |= u64::from(flags.contains(kind)) << (at / SAMPLES_PER_GROUP);
         }
         self.any |= flags;
     }
@@ -86,7 +86,7 @@ impl FlagBlock {
     }
 
     pub(super) fn get(&self, at: usize) -> Flags {
-        match self.flags_in_groups(at / GROUP..at / GROUP + 1) {
+        match self.flags_in_groups(at / SAMPLES_PER_GROUP..at / SAMPLES_PER_GROUP + 1) {
             Flags::NONE => Flags::NONE,
             _ => self.kept.as_ref().and_then(|kept| kept.get(at)).copied().unwrap_or_default(),
         }
@@ -96,12 +96,16 @@ impl FlagBlock {
         if self.any == Flags::NONE || range.is_empty() {
             return Flags::NONE;
         }
-        let (from, to) = (range.start.div_ceil(GROUP), range.end / GROUP);
+        let (from, to) = (range.start.div_ceil(SAMPLES_PER_GROUP), range.end / SAMPLES_PER_GROUP);
         let mut found = self.flags_in_groups(from..to.max(from));
-        let edges = if from > to { [range, 0..0] } else { [range.start..from * GROUP, to * GROUP..range.end] };
+        let edges = if from > to {
+            [range, 0..0]
+        } else {
+            [range.start..from * SAMPLES_PER_GROUP, to * SAMPLES_PER_GROUP..range.end]
+        };
         for edge in edges.into_iter().filter(|edge| !edge.is_empty()) {
             // The edge is part of a group and may add no new flags.
-            let group = edge.start / GROUP;
+            let group = edge.start / SAMPLES_PER_GROUP;
             if !found.contains(self.flags_in_groups(group..group + 1)) {
                 found |= merge_flags(self.samples(edge));
             }
@@ -111,12 +115,14 @@ impl FlagBlock {
 
     /// Returns whether the group summary is enough to prove that sample `at` has a valid value.
     pub(super) fn is_known_valid(&self, at: usize) -> bool {
-        !self.flags_in_groups(at / GROUP..at / GROUP + 1).contains(Flags::BAD)
+        !self.flags_in_groups(at / SAMPLES_PER_GROUP..at / SAMPLES_PER_GROUP + 1).contains(Flags::BAD)
     }
 
     /// Returns the parts of `range` in which all samples have a valid value.
     pub(super) fn valid_ranges(&self, range: Range<usize>) -> ValidRanges<'_> {
-        let bad = self.flags_in_groups(range.start / GROUP..range.end.div_ceil(GROUP)).contains(Flags::BAD);
+        let bad = self
+            .flags_in_groups(range.start / SAMPLES_PER_GROUP..range.end.div_ceil(SAMPLES_PER_GROUP))
+            .contains(Flags::BAD);
         let samples = self.kept.as_ref().filter(|_| bad).map_or(&[][..], |kept| kept.as_slice());
         ValidRanges { samples, range }
     }
@@ -188,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn range_has_its_samples_flags() {
+    fn range_combines_sample_flags() {
         let mut block = FlagBlock::default();
         block.add_flags(63, Flags::WARNING);
         block.add_flags(64, Flags::BREAK);

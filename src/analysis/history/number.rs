@@ -131,7 +131,7 @@ fn step_f32(distance: f32, steps: i32) -> f32 {
 }
 
 /// Largest magnitude up to which `f32` represents every whole number exactly.
-const EXACT_F32: u64 = 1 << 24;
+const MAX_EXACT_F32_INTEGER: u64 = 1 << 24;
 
 /// Largest magnitude of two numbers up to which an `f64` represents their sum exactly.
 const EXACT_SUM_LIMIT: f64 = (1_i64 << 52) as f64;
@@ -142,7 +142,7 @@ impl Number for i64 {
     }
 
     fn distance_down(self, base: i64) -> f32 {
-        if let Some(near) = self.checked_sub(base).filter(|near| near.unsigned_abs() <= EXACT_F32) {
+        if let Some(near) = self.checked_sub(base).filter(|near| near.unsigned_abs() <= MAX_EXACT_F32_INTEGER) {
             return near as f32;
         }
         let exact = i128::from(self) - i128::from(base);
@@ -154,7 +154,7 @@ impl Number for i64 {
     }
 
     fn distance_up(self, base: i64) -> f32 {
-        if let Some(near) = self.checked_sub(base).filter(|near| near.unsigned_abs() <= EXACT_F32) {
+        if let Some(near) = self.checked_sub(base).filter(|near| near.unsigned_abs() <= MAX_EXACT_F32_INTEGER) {
             return near as f32;
         }
         let exact = i128::from(self) - i128::from(base);

@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn column_with_two_turns_is_full() {
+    fn two_turns_fill_column_range() {
         let counts: Vec<i64> = (0..10_000).map(|at| at * 3).collect();
         let shown = extents(&picture(&counts, 10));
         assert!(shown.iter().all(|own| *own == (0.0, 1000.0, false)), "{shown:?}");

@@ -121,7 +121,7 @@ impl Studio {
     }
 
     /// Returns the device on the right side, if values can be copied to it.
-    pub fn edited_side(&self) -> Option<&AnyDevice> {
+    pub fn editable_device(&self) -> Option<&AnyDevice> {
         let device = self.device(self.comparison()?.right.session()?)?;
         (!device.is_writing() && !device.is_reviewing()).then_some(device)
     }
@@ -232,7 +232,7 @@ impl Studio {
 
     /// Copies the value of an item from the left side to the right side, as an edit.
     fn copy_to_right(&mut self, item: &str) {
-        let target = self.edited_side().map(|device| device.id());
+        let target = self.editable_device().map(|device| device.id());
         let Some(view) = &mut self.comparison else { return };
         let Some((target, left)) = target.zip(view.left.document().cloned()) else { return };
         let mut taken = Ok(());
@@ -241,7 +241,7 @@ impl Studio {
         if let (Ok(()), Some(device)) = (&taken, self.device(target)) {
             view.right.update(device);
             if let (Some(Ok(now)), Some(Ok(rows))) = (self.compare_sides(&view), &mut view.rows) {
-                rows.mark_taken(item, &now);
+                rows.mark_copied(item, &now);
             }
         }
         view.refusal = taken.err();
@@ -278,7 +278,7 @@ impl Studio {
 /// Returns the newest logbook entries about a kind of device that have a backup on this computer.
 fn entries_with_backup(store: &Store, kind: &str) -> Result<Vec<Entry>, LogbookError> {
     const READ: u32 = 2_000;
-    const LISTED: usize = 100;
+    const MAX_LISTED_ENTRIES: usize = 100;
     let path = store.logbook_path();
     if matches!(path.try_exists(), Ok(false)) {
         return Ok(Vec::new());
@@ -286,5 +286,5 @@ fn entries_with_backup(store: &Store, kind: &str) -> Result<Vec<Entry>, LogbookE
     let filter = EntryFilter { kind: Some(kind.to_owned()), ..EntryFilter::default() };
     let entries = Logbook::open(&path)?.entries(&filter, READ)?;
     let is_own = |entry: &Entry| entry.backup.is_some() && entry.origin.other_bench().is_none();
-    Ok(entries.into_iter().filter(is_own).take(LISTED).collect())
+    Ok(entries.into_iter().filter(is_own).take(MAX_LISTED_ENTRIES).collect())
 }

@@ -56,7 +56,7 @@ impl ComparedRows {
 
     /// Marks an item as copied, and updates the other items from a new comparison. Bytes that were separate rows stay
     /// separate, even if they are now equal.
-    pub(super) fn mark_taken(&mut self, item: &str, now: &ComparedRows) {
+    pub(super) fn mark_copied(&mut self, item: &str, now: &ComparedRows) {
         let find = |item: &str| now.groups.iter().flat_map(|group| &group.rows).find(|row| row.item == item);
         for row in self.rows_mut() {
             if row.item == item {

@@ -1,6 +1,6 @@
 //! Execution of actions in the connection dialog.
 
-use super::context::{FinderContext, NextAction};
+use super::context::{FinderContext, FinderRequests};
 use super::form::AnyForm;
 use super::{ConnectAction, ConnectDialog, list_ports};
 use crate::app::payload::{Payload, PayloadKindError};
@@ -131,7 +131,7 @@ impl Studio {
         if let Some((_, form)) = connect.forms.get_mut(place) {
             act(form.as_mut(), &mut context);
         }
-        let NextAction { found, problem } = context.into_requests();
+        let FinderRequests { found, problem } = context.into_requests();
         connect.problem = problem;
         self.connect = Some(connect);
         if let Some(url) = found {

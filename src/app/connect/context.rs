@@ -20,7 +20,7 @@ pub struct FinderContext<'a> {
 
 /// What a device search has requested from the dialog.
 #[derive(Default)]
-pub(super) struct NextAction {
+pub(super) struct FinderRequests {
     pub(super) found: Option<LinkUrl>,
     /// Reason why the request could not be executed, for the user.
     pub(super) problem: Option<Text>,
@@ -31,8 +31,8 @@ impl<'a> FinderContext<'a> {
         FinderContext { studio, tab, link, found: None, problem: None }
     }
 
-    pub(super) fn into_requests(self) -> NextAction {
-        NextAction { found: self.found, problem: self.problem }
+    pub(super) fn into_requests(self) -> FinderRequests {
+        FinderRequests { found: self.found, problem: self.problem }
     }
 
     pub fn services(&mut self) -> &mut Services {

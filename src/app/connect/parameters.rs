@@ -82,12 +82,14 @@ impl Parameters {
         is_virtual: bool,
         (link, of_the_virtual): (&[&str], &[&str]),
     ) {
-        self.add_other_parameters(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
+        self.add_parameters_without_entry(rest, |name| {
+            is_virtual || link.contains(&name) || !of_the_virtual.contains(&name)
+        });
     }
 
     /// Adds the parameters without an entry that are valid for the link. An entry overrides an older parameter of the
     /// same name.
-    pub(crate) fn add_other_parameters(&mut self, rest: &[NameValuePair], belongs: impl Fn(&str) -> bool) {
+    pub(crate) fn add_parameters_without_entry(&mut self, rest: &[NameValuePair], belongs: impl Fn(&str) -> bool) {
         for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
             if self.0.iter().all(|(own, _)| own != name) {
                 self.set(name, value);

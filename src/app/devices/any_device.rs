@@ -8,7 +8,7 @@ use jiff::Timestamp;
 use super::AnyDevice;
 use super::memory::DeviceMemory;
 use crate::app::Text;
-use crate::app::action::{ReadBackup, ReviewAction};
+use crate::app::action::{BackupReadResult, ReviewAction};
 use crate::app::closing::LONG_RECORDING_NS;
 use crate::app::review::ReviewSheet;
 use crate::app::services::Services;
@@ -136,7 +136,7 @@ impl AnyDevice {
         }
     }
 
-    pub(in crate::app) fn apply_backup(&mut self, read: ReadBackup, services: &mut Services) {
+    pub(in crate::app) fn apply_backup(&mut self, read: BackupReadResult, services: &mut Services) {
         if let Some(memory) = self.memory_mut() {
             memory.apply_backup(read, services);
         }
@@ -152,7 +152,7 @@ impl AnyDevice {
     }
 
     /// Marks a save as waiting for the user's answer, so that another save may begin.
-    pub(in crate::app) fn mark_save_waiting(&mut self) {
+    pub(in crate::app) fn pause_save_for_question(&mut self) {
         self.state_mut().is_saving = false;
     }
 }

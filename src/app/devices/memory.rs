@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use crate::app::Text;
-use crate::app::action::{ReadBackup, ReviewAction};
+use crate::app::action::{BackupReadResult, ReviewAction};
 use crate::app::review::ReviewSheet;
 use crate::app::services::Services;
 use crate::app::session::{DeviceHistory, HasMemory, HasProfile};
@@ -70,7 +70,7 @@ pub trait DeviceMemory {
     fn set_history(&mut self, of: &DeviceKey, listed: DeviceHistory);
 
     /// Handles a backup that was read, or the error. A backup that belongs to another device is ignored.
-    fn apply_backup(&mut self, read: ReadBackup, services: &mut Services);
+    fn apply_backup(&mut self, read: BackupReadResult, services: &mut Services);
 }
 
 impl<T: HasProfile> DeviceMemory for T {
@@ -92,7 +92,7 @@ impl<T: HasProfile> DeviceMemory for T {
         match action {
             ReviewAction::Write(plan) => self.write(plan, services),
             ReviewAction::Toggle(permit) => self.toggle_plan_permit(permit, services),
-            ReviewAction::ForceWear(force) => self.accept_wear(force),
+            ReviewAction::ForceWear(force) => self.set_wear_override(force),
             ReviewAction::Close => DeviceMemory::close_review(self),
         }
     }
@@ -148,7 +148,7 @@ impl<T: HasProfile> DeviceMemory for T {
         }
     }
 
-    fn apply_backup(&mut self, read: ReadBackup, services: &mut Services) {
+    fn apply_backup(&mut self, read: BackupReadResult, services: &mut Services) {
         if self.device_key().as_ref() == Some(&read.of) {
             HasProfile::apply_backup(self, read, services);
         }

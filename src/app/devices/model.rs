@@ -285,7 +285,7 @@ impl<'a> ActionContext<'a> {
     ///
     /// # Errors
     /// Returns a message if the profile is read-only.
-    pub(crate) fn edited_profile_of(&self, id: SessionId) -> Result<Option<Body>, Text> {
+    pub(crate) fn edited_session_profile(&self, id: SessionId) -> Result<Option<Body>, Text> {
         let Some(other) = self.others.iter().find(|other| other.id() == id) else { return Ok(None) };
         read_only_reason(other.source()).map_or_else(|| Ok(other.edited_body()), Err)
     }

@@ -159,13 +159,13 @@ pub(super) struct LibrarySource {
 
 impl LibrarySource {
     /// Maximum number of files in folders.
-    const FILES: usize = 2_000;
+    const MAX_FOLDER_FILES: usize = 2_000;
     /// Number of levels of folders, including the first one.
     const LEVELS: usize = 3;
     const EXTENSION: &'static str = "ron";
 
     pub(super) fn read(&self) -> LibraryListing {
-        let mut search = FileSearch::new(Self::EXTENSION, Self::FILES);
+        let mut search = FileSearch::new(Self::EXTENSION, Self::MAX_FOLDER_FILES);
         let skips = |folder: &Path| self.store.contains(folder);
         let ready_made = self.ready_made.iter().find(|folder| folder.is_dir());
         let ready_made = ready_made.map(|folder| search.find(folder, Self::LEVELS, &skips)).unwrap_or_default();

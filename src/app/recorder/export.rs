@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 
 use super::line::within_range;
-use super::{GroupId, Recorder, SAMPLE, Series};
+use super::{GroupId, Recorder, Series, UNTIMED_SAMPLE_INTERVAL_NS};
 use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, History};
 use crate::store::{FileError, write_atomically_with};
@@ -330,7 +330,7 @@ impl Rows {
             let whole = nanoseconds.unsigned_abs();
             // Writing to a string cannot fail.
             let _ = if counts {
-                write!(text, "{}", nanoseconds.div_euclid(SAMPLE))
+                write!(text, "{}", nanoseconds.div_euclid(UNTIMED_SAMPLE_INTERVAL_NS))
             } else {
                 write!(text, "{sign}{}.{:09}", whole / 1_000_000_000, whole % 1_000_000_000)
             };

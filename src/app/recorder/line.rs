@@ -75,7 +75,7 @@ impl Series {
     }
 
     #[must_use]
-    pub(crate) fn into_hidden(self) -> Self {
+    pub(crate) fn initially_hidden(self) -> Self {
         Series { shown: false, ..self }
     }
 

@@ -55,7 +55,7 @@ pub enum RecorderAction {
 }
 
 /// Interval in nanoseconds between two displayed samples without time stamps.
-pub const SAMPLE: i64 = 1_000;
+pub const UNTIMED_SAMPLE_INTERVAL_NS: i64 = 1_000;
 
 /// The number of a group of samples that are recorded together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -121,10 +121,10 @@ impl Recorder {
         Recorder { view: TimeWindow::Follow { span: span.max(1) }, ..Recorder::default() }
     }
 
-    /// Creates a recorder for samples without time stamps. Sample n is displayed at n times [`SAMPLE`]. The view
+    /// Creates a recorder for samples without time stamps. Sample n is displayed at n times [`UNTIMED_SAMPLE_INTERVAL_NS`]. The view
     /// follows the samples and shows the given number of them.
-    pub fn without_times(samples: i64) -> Self {
-        Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
+    pub fn without_timestamps(samples: i64) -> Self {
+        Recorder { counts: true, ..Recorder::new(samples.saturating_mul(UNTIMED_SAMPLE_INTERVAL_NS)) }
     }
 
     /// Marks the recording as complete. A trigger that has not fired by then is marked as missed.

@@ -326,7 +326,7 @@ fn table_leaves_bad_samples_blank() {
 
 #[test]
 fn counts_untimed_samples() {
-    let mut recorder = Recorder::without_times(100);
+    let mut recorder = Recorder::without_timestamps(100);
     let group = recorder.add_group(&[Kind::Real], 100, None);
     recorder.add_line(Series::new(
         group,
@@ -335,9 +335,10 @@ fn counts_untimed_samples() {
         "sine",
         vec![Scale::new("unit.steps", 1.0, 0)],
     ));
-    let times: Vec<SampleTime> = (0..3).map(|sample| SampleTime::from_nanoseconds(sample * SAMPLE)).collect();
+    let times: Vec<SampleTime> =
+        (0..3).map(|sample| SampleTime::from_nanoseconds(sample * UNTIMED_SAMPLE_INTERVAL_NS)).collect();
     recorder.append(group, &times, &[ColumnPart::from_reals(&[0.5, 1.5, 2.5])]).unwrap();
-    assert_eq!(recorder.window_length(), 100 * SAMPLE);
+    assert_eq!(recorder.window_length(), 100 * UNTIMED_SAMPLE_INTERVAL_NS);
     assert_eq!(exported(&mut recorder, false).unwrap(), "sample,sine [steps],remark\n0,0.5,\n1,1.5,\n2,2.5,\n");
 }
 

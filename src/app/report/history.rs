@@ -71,7 +71,7 @@ pub(super) fn read(content: &ReportContent, source: &ReportSource, store: &Store
     entries.retain(|entry| entry.kind != EntryKind::Connected);
     let has_more = entries.len() > LIMIT as usize;
     entries.truncate(LIMIT as usize);
-    let backups = entries.iter().filter_map(BackupFile::of_entry).collect();
+    let backups = entries.iter().filter_map(BackupFile::from_logbook_entry).collect();
     let names_virtual = matches!(source, ReportSource::Profile(_));
     Ok(History { entries, has_more, write_cycles, names_virtual, backups })
 }
@@ -152,7 +152,7 @@ impl History {
 }
 
 impl BackupFile {
-    fn of_entry(entry: &Entry) -> Option<Self> {
+    fn from_logbook_entry(entry: &Entry) -> Option<Self> {
         let path = entry.backup.as_ref()?;
         let checksum = match entry.origin.other_bench() {
             Some(bench) => Err(Text::new("report.on_bench").with("bench", bench)),

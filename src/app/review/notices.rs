@@ -29,11 +29,11 @@ pub(crate) fn undo_texts(operations: impl IntoIterator<Item = (Text, Option<Undo
 }
 
 /// Maximum number of items listed in a sentence.
-const MAX_NAMED: usize = 3;
+const MAX_ITEMS_IN_SENTENCE: usize = 3;
 
 fn truncate_items(items: &[Text]) -> Vec<Text> {
-    let more = (items.len() > MAX_NAMED).then(|| literal_text("…"));
-    items.iter().take(MAX_NAMED).cloned().chain(more).collect()
+    let more = (items.len() > MAX_ITEMS_IN_SENTENCE).then(|| literal_text("…"));
+    items.iter().take(MAX_ITEMS_IN_SENTENCE).cloned().chain(more).collect()
 }
 
 fn undo_text(undo: &Undo) -> Text {

@@ -7,7 +7,7 @@ use jiff::tz::TimeZone;
 use crate::app::Text;
 use crate::app::explain::{literal_text, redo_text, truncated_list};
 use crate::app::kinds::KindRegistry;
-use crate::profile::{Body, ChangedSince, KeptItem, UndoneWrite};
+use crate::profile::{Body, IrreversibleItem, LaterChange, UndoableWrite};
 use crate::store::{Entry, EntryUid};
 use crate::worker::commit::PlannedWrite;
 
@@ -19,7 +19,7 @@ pub struct UndoneEntry {
     at: String,
     /// Local time of an earlier undo of the entry, if any.
     undone_at: Option<String>,
-    write: UndoneWrite,
+    write: UndoableWrite,
     device_kind: String,
     kinds: KindRegistry,
     /// Names in the manual of those items that are addresses.
@@ -32,12 +32,12 @@ impl UndoneEntry {
     /// # Errors
     /// Returns one message per item if no item can be undone.
     pub(in crate::app) fn new(entry: &Entry, backup: &mut Body, kinds: KindRegistry) -> Result<Self, Vec<Text>> {
-        let write = UndoneWrite::new(&entry.items, backup);
+        let write = UndoableWrite::new(&entry.items, backup);
         let undone_at = entry.undone_by.map(|own| minutes(own.at));
         let manual_names = entry.items.iter().filter_map(|own| Some((own.item.clone(), own.name.clone()?))).collect();
         let (uid, at, device_kind) = (entry.uid.clone(), minutes(entry.at), entry.device.kind.clone());
         let undone = UndoneEntry { uid, at, undone_at, write, device_kind, kinds, manual_names };
-        if undone.write.has_effect() { Ok(undone) } else { Err(undone.kept_item_messages()) }
+        if undone.write.has_effect() { Ok(undone) } else { Err(undone.irreversible_item_messages()) }
     }
 
     pub(super) fn title(&self) -> Text {
@@ -54,7 +54,7 @@ impl UndoneEntry {
 
     /// Returns a warning if the entry has been undone before, and a description of each item that is not undone.
     pub(super) fn warnings(&self) -> impl Iterator<Item = Text> {
-        self.repeated_undo_message().into_iter().chain(self.kept_item_messages())
+        self.repeated_undo_message().into_iter().chain(self.irreversible_item_messages())
     }
 
     fn repeated_undo_message(&self) -> Option<Text> {
@@ -62,8 +62,8 @@ impl UndoneEntry {
     }
 
     /// Describes each item that is not undone, and what to do instead.
-    fn kept_item_messages(&self) -> Vec<Text> {
-        let kept = |own: &KeptItem| {
+    fn irreversible_item_messages(&self) -> Vec<Text> {
+        let kept = |own: &IrreversibleItem| {
             let name = self.item_name(&own.item);
             Text::new("undo.kept").with_text("item", name).with_text("instead", redo_text(&own.redo))
         };
@@ -80,7 +80,7 @@ impl UndoneEntry {
         (!changed.is_empty()).then(|| texts.collect())
     }
 
-    fn changed_item_message(&self, changed: &ChangedSince) -> Text {
+    fn changed_item_message(&self, changed: &LaterChange) -> Text {
         let value = |value: &Option<String>| match value {
             Some(value) => literal_text(value),
             None => Text::new("undo.no_value"),

@@ -10,7 +10,7 @@ use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::profile::ProfileDocument;
 use crate::store::{DeviceKey, FileError};
 
-const NOT_SAVED: &str = "session.not_saved";
+const SESSION_NOT_SAVED_ID: &str = "session.not_saved";
 
 type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 
@@ -123,7 +123,7 @@ pub trait HasDraft: HasSession {
         let name = self.session().name();
         self.session_mut().is_saving = false;
         if let Err(error) = result {
-            let texts = vec![explain::file_error_text(&error), Text::new(NOT_SAVED)];
+            let texts = vec![explain::file_error_text(&error), Text::new(SESSION_NOT_SAVED_ID)];
             return services.notify(Severity::Error, texts, Some(&name));
         }
         let severity = if saving.remarks.is_empty() { Severity::Good } else { Severity::Warning };
@@ -137,7 +137,7 @@ pub trait HasDraft: HasSession {
             self.adopt_written_file(file, *saving.document, services);
         }
         // Earlier notices about this document no longer apply.
-        services.log.remove_from_window(NOT_SAVED, Some(&name));
+        services.log.remove_from_window(SESSION_NOT_SAVED_ID, Some(&name));
         services.log.remove_file_notices(&saving.path);
         if self.current_edits().has_no_edits() {
             services.log.remove_from_window(DRAFT_RESTORED_ID, Some(&name));

@@ -22,7 +22,7 @@ type Prepared<T> = <<T as HasSession>::Device as Reviewable>::Prepared;
 type Committed<T> = worker::CommitResult<<<T as HasSession>::Device as Reviewable>::Written>;
 
 /// A plan that the user has approved.
-pub type ApprovedPlanOf<K> = worker::commit::ApprovedPlan<<K as Reviewable>::Prepared>;
+pub type ApprovedReviewPlan<K> = worker::commit::ApprovedPlan<<K as Reviewable>::Prepared>;
 
 /// A device with writable memory.
 pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
@@ -67,7 +67,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     fn prepare_job(change: Change<Self>) -> Job<Self>;
 
     /// Creates the job that executes an approved plan.
-    fn commit_job(&mut self, agreed: ApprovedPlanOf<Self::Device>) -> Job<Self>;
+    fn commit_job(&mut self, agreed: ApprovedReviewPlan<Self::Device>) -> Job<Self>;
 
     /// Discards all data about the previous device after a different device has replied.
     fn discard_device_data(&mut self);
@@ -96,7 +96,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         let ops = &prepared.plan().ops;
         let operations = ops.iter().map(|op| Self::Device::operation_texts(prepared, op).item);
         let text = Text::new("log.begins").with_text("what", what.clone()).with_list("operations", operations);
-        services.log_only(Severity::Note, vec![text], Some(&self.session().name()));
+        services.log_without_display(Severity::Note, vec![text], Some(&self.session().name()));
     }
 
     /// Opens the review of writing the edits, and requests its plan.
@@ -149,7 +149,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     }
 
     /// Sets whether to write although the device has reached its limit of write cycles.
-    fn accept_wear(&mut self, force: bool) {
+    fn set_wear_override(&mut self, force: bool) {
         if let Some(review) = self.review_mut() {
             review.force_wear = force;
         }
@@ -200,7 +200,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     }
 
     /// Approves the plan shown to the user, if it is still the plan under review.
-    fn approve_plan(&self, shown: PlanId) -> Option<ApprovedPlanOf<Self::Device>> {
+    fn approve_plan(&self, shown: PlanId) -> Option<ApprovedReviewPlan<Self::Device>> {
         let review = self.open_review().filter(|_| self.session().is_ready())?;
         let ReviewState::Ready(prepared) = &review.state else { return None };
         let is_shown = prepared.plan().id() == shown;
@@ -243,7 +243,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         let (name, stands) = (self.session().name(), self.open_review().is_some_and(Review::is_writing));
         // A successful result remains in the review until the user closes it.
         if severity == Severity::Good && stands {
-            services.log_only(severity, texts, Some(&name));
+            services.log_without_display(severity, texts, Some(&name));
         } else {
             services.notify(severity, texts, Some(&name));
         }
@@ -286,7 +286,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
 
     /// Discards a plan that has not been started, with its review.
     fn discard_plan(&mut self) {
-        if self.open_review().is_some_and(Review::is_pending_plan) {
+        if self.open_review().is_some_and(Review::has_pending_plan) {
             *self.review_mut() = None;
         }
     }

@@ -21,7 +21,7 @@ pub(in crate::app) use drafts::{ActiveDraft, file_key};
 pub use drafts::{DraftEdits, DraftKey, DraftOutcome};
 pub use has_session::HasSession;
 pub use kind::{JobCompletion, Kind};
-pub use memory::{ApprovedPlanOf, HasMemory};
+pub use memory::{ApprovedReviewPlan, HasMemory};
 pub use profiles::DeviceHistory;
 pub use saved::{HasProfile, KnownProfile, unsaved_edits_remark};
 pub(in crate::app) use saving::DivergedFile;
@@ -252,7 +252,7 @@ impl<D: Kind> Session<D> {
         self.live_due = false;
         if self.phase == Phase::Opening {
             let why = Text::new("session.open_cancelled");
-            services.log_only(Severity::Note, vec![why.clone()], Some(&self.name()));
+            services.log_without_display(Severity::Note, vec![why.clone()], Some(&self.name()));
             self.phase = Phase::Lost(why);
             if let Some(opening) = &mut self.opening {
                 // Results of this attempt are ignored. The next attempt waits until it has ended.
@@ -281,7 +281,7 @@ impl<D: Kind> Session<D> {
     pub(in crate::app) fn connection_lost(&mut self, why: Text, services: &mut Services) {
         // The session itself displays the message.
         services.log.remove_minor(&self.name());
-        services.log_only(Severity::Error, vec![why.clone()], Some(&self.name()));
+        services.log_without_display(Severity::Error, vec![why.clone()], Some(&self.name()));
         self.release_thread(JobState::Failed(why.clone()), services);
         self.opening = None;
         self.phase = Phase::Lost(why);

@@ -6,7 +6,7 @@ use jiff::Timestamp;
 
 use super::{FileSnapshot, ProfileFile, SaveRequest, SessionState, Source};
 use crate::analysis::check::CycleCount;
-use crate::app::action::{ReadBackup, TaskResult};
+use crate::app::action::{BackupReadResult, TaskResult};
 use crate::app::documents::{new_document, read_document, read_profile};
 use crate::app::services::Services;
 use crate::app::{Action, FileQuestion, Severity, Text, explain};
@@ -117,7 +117,7 @@ impl SessionState {
         let (session, formats) = (self.id, services.world.kinds.formats);
         services.tasks.run("backup", move || {
             let result = read_profile(&path, formats).map(Box::new);
-            Action::Done(TaskResult::Backup(session, Box::new(ReadBackup { of, path, undone, result })))
+            Action::Done(TaskResult::Backup(session, Box::new(BackupReadResult { of, path, undone, result })))
         });
     }
 
@@ -143,7 +143,7 @@ pub struct DeviceHistory {
 }
 
 impl DeviceHistory {
-    const STATUSES: u32 = 20;
+    const MAX_STATUSES: u32 = 20;
     const WRITES: u32 = 200;
 
     pub(in crate::app) fn load(key: &DeviceKey, store: &Store) -> Self {
@@ -153,7 +153,7 @@ impl DeviceHistory {
             path if matches!(path.try_exists(), Ok(false)) => (Ok(Vec::new()), None, Vec::new()),
             path => match Logbook::open(&path) {
                 Ok(logbook) => {
-                    let statuses = logbook.status_entries(key, Self::STATUSES).unwrap_or_default();
+                    let statuses = logbook.status_entries(key, Self::MAX_STATUSES).unwrap_or_default();
                     let asset = logbook.asset(key).unwrap_or_default();
                     (logbook.history(key, Self::WRITES), asset, statuses)
                 }

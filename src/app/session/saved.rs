@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{HasMemory, HasSession, Phase, Source};
-use crate::app::action::{ReadBackup, ReadError};
+use crate::app::action::{BackupReadResult, ReadError};
 use crate::app::documents::{new_document, read_error, read_only_reason};
 use crate::app::review::{Reviewable, UndoneEntry};
 use crate::app::services::Services;
@@ -108,7 +108,7 @@ pub trait HasProfile: HasMemory {
 
     /// Reads a backup, either to restore it or to undo a logbook entry.
     fn read_backup(&mut self, path: PathBuf, undone: Option<Box<Entry>>, services: &mut Services) {
-        let refusal = undone.as_ref().and_then(|entry| other_bench_text(entry, &path));
+        let refusal = undone.as_ref().and_then(|entry| remote_backup_text(entry, &path));
         match (refusal, self.device_key()) {
             (Some(refusal), _) => self.session().report_rejection(refusal, services),
             (None, Some(of)) => self.session().read_backup(of, path, undone, services),
@@ -116,8 +116,8 @@ pub trait HasProfile: HasMemory {
         }
     }
 
-    fn apply_backup(&mut self, read: ReadBackup, services: &mut Services) {
-        let ReadBackup { path, undone, result, .. } = read;
+    fn apply_backup(&mut self, read: BackupReadResult, services: &mut Services) {
+        let BackupReadResult { path, undone, result, .. } = read;
         let restored = result.and_then(|own| {
             let body = own.check_schema().map_err(ReadError::Profile)?.body;
             let planned = match &undone {
@@ -142,7 +142,7 @@ pub trait HasProfile: HasMemory {
 
 /// Returns the message that an entry's backup is on another computer. A file with the same path on this computer is not
 /// that backup.
-fn other_bench_text(entry: &Entry, path: &Path) -> Option<Text> {
+fn remote_backup_text(entry: &Entry, path: &Path) -> Option<Text> {
     let bench = entry.origin.other_bench()?;
     Some(Text::new("undo.other_bench").with("bench", bench).with("path", path.display()))
 }

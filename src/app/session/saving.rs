@@ -59,7 +59,7 @@ impl SaveRequest {
         let formats = kinds.formats;
         let key = file_key(&self.path);
         if let Some(guard) = self.opened.clone().filter(|guard| guard.key == key) {
-            match text_to_replace(&self.path, &guard.text, &self.document, formats) {
+            match current_file_text(&self.path, &guard.text, &self.document, formats) {
                 Ok(text) => self.opened = Some(FileSnapshot { key: key.clone(), text }),
                 Err(found) => {
                     return Action::Done(TaskResult::Diverged(Box::new(ProfileConflict::new(self, *found, kinds))));
@@ -98,7 +98,7 @@ pub(in crate::app) struct DivergedFile {
 
 /// Returns the text to replace, or the changed content if another program has written the file. A missing file does not
 /// count as changed.
-fn text_to_replace(
+fn current_file_text(
     path: &Path,
     opened: &str,
     wanted: &ProfileDocument,

@@ -86,11 +86,11 @@ pub trait SessionEvents: HasSession {
 
     /// Processes the session's events received since the last call.
     fn process_events(&mut self, services: &mut Services) {
-        self.poll_line(services);
+        self.process_pending_events(services);
     }
 
     /// Processes the session's pending events. Kinds of devices with additional work override this method.
-    fn poll_line(&mut self, services: &mut Services) {
+    fn process_pending_events(&mut self, services: &mut Services) {
         // Samples that precede a job are handled before its result. Later ones are handled in the next call.
         self.fetch_samples_and_frames();
         while let Some(event) = self.session_mut().line.as_mut().and_then(LiveSession::next) {

@@ -99,7 +99,7 @@ impl SessionState {
         let Source::Link(url) = &self.source else { return };
         let link = Text::new("log.answers").with("link", self.kinds.display_link(url));
         let texts = std::iter::once(link).chain(facts).collect();
-        services.log_only(Severity::Note, texts, Some(&self.name()));
+        services.log_without_display(Severity::Note, texts, Some(&self.name()));
     }
 
     /// Marks the device as replying, even if it only rejects requests.
@@ -114,7 +114,7 @@ impl SessionState {
         self.phase = Phase::Silent(first(&why));
         services.log.remove_minor(&self.name());
         services.log.remove_from_window("session.not_connected", Some(&self.name()));
-        services.log_only(Severity::Error, why, Some(&self.name()));
+        services.log_without_display(Severity::Error, why, Some(&self.name()));
     }
 
     /// Reports a message about this device. If `stands_there` is set, the message is only logged, because it is already
@@ -127,7 +127,7 @@ impl SessionState {
         services: &mut Services,
     ) {
         match stands_there {
-            true => services.log_only(severity, texts, Some(&self.name())),
+            true => services.log_without_display(severity, texts, Some(&self.name())),
             false => services.notify(severity, texts, Some(&self.name())),
         }
     }

@@ -38,7 +38,7 @@ fn finds_unknown_name() {
 
 /// If the setting for the user name cannot be read, no name may get into the logbook.
 #[test]
-fn unreadable_rule_hides_user_name() {
+fn unreadable_setting_hides_user_name() {
     for (text, expected) in [
         ("(theme: Mauve)", UserName::Full),
         ("(theme: Mauve, user_name: Initials)", UserName::Initials),
@@ -83,7 +83,7 @@ fn with_drives(drives: &str) -> Settings {
 
 /// Changes made here are merged into the content written by another window.
 #[test]
-fn merges_changes_and_tightens_marks() {
+fn merges_concurrent_settings_changes() {
     let cases = [
         ("marked there", "unconfirmed: [1], marks: {1: 1}", "", "", "unconfirmed: [1], marks: {1: 1}"),
         ("marked here", "", "", "unconfirmed: [1], marks: {1: 1}", "unconfirmed: [1], marks: {1: 1}"),

@@ -96,7 +96,7 @@ impl PositionScales {
         [
             line(0, own_position, position),
             line(1, own_speed, speed).into_derived(),
-            line(2, own_acceleration, acceleration).into_derived().into_hidden(),
+            line(2, own_acceleration, acceleration).into_derived().initially_hidden(),
         ]
     }
 }

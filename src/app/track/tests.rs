@@ -240,7 +240,7 @@ fn long_recording_survives_device_change() {
         let mut track = DeviceRecorder::<Nothing>::default();
         track.add_positions(&seconds(0, count), &meaning);
         track.set_watched(&[Nothing]);
-        track.clear_unless_long();
+        track.discard_short_recording();
         assert_eq!((track.position_count(), track.watched_values().len()), (0, 1));
         track.add_positions(&seconds(count, 1), &meaning);
         assert_eq!(track.recorder.series().len(), lines + 1, "{count}");

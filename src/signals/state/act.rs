@@ -335,11 +335,15 @@ impl Signals {
             }
             Err(error @ ReadCaptureError::Cancelled) => {
                 self.table = reading.settled.clone();
-                services.log_only(Severity::Note, vec![explain::signal::read_capture_error_text(&path, &error)], None);
+                services.log_without_display(
+                    Severity::Note,
+                    vec![explain::signal::read_capture_error_text(&path, &error)],
+                    None,
+                );
             }
             Err(error) => {
                 let text = explain::signal::read_capture_error_text(&path, &error);
-                services.log_only(Severity::Error, vec![text.clone()], None);
+                services.log_without_display(Severity::Error, vec![text.clone()], None);
                 self.problem = Some(text);
                 self.table = Some(table);
             }

@@ -6,7 +6,7 @@ use crate::analysis::SampleTime;
 use crate::analysis::capture::Capture;
 use crate::analysis::history::{BatchError, ColumnPart, Kind};
 use crate::analysis::wiring::Wires;
-use crate::app::recorder::{self, GroupId, Recorder, SAMPLE, Scale, Series};
+use crate::app::recorder::{self, GroupId, Recorder, Scale, Series, UNTIMED_SAMPLE_INTERVAL_NS};
 use crate::signals::state::TEXTS;
 use crate::worker::stream::Batch;
 
@@ -50,7 +50,7 @@ impl Scope {
     pub(super) fn from_capture(capture: &Capture) -> Self {
         let count = capture.sine_v.len().min(capture.cosine_v.len());
         let counts = capture.time_s.len() < count;
-        let recorder = if counts { Recorder::without_times(1) } else { Recorder::new(SPAN) };
+        let recorder = if counts { Recorder::without_timestamps(1) } else { Recorder::new(SPAN) };
         let mut scope = Scope::new(capture.wires.is_some(), count.max(1), recorder);
         let mut from = 0;
         if !counts && capture.time_s.iter().any(|seconds| seconds.abs() > MAX_TIME_S) {
@@ -78,7 +78,7 @@ impl Scope {
             let line = Series::new(group, column, TEXTS.text(name), *heading, scales);
             let derived = *name == "scope.vector";
             let line = if derived { line.into_derived() } else { line };
-            recorder.add_line(if column < DIFFERENCES.len() { line } else { line.into_hidden() });
+            recorder.add_line(if column < DIFFERENCES.len() { line } else { line.initially_hidden() });
         }
         Scope { recorder, refused: None, group }
     }
@@ -89,7 +89,9 @@ impl Scope {
             Some(seconds) if !self.recorder.counts_samples() => {
                 SampleTime::from_nanoseconds((seconds * 1e9).round() as i64)
             }
-            _ => SampleTime::from_nanoseconds(i64::try_from(at).unwrap_or(i64::MAX).saturating_mul(SAMPLE)),
+            _ => SampleTime::from_nanoseconds(
+                i64::try_from(at).unwrap_or(i64::MAX).saturating_mul(UNTIMED_SAMPLE_INTERVAL_NS),
+            ),
         });
         let times: Vec<SampleTime> = times.collect();
         let (sine, cosine) = (part(&capture.sine_v), part(&capture.cosine_v));

@@ -108,7 +108,7 @@ fn limit_text(theme: &Theme, bound: QuantityLimit, unit: Unit) -> String {
 }
 
 fn limit_numbers(theme: &Theme, bound: QuantityLimit) -> String {
-    bound.format(|value| theme.format_plain((value * 1e6).round() / 1e6))
+    bound.format(|value| theme.format_significant_digits((value * 1e6).round() / 1e6))
 }
 
 fn with_unit_symbol(words: String, unit: Unit) -> String {

@@ -138,7 +138,7 @@ fn columns_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Si
 
 fn volts(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut TableUiState, act: &mut impl FnMut(Signals)) {
     let volts = table.hints.volts_per_unit.or(table.layout.as_ref().map(|layout| layout.volts_per_unit));
-    let shown = volts.map(|volts| theme.format_plain(volts)).unwrap_or_default();
+    let shown = volts.map(|volts| theme.format_significant_digits(volts)).unwrap_or_default();
     let word = translate(theme, "columns.volts");
     entry(ui, theme, &word, |ui| {
         committed_entry(ui, &mut view.volts, &shown, 64.0, &word, |text| {

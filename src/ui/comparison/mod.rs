@@ -20,9 +20,9 @@ const WIDTH: f32 = 1160.0;
 /// Space between the dialog and the window in points.
 const MARGIN: f32 = 24.0;
 /// Height in points of a side, including the line of details below it.
-const SIDE: f32 = 56.0;
+const SIDE_HEIGHT: f32 = 56.0;
 /// Width of the button between the sides in points.
-const SWAP: f32 = 28.0;
+const SWAP_BUTTON_WIDTH: f32 = 28.0;
 
 pub(super) fn comparison_ui(
     ctx: &egui::Context,
@@ -60,11 +60,14 @@ pub(super) fn comparison_ui(
 }
 
 fn sides_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, view: &ComparisonView, actions: &mut Vec<Action>) {
-    let (room, _) = ui.allocate_exact_size(vec2(ui.available_width(), SIDE), egui::Sense::hover());
-    let width = (room.width() - SWAP - 2.0 * theme.space.between) / 2.0;
-    let left = Rect::from_min_size(room.min, vec2(width, SIDE));
-    let right = Rect::from_min_size(egui::pos2(room.right() - width, room.top()), vec2(width, SIDE));
-    let swap = Rect::from_min_size(egui::pos2(left.right() + theme.space.between, room.top()), vec2(SWAP, SIDE));
+    let (room, _) = ui.allocate_exact_size(vec2(ui.available_width(), SIDE_HEIGHT), egui::Sense::hover());
+    let width = (room.width() - SWAP_BUTTON_WIDTH - 2.0 * theme.space.between) / 2.0;
+    let left = Rect::from_min_size(room.min, vec2(width, SIDE_HEIGHT));
+    let right = Rect::from_min_size(egui::pos2(room.right() - width, room.top()), vec2(width, SIDE_HEIGHT));
+    let swap = Rect::from_min_size(
+        egui::pos2(left.right() + theme.space.between, room.top()),
+        vec2(SWAP_BUTTON_WIDTH, SIDE_HEIGHT),
+    );
     let choices = studio.comparison_choices();
     for (side, rect) in [(Side::Left, left), (Side::Right, right)] {
         ui.scope_builder(UiBuilder::new().max_rect(rect).id_salt(side), |ui| {
@@ -132,7 +135,7 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, rows: &ComparedRows, act
         empty_placeholder(ui, theme, &theme.translate("comparison.none"), None);
         return;
     }
-    table_ui(ui, theme, studio.edited_side(), rows, shows_all, actions);
+    table_ui(ui, theme, studio.editable_device(), rows, shows_all, actions);
 }
 
 fn buttons_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, view: &ComparisonView, actions: &mut Vec<Action>) {

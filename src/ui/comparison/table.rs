@@ -14,11 +14,11 @@ const ROW: f32 = 26.0;
 const LINE: f32 = 17.0;
 const HEADING: f32 = 30.0;
 /// Width of the column with the buttons in points.
-const TAKE: f32 = 34.0;
+const BUTTON_COLUMN_WIDTH: f32 = 34.0;
 /// Fraction of the table width for the names.
 const NAMES: f32 = 0.32;
 /// Number of equal bytes from which only the byte and the count are shown.
-const MANY: usize = 16;
+const MIN_COLLAPSED_BYTES: usize = 16;
 
 /// A line of the table.
 enum Line<'r> {
@@ -43,7 +43,10 @@ pub(super) fn table_ui(
         lines.extend(listed.map(Line::Row));
     }
     ui.spacing_mut().item_spacing.y = 0.0;
-    let room = ui.available_width() - TAKE - ui.spacing().scroll.allocated_width() - 3.0 * ui.spacing().item_spacing.x;
+    let room = ui.available_width()
+        - BUTTON_COLUMN_WIDTH
+        - ui.spacing().scroll.allocated_width()
+        - 3.0 * ui.spacing().item_spacing.x;
     let names = (room * NAMES).floor();
     let values = ((room - names) / 2.0).floor();
     let in_line = bytes_in_line(ui, theme, values);
@@ -57,7 +60,7 @@ pub(super) fn table_ui(
         .min_scrolled_height(0.0)
         .column(Column::exact(names).clip(true))
         .column(Column::exact(values).clip(true))
-        .column(Column::exact(TAKE))
+        .column(Column::exact(BUTTON_COLUMN_WIDTH))
         .column(Column::exact(values).clip(true))
         .header(ROW, |mut header| {
             for id in captions {
@@ -152,10 +155,10 @@ enum ByteLine<'b> {
     Repeated(usize, u8),
 }
 
-/// Splits bytes into lines. At least [`MANY`] equal bytes take a single line.
+/// Splits bytes into lines. At least [`MIN_COLLAPSED_BYTES`] equal bytes take a single line.
 fn byte_lines(bytes: &[u8], in_line: usize) -> Vec<ByteLine<'_>> {
     match bytes.first() {
-        Some(byte) if bytes.len() >= MANY && bytes.iter().all(|own| own == byte) => {
+        Some(byte) if bytes.len() >= MIN_COLLAPSED_BYTES && bytes.iter().all(|own| own == byte) => {
             vec![ByteLine::Repeated(bytes.len(), *byte)]
         }
         _ => bytes.chunks(in_line).map(ByteLine::Bytes).collect(),

@@ -6,7 +6,7 @@ use egui::{Label, RichText, ScrollArea, Ui};
 
 use super::{LogbookView, description, device_name, format_change, moment, result, time, undone_by};
 use crate::app::{
-    Action, AnyDevice, ComparisonAction, ComparisonSource, DeviceCommand, MAX_NOTE, Studio, Text, entry_kind_text,
+    Action, AnyDevice, ComparisonAction, ComparisonSource, DeviceCommand, MAX_NOTE_CHARS, Studio, Text, entry_kind_text,
 };
 use crate::store::{DeviceKey, Entry, EntryFilter, EntryKind, LinkedEntry, Origin};
 use crate::ui::controls::{card, card_with_trailing, enabled_button, fill_width, paragraph, row, text_entry};
@@ -196,13 +196,14 @@ fn note_ui(
     let entry = text_entry(ui, &mut text, ui.available_width(), &word, &word);
     let entered = entry.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
     ui.horizontal(|ui| {
-        let can_add = !text.trim().is_empty() && text.chars().count() <= MAX_NOTE && !studio.logbook().is_saving_note();
+        let can_add =
+            !text.trim().is_empty() && text.chars().count() <= MAX_NOTE_CHARS && !studio.logbook().is_saving_note();
         let add = enabled_button(ui, can_add, icons::PLUS, &theme.translate("logbook.add_note"));
         if can_add && (add.clicked() || entered) {
             actions.push(Action::AddNote(device.clone(), std::mem::take(&mut text)));
         }
-        if text.chars().count() > MAX_NOTE {
-            let words = Text::new("logbook.note_too_long").with("most", MAX_NOTE);
+        if text.chars().count() > MAX_NOTE_CHARS {
+            let words = Text::new("logbook.note_too_long").with("most", MAX_NOTE_CHARS);
             ui.label(RichText::new(theme.format_text(&words)).color(theme.palette.bad));
         }
     });

@@ -28,11 +28,11 @@ const ROW: f32 = 22.0;
 const SEARCH: f32 = 200.0;
 /// Widths of the time, result and device columns in points.
 const TIME: f32 = 128.0;
-const RESULT: f32 = 18.0;
+const RESULT_COLUMN_WIDTH: f32 = 18.0;
 const DEVICE: f32 = 212.0;
 const NARROW_DEVICE: f32 = 168.0;
 /// Width in points of the details next to the list.
-const DETAIL: f32 = 330.0;
+const DETAIL_COLUMN_WIDTH: f32 = 330.0;
 const NARROW_DETAIL: f32 = 272.0;
 /// Minimum page width in points at which the normal widths are used.
 const WIDE: f32 = 960.0;
@@ -104,7 +104,7 @@ fn matches_ui(
         return;
     }
     let room = ui.available_rect_before_wrap();
-    let detail = if room.width() < WIDE { NARROW_DETAIL } else { DETAIL };
+    let detail = if room.width() < WIDE { NARROW_DETAIL } else { DETAIL_COLUMN_WIDTH };
     let (list, detail) = room.split_left_right_at_x(room.right() - detail);
     let list = Rect { max: list.max - egui::vec2(theme.space.groups, 0.0), ..list };
     ui.scope_builder(UiBuilder::new().max_rect(list), |ui| rows_ui(ui, theme, studio, view, &matches.entries));
@@ -194,7 +194,7 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, view: &mut LogbookView, 
     let mut clicked = None;
     table
         .column(Column::exact(TIME))
-        .column(Column::exact(RESULT))
+        .column(Column::exact(RESULT_COLUMN_WIDTH))
         .column(Column::exact(device).clip(true))
         .column(Column::remainder().clip(true))
         .body(|body| {

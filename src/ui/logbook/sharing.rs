@@ -34,9 +34,11 @@ fn state(theme: &Theme, studio: &Studio) -> (&'static str, crate::app::Rgb, Text
         return (icons::INFO, palette.muted, Text::new("logbook.local"));
     };
     match &exchange.contact.problem {
-        Some(problem) => {
-            (icons::WARNING, palette.warn, server_away_notice(exchange.waiting, explain::server_error_text(problem)))
-        }
+        Some(problem) => (
+            icons::WARNING,
+            palette.warn,
+            unreachable_server_notice(exchange.waiting, explain::server_error_text(problem)),
+        ),
         None if !exchange.contact.is_reached => {
             (icons::ARROWS_CLOCKWISE, palette.muted, Text::new("logbook.connecting"))
         }
@@ -47,7 +49,7 @@ fn state(theme: &Theme, studio: &Studio) -> (&'static str, crate::app::Rgb, Text
     }
 }
 
-fn server_away_notice(waiting: u64, problem: Text) -> Text {
+fn unreachable_server_notice(waiting: u64, problem: Text) -> Text {
     match waiting {
         0 => problem,
         count => Text::new("logbook.away").with_text("problem", problem).with("count", count),

@@ -14,7 +14,8 @@ use crate::ui::{Theme, Views, icons, plot};
 const RATES: [(u64, &str); 4] =
     [(0, "live.fastest"), (50_000, "live.every_50"), (200_000, "live.every_200"), (1_000_000, "live.every_1000")];
 /// Selectable sample intervals of a streaming adapter, in microseconds.
-const STREAMS: [(u64, &str); 3] = [(50, "live.stream_20k"), (200, "live.stream_5k"), (1_000, "live.stream_1k")];
+const STREAM_INTERVALS: [(u64, &str); 3] =
+    [(50, "live.stream_20k"), (200, "live.stream_5k"), (1_000, "live.stream_1k")];
 /// Polling interval in microseconds if the chosen one is not available.
 const DEFAULT_INTERVAL_US: u64 = 50_000;
 
@@ -27,7 +28,7 @@ const MIN_RATE_WIDTH: f32 = 64.0;
 const ONE_ROW: f32 = 280.0;
 
 /// Time in seconds after which an unchanged position is marked as paused.
-const UNCHANGED_MARK_S: f32 = 0.4;
+const STALE_POSITION_DELAY_S: f32 = 0.4;
 
 pub(in crate::ui) fn live_ui(
     ui: &mut Ui,
@@ -72,7 +73,7 @@ fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     let waits = device.is_polling() && device.is_busy();
     let id = egui::Id::unique(device.id()).with("job_pause");
     // The animation runs even without a job, so the next job starts from zero.
-    let share = ui.ctx().animate_bool_with_time(id, waits, if waits { UNCHANGED_MARK_S } else { 0.0 });
+    let share = ui.ctx().animate_bool_with_time(id, waits, if waits { STALE_POSITION_DELAY_S } else { 0.0 });
     waits && share >= 1.0
 }
 
@@ -130,7 +131,7 @@ fn controls_ui(
 ) {
     let connected = *device.phase() == Phase::Connected;
     let polling = device.is_polling();
-    let streams = if device.can_stream() { &STREAMS[..] } else { &[] };
+    let streams = if device.can_stream() { &STREAM_INTERVALS[..] } else { &[] };
     let rates: Vec<(u64, String)> =
         streams.iter().chain(&RATES).map(|(every, id)| (*every, theme.translate(id))).collect();
     let mut rate =

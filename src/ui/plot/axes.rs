@@ -1,7 +1,7 @@
 //! Ticks and their labels, with round steps for values and suitable units for times. All functions are pure.
 
 use crate::analysis::SampleTime;
-use crate::app::recorder::SAMPLE;
+use crate::app::recorder::UNTIMED_SAMPLE_INTERVAL_NS;
 use crate::app::{Language, format_decimal};
 pub(super) use crate::drawing::ticks::{decimal_places, step_1_2_5, tick_values};
 
@@ -68,10 +68,14 @@ pub(super) fn time_ticks(from: SampleTime, to: SampleTime, most: usize, language
 
 /// Returns ticks labelled with sample numbers instead of times.
 pub(super) fn sample_ticks(from: SampleTime, to: SampleTime, most: usize, language: Language) -> TimeTicks {
-    let number = |time: SampleTime| time.as_nanoseconds() as f64 / SAMPLE as f64;
+    let number = |time: SampleTime| time.as_nanoseconds() as f64 / UNTIMED_SAMPLE_INTERVAL_NS as f64;
     let step = step_1_2_5(number(to) - number(from), most as f64).max(1.0);
-    let tick =
-        |value: f64| (SampleTime::from_nanoseconds((value * SAMPLE as f64) as i64), format_decimal(value, 0, language));
+    let tick = |value: f64| {
+        (
+            SampleTime::from_nanoseconds((value * UNTIMED_SAMPLE_INTERVAL_NS as f64) as i64),
+            format_decimal(value, 0, language),
+        )
+    };
     TimeTicks { ticks: tick_values(number(from), number(to), step).map(tick).collect(), base: None }
 }
 
@@ -172,7 +176,7 @@ pub(super) fn time_of_day(time: SampleTime, span: i64, language: Language) -> St
 }
 
 pub(super) fn sample_number(time: SampleTime) -> String {
-    time.as_nanoseconds().div_euclid(SAMPLE).to_string()
+    time.as_nanoseconds().div_euclid(UNTIMED_SAMPLE_INTERVAL_NS).to_string()
 }
 
 /// Formats a duration with about four digits.

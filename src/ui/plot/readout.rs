@@ -6,7 +6,7 @@ use egui::{RichText, Sense, Ui, vec2};
 use super::{Context, axes, chart};
 use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, Sample};
-use crate::app::recorder::{CursorReadings, SAMPLE, Series};
+use crate::app::recorder::{CursorReadings, Series, UNTIMED_SAMPLE_INTERVAL_NS};
 use crate::ui::Theme;
 
 pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<SampleTime>) {
@@ -19,7 +19,7 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Sam
     if let Some(between) = recorder.cursor_distance() {
         ui.horizontal_wrapped(|ui| {
             if recorder.counts_samples() {
-                figure_ui(ui, theme, "Δn", &(between / SAMPLE).to_string());
+                figure_ui(ui, theme, "Δn", &(between / UNTIMED_SAMPLE_INTERVAL_NS).to_string());
                 return;
             }
             figure_ui(ui, theme, "Δt", &axes::duration(between, theme.language));

@@ -10,7 +10,7 @@ use crate::ui::{Theme, icons};
 /// Height of a row in points.
 const ROW: f32 = 26.0;
 /// Number of rows by which the page keys move the selection.
-pub(super) const ROWS_OF_A_PAGE: isize = 12;
+pub(super) const ROWS_PER_PAGE: isize = 12;
 /// Width of the column with the icon in points.
 const ICON: f32 = 26.0;
 /// Width of the column with the name of the bus in points. It fits *HIPERDRIVE*.

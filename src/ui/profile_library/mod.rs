@@ -20,7 +20,7 @@ const MARGIN: f32 = 24.0;
 /// Width of the search entry in points.
 const SEARCH: f32 = 260.0;
 /// Fraction of the width for the list.
-const LIST: f32 = 0.58;
+const LIST_FRACTION: f32 = 0.58;
 
 /// State of the dialog while it is open.
 #[derive(Default)]
@@ -71,7 +71,7 @@ fn handle_keys(ui: &Ui, view: &LibraryView, actions: &mut Vec<Action>) {
     if !ui.memory(|memory| memory.has_focus(entry)) {
         return;
     }
-    let page = list::ROWS_OF_A_PAGE;
+    let page = list::ROWS_PER_PAGE;
     for (key, step) in [(Key::ArrowDown, 1), (Key::ArrowUp, -1), (Key::PageDown, page), (Key::PageUp, -page)] {
         let count = ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as isize;
         if count > 0 {
@@ -135,7 +135,7 @@ fn content_ui(ui: &mut Ui, theme: &Theme, library: &ProfileLibrary, view: &mut L
         return;
     }
     let room = ui.available_rect_before_wrap();
-    let (list, detail) = room.split_left_right_at_fraction(LIST);
+    let (list, detail) = room.split_left_right_at_fraction(LIST_FRACTION);
     let list = Rect { max: list.max - vec2(theme.space.groups, 0.0), ..list };
     ui.scope_builder(UiBuilder::new().max_rect(list), |ui| {
         list::list_ui(ui, theme, library, &mut view.list, actions);

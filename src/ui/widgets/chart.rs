@@ -44,7 +44,7 @@ pub struct Trace {
 }
 
 /// Total width of the bars at one position, as a fraction of the distance between positions.
-const BARS: f64 = 0.7;
+const BAR_GROUP_FRACTION: f64 = 0.7;
 
 /// Draws a chart. If there are several series, a legend is drawn above it.
 pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
@@ -138,11 +138,11 @@ fn paint_lines(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]
 }
 
 fn paint_bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
-    let width = BARS / traces.len().max(1) as f64;
+    let width = BAR_GROUP_FRACTION / traces.len().max(1) as f64;
     for (number, trace) in traces.iter().enumerate() {
         let colour = series_colour(theme, trace.colour);
         let fill = if trace.dashed { Color32::TRANSPARENT } else { colour };
-        let off = (number as f64 + 0.5) * width - BARS / 2.0;
+        let off = (number as f64 + 0.5) * width - BAR_GROUP_FRACTION / 2.0;
         let bar = |(x, y): &(f64, f64)| {
             Bar::new(x + off, *y).width(width * 0.9).fill(fill).stroke(Stroke::new(1.0, colour)).name(&trace.name)
         };

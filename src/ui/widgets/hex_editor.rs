@@ -40,7 +40,7 @@ pub struct HexModel<'a> {
     pub device: &'a [u8],
     /// Bytes shown, including the user's edits.
     pub wanted: &'a [u8],
-    pub marks: &'a [HexMark<'a>],
+    pub marks: &'a [HexAnnotation<'a>],
     /// Reason why the bytes cannot be edited, or `None` if they can.
     pub read_only: Option<&'a Text>,
     /// Maximum number of visible lines.
@@ -49,7 +49,7 @@ pub struct HexModel<'a> {
 }
 
 #[derive(Clone, Debug)]
-pub struct HexMark<'a> {
+pub struct HexAnnotation<'a> {
     pub range: Range<usize>,
     pub words: &'a str,
 }
@@ -123,7 +123,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
         ui.spacing_mut().item_spacing = Vec2::ZERO;
         // Do not fade the edges while scrolling, because a half-visible line of bytes must be readable.
         ui.spacing_mut().scroll.fade.strength = 0.0;
-        let narrow = ui.available_width() < grid.width + Grid::width_around(ui, theme);
+        let narrow = ui.available_width() < grid.width + Grid::surrounding_width(ui, theme);
         let frame = theme.sunken_frame().show(ui, |ui| {
             let area = ScrollArea::horizontal().id_salt(id.with("across")).scroll([narrow, false]);
             area.show(ui, |ui| body_ui(ui, theme, id, &grid, model, view)).inner

@@ -21,7 +21,7 @@ pub(crate) use bit_cell::BitCell;
 pub use chart::{Chart, Trace, chart};
 pub use field_map::{FieldMap, MapEvent, MapField, field_map};
 pub use frame_strip::{FrameStrip, StripField, frame_strip};
-pub use hex_editor::{HexAddresses, HexEdit, HexMark, HexModel, HexView, hex_editor, hex_lines};
+pub use hex_editor::{HexAddresses, HexAnnotation, HexEdit, HexModel, HexView, hex_editor, hex_lines};
 pub use hold_button::{HoldButton, hold_button};
 pub(in crate::ui) use hold_button::{
     HoldButtonContext, has_hold_button_focus, is_hold_button_held, set_hold_button_context,

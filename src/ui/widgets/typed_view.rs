@@ -14,7 +14,7 @@ use crate::bits::{self, DataType, InterpretedRow};
 use crate::ui::{Theme, icons};
 
 /// Time in seconds for which a copied value stays marked.
-const COPIED_MARK_S: f64 = 1.2;
+const COPY_FEEDBACK_S: f64 = 1.2;
 
 struct Columns {
     name: f32,
@@ -128,7 +128,7 @@ fn show_tooltip(theme: &Theme, response: Response, shown: &str, cut: bool, copie
 
 fn is_copied(ui: &Ui, id: Id) -> bool {
     let Some(then) = ui.data(|data| data.get_temp::<f64>(id)) else { return false };
-    let left = then + COPIED_MARK_S - ui.input(|input| input.time);
+    let left = then + COPY_FEEDBACK_S - ui.input(|input| input.time);
     if left > 0.0 {
         ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
     }

@@ -190,7 +190,7 @@ fn write(
 }
 
 #[test]
-fn write_takes_all_steps_in_order() {
+fn write_performs_steps_in_order() {
     let whole = vec!["confirm", "begin", "apply", "apply", "finish", "lead back"];
     let cases = [
         ("done", 0, false, false, whole, 3),

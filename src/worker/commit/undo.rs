@@ -24,7 +24,7 @@ pub enum Undo {
 
 impl Undo {
     /// Returns how each operation of a plan can be undone, or `None` for an operation that changes nothing.
-    pub(super) fn of_plan<P: PlannedWrite + ?Sized>(prepared: &P) -> Vec<Option<Undo>> {
+    pub(super) fn for_write_plan<P: PlannedWrite + ?Sized>(prepared: &P) -> Vec<Option<Undo>> {
         let (backup, kind) = (prepared.backup().body, prepared.entry_kind());
         let of_operation = |op: &P::Op| {
             let cycles = op.write_cycles();

@@ -11,9 +11,9 @@ use crate::sim::sine_cosine::{CheckedSettings, Source};
 use crate::units::Moment;
 
 /// Duration of a batch at full rate, in nanoseconds.
-const BATCH_NS: i64 = 10_000_000;
+const BATCH_DURATION_NS: i64 = 10_000_000;
 /// Maximum delay, in nanoseconds, that the source makes up for.
-const LATE_NS: i64 = 250_000_000;
+const MAX_CATCH_UP_NS: i64 = 250_000_000;
 
 /// The error for samples whose settings have been discarded after too many changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -50,7 +50,7 @@ impl Producer for AnalogueSource {
         let period_ns = settings.period_ns();
         let now = clock.now();
         // The samples of a batch exist once the last of them is due.
-        let full = time.saturating_add_ns((BATCH_NS - period_ns).max(0)).as_nanoseconds();
+        let full = time.saturating_add_ns((BATCH_DURATION_NS - period_ns).max(0)).as_nanoseconds();
         let full = Moment::from_elapsed(Duration::from_nanos(u64::try_from(full).unwrap_or(0)));
         clock.sleep_until(full.min(now + patience));
         let late = SampleTime::from(clock.now()).nanoseconds_since(time);
@@ -58,7 +58,7 @@ impl Producer for AnalogueSource {
             return Ok(None);
         }
         let due = (late / period_ns + 1).unsigned_abs();
-        let most = (LATE_NS / period_ns).max(1).unsigned_abs();
+        let most = (MAX_CATCH_UP_NS / period_ns).max(1).unsigned_abs();
         let (lost, count) = (due.saturating_sub(most), due.min(most));
         let first = self.next + lost;
         let samples = self.source.samples_from(first, usize::try_from(count).unwrap_or(0)).ok_or(StaleSettings)?;

@@ -17,7 +17,7 @@ const TURN: i32 = 65_536;
 /// Steps per degree, rounded up.
 const DEGREE: i32 = 183;
 /// Maximum number of packets already sent when the first report shows the defect.
-const UNDER_WAY: usize = 2;
+const PACKETS_IN_FLIGHT: usize = 2;
 
 fn third() -> DriveNumber {
     DriveNumber::new(3).unwrap()
@@ -115,7 +115,7 @@ fn stops_hub_drive_ignoring_limits() {
     let (packets, told) = hub.record();
     assert!(!moving(&packets[..told]).is_empty(), "it was moved");
     let after = moving(&packets[told..]);
-    assert!(after.len() <= UNDER_WAY, "{after:?}");
+    assert!(after.len() <= PACKETS_IN_FLIGHT, "{after:?}");
 }
 
 #[test]
@@ -128,7 +128,7 @@ fn stops_hub_drive_turning_wrong_way() {
         assert!(matches!(ended, ActionEnd::WrongWay { position } if position < -DEGREE), "{wish:?}: {ended:?}");
         let (packets, _) = hub.record();
         let wrong: Vec<&Packet> = moving(&packets).into_iter().filter(|own| own.position < -DEGREE).collect();
-        assert!(wrong.len() <= UNDER_WAY + 1, "{wish:?}: {wrong:?}");
+        assert!(wrong.len() <= PACKETS_IN_FLIGHT + 1, "{wish:?}: {wrong:?}");
     }
 }
 
@@ -142,7 +142,7 @@ fn stops_hub_drive_passing_target() {
     let (packets, _) = hub.record();
     // The drive's accuracy is ±2.5°, so it may pass its target by three whole degrees.
     let past: Vec<&Packet> = moving(&packets).into_iter().filter(|own| own.position > TURN + 3 * DEGREE).collect();
-    assert!(past.len() <= UNDER_WAY + 1, "{past:?}");
+    assert!(past.len() <= PACKETS_IN_FLIGHT + 1, "{past:?}");
 }
 
 /// The drive is stopped when it has moved for longer than it needs to brake (issue 21.4).

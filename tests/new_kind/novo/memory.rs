@@ -2,7 +2,7 @@
 
 use encoder_studio::app::review::{OperationDescription, Permit, Reviewable};
 use encoder_studio::app::session::{
-    ApprovedPlanOf, HasDraft, HasMemory, HasProfile, KnownProfile, ProfileFile, unsaved_edits_remark,
+    ApprovedReviewPlan, HasDraft, HasMemory, HasProfile, KnownProfile, ProfileFile, unsaved_edits_remark,
 };
 use encoder_studio::app::{PendingEdits, Text, explain};
 use encoder_studio::profile::{Body, ProfileDocument, ProfileError, WrittenChanges};
@@ -76,12 +76,12 @@ impl HasMemory for Encoder {
     fn prepare_job(change: Change) -> Job {
         Job::Prepare(change)
     }
-    fn commit_job(&mut self, agreed: ApprovedPlanOf<Novo>) -> Job {
+    fn commit_job(&mut self, agreed: ApprovedReviewPlan<Novo>) -> Job {
         Job::Commit(Box::new(agreed))
     }
     fn discard_device_data(&mut self) {
         self.staged.clear();
-        self.track.clear_unless_long();
+        self.track.discard_short_recording();
     }
 }
 

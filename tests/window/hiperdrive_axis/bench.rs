@@ -11,7 +11,7 @@ use encoder_studio::devices::hiperdrive::state::axis::{
 };
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand};
 
-use crate::hiperdrive_acts::{ATTEMPTS, has_lapsed, hold_pad_until, last_end, until_free};
+use crate::hiperdrive_acts::{ATTEMPTS, has_lapsed, hold_pad_until, last_end, wait_until_motion_allowed};
 use crate::support::Desk;
 
 /// A link to an adapter with parameter 152 (Requested) at 0, so its drive cannot be moved yet.
@@ -53,14 +53,14 @@ pub(super) fn read(desk: &Desk, number: u16) -> i64 {
 
 /// Presses a jog pad as soon as the drive may move, and holds it until a condition holds.
 #[track_caller]
-pub(super) fn held_until(
+pub(super) fn hold_jog_until(
     desk: &mut Desk,
     press: MotorCommand,
     what: &str,
     condition: impl Fn(&HiperdriveDevice) -> bool,
 ) {
     let drive = unit(desk).drive();
-    hold_pad_until(desk, press, what, |desk| until_free(desk, drive), |desk| condition(unit(desk)));
+    hold_pad_until(desk, press, what, |desk| wait_until_motion_allowed(desk, drive), |desk| condition(unit(desk)));
 }
 
 #[track_caller]
@@ -109,7 +109,7 @@ pub(super) fn write(desk: &mut Desk) {
 }
 
 #[track_caller]
-pub(super) fn step_with_write(desk: &mut Desk) {
+pub(super) fn press_and_commit_write(desk: &mut Desk) {
     run(desk, Run::Press(AxisButton::Do));
     write(desk);
 }
@@ -147,7 +147,7 @@ pub(super) fn number(desk: &Desk, number: u16) -> i64 {
 #[track_caller]
 pub(super) fn jog(desk: &mut Desk, direction: Direction, steps: i32) {
     let from = position(desk);
-    held_until(desk, MotorCommand::SlowJogPress { direction, repeated: false }, "it moves", |own| {
+    hold_jog_until(desk, MotorCommand::SlowJogPress { direction, repeated: false }, "it moves", |own| {
         own.drive_facts(own.drive()).position.is_some_and(|position| (position - from).abs() >= steps)
     });
     act(desk, Hiperdrive::Drive(MotorCommand::JogRelease));
@@ -164,7 +164,7 @@ pub(super) fn until_stopped(desk: &mut Desk) {
 /// Runs the write of the current step. `number` is the parameter number for drive 1. If `rough` is set, the write is
 /// first rejected and then cut off halfway.
 #[track_caller]
-pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
+pub(super) fn run_step_with_write_faults(desk: &mut Desk, number: u16, rough: bool) {
     for hindrance in [WriteFault::Refused, WriteFault::CutOff].into_iter().filter(|_| rough) {
         let own = match number {
             47 => ParameterNumber::SAVE,
@@ -203,7 +203,7 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
     }
     // The interrupted write may have arrived, in which case nothing is left to write.
     if axis(desk).request(AxisButton::Do, &seen(desk)).is_ok() {
-        step_with_write(desk);
+        press_and_commit_write(desk);
     } else {
         assert!(rough, "{number}");
     }
@@ -220,7 +220,7 @@ pub(super) fn control(desk: &mut Desk) {
 
 /// Starts the application and advances the axis set-up to the confirmation of the limits. The drive has 400 steps per
 /// turn and a pitch of 4 mm.
-pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
+pub(super) fn setup_at_limits_confirmation(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open(link);
@@ -229,14 +229,14 @@ pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     act(&mut desk, Hiperdrive::SelectDrive(DriveNumber::new(drive).unwrap()));
     until_ready(&mut desk);
     run(&mut desk, Run::Begin);
-    step_with_writes(&mut desk, 152, rough);
+    run_step_with_write_faults(&mut desk, 152, rough);
     desk.until("the drive is there", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.axis().unwrap().check_can_continue(&own.drive_facts(own.drive())).is_ok()
     });
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
-    step_with_writes(&mut desk, 156, rough);
+    run_step_with_write_faults(&mut desk, 156, rough);
     // The scale is 400/256, and 511 turns of 400 steps are 204 400 steps (reference, section 5).
     assert_eq!([154, 156, 158, 160].map(|own| number(&desk, own)), [400, 256, -204_400, 204_400]);
     next(&mut desk, AxisStep::Confirm);
@@ -244,7 +244,7 @@ pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
 }
 
 pub(super) fn at_jog_step() -> Desk {
-    until_scaled(FRESH, 1, false)
+    setup_at_limits_confirmation(FRESH, 1, false)
 }
 
 /// Confirms the limits, goes to the step with the slow jog, and takes control.
@@ -266,12 +266,12 @@ pub(super) fn confirmed() -> Desk {
 
 /// Advances the axis set-up until the position has been set to 128 steps, before the limits are taught.
 pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
-    let mut desk = confirm(until_scaled(link, drive, rough));
+    let mut desk = confirm(setup_at_limits_confirmation(link, drive, rough));
     jog(&mut desk, Direction::Clockwise, 20);
     jog(&mut desk, Direction::Counterclockwise, 10);
     next(&mut desk, AxisStep::Reference);
     edit(&mut desk, |own| own.reference = "1".to_owned());
-    step_with_writes(&mut desk, 198, rough);
+    run_step_with_write_faults(&mut desk, 198, rough);
     // 100 steps are rounded to 128, the nearest multiple of 64.
     desk.until("the position is set", |studio| {
         let own = studio.hiperdrive().unwrap();
@@ -291,7 +291,7 @@ pub(super) fn at_test_step(link: &str, drive: u8, rough: bool) -> Desk {
     jog(&mut desk, Direction::Clockwise, 40);
     run(&mut desk, Run::TakePlace);
     let upper = position(&mut desk);
-    step_with_writes(&mut desk, 160, rough);
+    run_step_with_write_faults(&mut desk, 160, rough);
     assert_eq!([158, 160].map(|own| number(&desk, own)), [i64::from(lower), i64::from(upper)]);
     next(&mut desk, AxisStep::Test);
     desk
@@ -331,7 +331,7 @@ pub(super) fn tested(mut desk: Desk) -> Desk {
 }
 
 /// Advances the axis set-up until the parameters are saved, before the power-cycle check.
-pub(super) fn until_saved_with(link: &str, drive: u8, rough: bool) -> Desk {
+pub(super) fn setup_at_power_cycle_with_faults(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = tested(at_test_step(link, drive, rough));
     next(&mut desk, AxisStep::Save);
     assert_eq!(
@@ -339,11 +339,11 @@ pub(super) fn until_saved_with(link: &str, drive: u8, rough: bool) -> Desk {
         Some(encoder_studio::worker::commit::CycleCount::complete(0)),
         "nothing was saved on the way"
     );
-    step_with_writes(&mut desk, 47, rough);
+    run_step_with_write_faults(&mut desk, 47, rough);
     next(&mut desk, AxisStep::PowerCycle);
     desk
 }
 
-pub(super) fn until_saved(link: &str, drive: u8) -> Desk {
-    until_saved_with(link, drive, false)
+pub(super) fn setup_at_power_cycle(link: &str, drive: u8) -> Desk {
+    setup_at_power_cycle_with_faults(link, drive, false)
 }

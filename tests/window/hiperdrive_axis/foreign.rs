@@ -8,7 +8,7 @@ use encoder_studio::sim::SimulatedFaults;
 use super::*;
 
 /// Advances the axis set-up until the position has been set to 128 steps, and then jogs the shaft by 0.15 turns.
-fn other_mode_text() -> Desk {
+fn setup_jogged_from_reference() -> Desk {
     let mut desk = referenced("sim:?requested=0&timeout=250", 1, false);
     jog(&mut desk, Direction::Clockwise, 60);
     desk.settle();
@@ -16,7 +16,7 @@ fn other_mode_text() -> Desk {
     desk
 }
 
-fn set_by_another(desk: &Desk) {
+fn set_reference_externally(desk: &Desk) {
     let reference = ParameterNumber::for_drive(198, DriveNumber::FIRST).unwrap();
     let target = unit(desk).target.clone().unwrap();
     target.with_station(|station| station.write(Moment::default(), reference, &Value::Number(128)).unwrap());
@@ -25,9 +25,9 @@ fn set_by_another(desk: &Desk) {
 /// The position jumps at standstill, and everything based on the reference becomes invalid (issue 21.6 c).
 #[test]
 fn detects_reference_change_by_another_master() {
-    let mut desk = other_mode_text();
+    let mut desk = setup_jogged_from_reference();
     assert_eq!(axis(&desk).invalidated_step(), None);
-    set_by_another(&desk);
+    set_reference_externally(&desk);
     desk.until("it is noticed", |studio| {
         studio.hiperdrive().unwrap().axis().unwrap().invalidated_step() == Some(AxisStep::Reference)
     });
@@ -39,7 +39,7 @@ fn detects_reference_change_by_another_master() {
 /// cause (issue 21.6 c).
 #[test]
 fn reports_position_change_while_disconnected() {
-    let mut desk = other_mode_text();
+    let mut desk = setup_jogged_from_reference();
     let target = unit(&desk).target.clone().unwrap();
     target.set_faults(&"silent-after:0".parse().unwrap());
     desk.until("it is silent", |studio| {
@@ -48,7 +48,7 @@ fn reports_position_change_while_disconnected() {
             studio.services.log.notices().any(|own| own.texts.iter().any(|text| text.id() == "session.poll_failed"));
         !own.drive_facts(own.drive()).connected && has_ended
     });
-    set_by_another(&desk);
+    set_reference_externally(&desk);
     target.set_faults(&SimulatedFaults::default());
     desk.until("it can be asked", |studio| !studio.hiperdrive().unwrap().session.is_busy());
     command(&mut desk, DeviceCommand::Read);

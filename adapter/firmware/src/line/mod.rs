@@ -17,7 +17,7 @@ use hal::timer::Timer;
 
 use crate::clocks::SYSTEM_HZ;
 use crate::converter::Converter;
-use crate::pins::{CLOCK, DATA, DIRECTION, DONE, SERIAL_IN, SERIAL_OUT, SUPPLY_INPUT};
+use crate::pins::{BISS_DONE_PIN, CLOCK, DATA, DIRECTION, SERIAL_IN, SERIAL_OUT, SUPPLY_INPUT};
 use crate::ring::{self, Ring};
 use crate::supply::{self, Switch};
 use machine::Machine;
@@ -27,7 +27,7 @@ use serial::Serial;
 const START_CYCLES: u32 = 3;
 const BISS_START_CYCLES: u32 = 5;
 /// Number of system clock cycles per microsecond. A pacer counts microseconds, so this is also its divisor.
-const PER_US: u16 = (SYSTEM_HZ / 1_000_000) as u16;
+const CYCLES_PER_US: u16 = (SYSTEM_HZ / 1_000_000) as u16;
 /// Time in microseconds that a pacer adds to its count.
 const PACER_US: u32 = 3;
 /// Number of the PIO interrupt flag that starts a frame.
@@ -118,7 +118,7 @@ impl Line {
             let program = biss_block.install(&program)?;
             let start = program.wrap_target();
             let (mut sm, rx, tx) =
-                PIOBuilder::from_installed_program(program).side_set_pin_base(CLOCK).jmp_pin(DONE).build(sm0);
+                PIOBuilder::from_installed_program(program).side_set_pin_base(CLOCK).jmp_pin(BISS_DONE_PIN).build(sm0);
             sm.set_pins([(CLOCK, PinState::High)]);
             sm.set_pindirs([(CLOCK, PinDir::Output)]);
             Machine::new(sm.start(), rx, tx, start, Some(1))
@@ -129,15 +129,15 @@ impl Line {
             let program = biss_block.install(&program)?;
             let start = program.wrap_target();
             let (mut sm, rx, tx) = PIOBuilder::from_installed_program(program)
-                .side_set_pin_base(DONE)
+                .side_set_pin_base(BISS_DONE_PIN)
                 .in_pin_base(DATA)
                 .jmp_pin(DATA)
                 .in_shift_direction(ShiftDirection::Left)
                 .autopush(true)
                 .push_threshold(32)
                 .build(sm1);
-            sm.set_pins([(DONE, PinState::Low)]);
-            sm.set_pindirs([(DONE, PinDir::Output), (DATA, PinDir::Input)]);
+            sm.set_pins([(BISS_DONE_PIN, PinState::Low)]);
+            sm.set_pindirs([(BISS_DONE_PIN, PinDir::Output), (DATA, PinDir::Input)]);
             Machine::new(sm.start(), rx, tx, start, Some(0))
         };
         let biss_pacer = pacer!(biss_block, sm3);
@@ -176,7 +176,7 @@ impl Line {
             Some(Clocking::Biss(setting)) => BISS_START_CYCLES * u32::from(setting.divisor),
             None => 0,
         };
-        u64::from((cycles + u32::from(PER_US) / 2) / u32::from(PER_US))
+        u64::from((cycles + u32::from(CYCLES_PER_US) / 2) / u32::from(CYCLES_PER_US))
     }
 
     fn begin_frame(&self) {
@@ -211,7 +211,7 @@ macro_rules! pacer {
         let program = $block.install(&pio::pio_file!("pio/pacer.pio").program)?;
         let start = program.offset();
         let (sm, rx, tx) =
-            PIOBuilder::from_installed_program(program).clock_divisor_fixed_point(PER_US, 0).build($machine);
+            PIOBuilder::from_installed_program(program).clock_divisor_fixed_point(CYCLES_PER_US, 0).build($machine);
         Machine::new(sm.start(), rx, tx, start, None)
     }};
 }
@@ -250,7 +250,7 @@ impl Bus for Line {
         if let Some(Clocking::Biss(BissSetting { timeout_us, divisor, .. })) = self.clocking
             && cdm
         {
-            let cycles = (u32::from(timeout_us) + 1) * u32::from(PER_US) / u32::from(divisor);
+            let cycles = (u32::from(timeout_us) + 1) * u32::from(CYCLES_PER_US) / u32::from(divisor);
             self.ma.send(cycles);
         }
         // The time must be read directly before the frame starts.

@@ -16,10 +16,10 @@ use crate::ring::dma;
 const LENGTH: usize = 512;
 /// DMA channels for sending, for the mark of the first edge, for the time of this edge, and for the received
 /// characters.
-const SEND: usize = 4;
-const MARK: usize = 5;
-const EDGE_TIME: usize = 6;
-const RECEIVE: usize = 7;
+const SEND_CHANNEL: usize = 4;
+const EDGE_MARK_CHANNEL: usize = 5;
+const EDGE_TIME_CHANNEL: usize = 6;
+const RECEIVE_CHANNEL: usize = 7;
 /// Number of the DMA request signal that is always active.
 const ALWAYS: u8 = 63;
 /// Placeholder for a character that has not arrived. It is distinct, because received characters use only the highest
@@ -35,7 +35,7 @@ unsafe impl<const N: usize> Sync for Shared<N> {}
 static SENT: Shared<LENGTH> = Shared(UnsafeCell::new([0; LENGTH]));
 static RECEIVED: Shared<LENGTH> = Shared(UnsafeCell::new([0; LENGTH]));
 /// The mark of the first edge, whose value has no meaning, and the lower half of the edge's time.
-static EDGE: Shared<2> = Shared(UnsafeCell::new([0; 2]));
+static FIRST_EDGE: Shared<2> = Shared(UnsafeCell::new([0; 2]));
 
 impl<const N: usize> Shared<N> {
     fn address(&self) -> *mut u32 {
@@ -87,7 +87,7 @@ impl Serial {
     pub(super) fn begin(&mut self, characters: &[u32], now: u32) {
         self.end();
         (self.no_edge, self.count) = (now.wrapping_sub(1), 0);
-        EDGE.write(1, self.no_edge);
+        FIRST_EDGE.write(1, self.no_edge);
         for at in 0..LENGTH {
             RECEIVED.write(at, NO_CHARACTER);
         }
@@ -98,31 +98,37 @@ impl Serial {
         let (fifo, request) = self.receiver.output();
         // Each channel starts the next one: the mark, its time, and the characters.
         let timer = timer_address();
-        channel(MARK, fifo as u32, EDGE.address(), 1, CopyOptions { request, chain: EDGE_TIME, advance: 0 });
         channel(
-            EDGE_TIME,
-            timer,
-            EDGE.address().wrapping_add(1),
+            EDGE_MARK_CHANNEL,
+            fifo as u32,
+            FIRST_EDGE.address(),
             1,
-            CopyOptions { request: ALWAYS, chain: RECEIVE, advance: 0 },
+            CopyOptions { request, chain: EDGE_TIME_CHANNEL, advance: 0 },
         );
-        let characters = CopyOptions { request, chain: RECEIVE, advance: WRITES };
-        channel(RECEIVE, fifo as u32, RECEIVED.address(), LENGTH as u32, characters);
+        channel(
+            EDGE_TIME_CHANNEL,
+            timer,
+            FIRST_EDGE.address().wrapping_add(1),
+            1,
+            CopyOptions { request: ALWAYS, chain: RECEIVE_CHANNEL, advance: 0 },
+        );
+        let characters = CopyOptions { request, chain: RECEIVE_CHANNEL, advance: WRITES };
+        channel(RECEIVE_CHANNEL, fifo as u32, RECEIVED.address(), LENGTH as u32, characters);
         let (fifo, request) = self.sender.input();
-        let words = CopyOptions { request, chain: SEND, advance: READS };
-        channel(SEND, SENT.address() as u32, fifo.cast_mut(), count as u32, words);
+        let words = CopyOptions { request, chain: SEND_CHANNEL, advance: READS };
+        channel(SEND_CHANNEL, SENT.address() as u32, fifo.cast_mut(), count as u32, words);
         // Safety: the channels are set up. The channels of the time and the characters are started by chaining.
-        unsafe { dma().multi_chan_trigger().write(|w| w.bits(1 << MARK | 1 << SEND)) };
+        unsafe { dma().multi_chan_trigger().write(|w| w.bits(1 << EDGE_MARK_CHANNEL | 1 << SEND_CHANNEL)) };
     }
 
     /// Returns whether all characters have been sent and the driver is off.
     pub(super) fn has_sent(&mut self) -> bool {
-        !is_busy(SEND) && self.sender.has_consumed_all() && self.sender.is_at_start()
+        !is_busy(SEND_CHANNEL) && self.sender.has_consumed_all() && self.sender.is_at_start()
     }
 
     /// Returns the lower half of the first edge's time, or `None` if there was no edge yet.
     pub(super) fn first_edge(&self) -> Option<u32> {
-        Some(EDGE.read(1)).filter(|time| *time != self.no_edge).map(|time| time.wrapping_sub(self.mark_delay_us))
+        Some(FIRST_EDGE.read(1)).filter(|time| *time != self.no_edge).map(|time| time.wrapping_sub(self.mark_delay_us))
     }
 
     pub(super) fn received(&mut self) -> usize {
@@ -138,7 +144,7 @@ impl Serial {
 
     /// Ends a transfer and prepares the receiver for the next one.
     pub(super) fn end(&mut self) {
-        let channels = [SEND, MARK, EDGE_TIME, RECEIVE];
+        let channels = [SEND_CHANNEL, EDGE_MARK_CHANNEL, EDGE_TIME_CHANNEL, RECEIVE_CHANNEL];
         let mask = channels.iter().fold(0, |mask, channel| mask | 1 << channel);
         for channel in channels {
             // Safety: disables the channel, so that an abort does not start the next one.

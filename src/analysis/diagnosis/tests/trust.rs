@@ -15,7 +15,7 @@ fn analysed(made: &Made) -> Analysis {
 }
 
 #[test]
-fn missing_samples_keep_frequency() {
+fn missing_samples_do_not_change_frequency() {
     let mut capture = made(|time| 2_000.0 * time, plain);
     for column in [&mut capture.time, &mut capture.sine, &mut capture.cosine] {
         // 2.12 ms are removed, which is not a whole number of periods.

@@ -68,7 +68,7 @@ fn single_bad_sample_stays_visible() {
 }
 
 #[test]
-fn nan_is_flagged_break() {
+fn nan_sample_breaks_line() {
     let picture = picture(&history(&[1.0, 2.0, f64::NAN, f64::INFINITY, 5.0, 6.0], &[]), 0, 60, 6);
     let found: Vec<_> =
         picture.pixels.iter().map(|pixel| (pixel.values.map(|values| values.first), pixel.joined)).collect();
@@ -176,7 +176,7 @@ fn resolves_single_steps_at_large_position() {
 }
 
 #[test]
-fn grid_starts_at_width_multiples() {
+fn grid_aligns_to_pixel_width() {
     let grid = Grid::new(time(105), time(205), 10);
     assert_eq!(
         (grid.width(), grid.pixel_count(), grid.pixel_start(0), grid.pixel_start(11)),

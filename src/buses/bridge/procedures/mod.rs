@@ -14,7 +14,8 @@ use power::SupplyState;
 
 use crate::bits::MaskedBytes;
 use crate::buses::bridge::protocol::{
-    BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, REPEAT_AFTER, Receiver, Reply, Request,
+    BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, REQUEST_RETRY_TIMEOUT, Receiver, Reply,
+    Request,
 };
 use crate::expected::Quantity;
 use crate::link::line::{LineError, LineState, SerialLine};
@@ -279,7 +280,7 @@ impl Adapter<'_, '_> {
         let sent_at = self.line.now();
         self.state.mark_sent(sent_at);
         self.line.send(&bytes, MaskedBytes::unmasked(&bytes), sent_at).map_err(LineError::Link)?;
-        let deadline = sent_at + duration + REPEAT_AFTER + self.state.margin;
+        let deadline = sent_at + duration + REQUEST_RETRY_TIMEOUT + self.state.margin;
         let mut portion = Vec::new();
         loop {
             let broken = self.adapter.receiver.dropped_count();

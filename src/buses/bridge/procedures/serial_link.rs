@@ -164,7 +164,7 @@ impl AdapterSerialLink {
                     adapter.read_identity()?;
                     return Ok(None);
                 }
-                Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::NO_ANSWER, .. })) => {
+                Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::NO_REPLY, .. })) => {
                     return Ok(Some((None, Vec::new())));
                 }
                 Err(failure) => return Err(failure),

@@ -52,7 +52,7 @@ type ErrorReply = (ErrorCode, &'static str);
 const NOT_CONFIGURED: ErrorReply = (ErrorCode::BAD_ARGUMENT, "not configured yet");
 const OUT_OF_RANGE: ErrorReply = (ErrorCode::BAD_ARGUMENT, "out of range");
 const STREAMING: ErrorReply = (ErrorCode::BUSY, "a stream is running");
-const ENCODER_SILENT: ErrorReply = (ErrorCode::NO_ANSWER, "the encoder does not answer");
+const ENCODER_SILENT: ErrorReply = (ErrorCode::NO_REPLY, "the encoder does not answer");
 const MISSING_FEATURE: ErrorReply = (ErrorCode::NOT_SUPPORTED, "this adapter has no such thing");
 
 impl Adapter {
@@ -374,7 +374,7 @@ impl Adapter {
                 return Ok(value);
             }
         }
-        device.read_register(now, address).ok_or((ErrorCode::NO_ANSWER, "the encoder refuses the register"))
+        device.read_register(now, address).ok_or((ErrorCode::NO_REPLY, "the encoder refuses the register"))
     }
 
     /// Starts or ends a stream. Returns the actual period in microseconds.

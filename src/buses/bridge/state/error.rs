@@ -44,8 +44,8 @@ fn reason(code: ErrorCode) -> Text {
         ErrorCode::NOT_SUPPORTED => TEXTS.text("adapter.not_supported"),
         ErrorCode::BAD_ARGUMENT => TEXTS.text("adapter.bad_argument"),
         ErrorCode::BUSY => TEXTS.text("adapter.busy"),
-        ErrorCode::NO_ANSWER => TEXTS.text("adapter.no_answer"),
-        ErrorCode::WRONG_ANSWER => TEXTS.text("adapter.wrong_answer"),
+        ErrorCode::NO_REPLY => TEXTS.text("adapter.no_answer"),
+        ErrorCode::INVALID_REPLY => TEXTS.text("adapter.wrong_answer"),
         ErrorCode::OVERRUN => TEXTS.text("adapter.overrun"),
         other => TEXTS.text("adapter.unknown_code").with("code", other.byte()),
     }

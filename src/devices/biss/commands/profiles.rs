@@ -20,7 +20,7 @@ use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
 use crate::devices::biss::protocol::DeviceMode;
 use crate::devices::biss::state::explain;
 use crate::devices::biss::state::status_lines;
-use crate::profile::{Body, KeptItem, Redo};
+use crate::profile::{Body, IrreversibleItem, Redo};
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -69,7 +69,7 @@ impl ProfileCommands for BissCommands {
         Ok(DeviceReading { body: Body::new(profile), status })
     }
 
-    fn redo_command(&self, kept: &KeptItem) -> Option<String> {
+    fn redo_command(&self, kept: &IrreversibleItem) -> Option<String> {
         match &kept.redo {
             Redo::Write(old) => Some(format!("use \"write biss {} 0x{old}\"", kept.item)),
             Redo::Repeat => Some("repeat the procedure (help do lists the actions)".to_owned()),

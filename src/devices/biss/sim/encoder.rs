@@ -84,7 +84,7 @@ impl Encoder {
             waver: config.waver,
             pulses: config.pulses,
             silent_calibration: config.silent_calibration,
-            die_in_store: config.faults.failing_store(),
+            die_in_store: config.faults.save_with_power_failure(),
             eds: [EdsBank::Common, EdsBank::Encoder].map(Eds::factory_default),
             drive: Drive::new(config.rpm, config.reverses),
             shaft: Shaft::new(Layout::default(), config.position, config.rpm),
@@ -136,7 +136,7 @@ impl Encoder {
 
     /// Replaces the simulated faults of the flash, but keeps the count of stores.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
-        self.die_in_store = faults.failing_store();
+        self.die_in_store = faults.save_with_power_failure();
     }
 
     /// Sets the errors that the encoder reports from its self-monitoring.

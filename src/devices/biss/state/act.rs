@@ -25,7 +25,7 @@ impl Encoder {
         let services = &mut *context.services;
         match action {
             BissAction::PlanMounting { mut run, motor, data } => {
-                let profile = data.map_or(Ok(None), |id| context.edited_profile_of(id));
+                let profile = data.map_or(Ok(None), |id| context.edited_session_profile(id));
                 match profile {
                     Ok(profile) => {
                         run.data = profile.and_then(|body| body.into_profile().ok()).map(Box::new);

@@ -224,7 +224,7 @@ impl BissForm {
         }
         let (frame, line) = Self::common_entries();
         parameters.add_typed_entries(&[frame, line].concat(), &self.typed);
-        parameters.add_other_parameters(&self.rest, |name| self.has_parameter(name));
+        parameters.add_parameters_without_entry(&self.rest, |name| self.has_parameter(name));
         parameters
     }
 

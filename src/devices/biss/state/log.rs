@@ -33,12 +33,12 @@ impl Encoder {
             }
         });
         let text = Text::new("log.begins").with_text("what", what.clone()).with_list("operations", operations);
-        services.log_only(Severity::Note, vec![text], Some(&self.session.name()));
+        services.log_without_display(Severity::Note, vec![text], Some(&self.session.name()));
     }
 
     pub(super) fn log_outcomes(&self, outcomes: &[Outcome], services: &mut Services) {
         for outcome in outcomes {
-            services.log_only(Severity::Note, words::outcome_texts(outcome), Some(&self.session.name()));
+            services.log_without_display(Severity::Note, words::outcome_texts(outcome), Some(&self.session.name()));
         }
     }
 }

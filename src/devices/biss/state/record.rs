@@ -197,7 +197,7 @@ impl Record {
     }
 
     pub(super) fn clear(&mut self) {
-        self.track.clear_unless_long();
+        self.track.discard_short_recording();
         (self.last, self.crc_errors, self.lost, self.stream) = (None, 0, 0, None);
     }
 }

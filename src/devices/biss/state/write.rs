@@ -7,7 +7,9 @@ use super::encoder::Encoder;
 use super::guide::{ProcedureEnd, ProcedureRun};
 use super::review::{ReviewState, is_guided};
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, Interruption, KnownProfile, unsaved_edits_remark};
+use crate::app::session::{
+    ApprovedReviewPlan, HasMemory, HasProfile, Interruption, KnownProfile, unsaved_edits_remark,
+};
 use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, Change, Commit, Committed, JobError, OperatorPresence, Prepared};
 use crate::devices::biss::procedures::procedure::{Failure, OperatorAnswer, OperatorTask, UnattendedOperator};
@@ -97,7 +99,7 @@ impl HasMemory for Encoder {
         BissJob::Prepare(change)
     }
 
-    fn commit_job(&mut self, agreed: ApprovedPlanOf<Biss>) -> BissJob {
+    fn commit_job(&mut self, agreed: ApprovedReviewPlan<Biss>) -> BissJob {
         commit_job(agreed, OperatorPresence::Unattended(UNATTENDED))
     }
 
@@ -190,6 +192,6 @@ impl HasProfile for Encoder {
     }
 }
 
-fn commit_job(agreed: ApprovedPlanOf<Biss>, attendance: OperatorPresence) -> BissJob {
+fn commit_job(agreed: ApprovedReviewPlan<Biss>, attendance: OperatorPresence) -> BissJob {
     BissJob::Commit(Box::new(Commit { agreed, attendance }))
 }

@@ -5,7 +5,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER_LIMIT, NEWEST_ERROR, NUMERATOR, REQUESTED_BY_BUS, TIMEOUT, UPPER_LIMIT,
+    DENOMINATOR, DRIVE_REQUESTED, LOWER_LIMIT, NEWEST_ERROR, NUMERATOR, TIMEOUT, UPPER_LIMIT,
 };
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -32,7 +32,7 @@ use crate::result_of;
 use crate::units::Moment;
 
 /// Interval for refreshing a motion request.
-const REFRESH: Duration = Duration::from_millis(20);
+const MOTION_REFRESH_INTERVAL: Duration = Duration::from_millis(20);
 /// Time limit for the stop sequence and for switching off.
 const STOP_TIMEOUT: Duration = Duration::from_secs(3);
 
@@ -119,7 +119,7 @@ fn read_permit(
     let variant =
         identity.drive_identity(drive).map_err(|error| to_failure(&explain::device_error_text(&error)))?.variant;
     let mut values = Vec::new();
-    for base in [REQUESTED_BY_BUS, NUMERATOR, DENOMINATOR, LOWER_LIMIT, UPPER_LIMIT, TIMEOUT] {
+    for base in [DRIVE_REQUESTED, NUMERATOR, DENOMINATOR, LOWER_LIMIT, UPPER_LIMIT, TIMEOUT] {
         let Some(number) = ParameterNumber::for_drive(base, drive) else { continue };
         if let Value::Number(value) = value(runner, number)? {
             values.push((base, value));
@@ -171,7 +171,7 @@ fn run_until_end(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patie
             motion.stop();
             return MotionOutcome::Late;
         }
-        sleep(REFRESH);
+        sleep(MOTION_REFRESH_INTERVAL);
     }
 }
 
@@ -192,13 +192,13 @@ fn stop_and_switch_off(runner: &Runner, drive: DriveNumber) -> Option<DriveSnaps
     let until = Instant::now() + STOP_TIMEOUT;
     while motion.is_open() && Instant::now() < until && find().is_some_and(|own| own.phase != Phase::Idle) {
         motion.refresh();
-        sleep(REFRESH);
+        sleep(MOTION_REFRESH_INTERVAL);
     }
     let stood = find();
     let act = motion.request_motion(drive, MotionRequest::Lead(TargetState::Off));
     while action_end(runner, drive, act).is_none() && Instant::now() < until {
         motion.refresh();
-        sleep(REFRESH);
+        sleep(MOTION_REFRESH_INTERVAL);
     }
     // The position is unknown without a report from the drive.
     stood.filter(|own| own.actual.status.is_present())

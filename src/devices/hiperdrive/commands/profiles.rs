@@ -17,7 +17,7 @@ use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::state::explain;
 use crate::devices::hiperdrive::state::status_lines;
-use crate::profile::{Body, KeptItem, Redo};
+use crate::profile::{Body, IrreversibleItem, Redo};
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -69,7 +69,7 @@ impl ProfileCommands for HiperdriveCommands {
         Ok(DeviceReading { body: Body::new(profile), status })
     }
 
-    fn redo_command(&self, kept: &KeptItem) -> Option<String> {
+    fn redo_command(&self, kept: &IrreversibleItem) -> Option<String> {
         match &kept.redo {
             Redo::SetPosition => Some("set the reference again with \"do hiperdrive set-position\"".to_owned()),
             _ => None,

@@ -52,7 +52,7 @@ impl fmt::Debug for Hiperdrive {
 }
 
 /// Interval between checks of the drives under control. It must be well below the maximum interval between requests.
-const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
+const CONTROL_CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
@@ -218,7 +218,7 @@ impl Device for Hiperdrive {
     }
 
     fn idle_interval(&self) -> Duration {
-        if self.control.controlled_device().is_some() { IDLE_IN_CONTROL } else { IDLE }
+        if self.control.controlled_device().is_some() { CONTROL_CHECK_INTERVAL } else { IDLE }
     }
 
     fn maintain(&mut self, context: &mut SessionContext) -> Option<DeviceMessage> {

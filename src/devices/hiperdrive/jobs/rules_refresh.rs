@@ -14,7 +14,7 @@ use crate::worker::SessionContext;
 const TURN: Duration = Duration::from_millis(250);
 /// Length of a time slot while a drive moves. Every slot sends a request, so that a device that stops replying is
 /// detected and the motion ends.
-const TURN_IN_MOTION: Duration = REQUEST;
+const MOTION_SLOT_LENGTH: Duration = REQUEST;
 /// Pause after a failed reading.
 const RETRY_PAUSE: Duration = Duration::from_millis(500);
 
@@ -81,7 +81,7 @@ impl Hiperdrive {
             return Ok(());
         };
         let mut rules = known.rules();
-        let turn = if self.control.motion().is_motion_active() { TURN_IN_MOTION } else { TURN };
+        let turn = if self.control.motion().is_motion_active() { MOTION_SLOT_LENGTH } else { TURN };
         for group in due_groups(times, context.clock.now(), turn) {
             let now = context.clock.now();
             rules = read_rule_group(&mut self.create_master(context), drive, rules, group)?;
@@ -144,13 +144,13 @@ mod tests {
         let mut read = [at(0); GROUPS];
         let mut last = 0;
         for now in (0..4000).step_by(20) {
-            for group in due_groups(read, at(now), TURN_IN_MOTION) {
+            for group in due_groups(read, at(now), MOTION_SLOT_LENGTH) {
                 read[group] = at(now);
                 last = now;
             }
             assert!(now - last <= 80, "{now}: nothing since {last}, looked at every 20 ms");
         }
-        assert_eq!(TURN_IN_MOTION, Duration::from_millis(60));
+        assert_eq!(MOTION_SLOT_LENGTH, Duration::from_millis(60));
     }
 
     #[test]

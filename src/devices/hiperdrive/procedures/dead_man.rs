@@ -30,9 +30,9 @@ pub use act::{
     ActionEnd, MotionIntent, MotionKind, MotionLock, MotionRejection, MotionRequest, Permit, Phase, SpeedTorque,
     StopLevel, TargetState,
 };
-pub use watch::{LimitSide, OutsideLimits};
+pub use watch::{LimitSide, LimitViolation};
 
-use stage::{ReportMark, Stage};
+use stage::{ReportTimestamp, Stage};
 use state_sequence::StateSequencer;
 use watch::ActionMonitor;
 
@@ -80,7 +80,7 @@ struct Motion {
 }
 
 /// Time allowed for a drive to stop before the next level of the stop sequence begins.
-pub const LEVEL_TIME: Duration = Duration::from_millis(200);
+pub const STOP_LEVEL_TIMEOUT: Duration = Duration::from_millis(200);
 /// Time allowed for a drive to obey a control word during a change of state.
 const STEP: Duration = Duration::from_secs(2);
 /// Time allowed for a drive to start moving.
@@ -91,9 +91,9 @@ const CONTACT_TIMEOUT: Duration = Duration::from_millis(350);
 pub const MAX_REPORT_DELAY: Duration = Duration::from_millis(100);
 /// Time after the first report from which positions are considered valid. A hub first queries all its drives (`U`: not
 /// documented).
-pub const ARRIVAL_TIME: Duration = Duration::from_millis(250);
+pub const POSITION_SETTLING_TIME: Duration = Duration::from_millis(250);
 /// Time after which a drive at standstill is considered to have missed its target.
-const NOT_REACHED_TIME: Duration = Duration::from_millis(500);
+const MISSED_TARGET_TIME: Duration = Duration::from_millis(500);
 
 impl DeadMan {
     /// Creates the dead-man control for a newly opened connection. Actions numbered up to `spent` cannot start a
@@ -249,13 +249,13 @@ impl DeadMan {
     fn accept_intent(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) {
         self.discard_void_request(now, intent);
         // A relative step starts from the present position.
-        let has_arrived = self.first.is_some_and(|first| now.duration_since(first) >= ARRIVAL_TIME);
+        let has_arrived = self.first.is_some_and(|first| now.duration_since(first) >= POSITION_SETTLING_TIME);
         let has_place = has_arrived || !matches!(intent.request, MotionRequest::Step { .. });
         let waits = self.act.is_some() || !has_place || !matches!(self.stage, Stage::Rest { .. } | Stage::Lead(_));
         if intent.drive != self.drive || intent.number <= self.spent || waits {
             return;
         }
-        if let Some(how) = self.end_before_request(intent) {
+        if let Some(how) = self.failure_before_request(intent) {
             self.spent = intent.number;
             self.ended = Some((intent.number, how));
             return;
@@ -270,7 +270,7 @@ impl DeadMan {
 
     /// Returns how the last action failed if the new request is to pause or resume it. The user, who did not know of
     /// the failure yet, then gets its reason instead of being told that there is no job.
-    fn end_before_request(&self, intent: &MotionIntent) -> Option<ActionEnd> {
+    fn failure_before_request(&self, intent: &MotionIntent) -> Option<ActionEnd> {
         let concerns_last_action = matches!(intent.request, MotionRequest::Pause | MotionRequest::Resume);
         let (number, how) = self.ended.filter(|_| concerns_last_action)?;
         (intent.number == number + 1 && how.is_failure()).then_some(how)
@@ -324,8 +324,8 @@ impl DeadMan {
         if is_commanded || setpoint.control.is_at_rest() { setpoint } else { Setpoint::holding(actual) }
     }
 
-    const fn current_mark(&self, now: Moment) -> ReportMark {
-        ReportMark { at: now, report: self.reports }
+    const fn current_mark(&self, now: Moment) -> ReportTimestamp {
+        ReportTimestamp { at: now, report: self.reports }
     }
 }
 

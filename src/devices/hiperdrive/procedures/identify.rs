@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::network::{Network, network};
 use super::{Error, Master, WrongLength};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    ACKNOWLEDGE, NEWEST_ERROR, OLDEST_ERROR, POSITION, REQUESTED_BY_BUS, SPEED, STATUS, VARIANT,
+    ACKNOWLEDGE, DRIVE_REQUESTED, NEWEST_ERROR, OLDEST_ERROR, POSITION, SPEED, STATUS, VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{
     ActualValues, DriveNumber, ErrorCode, PARAMETERS, ParameterAccess, ParameterNumber, StatusBit, StatusWord,
@@ -153,7 +153,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
     let topology = Topology::from_category(&category).ok_or(Error::NotHiperdrive { product: category.clone() })?;
     let mut steps = ProgressSteps { done: 0, total: DRIVE * u64::from(topology.drives()) + DEVICE, progress };
     let mut drives = Vec::new();
-    for number in DriveNumber::all_for(topology) {
+    for number in DriveNumber::all_in_topology(topology) {
         let variant = master.read_number(steps.next(drive_parameter(VARIANT, number)?))?;
         let variant = Variant::new(u16::try_from(variant).unwrap_or(Variant::OTHER.number()));
         if variant == Variant::NONE {
@@ -165,7 +165,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
             read_drive_text(master, base, number)
         };
         let (name, article_number, serial_number, version) = (text(121)?, text(122)?, text(123)?, text(125)?);
-        steps.next(drive_parameter(REQUESTED_BY_BUS, number)?);
+        steps.next(drive_parameter(DRIVE_REQUESTED, number)?);
         let requested = is_requested(master, number)?;
         drives.push(DriveIdentity { number, variant, name, article_number, serial_number, version, requested });
     }
@@ -244,7 +244,7 @@ pub fn read_status(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> R
     let mut steps =
         ProgressSteps { done: 0, total: (1 + STATUS_PARAMETERS) * u64::from(topology.drives()) + 2, progress };
     let mut drives = Vec::new();
-    for number in DriveNumber::all_for(topology) {
+    for number in DriveNumber::all_in_topology(topology) {
         if master.read_number(steps.next(drive_parameter(VARIANT, number)?))? == i64::from(Variant::NONE.number()) {
             steps.advance(STATUS_PARAMETERS);
         } else {
@@ -286,7 +286,7 @@ fn read_drive_status(
         words,
         faults: u8::try_from(read(ACKNOWLEDGE)?).unwrap_or(u8::MAX),
         temperature: read(119)?,
-        requested: read(REQUESTED_BY_BUS)? != 0,
+        requested: read(DRIVE_REQUESTED)? != 0,
     })
 }
 
@@ -315,7 +315,7 @@ pub(super) fn read_topology(master: &mut Master<'_>) -> Result<Topology, Error> 
 }
 
 fn is_requested(master: &mut Master<'_>, drive: DriveNumber) -> Result<bool, Error> {
-    Ok(master.read_number(drive_parameter(REQUESTED_BY_BUS, drive)?)? != 0)
+    Ok(master.read_number(drive_parameter(DRIVE_REQUESTED, drive)?)? != 0)
 }
 
 fn read_word(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<u16, Error> {

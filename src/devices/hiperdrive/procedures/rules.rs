@@ -4,7 +4,7 @@ use super::identify::drive_parameter;
 use super::{Error, Master};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER_LIMIT, NUMERATOR, REFERENCE, REQUESTED_BY_BUS, TIMEOUT, UPPER_LIMIT,
+    DENOMINATOR, DRIVE_REQUESTED, LOWER_LIMIT, NUMERATOR, REFERENCE, TIMEOUT, UPPER_LIMIT,
 };
 
 /// Parameters that limit the motion of a drive. A parameter that was not read is `None`.
@@ -27,7 +27,7 @@ impl MotionLimitParameters {
     /// Creates the value from parameters, which `read` returns by their numbers for drive 1.
     pub fn from_parameters(read: impl Fn(u16) -> Option<i64>) -> Self {
         MotionLimitParameters {
-            requested: read(REQUESTED_BY_BUS),
+            requested: read(DRIVE_REQUESTED),
             scale: read(NUMERATOR).zip(read(DENOMINATOR)),
             limits: read(LOWER_LIMIT).zip(read(UPPER_LIMIT)),
             timeout: read(TIMEOUT),
@@ -42,7 +42,7 @@ impl MotionLimitParameters {
 /// Returns an error if the exchange fails.
 pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<MotionLimitParameters, Error> {
     let mut values = Vec::new();
-    for base in [REQUESTED_BY_BUS, NUMERATOR, DENOMINATOR, LOWER_LIMIT, UPPER_LIMIT, TIMEOUT, REFERENCE] {
+    for base in [DRIVE_REQUESTED, NUMERATOR, DENOMINATOR, LOWER_LIMIT, UPPER_LIMIT, TIMEOUT, REFERENCE] {
         match master.read_number(drive_parameter(base, drive)?) {
             Ok(value) => values.push((base, value)),
             Err(error) if error.is_unavailable() => {}
@@ -73,7 +73,7 @@ pub fn read_rule_group(
         Err(error) => Err(error),
     };
     Ok(match group % GROUPS {
-        0 => MotionLimitParameters { requested: read(REQUESTED_BY_BUS)?, ..known },
+        0 => MotionLimitParameters { requested: read(DRIVE_REQUESTED)?, ..known },
         1 => MotionLimitParameters { timeout: read(TIMEOUT)?, ..known },
         2 => MotionLimitParameters { scale: read(NUMERATOR)?.zip(read(DENOMINATOR)?), ..known },
         _ => MotionLimitParameters {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use super::{Base, DeviceState, HiperdrivePlan, Image, Item, Op, PlanError, Service};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    CONTROL, DENOMINATOR, LOWER_LIMIT, MAXIMUM_SPEED, NUMERATOR, REFERENCE, REQUESTED_BY_BUS, RESET, SERVICE,
+    CONTROL, DENOMINATOR, DRIVE_REQUESTED, LOWER_LIMIT, MAXIMUM_SPEED, NUMERATOR, REFERENCE, RESET, SERVICE,
     SPEED_DENOMINATOR, SPEED_NUMERATOR, TARGET, UPPER_LIMIT,
 };
 use crate::devices::hiperdrive::protocol::{
@@ -136,8 +136,8 @@ impl Write {
     fn sort_key(self, upper_first: bool) -> (u8, Option<DriveNumber>, u8, Reverse<bool>, u16) {
         let base = self.number.drive1_number();
         let turn = match (base, self.new) {
-            (REQUESTED_BY_BUS, 1) => 0,
-            (REQUESTED_BY_BUS, _) => 2,
+            (DRIVE_REQUESTED, 1) => 0,
+            (DRIVE_REQUESTED, _) => 2,
             _ => 1,
         };
         let group = match base {

@@ -52,9 +52,9 @@ pub fn plan_restore(
         match device.image.get(number) {
             None => missing.push(item.to_string()),
             Some(from) if from == to => unchanged += 1,
-            Some(_) if is_unchanged_on_device(profile, &device.identity, item, options) => mounting_left.push(item),
+            Some(_) if keeps_device_value(profile, &device.identity, item, options) => mounting_left.push(item),
             Some(_) => {
-                if depends_on_other_mounting(profile, &device.identity, item) {
+                if is_from_different_mounting(profile, &device.identity, item) {
                     mounting_written.push(item);
                 }
                 wanted.values.insert(number, to);
@@ -112,17 +112,17 @@ fn check_allowed(
     Ok(())
 }
 
-fn is_unchanged_on_device(
+fn keeps_device_value(
     profile: &HiperdriveProfile,
     device: &ProfileIdentity,
     item: Item,
     options: RestoreOptions,
 ) -> bool {
-    item.0.drive1_number() == REFERENCE || !options.with_mounting && depends_on_other_mounting(profile, device, item)
+    item.0.drive1_number() == REFERENCE || !options.with_mounting && is_from_different_mounting(profile, device, item)
 }
 
 /// Returns whether an item depends on how a drive is mounted and the profile is not from this drive.
-fn depends_on_other_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
+fn is_from_different_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     profile.depends_on_mounting(item) && !is_same_location(profile, device, item)
 }
 

@@ -3,7 +3,7 @@
 use super::network::SWITCH;
 use super::{HiperdrivePlan, Image, Item, written_values};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    NO_TIMEOUT, REQUESTED_BY_BUS, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, TIMEOUT,
+    DRIVE_REQUESTED, NO_TIMEOUT, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, TIMEOUT,
 };
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber, PositionScale};
 
@@ -38,7 +38,7 @@ pub fn plan_warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
         then.drives().into_iter().filter_map(|drive| moved_limits_warning(&now, &then, drive)).collect();
     for (&number, &new) in &written.values {
         warnings.extend(match (number.drive1_number(), number.drive(), new) {
-            (REQUESTED_BY_BUS, Some(drive), 0) => Some(Warning::NotRequested(drive)),
+            (DRIVE_REQUESTED, Some(drive), 0) => Some(Warning::NotRequested(drive)),
             (TIMEOUT, Some(drive), NO_TIMEOUT) => Some(Warning::NoTimeout(drive)),
             (RS485_ADDRESS | RS485_BAUD | RS485_COMPLETE, ..) => Some(Warning::AfterReset(Item(number))),
             _ => None,

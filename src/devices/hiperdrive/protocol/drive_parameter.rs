@@ -25,7 +25,7 @@ pub const OLDEST_ERROR: u16 = 115;
 /// Variant of the drive, or 0 if no drive is connected.
 pub const VARIANT: u16 = 120;
 /// Whether the bus requests the drive. Only a requested drive can move.
-pub const REQUESTED_BY_BUS: u16 = 152;
+pub const DRIVE_REQUESTED: u16 = 152;
 /// Numerator of the position scale.
 pub const NUMERATOR: u16 = 154;
 /// Denominator of the position scale.

@@ -132,7 +132,7 @@ impl DriveNumber {
     }
 
     /// Returns the numbers of all drives that can be connected in this topology.
-    pub fn all_for(topology: Topology) -> impl Iterator<Item = DriveNumber> {
+    pub fn all_in_topology(topology: Topology) -> impl Iterator<Item = DriveNumber> {
         (1..=topology.drives()).map(DriveNumber)
     }
 }

@@ -8,8 +8,8 @@ use Kind::{I8, I16, I32, Text, U8, U16, U32};
 use ParameterRange::{Any, OneOf, Within, WithinOrEqual};
 
 use super::drive_parameter::{
-    ACKNOWLEDGE, DENOMINATOR, HAND_DRIVE_WAIT, LOWER_LIMIT, MAXIMUM_SPEED, MAXIMUM_SPEEDS, NO_TIMEOUT, NUMERATOR,
-    POSITION, REFERENCE, REQUESTED_BY_BUS, RESET, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, SPEED_DENOMINATOR,
+    ACKNOWLEDGE, DENOMINATOR, DRIVE_REQUESTED, HAND_DRIVE_WAIT, LOWER_LIMIT, MAXIMUM_SPEED, MAXIMUM_SPEEDS, NO_TIMEOUT,
+    NUMERATOR, POSITION, REFERENCE, RESET, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, SPEED_DENOMINATOR,
     SPEED_NUMERATOR, TIMEOUT, UPPER_LIMIT, VARIANT,
 };
 use super::parameter::{FactoryValue, ParameterAccess, ParameterRange, ParameterRow, SlowValue};
@@ -63,14 +63,14 @@ pub const STORE_TIME: Duration = Duration::from_millis(200);
 /// Maximum time for resetting a single drive. On an adapter, the value −4 of parameter 47 also takes this time.
 const DRIVE_RESETS: Duration = Duration::from_secs(2);
 /// Maximum time for resetting all drives of a hub.
-const HUB_RESETS: Duration = Duration::from_secs(8);
+const HUB_RESET_TIME: Duration = Duration::from_secs(8);
 
 const fn store_duration(value: i64) -> SlowValue {
     SlowValue { value, adapter: STORE_TIME, hub: STORE_TIME }
 }
 
 const fn slow_values_for_all_drives(value: i64) -> SlowValue {
-    SlowValue { value, adapter: DRIVE_RESETS, hub: HUB_RESETS }
+    SlowValue { value, adapter: DRIVE_RESETS, hub: HUB_RESET_TIME }
 }
 
 const fn slow_values_for_one_drive(value: i64) -> SlowValue {
@@ -170,7 +170,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
     text(127, "nominal current", "A"),
     text(128, "nominal torque", "Nm"),
     text(129, "nominal speed", "rpm"),
-    read(REQUESTED_BY_BUS, "requested", U8, "")
+    read(DRIVE_REQUESTED, "requested", U8, "")
         .saved(Within(0, 1), FactoryValue::Topology { adapter: 1, hub: 0 })
         .with_device_storage()
         .with_write_durations(REQUEST),

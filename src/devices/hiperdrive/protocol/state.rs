@@ -128,7 +128,7 @@ impl State {
     }
 
     /// Returns whether the keys on the drive can move it in this state.
-    pub const fn can_be_moved_with_keys(self) -> bool {
+    pub const fn allows_key_operation(self) -> bool {
         matches!(self, NotReady | Ready | Fault | Locked)
     }
 }

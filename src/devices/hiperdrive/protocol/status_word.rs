@@ -96,7 +96,7 @@ impl StatusBit {
 
 impl StatusWord {
     /// Status word 0A30h of a detected drive that is not at standstill.
-    pub const FOUND: StatusWord = StatusWord(0x0A30);
+    pub const DETECTED_DRIVE: StatusWord = StatusWord(0x0A30);
 
     /// Creates a status word from a received value.
     pub const fn new(word: u16) -> Self {
@@ -131,8 +131,8 @@ impl StatusWord {
 
     /// Returns whether a drive can send this status word. Bits 4, 5, 9 and 11 of a drive always have the same value.
     pub const fn is_plausible(self) -> bool {
-        let found = self.0 & StatusWord::FOUND.0;
-        found == 0 || found == StatusWord::FOUND.0
+        let found = self.0 & StatusWord::DETECTED_DRIVE.0;
+        found == 0 || found == StatusWord::DETECTED_DRIVE.0
     }
 
     /// Returns the state of the drive. A fault takes precedence over the lock, and the lock over any other state (`D`).

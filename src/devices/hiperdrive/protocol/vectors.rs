@@ -144,7 +144,7 @@ fn published_status_words_match() {
         assert_eq!(status(word).state(), state, "{word:04X}");
     }
     // Bits 4, 5, 9 and 11 are set for a detected drive, and bit 13 at standstill.
-    let standing = StatusWord::FOUND.with_bit(S::Standstill, true);
+    let standing = StatusWord::DETECTED_DRIVE.with_bit(S::Standstill, true);
     assert_eq!((standing.to_u16(), standing.is_present()), (0x2A30, true));
     let set: Vec<u8> = standing.set_bits().map(StatusBit::bit_number).collect();
     assert_eq!(set, [4, 5, 9, 11, 13]);
@@ -204,7 +204,7 @@ fn state_machine_matches_reference() {
     ] {
         assert_eq!(from.after_event(trigger), to, "{from}");
     }
-    let keys: Vec<State> = State::ALL.into_iter().filter(|state| state.can_be_moved_with_keys()).collect();
+    let keys: Vec<State> = State::ALL.into_iter().filter(|state| state.allows_key_operation()).collect();
     assert_eq!(keys, [NotReady, Ready, Fault, Locked]);
     // The word of a row has the effect of the row if it follows the word that keeps the state.
     for (state, kept) in

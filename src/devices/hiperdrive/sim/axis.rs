@@ -77,7 +77,7 @@ pub(super) enum TickOutcome {
 /// Number of steps per turn.
 pub(super) const TURN: f64 = 65536.0;
 pub(super) const TICK: Duration = Duration::from_millis(1);
-const TICK_S: f64 = 1e-3;
+const TICK_SECONDS: f64 = 1e-3;
 /// Assumed acceleration. The drive reaches 35 rpm, or brakes from 35 rpm, in 0.1 s.
 const ACCELERATION: f64 = 350.0 / 60.0 * TURN;
 
@@ -103,7 +103,7 @@ impl Axis {
     }
 
     pub(super) fn tick(&mut self, wanted: AxisSetpoint, load: &SpindleLoad) -> TickOutcome {
-        let gain = ACCELERATION * TICK_S;
+        let gain = ACCELERATION * TICK_SECONDS;
         let aim = match wanted {
             AxisSetpoint::Rest => 0.0,
             AxisSetpoint::Speed(speed) => speed,
@@ -114,7 +114,7 @@ impl Axis {
             }
         };
         self.speed += (aim - self.speed).clamp(-gain, gain);
-        let next = self.place + self.speed * TICK_S;
+        let next = self.place + self.speed * TICK_SECONDS;
         if let Some(held) = blocking_obstacle(load, next) {
             (self.place, self.speed) = (held.0, 0.0);
             let arrived =

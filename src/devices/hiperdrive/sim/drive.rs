@@ -15,7 +15,7 @@ use std::collections::VecDeque;
 use super::axis::{Axis, AxisSetpoint, DriveDefect, SpindleLoad, TICK, TURN, TickOutcome};
 use super::memory::Memory;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER_LIMIT, MAXIMUM_SPEED, NUMERATOR, REQUESTED_BY_BUS, SPEED_DENOMINATOR, SPEED_NUMERATOR,
+    DENOMINATOR, DRIVE_REQUESTED, LOWER_LIMIT, MAXIMUM_SPEED, NUMERATOR, SPEED_DENOMINATOR, SPEED_NUMERATOR,
     UPPER_LIMIT,
 };
 use crate::devices::hiperdrive::protocol::{
@@ -78,12 +78,12 @@ struct Jog {
 
 /// Number of stored errors, parameters 108 to 115.
 const ERRORS: usize = 8;
-const HELD_MS: u32 = 200;
-const WEAK_MS: u32 = 500;
+const BLOCKED_FAULT_DELAY_MS: u32 = 200;
+const STALL_FAULT_DELAY_MS: u32 = 500;
 const HOT: f64 = 80.0;
 /// Temperature rise above ambient at full torque, in kelvin.
-const HEATING_K: f64 = 40.0;
-const WARM_UP_S: f64 = 60.0;
+const FULL_TORQUE_TEMPERATURE_RISE: f64 = 40.0;
+const THERMAL_TIME_CONSTANT_SECONDS: f64 = 60.0;
 
 impl Drive {
     /// Creates a drive with factory settings, switched on at time zero.
@@ -91,7 +91,7 @@ impl Drive {
         let family = variant.row().map_or(Family::Short, |row| row.family);
         Drive {
             variant,
-            memory: Memory::new(topology, family, |row| row.number >= REQUESTED_BY_BUS),
+            memory: Memory::new(topology, family, |row| row.number >= DRIVE_REQUESTED),
             axis: Axis::default(),
             offset: 0.0,
             out: OutputData { speed: 100, torque: 100, ..OutputData::default() },
@@ -189,7 +189,7 @@ impl Drive {
             (StatusBit::PositionLimit, position < low || position > high || says_outside),
         ]
         .into_iter()
-        .fold(StatusWord::FOUND, |status, (bit, set)| status.with_bit(bit, set))
+        .fold(StatusWord::DETECTED_DRIVE, |status, (bit, set)| status.with_bit(bit, set))
     }
 
     /// Returns whether the drive is at rest, with no motion in progress.
@@ -277,7 +277,7 @@ impl Drive {
 
     /// Returns whether the drive may be moved: it is requested, and switch S3 is at 0.
     fn may_move(&self) -> bool {
-        self.allowed && self.memory.get(REQUESTED_BY_BUS) == Some(1)
+        self.allowed && self.memory.get(DRIVE_REQUESTED) == Some(1)
     }
 
     fn tick(&mut self, ticks: u32) {
@@ -294,10 +294,10 @@ impl Drive {
         let stuck = weak || matches!(came, TickOutcome::Held { .. });
         self.stuck_ms = if stuck { self.stuck_ms + 1 } else { 0 };
         match came {
-            TickOutcome::Held { above } if self.stuck_ms >= HELD_MS => {
+            TickOutcome::Held { above } if self.stuck_ms >= BLOCKED_FAULT_DELAY_MS => {
                 self.enter_fault(if above { ErrorCode::BLOCK_FORWARD } else { ErrorCode::BLOCK_REVERSE });
             }
-            _ if weak && self.stuck_ms >= WEAK_MS => self.enter_fault(ErrorCode::FOLLOWING_ERROR),
+            _ if weak && self.stuck_ms >= STALL_FAULT_DELAY_MS => self.enter_fault(ErrorCode::FOLLOWING_ERROR),
             TickOutcome::There if wants && !weak => {
                 self.target_reached |= matches!(self.motion, Motion::Job { .. });
                 self.motion = Motion::Rest;
@@ -326,8 +326,8 @@ impl Drive {
     }
 
     fn heat_up(&mut self, torque: u8, ticks: u32) {
-        let ends = self.load.ambient + HEATING_K * f64::from(torque) / 100.0;
-        let left = (-f64::from(ticks) * TICK.as_secs_f64() / WARM_UP_S).exp();
+        let ends = self.load.ambient + FULL_TORQUE_TEMPERATURE_RISE * f64::from(torque) / 100.0;
+        let left = (-f64::from(ticks) * TICK.as_secs_f64() / THERMAL_TIME_CONSTANT_SECONDS).exp();
         let before = self.celsius;
         self.celsius = ends + (before - ends) * left;
         if self.celsius >= HOT && (before < HOT || torque > 0) && self.state != State::Fault {

@@ -7,7 +7,7 @@ use super::axis::TURN;
 use super::drive::Drive;
 use crate::buses::ethernet_ip::protocol::GeneralStatus;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    ACKNOWLEDGE, CONTROL, LOWER_LIMIT, NEWEST_ERROR, OLDEST_ERROR, POSITION, REFERENCE, REQUESTED_BY_BUS, RESET, SPEED,
+    ACKNOWLEDGE, CONTROL, DRIVE_REQUESTED, LOWER_LIMIT, NEWEST_ERROR, OLDEST_ERROR, POSITION, REFERENCE, RESET, SPEED,
     SPEED_SHARE, STATUS, TARGET, TORQUE_SHARE, UPPER_LIMIT, VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{ErrorCode, PkwError, Value, nearest_reference};
@@ -79,8 +79,8 @@ impl Drive {
 
     /// Returns whether writing this value restarts the drive. This is the case when parameter 152 changes from 0 to 1,
     /// and for every write to parameter 199.
-    pub(super) fn is_reset_by(&self, number: u16, value: i64) -> bool {
-        number == RESET || (number, value) == (REQUESTED_BY_BUS, 1) && self.memory.get(REQUESTED_BY_BUS) == Some(0)
+    pub(super) fn resets_drive(&self, number: u16, value: i64) -> bool {
+        number == RESET || (number, value) == (DRIVE_REQUESTED, 1) && self.memory.get(DRIVE_REQUESTED) == Some(0)
     }
 
     /// Writes a parameter, given its number for drive 1. The caller has checked its range.
@@ -109,7 +109,7 @@ impl Drive {
                 return Ok(());
             }
             _ => {
-                let resets = self.is_reset_by(number, value);
+                let resets = self.resets_drive(number, value);
                 self.memory.set_value(number, value);
                 if resets {
                     self.reset(now);

@@ -16,7 +16,7 @@ use super::drive::Drive;
 use super::memory::Memory;
 use super::parameters::ParameterError;
 use super::write_fault::{ActiveWriteFault, WriteFault};
-use crate::devices::hiperdrive::protocol::drive_parameter::{MAXIMUM_SPEED, REQUESTED_BY_BUS, SERVICE, VARIANT};
+use crate::devices::hiperdrive::protocol::drive_parameter::{DRIVE_REQUESTED, MAXIMUM_SPEED, SERVICE, VARIANT};
 use crate::devices::hiperdrive::protocol::{
     ActualValues, DriveNumber, Family, InputImage, OutputData, OutputImage, ParameterAccess, ParameterNumber,
     ParameterRow, Pkw, Topology, Travel, Value, Variant,
@@ -117,7 +117,7 @@ impl Station {
     }
 
     pub fn from_config(config: &Config) -> Self {
-        let drives = DriveNumber::all_for(config.topology).map(|number| config.drive(number)).collect();
+        let drives = DriveNumber::all_in_topology(config.topology).map(|number| config.drive(number)).collect();
         let setup = StationConfig { topology: config.topology, drives, serial_number: config.serial_number };
         let mut station = Station::new(setup);
         station.plate = StationIdentity {
@@ -125,11 +125,11 @@ impl Station {
             switch: config.switch,
             supply_tenths: config.supply_in_tenths_of_volt(),
         };
-        station.store.failing_save = config.faults.failing_store();
+        station.store.failing_save = config.faults.save_with_power_failure();
         station.resets = config.resets;
         for drive in station.present_drives() {
             drive.axis = Axis::at_position(config.position.into());
-            config.requested.iter().for_each(|requested| drive.memory.preset(REQUESTED_BY_BUS, i64::from(*requested)));
+            config.requested.iter().for_each(|requested| drive.memory.preset(DRIVE_REQUESTED, i64::from(*requested)));
             config.speed.iter().for_each(|speed| drive.memory.preset(MAXIMUM_SPEED, i64::from(*speed)));
         }
         station.set_drive_select_switch(Moment::START, config.s3);
@@ -252,7 +252,7 @@ impl Station {
         }
         match (self.drive(drive), row.number) {
             (Some(drive), own) => drive.read(now, own).ok_or(ParameterError::Unknown),
-            (None, VARIANT | REQUESTED_BY_BUS) => Ok(Value::Number(0)),
+            (None, VARIANT | DRIVE_REQUESTED) => Ok(Value::Number(0)),
             (None, _) => Err(ParameterError::State),
         }
     }
@@ -294,7 +294,7 @@ impl Station {
                 if row.check_value(own, value, drive.travel()).is_err() {
                     return Err(drive.state_rejection());
                 }
-                let resets = drive.is_reset_by(row.number, value);
+                let resets = drive.resets_drive(row.number, value);
                 drive.write(now, row.number, value)?;
                 self.answers_at = resets.then(|| now + DRIVE_RESETS);
                 Ok(())

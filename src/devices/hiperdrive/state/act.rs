@@ -85,7 +85,7 @@ impl HiperdriveDevice {
     fn apply_motor_action(&mut self, motor: MotorCommand, services: &mut Services) {
         let drive = self.drive();
         let request = match motor {
-            MotorCommand::JogHold => return self.moves.refresh_held(),
+            MotorCommand::JogHold => return self.moves.refresh_held_action(),
             MotorCommand::JogRelease => return self.moves.release(),
             MotorCommand::Stop => return self.moves.stop(),
             MotorCommand::JogEffort(effort) => return self.moves.set_jog_effort(drive, effort),

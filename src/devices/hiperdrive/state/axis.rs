@@ -146,7 +146,7 @@ impl AxisStep {
         AxisStep::PowerCycle,
     ];
 
-    pub const fn needs_cyclic(self) -> bool {
+    pub const fn needs_cyclic_connection(self) -> bool {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Test)
     }
 

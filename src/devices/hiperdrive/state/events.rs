@@ -159,7 +159,7 @@ impl HiperdriveDevice {
 impl SessionEvents for HiperdriveDevice {
     fn handle_samples(&mut self, samples: Vec<PolledSample>, dropped: u64) {
         if dropped > 0 {
-            self.record.add_dropped(dropped);
+            self.record.record_dropped_samples(dropped);
         }
         for sample in samples {
             match sample {
@@ -189,7 +189,7 @@ impl SessionEvents for HiperdriveDevice {
         if let Some((drive, ended)) = self.moves.take_motion_end() {
             self.report_motion_end(drive, ended, services);
         }
-        self.poll_line(services);
+        self.process_pending_events(services);
         self.update_axes();
         self.request_missing_data(services);
     }

@@ -4,7 +4,7 @@ use super::staged::{EditError, EditFinding};
 use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    CONTROL, MAXIMUM_SPEED, NEWEST_ERROR, NO_TIMEOUT, OLDEST_ERROR, REQUESTED_BY_BUS, SERVICE, STATUS, TIMEOUT, VARIANT,
+    CONTROL, DRIVE_REQUESTED, MAXIMUM_SPEED, NEWEST_ERROR, NO_TIMEOUT, OLDEST_ERROR, SERVICE, STATUS, TIMEOUT, VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{
     self, AddressSwitch, ErrorCode, Kind, ParameterNumber, ParameterRow, StatusWord, Value, Variant,
@@ -64,7 +64,7 @@ pub fn value_meaning(number: ParameterNumber, value: i64) -> Option<Text> {
             _ => "hd_meaning.word_error",
         }),
         VARIANT => hiperdrive::variant_text(Variant::new(word()?)),
-        REQUESTED_BY_BUS => TEXTS.text(if value == 0 { "hd_meaning.not_requested" } else { "hd_meaning.requested" }),
+        DRIVE_REQUESTED => TEXTS.text(if value == 0 { "hd_meaning.not_requested" } else { "hd_meaning.requested" }),
         MAXIMUM_SPEED => tenths("hd_entry.rpm", "rpm"),
         TIMEOUT if value == NO_TIMEOUT => TEXTS.text("hd_meaning.no_timeout"),
         TIMEOUT => tenths("hd_check.timeout", "seconds"),

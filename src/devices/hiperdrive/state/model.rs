@@ -136,7 +136,7 @@ impl MotionControl for HiperdriveDevice {
     }
 
     fn release_motion(&mut self) {
-        self.moves.release_held();
+        self.moves.end_held_action();
     }
 
     fn is_moving(&self) -> bool {

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::devices::hiperdrive::jobs::{DriveSnapshot, DrivesSnapshot, Motion, MotionSnapshot};
 use crate::devices::hiperdrive::procedures::dead_man::{
-    ARRIVAL_TIME, ActionEnd, MotionKind, MotionLock, MotionRequest, Permit, Phase, SpeedTorque,
+    ActionEnd, MotionKind, MotionLock, MotionRequest, POSITION_SETTLING_TIME, Permit, Phase, SpeedTorque,
 };
 use crate::devices::hiperdrive::procedures::{DisplayedLimits, DriveLimits};
 use crate::devices::hiperdrive::protocol::{ActualValues, Direction, DriveNumber, RunEnd, Setpoint, State};
@@ -203,7 +203,7 @@ impl DriveMotion {
         self.act.is_some_and(|act| act.kind == Kind::Held && self.has_ended(act.number, act.drive))
     }
 
-    pub(super) fn refresh_held(&self) {
+    pub(super) fn refresh_held_action(&self) {
         if let (Some(motion), Some(act)) = (&self.motion, self.act)
             && act.kind == Kind::Held
             && motion.is_latest_action(act.number)
@@ -219,7 +219,7 @@ impl DriveMotion {
     }
 
     /// Ends an action that would last until stopped, that is, a jog or a run.
-    pub(crate) fn release_held(&mut self) {
+    pub(crate) fn end_held_action(&mut self) {
         self.freed = None;
         self.stop_motion_of_kind(|kind| matches!(kind, Kind::Held | Kind::Run));
     }
@@ -380,7 +380,7 @@ impl DriveMotion {
     pub fn is_data_valid(&self) -> bool {
         let link = &self.view.link;
         let packets = u32::try_from(link.received).unwrap_or(u32::MAX);
-        self.view.open && link.interval.saturating_mul(packets) >= ARRIVAL_TIME
+        self.view.open && link.interval.saturating_mul(packets) >= POSITION_SETTLING_TIME
     }
 
     pub fn is_moving(&self) -> bool {

@@ -5,13 +5,13 @@ use super::unit::HiperdriveDevice;
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::Change;
-use crate::devices::hiperdrive::procedures::dead_man::{MotionRequest, OutsideLimits, Permit, SpeedTorque};
+use crate::devices::hiperdrive::procedures::dead_man::{LimitViolation, MotionRequest, Permit, SpeedTorque};
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, nearest_reference};
 use crate::devices::hiperdrive::state::TEXTS;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutOfRangePosition {
-    pub outside: OutsideLimits,
+    pub outside: LimitViolation,
     /// Position in scaled steps.
     pub position: i32,
     /// Lower and upper limit in scaled steps, parameters 158 and 160.
@@ -30,8 +30,10 @@ impl HiperdriveDevice {
         let permit = Permit { limits: Some(limits), degree, ..Permit::default() };
         let outside = permit.outside_limits(actual)?;
         let is_far = match outside {
-            OutsideLimits::At(side) => side.steps_beyond(actual.position, limits).unsigned_abs() > u64::from(degree),
-            OutsideLimits::Unclear => true,
+            LimitViolation::At(side) => {
+                side.overshoot_steps(actual.position, limits).unsigned_abs() > u64::from(degree)
+            }
+            LimitViolation::Unclear => true,
         };
         Some(OutOfRangePosition { outside, position: actual.position, limits, is_far })
     }
@@ -39,7 +41,7 @@ impl HiperdriveDevice {
     /// Returns a message if the drive is outside its limits, and not merely at the end of its range.
     pub fn outside_limits_text(&self, drive: DriveNumber) -> Option<Text> {
         let own = self.out_of_range_position(drive).filter(|own| own.is_far)?;
-        let id = if own.outside == OutsideLimits::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
+        let id = if own.outside == LimitViolation::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
         let text = TEXTS.text(id).with_text("position", self.position_text(drive, own.position));
         Some(text.with_text("range", self.range_text(drive, own.limits)))
     }
@@ -62,14 +64,14 @@ impl HiperdriveDevice {
 
     /// Returns whether jogging in this direction is blocked, but the user can allow it for a single press.
     pub fn can_enable_outward_jog(&self, drive: DriveNumber, direction: Direction) -> bool {
-        self.may_move_until_stopped(drive).is_ok() && self.is_blocked(drive, direction)
+        self.check_can_move_until_stopped(drive).is_ok() && self.is_blocked(drive, direction)
     }
 
     pub(super) fn enable_outward_jog(&mut self, drive: DriveNumber, direction: Direction, services: &mut Services) {
         if self.can_enable_outward_jog(drive, direction) {
             return self.moves.start_endless_run(drive, direction);
         }
-        let why = self.may_move_until_stopped(drive).err().unwrap_or_else(|| TEXTS.text("hd_outside.inside"));
+        let why = self.check_can_move_until_stopped(drive).err().unwrap_or_else(|| TEXTS.text("hd_outside.inside"));
         self.report_drive_message(drive, Severity::Warning, vec![why], services);
     }
 

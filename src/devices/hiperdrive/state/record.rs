@@ -33,7 +33,7 @@ impl Record {
         self.track.begin_session(began);
     }
 
-    pub(super) fn add_dropped(&mut self, dropped: u64) {
+    pub(super) fn record_dropped_samples(&mut self, dropped: u64) {
         self.track.record_dropped(dropped);
     }
 
@@ -91,7 +91,7 @@ impl Record {
     }
 
     pub(super) fn clear(&mut self) {
-        self.track.clear_unless_long();
+        self.track.discard_short_recording();
         self.last = None;
     }
 }

@@ -59,7 +59,7 @@ impl HiperdriveDevice {
         if let Phase::Silent(why) = &self.session.phase {
             return Err(why.clone());
         }
-        if let Some(why) = self.unread_reason(drive) {
+        if let Some(why) = self.missing_parameters_reason(drive) {
             return Err(why);
         }
         if let Some(lock) = self.moves.motion_locks(drive).first() {
@@ -76,7 +76,7 @@ impl HiperdriveDevice {
     pub(super) fn set_remote(&mut self, is_remote: bool) {
         self.is_remote = is_remote;
         if is_remote {
-            self.moves.release_held();
+            self.moves.end_held_action();
         }
     }
 
@@ -84,7 +84,7 @@ impl HiperdriveDevice {
     ///
     /// # Errors
     /// Returns an error with the reason if the drive may not be moved in this way.
-    pub fn may_move_until_stopped(&self, drive: DriveNumber) -> Result<(), Text> {
+    pub fn check_can_move_until_stopped(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_move(drive)?;
         if self.is_remote { Err(TEXTS.text("hd_refused.remote")) } else { Ok(()) }
     }
@@ -94,7 +94,7 @@ impl HiperdriveDevice {
     /// # Errors
     /// Returns an error with the reason if the drive may not do so.
     pub fn check_can_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
-        self.may_move_until_stopped(drive)?;
+        self.check_can_move_until_stopped(drive)?;
         let permitted = self.moves.motion_permit(drive).is_some_and(|permit| permit.endless);
         if permitted { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
     }
@@ -126,7 +126,7 @@ impl HiperdriveDevice {
         self.check_may_end_motion(drive, request)?;
         match request {
             MotionRequest::Run { end: RunEnd::Endless, .. } => self.check_can_run_endlessly(drive)?,
-            MotionRequest::Run { .. } | MotionRequest::Jog { .. } => self.may_move_until_stopped(drive)?,
+            MotionRequest::Run { .. } | MotionRequest::Jog { .. } => self.check_can_move_until_stopped(drive)?,
             _ if request.needs_motion() => self.may_move(drive)?,
             _ => self.check_controllable()?,
         }
@@ -168,7 +168,7 @@ impl HiperdriveDevice {
         texts: Vec<Text>,
         services: &mut Services,
     ) {
-        services.notify_part(severity, texts, (Some(&self.session.name()), self.drive_name(drive)));
+        services.notify_device_part(severity, texts, (Some(&self.session.name()), self.drive_name(drive)));
     }
 
     /// Returns the name of a drive, or `None` if there is only one drive.
@@ -184,7 +184,7 @@ impl HiperdriveDevice {
     }
 
     pub fn position_text(&self, drive: DriveNumber, steps: i32) -> Text {
-        let (value, decimals, unit) = self.in_user_unit(drive, steps);
+        let (value, decimals, unit) = self.convert_to_user_unit(drive, steps);
         TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
     }
 
@@ -204,13 +204,14 @@ impl HiperdriveDevice {
 
     /// Formats a range of positions, with the unit.
     pub fn range_text(&self, drive: DriveNumber, (low, high): (i32, i32)) -> Text {
-        let ((low, ..), (high, decimals, unit)) = (self.in_user_unit(drive, low), self.in_user_unit(drive, high));
+        let ((low, ..), (high, decimals, unit)) =
+            (self.convert_to_user_unit(drive, low), self.convert_to_user_unit(drive, high));
         let text = TEXTS.text("hd_entry.range").with_number("low", low, decimals);
         text.with_number("high", high, decimals).with_text("unit", unit)
     }
 
     /// Converts a position to the user's unit. Returns the value, its number of decimals, and the unit.
-    fn in_user_unit(&self, drive: DriveNumber, steps: i32) -> (f64, usize, Text) {
+    fn convert_to_user_unit(&self, drive: DriveNumber, steps: i32) -> (f64, usize, Text) {
         let ruler = self.ruler(drive);
         let value = ruler.from_steps(i64::from(steps), self.measure);
         let (value, measure) = value.map_or((f64::from(steps), PositionUnit::Steps), |value| (value, self.measure));
@@ -239,7 +240,7 @@ impl HiperdriveDevice {
 
     /// Returns the command that leads to one of the [`reachable_states`](Self::reachable_states), or `None` if no
     /// command does. An acknowledgement leads from a fault to the switch-on lock.
-    pub const fn leads_to(to: State) -> Option<MotorCommand> {
+    pub const fn command_for_state(to: State) -> Option<MotorCommand> {
         match to {
             State::NotReady => Some(MotorCommand::Lead(TargetState::Off)),
             State::Ready => Some(MotorCommand::Lead(TargetState::Ready)),

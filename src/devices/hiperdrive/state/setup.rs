@@ -14,7 +14,7 @@ use crate::app::{DeviceFile, FileQuestion, Language, Severity, Text};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob};
 use crate::devices::hiperdrive::procedures::dead_man::{MotionRequest, SpeedTorque};
 use crate::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
-use crate::devices::hiperdrive::protocol::drive_parameter::{NUMERATOR, REFERENCE, REQUESTED_BY_BUS};
+use crate::devices::hiperdrive::protocol::drive_parameter::{DRIVE_REQUESTED, NUMERATOR, REFERENCE};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain;
@@ -73,7 +73,7 @@ impl HiperdriveDevice {
             values: AXIS.filter_map(|number| Some((number, self.parameter_value(drive, number)?))).collect(),
             unsaved: self.unsaved_values(drive),
             times_set: self.position_set_count(drive),
-            requested: self.parameter_value(drive, REQUESTED_BY_BUS).map(|value| value == 1),
+            requested: self.parameter_value(drive, DRIVE_REQUESTED).map(|value| value == 1),
             scale: self.scale(drive),
             pitch: self.spindle_pitch(drive),
             limits: self.limits(drive),

@@ -92,7 +92,7 @@ impl HiperdriveDevice {
     }
 
     /// Returns the reason if the parameters read so far are not sufficient to move the drive.
-    pub(super) fn unread_reason(&self, drive: DriveNumber) -> Option<Text> {
+    pub(super) fn missing_parameters_reason(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
             Some(explain::lock_text(MotionLock::Unread))
         } else if self.moves.is_open() && self.marks != SettingsReadState::Read {
@@ -115,7 +115,7 @@ impl HiperdriveDevice {
 
     /// Returns the displayed limits of a drive that would be confirmed.
     fn displayed_limits_to_confirm(&self, drive: DriveNumber) -> Result<DisplayedLimits, Text> {
-        self.unread_reason(drive).map_or(Ok(()), Err)?;
+        self.missing_parameters_reason(drive).map_or(Ok(()), Err)?;
         let seen = self.drive_limits(drive).and_then(DriveLimits::displayed_limits);
         seen.ok_or_else(|| explain::lock_text(MotionLock::Unread))
     }

@@ -157,7 +157,7 @@ impl HiperdriveDevice {
 
     pub(super) fn show_drive(&mut self, drive: DriveNumber) {
         if self.drive != drive {
-            self.moves.release_held();
+            self.moves.end_held_action();
             // Only the selected drive and the one moved last are read repeatedly.
             self.moves.invalidate_limits(drive);
             let before = std::mem::replace(&mut self.drive, drive);

@@ -8,7 +8,9 @@ use super::unit::HiperdriveDevice;
 use super::unsaved::UnsavedChanges;
 use crate::app::review::OperationDescription;
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, truncated_list, unsaved_edits_remark};
+use crate::app::session::{
+    ApprovedReviewPlan, HasMemory, HasProfile, KnownProfile, truncated_list, unsaved_edits_remark,
+};
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperdrive::jobs::{Change, Committed, Hiperdrive, HiperdriveJob, Prepared};
 use crate::devices::hiperdrive::profile::{
@@ -44,7 +46,7 @@ impl HasMemory for HiperdriveDevice {
     }
 
     /// Stops all motion and returns the job that executes the approved plan.
-    fn commit_job(&mut self, agreed: ApprovedPlanOf<Hiperdrive>) -> HiperdriveJob {
+    fn commit_job(&mut self, agreed: ApprovedReviewPlan<Hiperdrive>) -> HiperdriveJob {
         self.moves.stop();
         self.unsaved.begin_plan(&agreed.prepared.plan);
         HiperdriveJob::Commit(Box::new(agreed))
@@ -57,7 +59,7 @@ impl HasMemory for HiperdriveDevice {
     }
 
     fn prepare_review(&mut self) {
-        self.moves.release_held();
+        self.moves.end_held_action();
     }
 
     fn discard_device_data(&mut self) {

@@ -33,7 +33,7 @@ pub(super) struct AxisUiState {
 
 impl AxisUiState {
     /// Returns how long the step has been displayed, or zero if it is new.
-    fn time_displayed(&mut self, step: AxisStep, now: f64) -> Duration {
+    fn display_duration(&mut self, step: AxisStep, now: f64) -> Duration {
         let since = self.since.filter(|(own, _)| *own == step).map_or(now, |(_, since)| since);
         self.since = Some((step, since));
         Duration::from_secs_f64((now - since).max(0.0))
@@ -87,7 +87,7 @@ pub(super) fn page_ui(
         return;
     };
     let seen = unit.drive_facts(unit.drive());
-    let looked_at = view.time_displayed(axis.step(), ui.input(|input| input.time));
+    let looked_at = view.display_duration(axis.step(), ui.input(|input| input.time));
     let shown = AxisPanel { unit, axis, seen: &seen, looked_at };
     if let Some(end) = axis.setup_end() {
         end_ui(ui, theme, &shown, end, actions);

@@ -5,7 +5,7 @@ use egui::{FontId, RichText, Ui, Vec2, vec2};
 use super::motion::{MotionUiState, move_speed_torque_text, position_entry_ui, speed_torque_ui};
 use super::travel::travel_ui;
 use crate::app::{Action, HoldEvent, SessionId, Text};
-use crate::devices::hiperdrive::procedures::dead_man::OutsideLimits;
+use crate::devices::hiperdrive::procedures::dead_man::LimitViolation;
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Percent};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand, TEXTS, forms};
 use crate::devices::hiperdrive::views::translate;
@@ -33,7 +33,7 @@ pub(super) fn card_ui(
         let own = (unit.moves.jog_speed_torque(drive), unit.moves.running_jog_speed_torque(drive), drafts);
         let presets: Vec<Percent> = PRESETS.into_iter().filter_map(Percent::new).collect();
         let effort = speed_torque_ui(ui, theme, unit, own, &presets, MotorCommand::JogEffort, actions);
-        let allowed = effort.and(unit.may_move_until_stopped(drive));
+        let allowed = effort.and(unit.check_can_move_until_stopped(drive));
         jog_buttons_ui(ui, theme, unit, allowed.is_ok(), actions);
         jog_buttons_note_ui(ui, theme, unit, allowed.as_ref().err());
     });
@@ -76,8 +76,8 @@ fn jog_buttons_note_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, why_
     });
     let (id, colour) = match outside.map(|own| own.outside) {
         None => ("hd_jog.words", theme.palette.muted),
-        Some(OutsideLimits::At(_)) => ("hd_jog.outside", theme.palette.bad),
-        Some(OutsideLimits::Unclear) => ("hd_jog.unclear", theme.palette.bad),
+        Some(LimitViolation::At(_)) => ("hd_jog.outside", theme.palette.bad),
+        Some(LimitViolation::Unclear) => ("hd_jog.unclear", theme.palette.bad),
     };
     let width = ui.available_width();
     let font = FontId::proportional(theme.sizes.body);
@@ -110,7 +110,7 @@ pub(super) fn jog_buttons_ui(
             let caption = translate(
                 theme,
                 match unit.out_of_range_position(unit.drive()).map(|own| own.outside) {
-                    Some(OutsideLimits::Unclear) if blocked => "hd_outside.pad_unclear",
+                    Some(LimitViolation::Unclear) if blocked => "hd_outside.pad_unclear",
                     _ if blocked => "hd_outside.pad",
                     _ => "hd_jog.hold",
                 },

@@ -152,7 +152,7 @@ fn states_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, actions: &mut 
         let reachable: Vec<State> = if open { unit.reachable_states(drive) } else { Vec::new() };
         let hints = State::ALL.map(|state| unit.transition_hint(drive, state).map(|hint| theme.format_text(&hint)));
         let machine = StateMachine { present, reachable: &reachable, names: &names, hints: &hints };
-        if let Some(act) = state_machine(ui, theme, &machine).and_then(HiperdriveDevice::leads_to) {
+        if let Some(act) = state_machine(ui, theme, &machine).and_then(HiperdriveDevice::command_for_state) {
             motor(actions, unit.session.id, act);
         }
         if !beside {

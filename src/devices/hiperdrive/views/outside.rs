@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 
 use super::motion::position_entry_ui;
 use crate::app::{Action, Text};
-use crate::devices::hiperdrive::procedures::dead_man::{LimitSide, OutsideLimits};
+use crate::devices::hiperdrive::procedures::dead_man::{LimitSide, LimitViolation};
 use crate::devices::hiperdrive::protocol::Direction;
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, HiperdriveDevice, MotorCommand, TEXTS, forms};
 use crate::devices::hiperdrive::views::translate;
@@ -54,13 +54,13 @@ pub(super) fn card_ui(
         let words = match (freed, outside.outside) {
             (Some(Direction::Clockwise), _) => "hd_outside.freed_up",
             (Some(Direction::Counterclockwise), _) => "hd_outside.freed_down",
-            (None, OutsideLimits::Unclear) => "hd_outside.blocked_both",
-            (None, OutsideLimits::At(LimitSide::Above)) => "hd_outside.blocked_up",
-            (None, OutsideLimits::At(LimitSide::Below)) => "hd_outside.blocked_down",
+            (None, LimitViolation::Unclear) => "hd_outside.blocked_both",
+            (None, LimitViolation::At(LimitSide::Above)) => "hd_outside.blocked_up",
+            (None, LimitViolation::At(LimitSide::Below)) => "hd_outside.blocked_down",
         };
         paragraph(ui, theme.caption(translate(theme, words)));
         // The buttons remain after a press, so that the widgets below them do not move under the pointer.
-        let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.may_move_until_stopped(drive) };
+        let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.check_can_move_until_stopped(drive) };
         ui.horizontal_wrapped(|ui| {
             for way in ways {
                 let free = match way {

@@ -20,7 +20,7 @@ pub(super) fn run_ui(
     let (drive, id) = (unit.drive(), unit.session.id);
     let own = (unit.moves.run_speed_torque(drive), unit.moves.running_run_speed_torque(drive), drafts);
     let effort = speed_torque_ui(ui, theme, unit, own, &[], MotorCommand::RunEffort, actions);
-    let allowed = effort.and(unit.may_move_until_stopped(drive));
+    let allowed = effort.and(unit.check_can_move_until_stopped(drive));
     let mut expert = unit.moves.allows_endless_run(drive);
     let end = if expert { RunEnd::Endless } else { RunEnd::RangeEnd };
     ui.horizontal_wrapped(|ui| {

@@ -33,7 +33,7 @@ pub(super) fn card_ui(
     card(ui, theme, TEXTS.text("hd_scale.title"), |ui| {
         let word = translate(theme, "hd_scale.pitch");
         let pitch = unit.spindle_pitch(drive);
-        let shown = pitch.map(|own| theme.format_plain(own.nanometres as f64 / 1e6)).unwrap_or_default();
+        let shown = pitch.map(|own| theme.format_significant_digits(own.nanometres as f64 / 1e6)).unwrap_or_default();
         entry(ui, theme, &word, |ui| {
             committed_entry(ui, &mut view.pitch, &shown, ENTRY_WIDTH, &word, |text| {
                 let pitch = if text.trim().is_empty() { None } else { Some(forms::parse_length(text)?) };
@@ -80,7 +80,7 @@ fn scale_effect_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice) {
     let ruler = unit.edited_ruler(drive);
     let turn = format!(
         "{} {}",
-        theme.format_plain(ruler.scale.steps_per_turn()),
+        theme.format_significant_digits(ruler.scale.steps_per_turn()),
         translate(theme, PositionUnit::Steps.unit())
     );
     row(ui, theme, &translate(theme, "hd_scale.turn"), theme.monospace(turn));

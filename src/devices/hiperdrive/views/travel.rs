@@ -13,7 +13,7 @@ use egui::{
 };
 
 use crate::app::Text;
-use crate::devices::hiperdrive::procedures::dead_man::{LimitSide, OutsideLimits};
+use crate::devices::hiperdrive::procedures::dead_man::{LimitSide, LimitViolation};
 use crate::devices::hiperdrive::protocol::State;
 use crate::devices::hiperdrive::state::{HiperdriveDevice, TEXTS, forms};
 use crate::devices::hiperdrive::views::translate;
@@ -30,7 +30,7 @@ const END_MARGIN: f32 = 8.0;
 /// Half the width of the diamond that marks the target.
 const DIAMOND_RADIUS: f32 = 6.0;
 /// Fraction of the bar that is added beyond a limit if the position is outside it.
-const OUTSIDE_FRACTION: f64 = 0.04;
+const OVERSHOOT_FRACTION: f64 = 0.04;
 
 /// Mapping from steps to pixels of the bar.
 struct Scale {
@@ -46,7 +46,7 @@ impl Scale {
         let (low, high) = (f64::from(low), f64::from(high));
         let position = position.map_or(low, f64::from);
         let (mut from, mut to) = (low.min(position), high.max(position));
-        let room = (to - from) * OUTSIDE_FRACTION;
+        let room = (to - from) * OVERSHOOT_FRACTION;
         if from < low {
             from -= room;
         }
@@ -67,7 +67,7 @@ struct BarValues {
     position: Option<i32>,
     target: Option<i32>,
     /// Limit that the drive has passed, or `None` if it is inside or at the end of its range.
-    outside: Option<OutsideLimits>,
+    outside: Option<LimitViolation>,
     is_moving: bool,
 }
 
@@ -121,11 +121,11 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &HiperdriveDevice, typ
 }
 
 /// Explains how to return a drive inside its limits.
-fn return_instructions(outside: OutsideLimits) -> Text {
+fn return_instructions(outside: LimitViolation) -> Text {
     TEXTS.text(match outside {
-        OutsideLimits::At(LimitSide::Above) => "hd_travel.back_down",
-        OutsideLimits::At(LimitSide::Below) => "hd_travel.back_up",
-        OutsideLimits::Unclear => "hd_travel.unclear",
+        LimitViolation::At(LimitSide::Above) => "hd_travel.back_down",
+        LimitViolation::At(LimitSide::Below) => "hd_travel.back_up",
+        LimitViolation::Unclear => "hd_travel.unclear",
     })
 }
 
@@ -174,7 +174,7 @@ fn bar_ui(painter: &Painter, theme: &Theme, bar: Rect, shown: &BarValues) {
         for limit in [range.left(), range.right()] {
             painter.vline(limit, bar.y_range(), Stroke::new(2.0, palette.accent));
         }
-        if let (Some(position), Some(OutsideLimits::At(side))) = (shown.position, shown.outside) {
+        if let (Some(position), Some(LimitViolation::At(side))) = (shown.position, shown.outside) {
             let limit = if side == LimitSide::Above { range.right() } else { range.left() };
             paint_arrow(painter, pos2(scale.x(position), bar.center().y), limit, palette.bad.into());
         }

@@ -19,7 +19,7 @@ use crate::devices::hiperface::procedures::SaveOptions;
 use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, RestoreOptions, UnknownMeaningField};
 use crate::devices::hiperface::state::explain;
 use crate::devices::hiperface::state::status_lines;
-use crate::profile::{Body, KeptItem, Redo};
+use crate::profile::{Body, IrreversibleItem, Redo};
 use crate::result_of;
 
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
@@ -85,7 +85,7 @@ impl ProfileCommands for HiperfaceCommands {
         Ok(DeviceReading { body: Body::new(saved.profile), status })
     }
 
-    fn redo_command(&self, kept: &KeptItem) -> Option<String> {
+    fn redo_command(&self, kept: &IrreversibleItem) -> Option<String> {
         match (&kept.redo, kept.item.parse()) {
             (Redo::Delete, Ok(Item::Status(field))) => {
                 Some(format!("use \"do hiperface delete-field {field}\" if its bytes are not needed"))

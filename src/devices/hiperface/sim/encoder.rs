@@ -368,7 +368,7 @@ impl Encoder {
             return false;
         }
         self.stores_begun = self.stores_begun.saturating_add(1);
-        self.faults.failing_store() == Some(self.stores_begun)
+        self.faults.save_with_power_failure() == Some(self.stores_begun)
             && self.electronics.store_first_half(*field, *address, data, *code).is_ok()
     }
 }

@@ -49,7 +49,7 @@ impl Encoder {
                     self.refresh_plan(with_options(&review.change, options), services);
                 }
             }
-            HiperfaceAction::ForceWear(force) => self.accept_wear(force),
+            HiperfaceAction::ForceWear(force) => self.set_wear_override(force),
             HiperfaceAction::Write(plan) => self.write(plan, services),
             HiperfaceAction::CloseReview => self.close_review(),
             HiperfaceAction::Save(path) => self.save(path, services),

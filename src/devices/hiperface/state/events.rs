@@ -106,7 +106,7 @@ impl Encoder {
                     self.commutation.forget_readings();
                     let steps = i64::from(*to) - i64::from(*from);
                     let text = Text::new("session.position_set").with("from", from).with("to", to);
-                    services.log_only(
+                    services.log_without_display(
                         Severity::Note,
                         vec![text.with("steps", format!("{steps:+}"))],
                         Some(&self.session.name()),
@@ -298,7 +298,7 @@ impl SessionEvents for Encoder {
         match gone {
             Some(why) => {
                 if is_shown {
-                    services.log_only(Severity::Error, texts, Some(&self.session.name()));
+                    services.log_without_display(Severity::Error, texts, Some(&self.session.name()));
                 }
                 self.connection_lost(why, services);
             }

@@ -75,7 +75,7 @@ impl Record {
     }
 
     pub(super) fn clear(&mut self) {
-        self.track.clear_unless_long();
+        self.track.discard_short_recording();
         (self.last, self.refused) = (None, false);
     }
 }

@@ -6,7 +6,9 @@ use super::review::Review;
 use super::rules;
 use crate::app::review::Permit;
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, SessionEvents, unsaved_edits_remark};
+use crate::app::session::{
+    ApprovedReviewPlan, HasMemory, HasProfile, KnownProfile, SessionEvents, unsaved_edits_remark,
+};
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperface::jobs::{Change, Committed, Hiperface, HiperfaceJob, Prepared};
 use crate::devices::hiperface::procedures::{SaveOptions, create_profile};
@@ -46,7 +48,7 @@ impl HasMemory for Encoder {
         HiperfaceJob::Prepare(change)
     }
 
-    fn commit_job(&mut self, agreed: ApprovedPlanOf<Hiperface>) -> HiperfaceJob {
+    fn commit_job(&mut self, agreed: ApprovedReviewPlan<Hiperface>) -> HiperfaceJob {
         HiperfaceJob::Commit(Box::new(agreed))
     }
 

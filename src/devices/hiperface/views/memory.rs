@@ -13,7 +13,8 @@ use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, St
 use crate::devices::hiperface::views::translate;
 use crate::ui::controls::{button_with_reason, dropdown, empty_placeholder, name, paragraph};
 use crate::ui::widgets::{
-    FieldMap, HexEdit, HexMark, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, hex_lines, typed_view,
+    FieldMap, HexAnnotation, HexEdit, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, hex_lines,
+    typed_view,
 };
 use crate::ui::{Theme, edit_bar, icons};
 
@@ -174,7 +175,8 @@ fn field_ui(
     };
     let device = encoder.field(field.number).and_then(|own| own.bytes.clone()).unwrap_or_default();
     let mounting = encoder.mounting_ranges(field.number);
-    let marks: Vec<HexMark> = mounting.iter().map(|(range, words)| HexMark { range: range.clone(), words }).collect();
+    let marks: Vec<HexAnnotation> =
+        mounting.iter().map(|(range, words)| HexAnnotation { range: range.clone(), words }).collect();
     let beside = ui.available_width() >= 820.0;
     let lines = hex_lines(ui.available_height(), beside);
     let model = HexModel { marks: &marks, read_only: read_only.as_ref(), lines, ..HexModel::new(&device, bytes) };

@@ -137,7 +137,7 @@ impl Encoder {
             offset: 0,
             mode: config.mode,
             activity: Activity::Running,
-            eeprom: Eeprom::new(memory.clone(), config.stores, config.faults.failing_store()),
+            eeprom: Eeprom::new(memory.clone(), config.stores, config.faults.save_with_power_failure()),
             memory,
             unstored: None,
             power: true,
@@ -201,7 +201,7 @@ impl Encoder {
 
     /// Replaces the simulated EEPROM faults. The number of EEPROM write cycles is kept.
     pub(super) fn set_faults(&mut self, faults: &SimulatedFaults) {
-        self.eeprom.set_store_failure(faults.failing_store());
+        self.eeprom.set_store_failure(faults.save_with_power_failure());
     }
 
     pub const fn has_power(&self) -> bool {

@@ -224,7 +224,7 @@ impl Encoder {
             .with("serial", &identity.serial_number)
             .with("version", identity.software_version)
             .with_text("range", format::range_text(identity.steps, identity.revolutions));
-        services.log_only(Severity::Note, vec![fact], Some(&self.session.name()));
+        services.log_without_display(Severity::Note, vec![fact], Some(&self.session.name()));
     }
 
     pub(super) fn record_handshake_step(&mut self, step: Handshake) {

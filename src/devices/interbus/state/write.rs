@@ -3,7 +3,9 @@
 use super::cams::labels;
 use super::encoder::Encoder;
 use super::review::Review;
-use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, truncated_list, unsaved_edits_remark};
+use crate::app::session::{
+    ApprovedReviewPlan, HasMemory, HasProfile, KnownProfile, truncated_list, unsaved_edits_remark,
+};
 use crate::app::{PendingEdits, Text};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob};
 use crate::devices::interbus::profile::{
@@ -52,7 +54,7 @@ impl HasMemory for Encoder {
         InterbusJob::Prepare(change)
     }
 
-    fn commit_job(&mut self, agreed: ApprovedPlanOf<Interbus>) -> InterbusJob {
+    fn commit_job(&mut self, agreed: ApprovedReviewPlan<Interbus>) -> InterbusJob {
         InterbusJob::Commit(Box::new(agreed))
     }
 

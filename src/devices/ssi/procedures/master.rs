@@ -11,7 +11,9 @@ use super::station::{Identity, Supply};
 use super::{ClockSettings, Error, Station, Words};
 use crate::buses::bridge::procedures::flow::{SampleStream, StreamKind};
 use crate::buses::bridge::procedures::{Adapter, AdapterError, Failure};
-use crate::buses::bridge::protocol::{Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request, SsiFlags, StreamData};
+use crate::buses::bridge::protocol::{
+    Capabilities, ErrorCode, REQUEST_RETRY_TIMEOUT, Reply, Request, SsiFlags, StreamData,
+};
 use crate::link::Ctx;
 use crate::link::line::SerialLine;
 use crate::units::Moment;
@@ -223,7 +225,7 @@ impl<'a> Master<'a> {
 
     /// Calls `once` until a reply arrives or no attempt is left. The operation must be idempotent.
     fn with_retries<T>(&mut self, mut once: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Error> {
-        let longest = 2 * (REPEAT_AFTER + self.station.line.margin);
+        let longest = 2 * (REQUEST_RETRY_TIMEOUT + self.station.line.margin);
         let mut tries = 0;
         loop {
             tries += 1;

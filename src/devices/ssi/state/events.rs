@@ -99,7 +99,7 @@ impl SessionEvents for Encoder {
     }
 
     fn process_events(&mut self, services: &mut Services) {
-        self.poll_line(services);
+        self.process_pending_events(services);
         self.send_reading_settings(services);
     }
 

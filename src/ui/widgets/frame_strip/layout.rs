@@ -47,13 +47,15 @@ fn groups_between(from: usize, to: usize, field_bits: usize) -> usize {
 
 /// Places the fields within a width, separated by `gap`. A field that is longer than a line is split.
 pub(super) fn arrange_fields(wants: &[RequiredSpace], width: f32, gap: f32) -> StripPlacement {
-    let fewest = CELLS.last().map_or(1, |least| place_with_cell(wants, width, gap, *least).lines);
-    let fits =
-        CELLS.iter().map(|cell| place_with_cell(wants, width, gap, *cell)).find(|placing| placing.lines <= fewest);
+    let fewest = CELLS.last().map_or(1, |least| place_with_cell_width(wants, width, gap, *least).lines);
+    let fits = CELLS
+        .iter()
+        .map(|cell| place_with_cell_width(wants, width, gap, *cell))
+        .find(|placing| placing.lines <= fewest);
     fits.unwrap_or_default()
 }
 
-fn place_with_cell(wants: &[RequiredSpace], width: f32, gap: f32, cell: f32) -> StripPlacement {
+fn place_with_cell_width(wants: &[RequiredSpace], width: f32, gap: f32, cell: f32) -> StripPlacement {
     let mut placing = StripPlacement { cell, ..StripPlacement::default() };
     let (mut left, mut line) = (0.0, 0);
     for (field, want) in wants.iter().enumerate() {
@@ -130,7 +132,7 @@ mod tests {
         assert_eq!(lines(&placing), [vec![0, 1, 2, 3], vec![4, 5, 6, 7]]);
         assert!(placing.pieces.iter().all(|own| own.left + own.width <= 420.0));
         // Narrower cells would result in the same number of lines, so the cells are as wide as possible.
-        let wider = place_with_cell(&kit(), 420.0, GAP, placing.cell + 1.0);
+        let wider = place_with_cell_width(&kit(), 420.0, GAP, placing.cell + 1.0);
         assert!(wider.lines > placing.lines);
     }
 

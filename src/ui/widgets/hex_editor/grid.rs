@@ -31,7 +31,7 @@ fn snap_to_grid(length: f32) -> f32 {
 
 impl Grid {
     /// Returns the width of the frame and scroll bar around the bytes.
-    pub(super) fn width_around(ui: &Ui, theme: &Theme) -> f32 {
+    pub(super) fn surrounding_width(ui: &Ui, theme: &Theme) -> f32 {
         2.0 * theme.space.between + ui.spacing().scroll.allocated_width()
     }
 
@@ -48,7 +48,7 @@ impl Grid {
         };
         // In a small window, first the columns and then the bytes move closer together, so no characters are cut off.
         let (far, near) = (theme.space.between, theme.space.inside);
-        let room = ui.available_width() - Self::width_around(ui, theme);
+        let room = ui.available_width() - Self::surrounding_width(ui, theme);
         let closest = places(near, byte - 3.0);
         let wider = [places(far, byte), places(near, byte), places(near, byte - 1.0)];
         let fitting = wider.into_iter().find(|own| own.4 <= room);

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Stroke, StrokeKind, Ui
 
 use super::grid::{Grid, WIDTH};
 use super::view::{Column, HexView};
-use super::{HexMark, HexModel};
+use super::{HexAnnotation, HexModel};
 use crate::bits;
 use crate::ui::Theme;
 
@@ -133,7 +133,7 @@ impl HexPainter<'_> {
     }
 
     /// Draws a bracket below the marked bytes. The bracket is open at an end where the range continues on another line.
-    fn paint_mark(&self, mark: &HexMark<'_>, start: usize, end: usize) {
+    fn paint_mark(&self, mark: &HexAnnotation<'_>, start: usize, end: usize) {
         let (first, last) = (mark.range.start.max(start), mark.range.end.min(end));
         if first >= last {
             return;

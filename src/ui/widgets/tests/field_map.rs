@@ -101,7 +101,7 @@ fn escape_cancels_resize() {
 }
 
 #[test]
-fn memory_without_fields_is_free() {
+fn memory_without_fields_shows_free_space() {
     let mut harness = map(&[], 8);
     harness.get_by_label("Free").click();
     harness.run();

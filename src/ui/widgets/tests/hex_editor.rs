@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 
 use super::{CTRL, NONE, SHIFT, focus, press, theme, window};
 use crate::app::Text;
-use crate::ui::widgets::{HexEdit, HexMark, HexModel, HexView, hex_editor};
+use crate::ui::widgets::{HexAnnotation, HexEdit, HexModel, HexView, hex_editor};
 
 #[derive(Default)]
 struct Bytes {
@@ -23,7 +23,7 @@ fn editor(count: u8, read_only: Option<Text>) -> Harness<'static, Bytes> {
     let device: Vec<u8> = (0..count).collect();
     let state = Bytes { wanted: device.clone(), device, read_only, ..Bytes::default() };
     let mut harness = window(state, |ui, state: &mut Bytes| {
-        let marks = [HexMark { range: 4..8, words: "belongs to the mounting" }];
+        let marks = [HexAnnotation { range: 4..8, words: "belongs to the mounting" }];
         let model = HexModel { marks: &marks, lines: 8, ..HexModel::new(&state.device, &state.wanted) };
         let model = HexModel { read_only: state.read_only.as_ref(), ..model };
         let edits = hex_editor(ui, &theme(), BYTES, &model, &mut state.view);

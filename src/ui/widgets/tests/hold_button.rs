@@ -79,7 +79,7 @@ fn sliding_off_ends_hold() {
 }
 
 #[test]
-fn press_from_elsewhere_starts_no_hold() {
+fn ignores_press_begun_outside_button() {
     let mut harness = jog();
     let at = midpoint(&harness);
     let beside = at + Vec2::new(0.0, 200.0);
@@ -135,7 +135,7 @@ fn armed() -> Harness<'static, Jog> {
 }
 
 #[test]
-fn key_holds_button_and_repeats_start_nothing() {
+fn only_first_key_press_starts_hold() {
     let mut harness = armed();
     assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
     assert_eq!(step(&mut harness, [key(true, true)]), [Hold]);
@@ -152,7 +152,7 @@ fn key_holds_button_and_repeats_start_nothing() {
 }
 
 /// Draws a frame at the given time after the previous one, in seconds.
-fn step_after(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) -> Vec<HoldEvent> {
+fn step_with_delay(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) -> Vec<HoldEvent> {
     let before = harness.ctx.input(|input| input.time);
     harness.input_mut().time = Some(before + apart);
     let events = step(harness, event);
@@ -165,11 +165,11 @@ fn step_after(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) 
 fn split_key_repeat_starts_no_hold() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
         let mut harness = armed();
-        assert_eq!(step_after(&mut harness, apart, Some(key(true, false))), [Press], "{apart}");
-        assert_eq!(step_after(&mut harness, apart, Some(key(false, false))), [Release], "{apart}");
+        assert_eq!(step_with_delay(&mut harness, apart, Some(key(true, false))), [Press], "{apart}");
+        assert_eq!(step_with_delay(&mut harness, apart, Some(key(false, false))), [Release], "{apart}");
         for _ in 0..20 {
-            assert_eq!(step_after(&mut harness, apart, Some(key(true, false))), [], "{apart}");
-            assert_eq!(step_after(&mut harness, apart, Some(key(false, false))), [], "{apart}");
+            assert_eq!(step_with_delay(&mut harness, apart, Some(key(true, false))), [], "{apart}");
+            assert_eq!(step_with_delay(&mut harness, apart, Some(key(false, false))), [], "{apart}");
         }
     }
 }
@@ -188,10 +188,10 @@ fn release_requests_rearming_frame() {
         while next(&harness) < 1.0 && waited < 0.09 {
             let apart = next(&harness).max(0.001);
             waited += apart;
-            assert_eq!(step_after(&mut harness, apart, None), []);
+            assert_eq!(step_with_delay(&mut harness, apart, None), []);
         }
         assert!((0.05..0.09).contains(&waited), "{waited}");
-        assert_eq!(step_after(&mut harness, 0.1 - waited, Some(key(true, false))), [Press]);
+        assert_eq!(step_with_delay(&mut harness, 0.1 - waited, Some(key(true, false))), [Press]);
         assert_eq!(step(&mut harness, [key(false, false)]), [Release]);
         wait(&mut harness);
     }
@@ -200,7 +200,7 @@ fn release_requests_rearming_frame() {
 /// If Space is held while the user switches to another window and back, egui reports a key repeat as the first press
 /// (issue 21.2).
 #[test]
-fn key_held_during_window_change_starts_no_hold() {
+fn ignores_key_held_across_window_change() {
     for held_before in [false, true] {
         let mut harness = armed();
         if held_before {
@@ -231,7 +231,7 @@ fn key_held_during_window_change_starts_no_hold() {
 /// A button that was not drawn, was locked or was covered by a dialog cannot detect whether a key has been released
 /// (issue 21.2).
 #[test]
-fn key_down_before_enabling_starts_no_hold() {
+fn ignores_key_pressed_before_enabling() {
     type Change = fn(&mut Jog, bool);
     let changes: [(&str, Change); 2] =
         [("locked", |jog, on| jog.locked = on), ("covered", |jog, on| jog.around.covered = on)];
@@ -262,7 +262,7 @@ fn key_down_before_enabling_starts_no_hold() {
 
 /// A pointer press that began under a dialog has no effect after the dialog is closed either (issue 21.2).
 #[test]
-fn press_under_dialog_starts_no_hold() {
+fn ignores_press_under_dialog() {
     let mut harness = jog();
     let at = midpoint(&harness);
     step(&mut harness, [Event::PointerMoved(at)]);

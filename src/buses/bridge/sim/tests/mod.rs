@@ -51,7 +51,7 @@ fn reports_damaged_wires() {
         host.ask(BISS);
         let Some(Message::Reply(Reply::BissRead { status, .. })) = host.ask(Request::BissRead) else { panic!() };
         assert_eq!(status, expected, "{query}");
-        host.refuses(Request::BissRegisterRead { slave: 0, address: 0x66 }, ErrorCode::NO_ANSWER);
+        host.refuses(Request::BissRegisterRead { slave: 0, address: 0x66 }, ErrorCode::NO_REPLY);
         host.ask(SSI);
         let Some(Message::Reply(Reply::SsiRead { raw, .. })) = host.ask(Request::SsiRead) else { panic!() };
         assert_eq!(raw, word, "{query}");

@@ -217,8 +217,8 @@ fn explain_rejection(code: ErrorCode) -> String {
         ErrorCode::NOT_SUPPORTED => "not supported".to_owned(),
         ErrorCode::BAD_ARGUMENT => "bad argument".to_owned(),
         ErrorCode::BUSY => "busy".to_owned(),
-        ErrorCode::NO_ANSWER => "the device does not answer".to_owned(),
-        ErrorCode::WRONG_ANSWER => "the device answered wrongly".to_owned(),
+        ErrorCode::NO_REPLY => "the device does not answer".to_owned(),
+        ErrorCode::INVALID_REPLY => "the device answered wrongly".to_owned(),
         ErrorCode::OVERRUN => "overrun".to_owned(),
         other => format!("code {}", other.byte()),
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::{AttemptResult, ExchangeError, Master, WriteReaction};
 use crate::buses::bridge::procedures::{Adapter, AdapterError, BISS_TIME_OUT_US, Failure, TimedReply};
-use crate::buses::bridge::protocol::{BissStatus, Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request};
+use crate::buses::bridge::protocol::{BissStatus, Capabilities, ErrorCode, REQUEST_RETRY_TIMEOUT, Reply, Request};
 use crate::devices::biss::procedures::error::{Error, ReplyDamage, RequestedItem};
 use crate::devices::biss::procedures::position::PositionReading;
 use crate::devices::biss::procedures::station::Bus;
@@ -146,10 +146,10 @@ impl<'a> Master<'a> {
                 return Ok(Ok(answered.reply));
             }
             Ok(None) => ExchangeError::Silence { echo_heard: false },
-            Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::NO_ANSWER, .. })) => {
+            Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::NO_REPLY, .. })) => {
                 ExchangeError::Silence { echo_heard: false }
             }
-            Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::WRONG_ANSWER, .. })) => {
+            Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::INVALID_REPLY, .. })) => {
                 ExchangeError::Damage(ReplyDamage::ControlFrame)
             }
             Err(failure) => {
@@ -262,6 +262,6 @@ impl<'a> Master<'a> {
 
     /// Returns the maximum duration of an exchange with two attempts.
     pub(super) fn max_bus_exchange_duration(&self) -> Duration {
-        2 * (REPEAT_AFTER + self.station.line.margin)
+        2 * (REQUEST_RETRY_TIMEOUT + self.station.line.margin)
     }
 }

@@ -14,7 +14,7 @@ use crate::devices::biss::procedures::error::{ReplyDamage, RequestedItem, reques
 use crate::devices::biss::procedures::position::PositionReading;
 use crate::devices::biss::procedures::{Echo, Error};
 use crate::devices::biss::protocol::RegisterAddress;
-use crate::link::line::MAX_KEPT_BYTES;
+use crate::link::line::MAX_UNEXPECTED_BYTES;
 use crate::units::Moment;
 
 /// Length in bytes of the longest frame, the reply to 03h.
@@ -137,7 +137,7 @@ impl Master<'_> {
                 last_at = self.now();
             }
             received.bytes += portion.len();
-            received.raw.extend(portion.iter().take(MAX_KEPT_BYTES.saturating_sub(received.raw.len())));
+            received.raw.extend(portion.iter().take(MAX_UNEXPECTED_BYTES.saturating_sub(received.raw.len())));
             received.receiver.push(&portion);
             let next = if portion.is_empty() { Receiver::handle_silence } else { Receiver::next_frame };
             while let Some(frame) = next(&mut received.receiver) {

@@ -53,13 +53,13 @@ fn reads_and_writes_registers_by_bank() {
     host.expect(write(0x6A, 0x07), read_back(0x07));
     host.expect(write(0x40, 0x01), read_back(0x01));
     host.expect(write(0x00, 0x01), read_back(0x01)); // preset, followed by a restart
-    host.refuses(read(0x66), ErrorCode::NO_ANSWER);
+    host.refuses(read(0x66), ErrorCode::NO_REPLY);
     host.now = host.now + Duration::from_millis(500);
     host.expect(read(0x6A), Reply::BissRegisterRead { value: 0x00 });
     assert_eq!(host.adapter.device::<Encoder>().unwrap().flash().write_cycles(), 1);
     host.expect(write(0x40, 0x44), read_back(0x44));
-    host.refuses(read(0x00), ErrorCode::NO_ANSWER); // the bank does not exist
-    host.refuses(Request::BissRegisterRead { slave: 1, address: 0x66 }, ErrorCode::NO_ANSWER);
+    host.refuses(read(0x00), ErrorCode::NO_REPLY); // the bank does not exist
+    host.refuses(Request::BissRegisterRead { slave: 1, address: 0x66 }, ErrorCode::NO_REPLY);
     host.refuses(read(0x80), ErrorCode::BAD_ARGUMENT);
 }
 
@@ -116,7 +116,7 @@ fn next_host_restores_lost_power() {
     for (address, value) in [(0x6B, 0x2A), (0x6A, 0x07), (0x40, 0x01)] {
         host.expect(Request::BissRegisterWrite { slave: 0, address, value }, Reply::BissRegisterWrite { value });
     }
-    host.refuses(Request::BissRegisterWrite { slave: 0, address: 0, value: 1 }, ErrorCode::NO_ANSWER);
+    host.refuses(Request::BissRegisterWrite { slave: 0, address: 0, value: 1 }, ErrorCode::NO_REPLY);
     assert!(!host.adapter.device::<Encoder>().unwrap().has_power());
     host.adapter.connect(host.now);
     assert!(host.adapter.device::<Encoder>().unwrap().has_power());

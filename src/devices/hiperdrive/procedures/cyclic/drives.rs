@@ -34,7 +34,7 @@ struct ShutdownProgress {
 }
 
 /// Time allowed for the stop sequence, including braking.
-const STOP_LADDER_TIME: Duration = Duration::from_millis(700);
+const STOP_SEQUENCE_TIME: Duration = Duration::from_millis(700);
 /// Number of packets that switch the drives off. There are several, since a packet may be lost.
 const SWITCH_OFF_PACKETS: u32 = 3;
 
@@ -149,7 +149,7 @@ impl Drives {
                 *out = setpoint.into();
             }
         }
-        self.check_for_end(now, &mut drives);
+        self.switch_off_when_ending(now, &mut drives);
         let moving_on = self.dead_man_switches().find(|man| man.has_exhausted_stop_levels()).map(DeadMan::drive);
         if let Some(number) = moving_on {
             self.lost.get_or_insert(ConnectionLoss::DoesNotStand(number));
@@ -160,10 +160,10 @@ impl Drives {
         Some(self.connection.next_packet(now, &OutputImage { drives, pkw }))
     }
 
-    fn check_for_end(&mut self, now: Moment, drives: &mut [OutputData]) {
+    fn switch_off_when_ending(&mut self, now: Moment, drives: &mut [OutputData]) {
         let idle = self.dead_man_switches().all(DeadMan::is_idle);
         let Some(ending) = &mut self.ending else { return };
-        if idle || ending.off > 0 || now.duration_since(ending.since) >= STOP_LADDER_TIME {
+        if idle || ending.off > 0 || now.duration_since(ending.since) >= STOP_SEQUENCE_TIME {
             ending.off += 1;
             for out in drives {
                 out.control = 0;

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use super::state_sequence::StateSequencer;
 use super::{
-    ActionEnd, DeadMan, LEVEL_TIME, MAX_REPORT_DELAY, Motion, MotionKind, NOT_REACHED_TIME, START, SpeedTorque,
-    StopLevel, TargetState,
+    ActionEnd, DeadMan, MAX_REPORT_DELAY, MISSED_TARGET_TIME, Motion, MotionKind, START, STOP_LEVEL_TIMEOUT,
+    SpeedTorque, StopLevel, TargetState,
 };
 use crate::devices::hiperdrive::protocol::{ActualValues, ControlBit, ControlWord, Setpoint, State, StatusBit};
 use crate::units::Moment;
@@ -20,35 +20,35 @@ pub(super) enum Stage {
     Lead(StateSequencer),
     /// The drive has received the setpoints of a motion, with the control word that comes before its start.
     Arm {
-        since: ReportMark,
+        since: ReportTimestamp,
         /// Status bit 12 as last reported.
         acknowledged: bool,
     },
     Start {
-        since: ReportMark,
+        since: ReportTimestamp,
         acknowledged: bool,
     },
     Go {
-        since: ReportMark,
+        since: ReportTimestamp,
         acknowledged: bool,
         /// Time at which the drive was first seen at rest, if it is at rest.
-        standing_since: Option<ReportMark>,
+        standing_since: Option<ReportTimestamp>,
     },
     Paused {
-        since: ReportMark,
+        since: ReportTimestamp,
         acknowledged: bool,
     },
     Stop {
         level: StopLevel,
         since: Moment,
-        begun: ReportMark,
+        begun: ReportTimestamp,
         word: ControlWord,
     },
 }
 
 /// A point in time, with the number of reports received so far.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ReportMark {
+pub(super) struct ReportTimestamp {
     pub(super) at: Moment,
     pub(super) report: u64,
 }
@@ -56,9 +56,9 @@ pub(super) struct ReportMark {
 /// Number of reports to wait for after a mark. The last one is certain to describe a time after the mark.
 const REPORTS: u64 = 2;
 
-impl ReportMark {
+impl ReportTimestamp {
     /// Returns whether at least `time` has passed and [`REPORTS`] reports have arrived since `earlier`.
-    pub(super) fn has_elapsed_since(self, earlier: ReportMark, time: Duration) -> bool {
+    pub(super) fn has_elapsed_since(self, earlier: ReportTimestamp, time: Duration) -> bool {
         self.at.duration_since(earlier.at) >= time && self.report >= earlier.report + REPORTS
     }
 }
@@ -127,7 +127,7 @@ impl DeadMan {
         }
     }
 
-    fn check_motion_end(&mut self, mark: ReportMark, actual: ActualValues, stands: ReportMark) {
+    fn check_motion_end(&mut self, mark: ReportTimestamp, actual: ActualValues, stands: ReportTimestamp) {
         let Stage::Go { since, .. } = self.stage else { return };
         // A report from before the start may still show a standstill, or show a previous target as reached.
         let late = mark.has_elapsed_since(since, MAX_REPORT_DELAY);
@@ -140,7 +140,7 @@ impl DeadMan {
                 self.end_action(ActionEnd::Arrived);
                 self.hold_state(actual.status.state());
             }
-        } else if mark.has_elapsed_since(stands, NOT_REACHED_TIME) {
+        } else if mark.has_elapsed_since(stands, MISSED_TARGET_TIME) {
             self.stop(mark.at, ActionEnd::Short);
         }
     }
@@ -161,7 +161,7 @@ impl DeadMan {
 
     /// Escalates the stop until the drive is at rest, then holds its state. After a run, the held state is *ready*, and
     /// the next motion enables the drive again.
-    fn escalate_stop(&mut self, mark: ReportMark, actual: ActualValues) {
+    fn escalate_stop(&mut self, mark: ReportTimestamp, actual: ActualValues) {
         let Stage::Stop { level, since, begun, word } = self.stage else { return };
         if level == StopLevel::Close {
             return;
@@ -169,7 +169,7 @@ impl DeadMan {
         if mark.has_elapsed_since(begun, MAX_REPORT_DELAY) && actual.status.is_set(StatusBit::Standstill) {
             // The held state is never above the state of the word sent last.
             self.hold_state(actual.status.state());
-        } else if mark.at.duration_since(since) >= LEVEL_TIME {
+        } else if mark.at.duration_since(since) >= STOP_LEVEL_TIMEOUT {
             let level = level.next();
             self.stage = Stage::Stop { level, since: mark.at, begun, word };
         }
@@ -184,7 +184,7 @@ impl DeadMan {
         }
         let moves = (actual.status.state() == State::Moving).then(|| moves.unwrap_or(now));
         self.stage = Stage::Rest { moves };
-        if moves.is_some_and(|since| now.duration_since(since) >= LEVEL_TIME) {
+        if moves.is_some_and(|since| now.duration_since(since) >= STOP_LEVEL_TIMEOUT) {
             let level = match self.level {
                 TargetState::Enabled => StopLevel::Operational,
                 TargetState::Operational | TargetState::Ready => StopLevel::Off,

@@ -2,7 +2,8 @@
 //! time limit expires. See section 3 of the reference and `devices/hiperdrive/protocol/recipe`.
 
 use super::{
-    ActionEnd, DeadMan, MAX_REPORT_DELAY, MotionKind, MotionRejection, ReportMark, STEP, Stage, TargetState, UserAction,
+    ActionEnd, DeadMan, MAX_REPORT_DELAY, MotionKind, MotionRejection, ReportTimestamp, STEP, Stage, TargetState,
+    UserAction,
 };
 use crate::devices::hiperdrive::protocol::{ActualValues, ControlBit, ControlWord, State, StatusBit, StatusWord};
 use crate::units::Moment;
@@ -12,7 +13,7 @@ pub(super) struct StateSequencer {
     goal: TargetState,
     acknowledges: bool,
     /// Control word that is being sent, and when it was first sent.
-    word: Option<(ControlWord, ReportMark)>,
+    word: Option<(ControlWord, ReportTimestamp)>,
 }
 
 enum StateSequenceStep {
@@ -50,7 +51,7 @@ impl StateSequencer {
     }
 
     /// Creates a sequence that brings the drive out of a fault or the switch-on lock to the ready state.
-    const fn out_of_fault() -> Self {
+    const fn fault_exit() -> Self {
         StateSequencer { goal: TargetState::Ready, acknowledges: true, word: None }
     }
 
@@ -68,7 +69,7 @@ impl StateSequencer {
         self.word.map_or(ControlWord::OFF, |(word, _)| word)
     }
 
-    fn next_step(&self, now: ReportMark, status: StatusWord, after_run: bool) -> StateSequenceStep {
+    fn next_step(&self, now: ReportTimestamp, status: StatusWord, after_run: bool) -> StateSequenceStep {
         use ControlWord as W;
         let sends = |word: ControlWord| self.word.is_some_and(|(sent, _)| sent == word);
         // The drive has had enough time to process the word, so it will not miss the edge that follows.
@@ -96,7 +97,8 @@ impl StateSequencer {
                 _ => return StateSequenceStep::There,
             },
         };
-        let patience = |(sent, since): (ControlWord, ReportMark)| sent == word && now.has_elapsed_since(since, STEP);
+        let patience =
+            |(sent, since): (ControlWord, ReportTimestamp)| sent == word && now.has_elapsed_since(since, STEP);
         if self.word.is_some_and(patience) { StateSequenceStep::Lost } else { StateSequenceStep::By(word) }
     }
 }
@@ -119,7 +121,7 @@ impl DeadMan {
 
     pub(super) fn acknowledge(&mut self, now: Moment, actual: ActualValues) -> Result<(), MotionRejection> {
         if matches!(actual.status.state(), State::Fault | State::Locked) {
-            self.stage = Stage::Lead(StateSequencer::out_of_fault());
+            self.stage = Stage::Lead(StateSequencer::fault_exit());
             self.advance_stage(now, actual);
         } else {
             self.end_action(ActionEnd::Done);

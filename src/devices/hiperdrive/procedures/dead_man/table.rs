@@ -59,7 +59,7 @@ impl TestBench {
     }
 
     /// Creates a test set-up and brings its dead-man control to a phase named in the table.
-    fn in_phase(name: &str) -> Self {
+    fn new_in_phase(name: &str) -> Self {
         let job = MotionRequest::Move { target: 5000, effort: SpeedTorque::DEFAULT_JOG };
         let jog =
             MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::DEFAULT_JOG, outward: false };
@@ -161,7 +161,7 @@ fn motions_end_as_documented() {
     assert_eq!((head.len(), events.len()), (9, 13), "all phases and all events");
     for row in events {
         for (phase, expected) in head.iter().zip(row).skip(1) {
-            let mut bench = TestBench::in_phase(phase);
+            let mut bench = TestBench::new_in_phase(phase);
             let before = bench.man.last_end();
             bench.play_event(row[0]);
             bench.run_cycle();

@@ -5,8 +5,8 @@ use std::time::Duration;
 use proptest::prelude::*;
 
 use super::{
-    ActionEnd, DeadMan, LEVEL_TIME, LimitSide, MotionIntent, MotionLock, MotionRejection, MotionRequest, OutsideLimits,
-    Permit, Phase, SpeedTorque, TargetState,
+    ActionEnd, DeadMan, LimitSide, LimitViolation, MotionIntent, MotionLock, MotionRejection, MotionRequest, Permit,
+    Phase, STOP_LEVEL_TIMEOUT, SpeedTorque, TargetState,
 };
 use crate::devices::hiperdrive::protocol::{
     ActualValues, ControlBit, ControlWord, Direction, DriveNumber, Percent, RunEnd, Setpoint, StatusBit, StatusWord,
@@ -301,15 +301,15 @@ fn bit_15_is_ambiguous_near_both_limits() {
     let at = |position| Permit::for_range(-150, 150).outside_limits(heard(Some((0xAA37, position))).unwrap());
     assert_eq!(
         (at(-20), at(0), at(20)),
-        (Some(OutsideLimits::Unclear), Some(OutsideLimits::Unclear), Some(OutsideLimits::Unclear))
+        (Some(LimitViolation::Unclear), Some(LimitViolation::Unclear), Some(LimitViolation::Unclear))
     );
     assert_eq!(
         (at(-34), at(34)),
-        (Some(OutsideLimits::At(LimitSide::Below)), Some(OutsideLimits::At(LimitSide::Above)))
+        (Some(LimitViolation::At(LimitSide::Below)), Some(LimitViolation::At(LimitSide::Above)))
     );
     assert_eq!(
         (at(-151), at(151)),
-        (Some(OutsideLimits::At(LimitSide::Below)), Some(OutsideLimits::At(LimitSide::Above)))
+        (Some(LimitViolation::At(LimitSide::Below)), Some(LimitViolation::At(LimitSide::Above)))
     );
 }
 
@@ -385,7 +385,7 @@ proptest! {
             prop_assert!(!leaves || !word.is_set(ControlBit::Enable), "{:?} behind {:?}", word, before.control);
             // If a drive does not stop, all levels of the stop sequence are used.
             unmet = if matches!(man.phase(), Phase::Stopping(_)) { unmet + step } else { Duration::ZERO };
-            prop_assert!(unmet < LEVEL_TIME * 3 + Duration::from_millis(240) || man.has_exhausted_stop_levels());
+            prop_assert!(unmet < STOP_LEVEL_TIMEOUT * 3 + Duration::from_millis(240) || man.has_exhausted_stop_levels());
             before = sent;
         }
     }

@@ -13,7 +13,8 @@
 //! repeatability of a drive is ±1° (manual, technical data; reference, section 5).
 
 use super::{
-    ActionEnd, DeadMan, Motion, MotionKind, MotionLock, MotionRejection, MotionRequest, NOT_REACHED_TIME, Permit, Stage,
+    ActionEnd, DeadMan, MISSED_TARGET_TIME, Motion, MotionKind, MotionLock, MotionRejection, MotionRequest, Permit,
+    Stage,
 };
 use crate::devices::hiperdrive::protocol::{ActualValues, Direction, RunEnd, State, StatusBit};
 use crate::units::Moment;
@@ -25,7 +26,7 @@ pub enum LimitSide {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OutsideLimits {
+pub enum LimitViolation {
     At(LimitSide),
     /// Status bit 15 is set, but the position does not show which limit the drive has passed, because it is close to
     /// both limits or more than a degree inside them.
@@ -35,7 +36,7 @@ pub enum OutsideLimits {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ActionMonitor {
     /// Limit that the drive had passed at the start, or `None` once the drive has been inside.
-    outside: Option<OutsideLimits>,
+    outside: Option<LimitViolation>,
     /// Shortest distance so far to the target of a job, or a measure of progress for a run.
     best: i64,
     /// Position after braking, while a job is paused.
@@ -49,12 +50,12 @@ pub(super) struct ActionMonitor {
 /// Positioning accuracy in whole degrees: ±2.5° (manual, technical data; reference, section 5), rounded up.
 const ACCURACY_DEG: i64 = 3;
 
-impl OutsideLimits {
+impl LimitViolation {
     /// Returns whether motion in this direction may take the drive further outside.
     pub fn is_outward(self, direction: Direction) -> bool {
         match self {
-            OutsideLimits::At(side) => side.outward_direction() == direction,
-            OutsideLimits::Unclear => true,
+            LimitViolation::At(side) => side.outward_direction() == direction,
+            LimitViolation::Unclear => true,
         }
     }
 }
@@ -63,18 +64,19 @@ impl Permit {
     /// Returns which limit a drive has passed according to its position or, if the position is inside, to status bit
     /// 15. Bit 15 is attributed to a limit within one degree. Returns `None` if the drive is inside or no limits are
     /// known.
-    pub fn outside_limits(&self, actual: ActualValues) -> Option<OutsideLimits> {
+    pub fn outside_limits(&self, actual: ActualValues) -> Option<LimitViolation> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
         let by_status = || {
             // In a very narrow range both limits are within a degree, and the drive may be at either of them.
-            match [LimitSide::Below, LimitSide::Above].map(|side| side.steps_beyond(actual.position, limits) >= -degree)
+            match [LimitSide::Below, LimitSide::Above]
+                .map(|side| side.overshoot_steps(actual.position, limits) >= -degree)
             {
-                [true, false] => OutsideLimits::At(LimitSide::Below),
-                [false, true] => OutsideLimits::At(LimitSide::Above),
-                _ => OutsideLimits::Unclear,
+                [true, false] => LimitViolation::At(LimitSide::Below),
+                [false, true] => LimitViolation::At(LimitSide::Above),
+                _ => LimitViolation::Unclear,
             }
         };
-        let beyond = nearest_side(actual.position, limits).map(OutsideLimits::At);
+        let beyond = nearest_side(actual.position, limits).map(LimitViolation::At);
         beyond.or_else(|| actual.status.is_set(StatusBit::PositionLimit).then(by_status))
     }
 }
@@ -85,7 +87,7 @@ fn nearest_side(position: i32, (low, high): (i32, i32)) -> Option<LimitSide> {
 
 impl LimitSide {
     /// Returns the number of steps beyond this limit, negative if the position is inside.
-    pub fn steps_beyond(self, position: i32, (low, high): (i32, i32)) -> i64 {
+    pub fn overshoot_steps(self, position: i32, (low, high): (i32, i32)) -> i64 {
         match self {
             LimitSide::Above => i64::from(position) - i64::from(high),
             LimitSide::Below => i64::from(low) - i64::from(position),
@@ -130,7 +132,7 @@ impl ActionMonitor {
             (MotionKind::Run { direction, .. }, Some(limits)) => {
                 [LimitSide::Below, LimitSide::Above].into_iter().any(|side| {
                     side.outward_direction() == direction
-                        && side.steps_beyond(actual.position, limits) >= -i64::from(permit.degree)
+                        && side.overshoot_steps(actual.position, limits) >= -i64::from(permit.degree)
                 })
             }
             _ => false,
@@ -174,14 +176,14 @@ impl ActionMonitor {
         let beyond = Some(ActionEnd::Beyond { position: actual.position });
         let Some(began) = self.outside else {
             let is_end = match permit.outside_limits(actual)? {
-                OutsideLimits::At(side) => side.steps_beyond(actual.position, limits).abs() <= degree,
-                OutsideLimits::Unclear => false,
+                LimitViolation::At(side) => side.overshoot_steps(actual.position, limits).abs() <= degree,
+                LimitViolation::Unclear => false,
             };
             return if runs && is_end { Some(ActionEnd::RangeEnd) } else { beyond };
         };
         match nearest_side(actual.position, limits) {
             // The drive has crossed the whole range and left it on the other side.
-            Some(side) if OutsideLimits::At(side) != began => return beyond,
+            Some(side) if LimitViolation::At(side) != began => return beyond,
             // Status bit 15 may be late.
             None if !actual.status.is_set(StatusBit::PositionLimit) => self.outside = None,
             _ => {}
@@ -209,11 +211,11 @@ impl Permit {
             return Ok(());
         };
         match outside {
-            OutsideLimits::Unclear => Err(MotionRejection::Unclear { position, low, high }),
-            OutsideLimits::At(side) if direction == Some(side.outward_direction()) => {
+            LimitViolation::Unclear => Err(MotionRejection::Unclear { position, low, high }),
+            LimitViolation::At(side) if direction == Some(side.outward_direction()) => {
                 Err(MotionRejection::Outward { position, low, high })
             }
-            OutsideLimits::At(_) => Ok(()),
+            LimitViolation::At(_) => Ok(()),
         }
     }
 }
@@ -237,7 +239,7 @@ impl DeadMan {
             return refusal.map(ActionEnd::Refused);
         };
         let has_braked =
-            matches!(self.stage, Stage::Paused { since, .. } if mark.has_elapsed_since(since, NOT_REACHED_TIME));
+            matches!(self.stage, Stage::Paused { since, .. } if mark.has_elapsed_since(since, MISSED_TARGET_TIME));
         let waits = watch.check_paused(has_braked, actual, permit);
         watch.check_report(motion, actual, permit).or(waits)
     }

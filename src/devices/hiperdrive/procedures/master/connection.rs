@@ -45,7 +45,7 @@ const MAX_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Extended status with which a device rejects a connection that is already in use.
 const CONNECTION_IN_USE: u16 = 0x0100;
-const OWNED_BY_OTHER: u16 = 0x0106;
+const OUTPUTS_OWNED_BY_ANOTHER_MASTER: u16 = 0x0106;
 const KIND: u16 = 0x0108;
 const KINDS: [u16; 3] = [KIND, 0x0123, 0x0124];
 const SIZES: [u16; 3] = [0x0109, 0x0127, 0x0128];
@@ -73,7 +73,9 @@ impl Master<'_> {
             }
             match self.open_with_layout(layout, kind, port) {
                 Err(Error::Refused { refusal, .. }) => match refusal.extended.first() {
-                    Some(&extended @ (CONNECTION_IN_USE | OWNED_BY_OTHER)) if is_connection_rejection(&refusal) => {
+                    Some(&extended @ (CONNECTION_IN_USE | OUTPUTS_OWNED_BY_ANOTHER_MASTER))
+                        if is_connection_rejection(&refusal) =>
+                    {
                         return Err(Error::OtherMaster { extended });
                     }
                     _ => refused = Some(refusal),

@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::procedures::Error;
 use crate::devices::hiperdrive::procedures::error::{ErrorReply, RequestedItem};
 use crate::devices::hiperdrive::procedures::identify::read_topology;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER_LIMIT, NUMERATOR, POSITION, REFERENCE, REQUESTED_BY_BUS, UPPER_LIMIT, VARIANT,
+    DENOMINATOR, DRIVE_REQUESTED, LOWER_LIMIT, NUMERATOR, POSITION, REFERENCE, UPPER_LIMIT, VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, OutOfRange, ParameterNumber, ParameterRange, ParameterRow, PositionScale, Travel, Value, Variant,
@@ -36,7 +36,7 @@ impl Master<'_> {
             return Ok(Error::NoDrive { drive });
         }
         // The drive rejects the request in its current state, possibly because the drive is not requested.
-        if refusal.status == GeneralStatus::STATE && self.is_zero(number, REQUESTED_BY_BUS, drive)? {
+        if refusal.status == GeneralStatus::STATE && self.is_zero(number, DRIVE_REQUESTED, drive)? {
             return Ok(Error::NotRequested { drive });
         }
         Ok(Error::Refused { requested, refusal })

@@ -97,7 +97,7 @@ fn rejects_other_device_or_drive_type() {
 }
 
 #[test]
-fn marked_parameters_stay_on_own_drive() {
+fn mounting_parameters_stay_on_their_drive() {
     let mut marked = profile();
     let mark = |own| MountingMark { item: Item(parameter(own)), meaning: String::new(), unknown: Default::default() };
     marked.mounting.extend([mark(160), mark(360)]);

@@ -101,7 +101,7 @@ fn parameters_map_to_cip_attributes() {
     }
     assert_eq!((ParameterNumber::new(0), ParameterNumber::new(900)), (None, None));
     assert_eq!((DriveNumber::new(0), DriveNumber::new(9)), (None, None));
-    assert_eq!(DriveNumber::all_for(Topology::Hub4).map(DriveNumber::get).collect::<Vec<_>>(), [1, 2, 3, 4]);
+    assert_eq!(DriveNumber::all_in_topology(Topology::Hub4).map(DriveNumber::get).collect::<Vec<_>>(), [1, 2, 3, 4]);
 }
 
 /// The number of parameters and their factory values match section 4 of the reference.

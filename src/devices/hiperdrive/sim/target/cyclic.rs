@@ -83,7 +83,7 @@ impl TargetDevice {
 
     pub(super) fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]) {
         self.advance_to(now);
-        if !self.accept_arrival() || !self.decide_delivery() {
+        if !self.register_arrival() || !self.decide_delivery() {
             return;
         }
         match IoPacket::parse(packet, RealTimeFormat::Header) {

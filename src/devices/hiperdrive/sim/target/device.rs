@@ -72,7 +72,7 @@ impl TargetDevice {
     }
 
     pub(super) fn set_faults(&mut self, faults: &SimulatedFaults) {
-        self.station.set_failing_save(faults.failing_store());
+        self.station.set_failing_save(faults.save_with_power_failure());
         self.faults = faults.clone();
     }
 
@@ -90,7 +90,7 @@ impl TargetDevice {
     pub(super) fn handle_frame(&mut self, now: Moment, from: Originator, frame: &Frame) -> Option<(Moment, Vec<u8>)> {
         self.advance_to(now);
         self.figures.frames += 1;
-        if !self.accept_arrival() {
+        if !self.register_arrival() {
             return None;
         }
         let reply = self.reply_to(from, frame)?;
@@ -135,7 +135,7 @@ impl TargetDevice {
     }
 
     /// Counts a received frame or packet, and returns whether the target handles it.
-    pub(super) fn accept_arrival(&mut self) -> bool {
+    pub(super) fn register_arrival(&mut self) -> bool {
         let speaks = self.can_send();
         self.heard = self.heard.saturating_add(1);
         speaks && !self.station.is_dead(self.now)

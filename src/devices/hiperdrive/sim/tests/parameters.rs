@@ -145,7 +145,7 @@ fn saved_parameters_survive_power_cycle() {
 /// registers and, for each drive, the request (152) and the baud rate (190). Scale, limits and reference of a drive
 /// stay unchanged (issue 21.6 d).
 #[test]
-fn device_recalls_only_own_parameters() {
+fn recall_restores_only_device_parameters() {
     let own = [24, 152, 190];
     let of_the_drive = [154, 156, 158, 160, 166, 198];
     let mut bench = Bench::single();

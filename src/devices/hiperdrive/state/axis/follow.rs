@@ -57,7 +57,7 @@ impl Axis {
         if self.chain.record(self.step, self.preconditions(seen), skipped)
             && let Some(next) = next
         {
-            self.undo_results_from(next, next == AxisStep::Upper);
+            self.discard_results_since(next, next == AxisStep::Upper);
         }
         match next {
             Some(step) => self.enter(step, seen),
@@ -230,7 +230,7 @@ impl Axis {
             _ => {}
         }
         if let Some(step) = self.chain.discard_outdated(&self.preconditions(seen)) {
-            self.undo_results_from(step, false);
+            self.discard_results_since(step, false);
         }
         let is_set = |position: &i32| seen.values.get(&REFERENCE) == Some(&i64::from(*position));
         if let Some(position) = self.sets.filter(is_set) {
@@ -239,7 +239,7 @@ impl Axis {
     }
 
     /// Discards the results of this step and all later ones. Taught limits are kept if `taught` is set.
-    fn undo_results_from(&mut self, step: AxisStep, taught: bool) {
+    fn discard_results_since(&mut self, step: AxisStep, taught: bool) {
         if step <= AxisStep::Confirm {
             self.confirmed = None;
         }

@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
-use super::supply::{Power, RESTART_MARKER, RestartEvidence, is_marked, mark_value};
+use super::supply::{Power, RESTART_MARKER, RestartEvidence, is_marked, marker_test_value};
 use super::{Axis, AxisButton, AxisStep, DriveFacts, DriveRequest, TestTarget, differences, labels};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::MotionLock;
 use crate::devices::hiperdrive::protocol::State;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER_LIMIT, NUMERATOR, REQUESTED_BY_BUS, UPPER_LIMIT,
+    DENOMINATOR, DRIVE_REQUESTED, LOWER_LIMIT, NUMERATOR, UPPER_LIMIT,
 };
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
@@ -84,7 +84,7 @@ impl Axis {
     fn step_request(&self, seen: &DriveFacts) -> Result<DriveRequest, Text> {
         match self.step {
             AxisStep::Request if seen.requested == Some(true) => Err(TEXTS.text("hd_axis.already")),
-            AxisStep::Request => Ok(DriveRequest::Try(vec![(REQUESTED_BY_BUS, 1)])),
+            AxisStep::Request => Ok(DriveRequest::Try(vec![(DRIVE_REQUESTED, 1)])),
             AxisStep::Scale => {
                 let preview = self.entries.preview(seen)?;
                 if seen.scale == Some(preview.scale) {
@@ -112,7 +112,7 @@ impl Axis {
                 Ok(DriveRequest::Try(vec![(LOWER_LIMIT, low.into()), (UPPER_LIMIT, high.into())]))
             }
             AxisStep::Save => Ok(DriveRequest::Save),
-            AxisStep::PowerCycle => match (self.power, is_marked(seen), mark_value()) {
+            AxisStep::PowerCycle => match (self.power, is_marked(seen), marker_test_value()) {
                 (
                     Some(Power::On(_) | Power::Back { restart: RestartEvidence::Unproven, .. }),
                     Some(false),

@@ -130,15 +130,15 @@ impl Power {
 
 /// Returns whether [`RESTART_MARKER`] has a value other than its factory setting. Returns `None` if it was not read.
 pub(super) fn is_marked(seen: &DriveFacts) -> Option<bool> {
-    Some(*seen.values.get(&RESTART_MARKER)? != factory_mark()?)
+    Some(*seen.values.get(&RESTART_MARKER)? != marker_factory_value()?)
 }
 
 /// Returns the value that marks a drive: the factory setting plus 1.
-pub(super) fn mark_value() -> Option<i64> {
-    factory_mark().map(|value| value + 1)
+pub(super) fn marker_test_value() -> Option<i64> {
+    marker_factory_value().map(|value| value + 1)
 }
 
-fn factory_mark() -> Option<i64> {
+fn marker_factory_value() -> Option<i64> {
     let row = PARAMETERS.iter().find(|row| row.number == RESTART_MARKER)?;
     match row.factory {
         FactoryValue::Number(value) => Some(value),

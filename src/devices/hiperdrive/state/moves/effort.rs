@@ -31,7 +31,7 @@ impl DriveMotion {
 
     /// Returns the speed and torque of the running jog, if any.
     pub fn running_jog_speed_torque(&self, drive: DriveNumber) -> Option<SpeedTorque> {
-        self.active_speed_torque(drive).filter(|_| self.is_running_as(drive, Kind::Held))
+        self.active_speed_torque(drive).filter(|_| self.has_action_of_kind(drive, Kind::Held))
     }
 
     /// Returns the speed and torque of the running move or step, if any.
@@ -43,10 +43,10 @@ impl DriveMotion {
 
     /// Returns the speed and torque of the current run, if any.
     pub fn running_run_speed_torque(&self, drive: DriveNumber) -> Option<SpeedTorque> {
-        self.active_speed_torque(drive).filter(|_| self.is_running_as(drive, Kind::Run))
+        self.active_speed_torque(drive).filter(|_| self.has_action_of_kind(drive, Kind::Run))
     }
 
-    fn is_running_as(&self, drive: DriveNumber, kind: Kind) -> bool {
+    fn has_action_of_kind(&self, drive: DriveNumber, kind: Kind) -> bool {
         self.act.is_some_and(|act| act.drive == drive && act.kind == kind)
     }
 

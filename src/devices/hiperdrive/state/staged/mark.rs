@@ -47,7 +47,7 @@ impl StagedEdits {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
         let mut of_drives = Vec::new();
         for drive in wanted.drives() {
-            push_drive_marks(base, wanted, drive, position(drive), &mut of_drives);
+            collect_drive_findings(base, wanted, drive, position(drive), &mut of_drives);
         }
         let moved: Vec<ParameterNumber> = of_drives
             .iter()
@@ -66,7 +66,7 @@ impl StagedEdits {
     }
 }
 
-fn push_drive_marks(
+fn collect_drive_findings(
     base: &Image,
     wanted: &Image,
     drive: DriveNumber,

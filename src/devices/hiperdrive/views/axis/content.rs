@@ -27,7 +27,7 @@ pub(super) fn content_ui(
     actions: &mut Vec<Action>,
 ) {
     let step = shown.axis.step();
-    if step.needs_cyclic() {
+    if step.needs_cyclic_connection() {
         control_ui(ui, theme, shown, actions);
     }
     if step.is_jogging() {
@@ -171,7 +171,7 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &LengthEntr
         ui,
         theme,
         &translate(theme, "hd_axis.preview_steps"),
-        theme.monospace(theme.format_plain(preview.scale.steps_per_turn())),
+        theme.monospace(theme.format_significant_digits(preview.scale.steps_per_turn())),
     );
     row(ui, theme, &translate(theme, "hd_axis.preview_grain"), theme.monospace(theme.format_text(&mm(64))));
     let whole = theme.format_text(&range(mm(preview.lower), mm(preview.upper)));

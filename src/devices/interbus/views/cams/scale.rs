@@ -51,10 +51,17 @@ pub(super) fn card_ui(
                 },
             );
             entry(ui, theme, &word, |ui| {
-                committed_entry(ui, &mut view.steps, &theme.format_plain(steps), ENTRY_WIDTH, &word, |text| {
-                    set(forms::scale(scale.unit(), text, scale.zero())?);
-                    Ok(())
-                });
+                committed_entry(
+                    ui,
+                    &mut view.steps,
+                    &theme.format_significant_digits(steps),
+                    ENTRY_WIDTH,
+                    &word,
+                    |text| {
+                        set(forms::scale(scale.unit(), text, scale.zero())?);
+                        Ok(())
+                    },
+                );
             });
             show_error_below(ui, theme, view.steps.as_ref().and_then(|own| own.1.as_ref()));
         }

@@ -146,7 +146,7 @@ fn ignores_packets_out_of_sequence() {
     }
     // Packets that belong to another connection, are too short or too long, are not packets, or are truncated at any
     // length.
-    host.packet_of(0x0002_0002, next, 1, &[0; 16]);
+    host.packet_on_connection(0x0002_0002, next, 1, &[0; 16]);
     host.packet(next, 1, &[1; 15]);
     host.packet(next, 1, &[1; 17]);
     let whole = bytes(

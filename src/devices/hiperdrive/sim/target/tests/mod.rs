@@ -115,10 +115,10 @@ impl Host {
 
     /// Sends a packet over connection 00020001.
     fn packet(&mut self, sequence: u32, header: u32, data: &[u8]) {
-        self.packet_of(0x0002_0001, sequence, header, data);
+        self.packet_on_connection(0x0002_0001, sequence, header, data);
     }
 
-    fn packet_of(&mut self, connection: u32, sequence: u32, header: u32, data: &[u8]) {
+    fn packet_on_connection(&mut self, connection: u32, sequence: u32, header: u32, data: &[u8]) {
         let length = u16::try_from(data.len() + 6).unwrap();
         let packet = [
             &bytes("02 00 02 80 08 00")[..],

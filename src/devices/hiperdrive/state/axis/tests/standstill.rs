@@ -6,10 +6,10 @@ use std::time::Duration;
 use super::*;
 use crate::units::Moment;
 
-/// Status word of a drive at standstill, with bit 13 set. `MOVES` is the same word with bit 13 clear (reference,
+/// Status word of a drive at standstill, with bit 13 set. `MOVING_STATUS_WORD` is the same word with bit 13 clear (reference,
 /// section 3).
-const STATIONARY: u16 = 0x2A37;
-const MOVES: u16 = 0x0A37;
+const STANDSTILL_STATUS_WORD: u16 = 0x2A37;
+const MOVING_STATUS_WORD: u16 = 0x0A37;
 
 /// Sets the drive data to a reading taken `ms` milliseconds after the session began.
 fn read(seen: &mut DriveFacts, ms: u64, position: i32, word: u16) {
@@ -19,9 +19,9 @@ fn read(seen: &mut DriveFacts, ms: u64, position: i32, word: u16) {
 }
 
 /// Returns a set-up in the test step. At 10 s, the axis is at standstill at position 2000, with 400 steps per turn.
-fn at_standstill() -> (Axis, DriveFacts) {
+fn axis_at_standstill() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = at_test_step();
-    read(&mut seen, 10_000, 2000, STATIONARY);
+    read(&mut seen, 10_000, 2000, STANDSTILL_STATUS_WORD);
     axis.update(&seen);
     (axis, seen)
 }
@@ -32,7 +32,7 @@ fn at_standstill() -> (Axis, DriveFacts) {
 #[test]
 fn jump_at_standstill_means_changed_reference() {
     let case = |ms: u64, position: i32, word: u16| {
-        let (mut axis, mut seen) = at_standstill();
+        let (mut axis, mut seen) = axis_at_standstill();
         read(&mut seen, 10_000 + ms, position, word);
         axis.update(&seen);
         (axis.invalidated_step(), labels::unexplained_change_text(&axis, &seen).is_some())
@@ -51,11 +51,11 @@ fn jump_at_standstill_means_changed_reference() {
         ("5° are 5.6 steps: it has readjusted", 60_000, 6, (None, false)),
         ("it has not", 60_000, 7, (None, true)),
     ] {
-        assert_eq!(case(ms, 2000 + steps, STATIONARY), expected, "{label}: {steps} steps in {ms} ms");
-        assert_eq!(case(ms, 2000 + steps, MOVES), (None, false), "{label}: it moves");
+        assert_eq!(case(ms, 2000 + steps, STANDSTILL_STATUS_WORD), expected, "{label}: {steps} steps in {ms} ms");
+        assert_eq!(case(ms, 2000 + steps, MOVING_STATUS_WORD), (None, false), "{label}: it moves");
     }
-    let (mut axis, mut seen) = at_standstill();
-    read(&mut seen, 10_020, 128, STATIONARY);
+    let (mut axis, mut seen) = axis_at_standstill();
+    read(&mut seen, 10_020, 128, STANDSTILL_STATUS_WORD);
     axis.update(&seen);
     let why = labels::invalidated_step(axis.invalidated_step().unwrap()).to_string_in(Language::English);
     assert!(why.contains("changed while the axis was at rest"), "{why}");
@@ -64,7 +64,7 @@ fn jump_at_standstill_means_changed_reference() {
 
 /// A position change that has a known cause is not a jump (issue 21.6 c).
 #[test]
-fn known_position_change_is_no_jump() {
+fn ignores_expected_position_changes() {
     type Case<'c> = (&'c str, fn(&mut DriveFacts));
     let cases: [Case<'_>; 3] = [
         ("moved by a person, between two looks", |seen| seen.ended = Some((9, ActionEnd::Arrived))),
@@ -72,21 +72,21 @@ fn known_position_change_is_no_jump() {
         ("nothing is concluded while it is busy", |seen| seen.busy = true),
     ];
     for (label, change) in cases {
-        let (mut axis, mut seen) = at_standstill();
+        let (mut axis, mut seen) = axis_at_standstill();
         change(&mut seen);
-        read(&mut seen, 10_020, -900, STATIONARY);
+        read(&mut seen, 10_020, -900, STANDSTILL_STATUS_WORD);
         axis.update(&seen);
         assert_eq!((axis.invalidated_step(), labels::unexplained_change_text(&axis, &seen)), (None, None), "{label}");
     }
     // The position was set by this program. The set-up is at the next step and uses the new numbers.
-    let (mut axis, mut seen) = at_standstill();
+    let (mut axis, mut seen) = axis_at_standstill();
     (0..3).for_each(|_| axis.go_back(&seen));
     axis.set_entries(LengthEntries { reference: "1".to_owned(), ..axis.entries().clone() });
     press(&mut axis, &mut seen, AxisButton::Do);
-    read(&mut seen, 10_020, 128, STATIONARY);
+    read(&mut seen, 10_020, 128, STANDSTILL_STATUS_WORD);
     axis.update(&seen);
     next(&mut axis, &seen, AxisStep::Lower);
-    read(&mut seen, 10_040, 128, STATIONARY);
+    read(&mut seen, 10_040, 128, STANDSTILL_STATUS_WORD);
     axis.update(&seen);
     assert_eq!((axis.invalidated_step(), axis.reference_position()), (None, Some(128)));
 }
@@ -96,10 +96,10 @@ fn known_position_change_is_no_jump() {
 #[test]
 fn reports_unobserved_change_as_unexplained() {
     let again = |position: i32| {
-        let (mut axis, mut seen) = at_standstill();
+        let (mut axis, mut seen) = axis_at_standstill();
         axis.handle_connection_loss();
         // The clock of the next session starts at zero again.
-        read(&mut seen, 0, position, STATIONARY);
+        read(&mut seen, 0, position, STANDSTILL_STATUS_WORD);
         axis.update(&seen);
         (axis, seen)
     };
@@ -117,10 +117,10 @@ fn reports_unobserved_change_as_unexplained() {
     assert!(told(&axis, &seen).unwrap().starts_with("The position changed by -3.48 mm while"));
     // No reference has been set or confirmed yet, so no result depends on it.
     let (mut early, mut fresh) = at_jog_step();
-    read(&mut fresh, 0, 0, STATIONARY);
+    read(&mut fresh, 0, 0, STANDSTILL_STATUS_WORD);
     early.update(&fresh);
     early.handle_connection_loss();
-    read(&mut fresh, 0, 348, STATIONARY);
+    read(&mut fresh, 0, 348, STANDSTILL_STATUS_WORD);
     early.update(&fresh);
     assert_eq!(told(&early, &fresh), None);
     // Go back to the reference, and continue from there.
@@ -129,7 +129,7 @@ fn reports_unobserved_change_as_unexplained() {
     next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(told(&axis, &seen), None);
     axis.handle_connection_loss();
-    read(&mut seen, 0, 2000, STATIONARY);
+    read(&mut seen, 0, 2000, STANDSTILL_STATUS_WORD);
     axis.update(&seen);
     axis.cancel(&seen, "2026-11-23 06:00");
     let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };

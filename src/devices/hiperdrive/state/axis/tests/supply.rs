@@ -4,7 +4,7 @@ use super::*;
 
 /// The restart marker is never saved, so a failed write of it does not change what is saved (issue 21.6 e).
 #[test]
-fn failed_mark_keeps_saved_values() {
+fn failed_marker_write_keeps_saved_values() {
     for begun in [false, true] {
         let (mut axis, seen) = at_power_cycle_step();
         let ask = axis.request(AxisButton::Do, &seen).unwrap();
@@ -18,7 +18,7 @@ fn failed_mark_keeps_saved_values() {
 /// If the connection is lost during the write of the restart marker, a reading shows whether the marker was written
 /// (issue 21.6 e).
 #[test]
-fn reads_back_interrupted_mark() {
+fn reads_back_interrupted_marker_write() {
     let cut_off = |value: i64| {
         let (mut axis, mut seen) = at_power_cycle_step();
         let ask = axis.request(AxisButton::Do, &seen).unwrap();
