@@ -117,7 +117,7 @@ fn receive(bytes: &[u8], layout: &Layout) -> u64 {
             steps.clear();
             for (at, (_, raw)) in data.values.iter().enumerate() {
                 let reading: Result<PositionData, FrameError> = layout.parse(*raw);
-                let position = i64::try_from(layout.steps_of(&reading.unwrap())).unwrap();
+                let position = i64::try_from(layout.position_to_steps(&reading.unwrap())).unwrap();
                 steps.push(unwrap.next(position).unwrap().steps);
                 let nanoseconds = (data.t0_us as i64 + at as i64 * i64::from(data.period_us)) * 1000;
                 times.push(SampleTime::from_nanoseconds(nanoseconds));

@@ -11,7 +11,7 @@ use super::logbook::LOGBOOK_TAB;
 use super::studio::Studio;
 use super::tasks::ActionMailbox;
 use super::{Settings, Severity, explain};
-use crate::store::{Contact, Logbook, ServerAddress, ServerAddressError, ServerError, ServerErrorKind, Store};
+use crate::store::{Logbook, ServerAddress, ServerAddressError, ServerContact, ServerError, ServerErrorKind, Store};
 
 /// Environment variable that overrides the server address from the settings.
 const VARIABLE: &str = "ENCODER_STUDIO_LOGBOOK";
@@ -52,7 +52,7 @@ pub(super) fn is_server_given() -> bool {
 /// State of the exchange with the server.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ServerExchange {
-    pub contact: Contact,
+    pub contact: ServerContact,
     /// Number of entries not yet sent to the server.
     pub waiting: u64,
 }
@@ -87,7 +87,7 @@ fn exchange(store: &Store, mailbox: &ActionMailbox, stopped: &Receiver<()>) {
     loop {
         let is_due = last.is_none_or(|at| at.elapsed() >= RECEIVE_INTERVAL);
         if server.is_set() && (is_due || count_waiting() > 0) {
-            let result = server.transfer_unless_away(&path, TIMEOUT);
+            let result = server.transfer_unless_recently_failed(&path, TIMEOUT);
             last = Some(Instant::now());
             let received = result.and_then(Result::ok).is_some_and(|done| done.received > 0);
             let state = ServerExchange { contact: server.contact(), waiting: count_waiting() };

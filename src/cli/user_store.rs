@@ -32,7 +32,7 @@ pub(super) fn user_store(common: &CommonArgs) -> Result<Store> {
 
 /// Exchanges entries with the logbook server, if any. An unavailable server is reported at the end of the command.
 pub(super) fn exchange_entries(store: &Store) {
-    store.logbook_server().transfer_unless_away(&store.logbook_path(), SERVER_TIMEOUT);
+    store.logbook_server().transfer_unless_recently_failed(&store.logbook_path(), SERVER_TIMEOUT);
 }
 
 /// Reports the other programs that have the device of this command open. Only the first such report is printed.

@@ -10,7 +10,7 @@ mod adapter;
 mod options;
 mod rewrite;
 
-fn profiles_in(folder: &str) -> Vec<(PathBuf, String)> {
+fn read_folder_profiles(folder: &str) -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let in_kind = |kind: &str| fs::read_dir(root.join(kind)).unwrap().map(|entry| entry.unwrap().path());
     let all = program().studio.formats.kinds().flat_map(in_kind);
@@ -60,7 +60,7 @@ fn generate_typos(name: &str) -> Vec<String> {
 #[test]
 fn reports_misspelt_names_in_ready_made_profiles() {
     let mut misspelt = 0;
-    for (path, text) in profiles_in("profiles") {
+    for (path, text) in read_folder_profiles("profiles") {
         for (begin, end) in names(&text) {
             let line = text[..begin].matches('\n').count() + 1;
             let column = begin - text[..begin].rfind('\n').map_or(0, |at| at + 1) + 1;
@@ -80,7 +80,7 @@ fn reports_misspelt_names_in_ready_made_profiles() {
 /// Covers the ready-made profiles of schema 1, and a profile of each kind saved at that time (issue 22.17).
 #[test]
 fn opens_schema_1_profiles() {
-    let files = profiles_in("tests/fixtures/schema-1");
+    let files = read_folder_profiles("tests/fixtures/schema-1");
     assert_eq!(
         files.iter().filter(|(path, _)| path.file_stem().unwrap() == "saved").count(),
         program().studio.formats.kinds().count()

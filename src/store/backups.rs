@@ -59,7 +59,7 @@ impl Backups {
     ///
     /// # Errors
     /// Returns an error if the folder exists but cannot be read.
-    pub fn list_for(&self, device: &str, serial_number: &str) -> Result<Vec<Backup>, FileError> {
+    pub fn list_for_device(&self, device: &str, serial_number: &str) -> Result<Vec<Backup>, FileError> {
         let folder = self.device_folder(device, serial_number);
         let failed = |error: std::io::Error| FileErrorKind::from(error).into_error(FileOperation::List, &folder);
         let entries = match fs::read_dir(&folder) {
@@ -134,11 +134,11 @@ mod tests {
         for name in foreign.iter().chain(&["2026-13-21T12-14-47Z.ron", "2026-1-21T12-14-47Z.ron", "Z.ron", ".ron"]) {
             fs::write(folder.join(name), "x").unwrap();
         }
-        let listed = backups.list_for("hiperface", "12345678").unwrap();
+        let listed = backups.list_for_device("hiperface", "12345678").unwrap();
         let paths: Vec<_> = listed.iter().map(|backup| backup.path.clone()).collect();
         assert_eq!(paths, [later, second, first]);
         assert_eq!(listed[1].taken, at("2026-11-21T12:14:47Z"));
-        assert_eq!(backups.list_for("hiperface", "1234567"), Ok(Vec::new()));
+        assert_eq!(backups.list_for_device("hiperface", "1234567"), Ok(Vec::new()));
     }
 
     #[test]
@@ -155,7 +155,7 @@ mod tests {
                 });
             }
         });
-        let listed = backups.list_for("hiperface", "1").unwrap();
+        let listed = backups.list_for_device("hiperface", "1").unwrap();
         assert_eq!(listed.len(), 12);
         assert!(listed[0].path.ends_with("2026-11-21T12-14-47Z-12.ron"), "{:?}", listed[0]);
         let mut texts: Vec<_> = listed.iter().map(|backup| read_text(&backup.path).unwrap()).collect();
@@ -192,7 +192,7 @@ mod tests {
             assert_eq!(safe_name(serial_number, LetterCase::Told), expected, "{serial_number:?}");
             let path = backups.save("hiperface", serial_number, at("2026-11-21T12:14:47Z"), serial_number).unwrap();
             assert_eq!(path.parent(), Some(root.path().join("data/backups/hiperface").join(expected).as_path()));
-            let listed = backups.list_for("hiperface", serial_number).unwrap();
+            let listed = backups.list_for_device("hiperface", serial_number).unwrap();
             assert_eq!(listed.len(), 1, "{serial_number:?}");
             assert_eq!(read_text(&listed[0].path).unwrap(), serial_number);
         }
@@ -206,6 +206,6 @@ mod tests {
         fs::write(root.path().join("data"), "x").unwrap();
         let error = backups.save("hiperface", "1", at("2026-11-21T12:14:47Z"), "x").unwrap_err();
         assert_eq!((error.task, error.problem), (FileOperation::CreateFolder, FileErrorKind::NotFolder));
-        assert!(backups.list_for("hiperface", "1").is_err());
+        assert!(backups.list_for_device("hiperface", "1").is_err());
     }
 }

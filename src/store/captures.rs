@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn head_is_file_start() {
+    fn capture_head_is_start_of_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("c.csv");
         assert_eq!(capture_head(&path).unwrap_err().problem, FileErrorKind::NotFound);

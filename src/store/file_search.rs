@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn files_are_found_in_subfolders_down_to_the_depth() {
+    fn finds_files_down_to_maximum_depth() {
         let root =
             folder_with(&["b.ron", "a/c.RON", "a/b/d.ron", "a/b/c/e.ron", "a/b.txt", ".hidden/f.ron", "own/g.ron"]);
         let mut search = FileSearch::new("ron", 100);
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn the_search_ends_at_its_limit() {
+    fn search_stops_at_file_limit() {
         let root = folder_with(&["a.ron", "b.ron", "c.ron"]);
         for (limit, is_truncated) in [(3, false), (2, true)] {
             let mut search = FileSearch::new("ron", limit);
@@ -120,7 +120,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_to_folders_are_not_followed() {
+    fn does_not_follow_folder_links() {
         let root = folder_with(&["a/b.ron"]);
         std::os::unix::fs::symlink(root.path(), root.path().join("a/again")).unwrap();
         std::os::unix::fs::symlink(root.path().join("a/b.ron"), root.path().join("c.ron")).unwrap();

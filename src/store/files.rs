@@ -14,7 +14,7 @@ use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::leftovers;
 
 /// Maximum number of bytes that [`read_text`] accepts: 16 MiB. The largest profile is a hundred times smaller.
-pub const MAX_TEXT: u64 = 16 << 20;
+pub const MAX_TEXT_BYTES: u64 = 16 << 20;
 
 /// Byte order mark that some editors write at the beginning of a file.
 const BYTE_ORDER_MARK: &str = "\u{FEFF}";
@@ -119,7 +119,7 @@ pub fn read_file(path: &Path) -> Result<String, FileError> {
     }
 }
 
-/// Reads a text of at most [`MAX_TEXT`] bytes and removes a leading byte order mark.
+/// Reads a text of at most [`MAX_TEXT_BYTES`] bytes and removes a leading byte order mark.
 ///
 /// # Errors
 /// Returns an error if the file is missing, is a folder, is too large or is not UTF-8.
@@ -132,20 +132,20 @@ pub fn read_text(path: &Path) -> Result<String, FileError> {
     Ok(text.strip_prefix(BYTE_ORDER_MARK).map(str::to_owned).unwrap_or(text))
 }
 
-/// Reads a file of at most [`MAX_TEXT`] bytes.
+/// Reads a file of at most [`MAX_TEXT_BYTES`] bytes.
 ///
 /// # Errors
 /// Returns an error if the file is missing, is a folder or is too large.
 pub fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
     let failed = |problem: FileErrorKind| problem.into_error(FileOperation::Read, path);
-    let bytes = match read_at_most(path, MAX_TEXT + 1) {
+    let bytes = match read_at_most(path, MAX_TEXT_BYTES + 1) {
         Ok(bytes) => bytes,
         // Windows reports a folder as "permission denied".
         Err(_) if path.is_dir() => return Err(failed(FileErrorKind::IsFolder)),
         Err(error) => return Err(failed(error.into())),
     };
-    if u64::try_from(bytes.len()).is_ok_and(|length| length > MAX_TEXT) {
-        return Err(failed(FileErrorKind::TooLarge { limit: MAX_TEXT }));
+    if u64::try_from(bytes.len()).is_ok_and(|length| length > MAX_TEXT_BYTES) {
+        return Err(failed(FileErrorKind::TooLarge { limit: MAX_TEXT_BYTES }));
     }
     Ok(bytes)
 }
@@ -321,10 +321,10 @@ mod tests {
         assert_eq!(problem(read_text(&path)), FileErrorKind::NotUtf8 { offset: 5 });
         fs::write(&path, b"\xEF\xBB\xBFab").unwrap();
         assert_eq!(read_text(&path).unwrap(), "ab");
-        File::create(&path).unwrap().set_len(MAX_TEXT).unwrap();
-        assert_eq!(read_text(&path).unwrap().len() as u64, MAX_TEXT);
-        File::create(&path).unwrap().set_len(MAX_TEXT + 1).unwrap();
-        assert_eq!(problem(read_text(&path)), FileErrorKind::TooLarge { limit: MAX_TEXT });
+        File::create(&path).unwrap().set_len(MAX_TEXT_BYTES).unwrap();
+        assert_eq!(read_text(&path).unwrap().len() as u64, MAX_TEXT_BYTES);
+        File::create(&path).unwrap().set_len(MAX_TEXT_BYTES + 1).unwrap();
+        assert_eq!(problem(read_text(&path)), FileErrorKind::TooLarge { limit: MAX_TEXT_BYTES });
     }
 
     #[test]

@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn ready_made_profiles_are_beside_the_program_or_shared() {
+    fn locates_ready_made_profile_folders() {
         let root = std::env::temp_dir();
         let expected = ["usr/bin/profiles", "usr/share/encoder-studio/profiles", "usr/Resources/profiles", "profiles"];
         let folders = BaseFolders::default().with_program_folder(&root.join("usr/bin"));

@@ -20,7 +20,7 @@ use tracing_subscriber::{fmt, registry};
 const MAX_LOG_BYTES: u64 = 1 << 20;
 
 /// Maximum number of lines waiting to be written.
-const QUEUE: usize = 1024;
+const QUEUE_CAPACITY: usize = 1024;
 
 /// Maximum time to wait for the last lines when the program ends.
 const FLUSH_TIMEOUT: Duration = Duration::from_millis(500);
@@ -48,7 +48,7 @@ impl LogFile {
     /// Returns an error if the thread cannot be started.
     pub fn start(path: &Path) -> io::Result<Self> {
         let own = path.to_owned();
-        let log = Self::spawn_writer(move || RotatingFile::open(&own, MAX_LOG_BYTES), QUEUE)?;
+        let log = Self::spawn_writer(move || RotatingFile::open(&own, MAX_LOG_BYTES), QUEUE_CAPACITY)?;
         let lines = log.clone();
         let layer = fmt::layer().with_writer(move || lines.clone()).with_ansi(false).with_target(false);
         let filter = Targets::new().with_default(Level::WARN).with_target(env!("CARGO_CRATE_NAME"), Level::INFO);
@@ -177,7 +177,7 @@ mod tests {
                     let path = path.clone();
                     move || RotatingFile::open(&path, MAX_LOG_BYTES)
                 },
-                QUEUE,
+                QUEUE_CAPACITY,
             )
             .unwrap();
             log.write_line(line.as_bytes());
@@ -191,7 +191,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("own.log");
         let own = path.clone();
-        let log = LogFile::spawn_writer(move || RotatingFile::open(&own, 8), QUEUE).unwrap();
+        let log = LogFile::spawn_writer(move || RotatingFile::open(&own, 8), QUEUE_CAPACITY).unwrap();
         for line in ["one\n", "two\n", "three\n", "four\n"] {
             log.write_line(line.as_bytes());
         }

@@ -27,16 +27,16 @@ pub use file_error::{FileError, FileErrorKind, FileOperation};
 pub use file_lock::update_text;
 pub use file_search::FileSearch;
 pub use files::{
-    MAX_TEXT, create_folder_and_write, overwrite_text, read_bytes, read_file, read_text, write_atomically,
+    MAX_TEXT_BYTES, create_folder_and_write, overwrite_text, read_bytes, read_file, read_text, write_atomically,
     write_atomically_with,
 };
 pub use folders::BaseFolders;
 pub use log_file::LogFile;
 pub use logbook::{
-    AssetName, AssetNameError, Contact, DeviceHold, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, EntryUid, Event,
-    Intent, KeyringError, LinkedEntry, Logbook, LogbookError, LogbookErrorKind, LogbookServer, Origin, OtherHolder,
-    Outcome, Password, ServerAddress, ServerAddressError, ServerError, ServerErrorKind, Transferred, UndoObstacle,
-    UnreachableCause, UserName, WriteResult,
+    AssetName, AssetNameError, DeviceHold, DeviceKey, Entry, EntryFilter, EntryId, EntryKind, EntryUid, Event, Intent,
+    KeyringError, LinkedEntry, Logbook, LogbookError, LogbookErrorKind, LogbookServer, Origin, OtherHolder, Outcome,
+    Password, ServerAddress, ServerAddressError, ServerContact, ServerError, ServerErrorKind, Transferred,
+    UndoObstacle, UnreachableCause, UserName, WriteResult,
 };
 
 use crate::profile::Cause;
@@ -152,7 +152,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at_root(root.path());
         assert_eq!(read_folder(&store.device_folder("biss"), "ron"), (Vec::new(), Vec::new()));
-        assert_eq!(store.backups().list_for("hiperface", "1"), Ok(Vec::new()));
+        assert_eq!(store.backups().list_for_device("hiperface", "1"), Ok(Vec::new()));
         assert_eq!(store.drafts().load("hiperface", "1"), Ok(None));
         let paths = [
             store.logbook_path(),

@@ -241,7 +241,7 @@ pub fn is_incomplete(seen: Option<CycleCount>, cost: u64, limit: u64) -> bool {
 pub fn cycles_seen(log: &SessionLog, store: &Store, device: &DeviceKey) -> Option<CycleCount> {
     log.record_identity(store, device);
     let path = store.logbook_path();
-    let transferred = store.logbook_server().transfer_unless_away(&path, SERVER_TIMEOUT);
+    let transferred = store.logbook_server().transfer_unless_recently_failed(&path, SERVER_TIMEOUT);
     count_cycles(&path, device, transferred.is_none_or(|result| result.is_ok()))
 }
 

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use encoder_studio::devices::ssi::protocol::{
     BitMeaning, Code, ErrorBit, Families, FrameDescriptor, FrameReading, GrayCoverage, Layout, Parity, Range, Repeat,
-    Settings, TooWideError, generate_c99, scl_source, structured_text, structured_text_32,
+    Settings, WordWidthError, generate_c99, scl_source, structured_text, structured_text_32,
 };
 
 use crate::support::python;
@@ -163,7 +163,7 @@ const REFERENCE: [(&str, u64, &str); 12] = [
     ("kh53", 0xFF_FFFE, "16777214 0 16777214 0"),
 ];
 
-fn decoders_for_32_bit_targets(layout: &Layout) -> [(&'static str, Result<String, TooWideError>); 2] {
+fn decoders_for_32_bit_targets(layout: &Layout) -> [(&'static str, Result<String, WordWidthError>); 2] {
     [("st", structured_text_32(layout, "title")), ("scl", scl_source(layout, "title"))]
 }
 
@@ -215,7 +215,7 @@ fn decoders_32_bit_match_program() {
 fn rejects_layouts_wider_than_32_bits() {
     let wide = Layout::new(FrameDescriptor::binary(12, 22)).unwrap();
     let axis = family("atm60,steps=8000000,revolutions=4095/4");
-    for (layout, error) in [(wide, TooWideError::Position { bits: 34 }), (axis, TooWideError::RoundAxis)] {
+    for (layout, error) in [(wide, WordWidthError::Position { bits: 34 }), (axis, WordWidthError::RoundAxis)] {
         for (_, text) in decoders_for_32_bit_targets(&layout) {
             assert_eq!(text, Err(error));
         }

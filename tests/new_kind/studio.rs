@@ -24,7 +24,7 @@ use super::novo::protocol::Values;
 use super::novo::state::Encoder;
 
 /// Factory values of the virtual encoder.
-const DELIVERED: Values = [0, 3, 0, 65535];
+const FACTORY_VALUES: Values = [0, 3, 0, 65535];
 
 #[test]
 fn dialog_connects_new_kind() {
@@ -43,7 +43,7 @@ fn dialog_connects_new_kind() {
     }
     desk.until_ready();
     let read = desk.encoder().read().cloned();
-    assert_eq!(read, Some(NovoProfile { serial: 77, values: DELIVERED }));
+    assert_eq!(read, Some(NovoProfile { serial: 77, values: FACTORY_VALUES }));
     assert_eq!((desk.shown().tab(), desk.shown().name().as_str()), (Encoder::TAB, "Novo · 77"));
 }
 
@@ -144,7 +144,7 @@ fn edit_write_and_restore() {
     desk.until_ready();
     let text = std::fs::read_to_string(&backup).unwrap();
     let before = ProfileDocument::parse(&text, program().studio.formats).unwrap().body;
-    assert_eq!(before, Body::new(NovoProfile { serial: 1001, values: DELIVERED }));
+    assert_eq!(before, Body::new(NovoProfile { serial: 1001, values: FACTORY_VALUES }));
     assert_eq!(desk.encoder().read().unwrap().values, [100, 3, 0, 65535], "read back");
     assert!(!desk.shown().is_dirty() && !desk.shown().can_undo());
     // The shaft is at 0, which is now reported as 100 steps below 65536.
@@ -156,7 +156,7 @@ fn edit_write_and_restore() {
     desk.command(DeviceCommand::Restore(backup));
     desk.write();
     desk.until_ready();
-    assert_eq!(desk.encoder().read().unwrap().values, DELIVERED);
+    assert_eq!(desk.encoder().read().unwrap().values, FACTORY_VALUES);
     assert_eq!(desk.notice_ids(Severity::Error), [""; 0]);
 }
 

@@ -45,18 +45,18 @@ enum Behind {
     Noise,
 }
 
-fn bits_of(number: u64, width: u32) -> Vec<bool> {
+fn number_to_bits(number: u64, width: u32) -> Vec<bool> {
     (0..width).rev().map(|at| number >> at & 1 == 1).collect()
 }
 
 /// Encodes a number in Gray code, most significant bit first.
 fn gray(number: u64, width: u32) -> Vec<bool> {
-    let bits = bits_of(number, width);
+    let bits = number_to_bits(number, width);
     let above = std::iter::once(&false).chain(&bits);
     bits.iter().zip(above).map(|(bit, above)| bit != above).collect()
 }
 
-fn width_of(positions: u64) -> u32 {
+fn position_width(positions: u64) -> u32 {
     64 - (positions - 1).leading_zeros()
 }
 
@@ -195,15 +195,15 @@ fn shaft(rng: &mut Rng, count: usize, positions: u64) -> Vec<i128> {
 }
 
 fn encoded(word: &Word, position: u64, positions: u64) -> Vec<bool> {
-    let width = width_of(positions);
+    let width = position_width(positions);
     match word {
-        Word::Binary => bits_of(position, width),
+        Word::Binary => number_to_bits(position, width),
         Word::Gray => gray(position, width),
         Word::Excess => gray(position + ((1 << width) - positions) / 2, width),
         Word::Decimal => {
             let digits = (positions - 1).to_string().len();
             let text = format!("{position:0digits$}");
-            text.bytes().flat_map(|digit| bits_of(u64::from(digit - b'0'), 4)).collect()
+            text.bytes().flat_map(|digit| number_to_bits(u64::from(digit - b'0'), 4)).collect()
         }
         Word::GrayTwice { singleturn } => {
             let (turns, steps) = (position >> singleturn, position & ((1 << singleturn) - 1));
@@ -229,7 +229,7 @@ fn append(
         Behind::Alive => bits.push(at.is_multiple_of(2)),
         Behind::Check(width) => {
             let mixed = (position ^ 0x2D).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-            bits.extend(bits_of(mixed >> 40, *width));
+            bits.extend(number_to_bits(mixed >> 40, *width));
         }
         Behind::Noise => bits.push(rng.bool()),
     }

@@ -57,7 +57,7 @@ fn wrong_echo_setting_yields_errors() {
 
 /// The replies to 47h and 67h equal their requests, so they do not prove that there is an echo.
 #[test]
-fn reply_equal_to_request_is_no_echo() {
+fn reply_equal_to_request_is_not_echo() {
     for echoes in [true, false] {
         let mut desk = desk(echoes, Echo::Unknown, "");
         desk.run(HiperfaceJob::ConfigureForNow(LineSettings::FACTORY)).unwrap();

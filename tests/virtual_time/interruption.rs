@@ -52,7 +52,7 @@ fn applied(before: &Fields, ops: &[Op]) -> Fields {
     fields
 }
 
-fn locked_again(mut fields: Fields) -> Fields {
+fn with_protected_fields(mut fields: Fields) -> Fields {
     // Fields 1 and 4 are protected. Field 4 may not exist yet.
     for (number, status) in [(1, 0xA8), (4, 0xA8)] {
         if let Some(field) = fields.get_mut(number) {
@@ -62,7 +62,7 @@ fn locked_again(mut fields: Fields) -> Fields {
     fields
 }
 
-fn fields_of(profile: &HiperfaceProfile) -> Fields {
+fn profile_fields(profile: &HiperfaceProfile) -> Fields {
     profile.fields.iter().map(|field| (field.status.byte(), field.bytes.clone().unwrap())).collect()
 }
 
@@ -106,13 +106,13 @@ impl Ending<'_> {
         assert_eq!(interrupted.cause, Error::Cancelled, "{context}");
         assert_eq!(interrupted.end_state.unlocked, Vec::<u8>::new(), "{context}");
         let done = applied(self.before, &self.prepared.plan.ops[..interrupted.done.ops]);
-        assert_eq!(self.desk.memory(), locked_again(done), "{context}");
+        assert_eq!(self.desk.memory(), with_protected_fields(done), "{context}");
         assert_eq!(interrupted.done.write_cycles, self.desk.wear() - self.worn_before, "{context}");
     }
 
     /// Checks the result of a lost connection: the counted operations were executed, and the one in progress either was
     /// or was not. A field that stays unlocked must be named.
-    fn assert_cut_off_and_reported(&self, interrupted: &InterruptedWrite) {
+    fn assert_interruption_reported(&self, interrupted: &InterruptedWrite) {
         let Ending { context, .. } = self;
         let ops = &self.prepared.plan.ops;
         let count = interrupted.done.ops;
@@ -140,11 +140,11 @@ impl Ending<'_> {
 }
 
 /// Checks that the profile can be restored from any state and that the backup restores the previous content.
-fn assert_can_be_completed(desk: &Desk, wanted: &HiperfaceProfile, before: &Fields, kept: Option<&HiperfaceProfile>) {
+fn assert_restorable(desk: &Desk, wanted: &HiperfaceProfile, before: &Fields, kept: Option<&HiperfaceProfile>) {
     let mut forwards = desk.copied();
     forwards.remember_code(2, 0x66);
     forwards.restore(wanted).unwrap();
-    assert_eq!(forwards.memory(), fields_of(wanted));
+    assert_eq!(forwards.memory(), profile_fields(wanted));
     assert_eq!(forwards.prepare(restore_of(wanted)).unwrap().plan.ops, [], "a third run has nothing to do");
     let Some(kept) = kept else { return };
     let mut backwards = desk.copied();
@@ -173,7 +173,7 @@ fn disturbed(
     let reconnected = desk.reconnected();
     match result {
         Ok(Committed { written, .. }) => {
-            assert_eq!(desk.memory(), fields_of(wanted), "{context}");
+            assert_eq!(desk.memory(), profile_fields(wanted), "{context}");
             assert_eq!((written.ops, written.write_cycles), (12, 12), "{context}");
             assert_eq!(desk.wear() - worn_before, 12, "{context}");
             return true;
@@ -181,13 +181,13 @@ fn disturbed(
         Err(JobError::Interrupted { interrupted, backup: path, planned: 12, .. }) => {
             judge(&Ending { desk: &desk, prepared: &prepared, before: &before, worn_before, context }, &interrupted);
             let kept = backup(&path);
-            assert_can_be_completed(&reconnected, wanted, &before, Some(&kept));
+            assert_restorable(&reconnected, wanted, &before, Some(&kept));
         }
         Err(JobError::Device(error)) => {
             assert!(error == Error::Cancelled || error.is_lost(), "{context}: {error}");
             assert_eq!(desk.memory(), before, "{context}");
             assert_eq!(desk.wear(), worn_before, "{context}");
-            assert_can_be_completed(&reconnected, wanted, &before, None);
+            assert_restorable(&reconnected, wanted, &before, None);
         }
         Err(error) => panic!("{context}: {error:?}"),
     }
@@ -231,7 +231,7 @@ fn cancelling_with_warnings_ends_cleanly() {
 
 /// The user cancels right after the reply that announces a warning. The write still counts as executed.
 #[test]
-fn warning_hides_no_operation() {
+fn warning_does_not_hide_executed_write() {
     let (original, wanted) = scene();
     for store in 1..=7 {
         for steps in 0..40 {
@@ -269,7 +269,7 @@ fn reports_cut_at_any_transaction() {
         ("mute", |desk, at| desk.tap().mute_from = Some(at)),
         ("silent", |desk, at| {
             // The setup has already used some frames, and the fault counts all of them.
-            let already = frames_so_far(&desk.bus().clone());
+            let already = received_frame_count(&desk.bus().clone());
             desk.bus().set_faults(&format!("silent-after:{}", already + at).parse().unwrap());
         }),
     ];
@@ -280,7 +280,7 @@ fn reports_cut_at_any_transaction() {
                 cut(desk, if name == "silent" { at } else { sent + at });
             };
             if disturbed(&scene, format!("{name} after {at}"), disturb, |ending, told| {
-                ending.assert_cut_off_and_reported(told)
+                ending.assert_interruption_reported(told)
             }) {
                 assert!(at > 20, "{name}: the read-back counts as well: {at}");
                 break;
@@ -291,7 +291,7 @@ fn reports_cut_at_any_transaction() {
 
 /// Returns the number of frames that an encoder has received: the lowest number for which the fault "silent after this
 /// number of frames" has occurred.
-fn frames_so_far(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
+fn received_frame_count(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
     let is_silent = |frames: usize| {
         let mut probe = bus.clone();
         probe.set_faults(&format!("silent-after:{frames}").parse().unwrap());
@@ -325,7 +325,7 @@ fn reports_power_loss_in_any_store() {
         };
         assert_eq!(interrupted.end_state.unlocked, expected, "store {store}");
         let reconnected = desk.reconnected();
-        assert_can_be_completed(&reconnected, &wanted, &before, Some(&backup(&path)));
+        assert_restorable(&reconnected, &wanted, &before, Some(&backup(&path)));
     }
     let mut desk = original.copied();
     desk.remember_code(2, 0x66);

@@ -50,7 +50,7 @@ fn broken_logbook_stops_unforced_write() {
         let error = desk.commit(&prepared).unwrap_err();
         assert!(matches!(error, JobError::NotStarted(NotStarted::WearUnknown { cost: 1 })), "{error:?}");
         assert_eq!(desk.wear(), 0);
-        let done = desk.commit_by_force(&prepared).unwrap();
+        let done = desk.commit_with_force(&prepared).unwrap();
         // A damaged file is kept under another name, and a new one is created (issue 30).
         assert_eq!(done.logbook_warning.is_some(), !garbage);
         assert_eq!(desk.memory()[0].1[3], 0xEE);

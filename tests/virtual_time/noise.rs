@@ -73,7 +73,7 @@ fn position_is_correct_or_fails() {
 }
 
 /// Returns byte `at` of the field, as contained in a valid reply to 4Ah.
-fn byte_of_reply(reply: &[u8], field: u8, at: usize) -> Option<u8> {
+fn reply_field_byte(reply: &[u8], field: u8, at: usize) -> Option<u8> {
     let [0x40, command, f, start, count, data @ .., _] = reply else { return None };
     let right = command & 0x7F == 0x4A && *f == field && data.len() == usize::from(*count) && xor(reply) == 0;
     right.then(|| data.get(at.checked_sub(usize::from(*start))?).copied())?
@@ -105,7 +105,7 @@ fn field_is_correct_or_fails() {
                             for (at, byte) in got.iter().enumerate() {
                                 let mut replies = exchanges.iter().flat_map(|(_, replies)| replies);
                                 let proof =
-                                    replies.any(|reply| byte_of_reply(reply, number, start + at) == Some(*byte));
+                                    replies.any(|reply| reply_field_byte(reply, number, start + at) == Some(*byte));
                                 assert!(proof, "{noise}, seed {seed}: byte {at} of field {field} from nowhere");
                             }
                         }
@@ -156,7 +156,7 @@ fn save_is_correct_or_fails() {
 }
 
 #[test]
-fn second_restore_completes_interrupted_one() {
+fn second_restore_completes_interrupted_restore() {
     let (mut at_once, mut described, mut before_any) = (0, 0, 0);
     for noise in NOISE {
         for seed in 0..12 {

@@ -58,7 +58,7 @@ fn plan_applies_to_one_encoder() {
 }
 
 #[test]
-fn consent_to_other_plan_writes_nothing() {
+fn consent_to_different_plan_writes_nothing() {
     let mut desk = Desk::new("");
     let shown = desk.prepare(store(0, 0, vec![1])).unwrap();
     let other = desk.prepare(store(0, 0, vec![2])).unwrap();

@@ -11,11 +11,11 @@ use encoder_studio::link::Clock;
 use encoder_studio::worker::{Event, Worker};
 
 use crate::support::Desk;
-use crate::threads::{Bench, LONG, identify, in_real_time, in_virtual_time, until_end};
+use crate::threads::{Bench, LONG, identify, in_real_time, in_virtual_time, wait_for_job_end};
 
 pub(crate) const BACK_TO_BACK: Option<Duration> = Some(Duration::ZERO);
 /// An interval longer than any test.
-pub(crate) const SELDOM: Option<Duration> = Some(Duration::from_secs(3600));
+pub(crate) const LONG_POLL_INTERVAL: Option<Duration> = Some(Duration::from_secs(3600));
 
 /// Waits for at least `count` samples and returns them.
 pub(crate) fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<PolledSample> {
@@ -30,7 +30,7 @@ pub(crate) fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<PolledSam
 }
 
 /// Checks that no further samples arrive, except for any in progress.
-pub(crate) fn nothing_comes(bench: &Bench) {
+pub(crate) fn assert_no_more_samples(bench: &Bench) {
     let started = Instant::now();
     loop {
         std::thread::sleep(Duration::from_millis(50));
@@ -58,7 +58,7 @@ fn jobs_run_between_samples() {
     assert_eq!(bench.wakes.load(Ordering::SeqCst), 0, "a sample wakes no thread");
     for _ in 0..20 {
         bench.worker.submit(identify()).unwrap();
-        let events = until_end(&bench.worker);
+        let events = wait_for_job_end(&bench.worker);
         assert!(matches!(events.last(), Some(Event::Finished(..))), "{events:?}");
         assert_eq!(events.len(), 2, "{events:?}");
         bench.worker.samples().drain();
@@ -71,17 +71,17 @@ fn jobs_run_between_samples() {
 #[test]
 fn new_interval_applies_immediately() {
     let bench = in_virtual_time("");
-    bench.worker.poll(SELDOM);
+    bench.worker.poll(LONG_POLL_INTERVAL);
     samples(&bench.worker, 1);
-    nothing_comes(&bench);
+    assert_no_more_samples(&bench);
     bench.worker.poll(Some(Duration::from_millis(1)));
     samples(&bench.worker, 10);
-    bench.worker.poll(SELDOM);
-    nothing_comes(&bench);
+    bench.worker.poll(LONG_POLL_INTERVAL);
+    assert_no_more_samples(&bench);
     bench.worker.poll(BACK_TO_BACK);
     samples(&bench.worker, 10);
     bench.worker.poll(None);
-    nothing_comes(&bench);
+    assert_no_more_samples(&bench);
     assert_eq!(bench.worker.polling_interval(), None);
 }
 
@@ -93,7 +93,7 @@ fn stop_ends_polling() {
         samples(&bench.worker, 3);
         stop(&bench.worker);
         assert_eq!(bench.worker.polling_interval(), None);
-        nothing_comes(&bench);
+        assert_no_more_samples(&bench);
     }
     bench.worker.poll(BACK_TO_BACK);
     assert!(bench.worker.close(LONG));
@@ -110,7 +110,7 @@ fn failed_polling_reports_once() {
     assert_eq!(bench.worker.samples().drain().0.len(), 4, "five replies, the first of which is the type label");
     assert!(bench.worker.events().recv_timeout(Duration::from_millis(50)).is_err(), "once");
     bench.worker.submit(identify()).unwrap();
-    assert!(matches!(until_end(&bench.worker).last(), Some(Event::Failed(..))));
+    assert!(matches!(wait_for_job_end(&bench.worker).last(), Some(Event::Failed(..))));
     bench.worker.poll(BACK_TO_BACK);
     assert!(matches!(bench.worker.events().recv_timeout(LONG), Ok(Event::PollFailed(_))), "once each time");
 }
@@ -119,14 +119,14 @@ fn failed_polling_reports_once() {
 #[test]
 fn job_interrupts_sample_retries() {
     let mut bench = in_real_time("fault=silent-after:0");
-    bench.worker.poll(SELDOM);
+    bench.worker.poll(LONG_POLL_INTERVAL);
     let started = Instant::now();
     while bench.tap.lock().unwrap().sent.is_empty() {
         assert!(started.elapsed() < LONG);
         std::thread::sleep(Duration::from_millis(1));
     }
     let id = bench.worker.submit(HiperfaceJob::Status).unwrap();
-    let events = until_end(&bench.worker);
+    let events = wait_for_job_end(&bench.worker);
     assert!(matches!(events[0], Event::Started(started) if started == id), "{events:?}");
     assert!(matches!(events.last(), Some(Event::Failed(..))));
     let told = bench.worker.events().recv_timeout(LONG).unwrap();

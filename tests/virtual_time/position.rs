@@ -61,7 +61,7 @@ fn records_previous_position() {
 
 /// The position of a shaft at rest may vary by one step. Around zero, it then jumps over the entire range.
 #[test]
-fn setting_zero_may_dither() {
+fn setting_zero_tolerates_dither() {
     for tenths in 1..=600 {
         let mut desk = Desk::new("");
         let prepared = desk.prepare(set(0, true)).unwrap();

@@ -79,13 +79,13 @@ fn follows_encoder_warning_during_change() {
     for at in 0..12 {
         let mut desk = Desk::new("");
         let prepared = desk.prepare(Change::SetAddress(DeviceAddress::new(0x45).unwrap())).unwrap();
-        warn_at(&mut desk, at);
+        queue_warning_at_frame(&mut desk, at);
         desk.commit(&prepared).unwrap();
         assert_eq!(desk.session.station().address, 0x45, "warning at frame {at}");
         position(&mut desk);
 
         let mut desk = Desk::new("");
-        warn_at(&mut desk, at);
+        queue_warning_at_frame(&mut desk, at);
         desk.run(HiperfaceJob::ConfigureForNow(LineSettings::from_byte(0xE6))).unwrap();
         position(&mut desk);
         assert_eq!(desk.session.station().format.baud.bits_per_second(), 38_400, "warning at frame {at}");
@@ -96,7 +96,7 @@ fn follows_encoder_warning_during_change() {
     assert_eq!(desk.session.station().codes_to_display, [StatusCode::TEMPERATURE], "and the code is kept");
 }
 
-fn warn_at(desk: &mut Desk, frame: usize) {
+fn queue_warning_at_frame(desk: &mut Desk, frame: usize) {
     let (bus, mut frames) = (desk.bus.clone(), 0);
     desk.session.add_watcher(move |entry| {
         if entry.direction == encoder_studio::link::Direction::Sent {

@@ -63,10 +63,10 @@ impl Tap {
         let Some(last) = self.sent.len().checked_sub(1) else { return false };
         self.mute_from.is_some_and(|from| last >= from)
             || self.swallow_reply == Some(last)
-            || self.mute_to.as_ref().is_some_and(|own| self.last_begins(own))
+            || self.mute_to.as_ref().is_some_and(|own| self.last_request_starts_with(own))
     }
 
-    fn last_begins(&self, request: &[u8]) -> bool {
+    fn last_request_starts_with(&self, request: &[u8]) -> bool {
         self.sent.last().is_some_and(|last| last.starts_with(request))
     }
 
@@ -121,7 +121,7 @@ impl ByteLink for TestLink {
             let mut heard = Vec::new();
             self.line.receive(until, &mut heard)?;
             let tap = self.tap.lock().unwrap();
-            if tap.broken_to.as_ref().is_some_and(|own| tap.last_begins(own))
+            if tap.broken_to.as_ref().is_some_and(|own| tap.last_request_starts_with(own))
                 && let Some(byte) = heard.last_mut()
             {
                 *byte ^= 0x10;
@@ -250,7 +250,7 @@ impl Desk {
         self.commit_with(prepared, false)
     }
 
-    pub(crate) fn commit_by_force(&mut self, prepared: &Prepared) -> Result<Committed, JobError> {
+    pub(crate) fn commit_with_force(&mut self, prepared: &Prepared) -> Result<Committed, JobError> {
         self.commit_with(prepared, true)
     }
 
@@ -318,7 +318,7 @@ pub(crate) fn xor(bytes: &[u8]) -> u8 {
 }
 
 /// Returns the positions of access codes in a request according to the reference, not counting the two head bytes.
-fn places_of_codes(command: u8) -> &'static [usize] {
+fn access_code_offsets(command: u8) -> &'static [usize] {
     match command {
         0x43 | 0x63 => &[6],
         0x49 => &[2],
@@ -338,7 +338,7 @@ fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
     match entry.direction {
         Direction::Sent => {
             let command = u8::from_str_radix(words[1], 16).unwrap();
-            let mut secret = places_of_codes(command).to_vec();
+            let mut secret = access_code_offsets(command).to_vec();
             if !secret.is_empty() {
                 secret.push(words.len() - 1);
             }
@@ -348,7 +348,8 @@ fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
         }
         Direction::Received => {
             // A byte that was read may have the same value as the code without revealing it.
-            let can_leak = |sent: &&Vec<u8>| !(places_of_codes(sent[1]).is_empty() || sent[1] == 0x4A && sent[4] == 1);
+            let can_leak =
+                |sent: &&Vec<u8>| !(access_code_offsets(sent[1]).is_empty() || sent[1] == 0x4A && sent[4] == 1);
             let Some(sent) = sent.filter(can_leak) else { return };
             let hex: Vec<String> = sent.iter().map(|byte| format!("{byte:02X}")).collect();
             assert!(!shown.contains(&hex.join(" ")), "{shown}");

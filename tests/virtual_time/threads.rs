@@ -56,7 +56,7 @@ fn is_end(event: &Event<Hiperface>) -> Option<JobId> {
 }
 
 /// Waits for a job to end and returns all events until then.
-pub(crate) fn until_end(worker: &Worker<Hiperface>) -> Vec<Event<Hiperface>> {
+pub(crate) fn wait_for_job_end(worker: &Worker<Hiperface>) -> Vec<Event<Hiperface>> {
     let mut events = Vec::new();
     loop {
         let event = worker.events().recv_timeout(LONG).expect("an end");
@@ -86,14 +86,17 @@ fn rejects_second_job_during_search() {
     assert_eq!(bench.worker.submit(identify()), Err(SubmitError::Busy));
     let stopped = Instant::now();
     bench.worker.stop();
-    let events = until_end(&bench.worker);
+    let events = wait_for_job_end(&bench.worker);
     assert!(stopped.elapsed() < Duration::from_secs(1), "{:?}", stopped.elapsed());
     assert!(matches!(events.first(), Some(Event::Started(started)) if *started == id));
     assert!(matches!(events.last(), Some(Event::Finished(ended, _)) if *ended == id), "{events:?}");
     // The earlier cancellation must not stop the next job.
     *bench.tap.lock().unwrap() = Tap::default();
     bench.worker.submit(HiperfaceJob::Status).unwrap();
-    assert!(matches!(until_end(&bench.worker).last(), Some(Event::Failed(..))), "no encoder has address 40h at 9600");
+    assert!(
+        matches!(wait_for_job_end(&bench.worker).last(), Some(Event::Failed(..))),
+        "no encoder has address 40h at 9600"
+    );
 }
 
 #[test]
@@ -101,7 +104,7 @@ fn job_starts_and_ends_once() {
     let mut bench = in_virtual_time("");
     for round in 0..50 {
         let id = bench.worker.submit(if round % 5 == 4 { search() } else { identify() }).unwrap();
-        let events = until_end(&bench.worker);
+        let events = wait_for_job_end(&bench.worker);
         let starts = events.iter().filter(|event| matches!(event, Event::Started(_))).count();
         assert_eq!(starts, 1, "{events:?}");
         assert_eq!(events.iter().filter_map(is_end).collect::<Vec<_>>(), [id]);
@@ -112,7 +115,7 @@ fn job_starts_and_ends_once() {
 
 /// The job reports 672 steps of progress, which are never read. It still ends, and its result can be read afterwards.
 #[test]
-fn job_ends_without_reader() {
+fn job_ends_with_unread_progress() {
     let mut bench = in_virtual_time("settings=0xE0");
     let id = bench.worker.submit(search()).unwrap();
     let started = Instant::now();
@@ -122,7 +125,7 @@ fn job_ends_without_reader() {
     }
     std::thread::sleep(Duration::from_millis(50));
     assert!(bench.worker.events().len() <= 64, "the channel is bounded");
-    let events = until_end(&bench.worker);
+    let events = wait_for_job_end(&bench.worker);
     assert!(matches!(events.first(), Some(Event::Started(_))));
     assert_eq!(events.last().and_then(is_end), Some(id));
     let mut done = None;
@@ -187,13 +190,13 @@ fn stop_applies_to_one_job() {
     let stop_handle = bench.worker.stop_handle();
     stop_handle.stop();
     bench.worker.submit(identify()).unwrap();
-    assert!(matches!(until_end(&bench.worker).last(), Some(Event::Finished(..))), "the stop came before");
+    assert!(matches!(wait_for_job_end(&bench.worker).last(), Some(Event::Finished(..))), "the stop came before");
 
     let mut bench = in_real_time("settings=0xE0");
     let stop_handle = bench.worker.stop_handle();
     bench.worker.submit(search()).unwrap();
     std::thread::spawn(move || stop_handle.stop());
-    until_end(&bench.worker);
+    wait_for_job_end(&bench.worker);
     assert!(bench.tap.lock().unwrap().sent.len() < 32, "the search has ended early");
 }
 
@@ -225,11 +228,11 @@ fn unread_events_prevent_new_job() {
 fn reports_idle_link_loss_once() {
     let mut bench = in_virtual_time("");
     bench.worker.submit(identify()).unwrap();
-    until_end(&bench.worker);
+    wait_for_job_end(&bench.worker);
     bench.tap.lock().unwrap().unplugged = true;
     let told = bench.worker.events().recv_timeout(Duration::from_secs(1)).expect("within a second");
     assert!(matches!(&told, Event::Lost(error) if error.is_lost()), "{told:?}");
     assert!(bench.worker.events().recv_timeout(Duration::from_millis(1200)).is_err(), "once");
     bench.worker.submit(identify()).unwrap();
-    assert!(matches!(until_end(&bench.worker).last(), Some(Event::Failed(..))));
+    assert!(matches!(wait_for_job_end(&bench.worker).last(), Some(Event::Failed(..))));
 }

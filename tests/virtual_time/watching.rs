@@ -9,14 +9,14 @@ use encoder_studio::devices::hiperface::protocol::{Command, StatusCode};
 use encoder_studio::units::Moment;
 use encoder_studio::worker::{Event, WatchReply, Worker};
 
-use crate::polling::{BACK_TO_BACK, SELDOM, nothing_comes, samples};
+use crate::polling::{BACK_TO_BACK, LONG_POLL_INTERVAL, assert_no_more_samples, samples};
 use crate::support::Desk;
-use crate::threads::{LONG, identify, in_virtual_time, until_end};
+use crate::threads::{LONG, identify, in_virtual_time, wait_for_job_end};
 
 const TEMPERATURE: WatchedQuantity = WatchedQuantity::Analogue(0x48);
 const SINE: WatchedQuantity = WatchedQuantity::Analogue(0x00);
 /// A quantity that none of the encoders in these tests provides.
-const MISSING: WatchedQuantity = WatchedQuantity::Analogue(0x33);
+const UNAVAILABLE_QUANTITY: WatchedQuantity = WatchedQuantity::Analogue(0x33);
 const ALWAYS: Duration = Duration::ZERO;
 
 fn watched(sample: &PolledSample) -> Option<(WatchedQuantity, Option<i64>)> {
@@ -75,17 +75,17 @@ fn watched_values_alternate_with_positions() {
 fn watches_nothing_without_polling() {
     let bench = in_virtual_time("");
     bench.worker.watch_values(vec![(TEMPERATURE, ALWAYS)]);
-    nothing_comes(&bench);
+    assert_no_more_samples(&bench);
     assert_eq!(bench.tap.lock().unwrap().count(Command::ReadAnalogue), 0);
     bench.worker.poll(BACK_TO_BACK);
     samples(&bench.worker, 5);
     bench.worker.stop();
-    nothing_comes(&bench);
+    assert_no_more_samples(&bench);
     assert_eq!(bench.worker.watched_values(), [(TEMPERATURE, ALWAYS)], "the wish outlives a stop");
-    bench.worker.poll(SELDOM);
+    bench.worker.poll(LONG_POLL_INTERVAL);
     let seen = samples(&bench.worker, 2);
     assert_eq!(seen.iter().map(watched).collect::<Vec<_>>(), [None, Some((TEMPERATURE, Some(42)))]);
-    nothing_comes(&bench);
+    assert_no_more_samples(&bench);
 }
 
 #[test]
@@ -93,24 +93,28 @@ fn missing_channel_does_not_stop_polling() {
     let bench = in_virtual_time("");
     let temperature = Some((TEMPERATURE, Some(42)));
     assert_eq!(
-        course(&bench.worker, &[MISSING, TEMPERATURE], 8),
-        [None, Some((MISSING, None)), None, temperature, None, temperature, None, temperature]
+        course(&bench.worker, &[UNAVAILABLE_QUANTITY, TEMPERATURE], 8),
+        [None, Some((UNAVAILABLE_QUANTITY, None)), None, temperature, None, temperature, None, temperature]
     );
     assert_eq!(bench.worker.watched_values(), [(TEMPERATURE, ALWAYS)]);
     assert!(bench.worker.events().is_empty(), "it is told as a sample");
     // When another value is added to the list, the rejected value is not requested again. After it has been removed and
     // added, it is.
-    course(&bench.worker, &[SINE, MISSING], 1);
+    course(&bench.worker, &[SINE, UNAVAILABLE_QUANTITY], 1);
     assert_eq!(bench.worker.watched_values(), [(SINE, ALWAYS)]);
     course(&bench.worker, &[], 1);
-    assert_eq!(course(&bench.worker, &[MISSING], 4), [None, Some((MISSING, None)), None, None]);
+    assert_eq!(
+        course(&bench.worker, &[UNAVAILABLE_QUANTITY], 4),
+        [None, Some((UNAVAILABLE_QUANTITY, None)), None, None]
+    );
     assert_eq!(bench.worker.polling_interval(), BACK_TO_BACK);
 }
 
 #[test]
 fn watched_reading_includes_status_codes() {
     let mut desk = Desk::new("");
-    let WatchReply::Refused(PolledSample::Watched(refusal)) = desk.session.watch_value(&MISSING).unwrap() else {
+    let WatchReply::Refused(PolledSample::Watched(refusal)) = desk.session.watch_value(&UNAVAILABLE_QUANTITY).unwrap()
+    else {
         panic!()
     };
     assert!(matches!(&refusal.value, Err(Error::Rejected { codes, .. }) if codes == &[StatusCode::ARGUMENT]));
@@ -138,7 +142,7 @@ fn watching_continues_around_jobs() {
     bench.worker.poll(BACK_TO_BACK);
     for _ in 0..10 {
         bench.worker.submit(identify()).unwrap();
-        let events = until_end(&bench.worker);
+        let events = wait_for_job_end(&bench.worker);
         assert!(matches!(events.last(), Some(Event::Finished(..))), "{events:?}");
         bench.worker.samples().drain();
         let seen: Vec<_> = samples(&bench.worker, 6).iter().map(watched).collect();
@@ -171,7 +175,7 @@ fn lost_line_ends_polling() {
 }
 
 #[test]
-fn rarely_watched_values_delay_no_others() {
+fn rarely_watched_value_does_not_delay_others() {
     let bench = in_virtual_time("");
     bench.worker.poll(BACK_TO_BACK);
     bench.worker.watch_values(vec![(TEMPERATURE, Duration::from_secs(3600))]);

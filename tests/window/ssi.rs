@@ -240,7 +240,7 @@ fn plots_adapter_words_live() {
     command(&mut desk, DeviceCommand::Poll(Some(Duration::from_millis(1))));
     desk.until("words stream", |studio| studio.ssi().unwrap().record.position_count() > 500);
     let own = encoder(&desk);
-    assert!(own.current_stream().is_some() && own.is_showing_live());
+    assert!(own.current_stream().is_some() && own.is_showing_live_frame());
     let decoded = own.last().unwrap().decoded.as_ref().unwrap();
     assert!(decoded.is_valid && decoded.findings.is_empty());
     // Another layout decodes the same words again.

@@ -37,7 +37,7 @@ fn key_undoes_moved_boundary() {
 #[test]
 fn incoming_words_do_not_overwrite_typed_text() {
     let mut screen = Screen::open_in_tab(crate::tabs::SSI, "sim:?ssi=afs60&rpm=6", SIZE);
-    screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.is_showing_live()));
+    screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.is_showing_live_frame()));
     let id = screen.studio().ssi().unwrap().session.id;
     let last = |screen: &Screen| screen.studio().ssi().unwrap().last().unwrap().decoded.as_ref().unwrap().frame;
     for id_of_entry in ["ssi_trial.position", "ssi_trial.bits_label"] {
@@ -54,7 +54,7 @@ fn incoming_words_do_not_overwrite_typed_text() {
         let node = screen.harness.get_by_role_and_label(Role::TextInput, &label);
         assert!(node.accesskit_node().is_focused());
         screen.key(Key::Tab);
-        assert!(screen.studio().ssi().unwrap().is_showing_live(), "{id_of_entry}");
+        assert!(screen.studio().ssi().unwrap().is_showing_live_frame(), "{id_of_entry}");
     }
 }
 

@@ -258,7 +258,7 @@ impl Studio {
             let entries = entries_with_backup(&store, kind).unwrap_or_default();
             let is_listed = |backup: &Backup| entries.iter().any(|own| own.backup.as_deref() == Some(&backup.path));
             let of_device =
-                |key: &DeviceKey| store.backups().list_for(&key.kind, &key.serial_number).unwrap_or_default();
+                |key: &DeviceKey| store.backups().list_for_device(&key.kind, &key.serial_number).unwrap_or_default();
             let backups = devices.iter().flat_map(of_device).filter(|backup| !is_listed(backup)).collect();
             Action::Done(TaskResult::ComparisonCandidates(Box::new(ComparisonCandidates {
                 kind: Some(kind),

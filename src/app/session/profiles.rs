@@ -147,7 +147,7 @@ impl DeviceHistory {
     const WRITES: u32 = 200;
 
     pub(in crate::app) fn load(key: &DeviceKey, store: &Store) -> Self {
-        let backups = store.backups().list_for(&key.kind, &key.serial_number);
+        let backups = store.backups().list_for_device(&key.kind, &key.serial_number);
         let cycles = known_cycles(store, key);
         let (writes, asset, statuses) = match store.logbook_path() {
             path if matches!(path.try_exists(), Ok(false)) => (Ok(Vec::new()), None, Vec::new()),

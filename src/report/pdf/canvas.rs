@@ -14,7 +14,7 @@ use crate::drawing::{Drawing, DrawingLength, DrawingShape, LabelAlign, PathSegme
 pub(super) type Colour = [u8; 3];
 
 pub(super) const TEXT: Colour = [0x1a, 0x1e, 0x22];
-pub(super) const MUTED: Colour = [0x5c, 0x67, 0x70];
+pub(super) const MUTED_COLOUR: Colour = [0x5c, 0x67, 0x70];
 pub(super) const LINE: Colour = [0xd5, 0xda, 0xdf];
 
 /// A graphic element of a page.

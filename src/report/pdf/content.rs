@@ -2,7 +2,7 @@
 
 use krilla::image::Image;
 
-use super::canvas::{LINE, MUTED, PageMark, TEXT};
+use super::canvas::{LINE, MUTED_COLOUR, PageMark, TEXT};
 use super::flow::{Flow, MARGIN, Style, WIDTH};
 use super::table::{TableLayout, cell_style};
 use super::typeface::Face;
@@ -10,12 +10,12 @@ use crate::drawing::Drawing;
 use crate::report::{Block, Fact, Report, Section};
 
 const BODY: Style = Style { face: Face::Text, size: 9.0, colour: TEXT };
-const LABEL: Style = Style { face: Face::Text, size: 9.0, colour: MUTED };
+const LABEL: Style = Style { face: Face::Text, size: 9.0, colour: MUTED_COLOUR };
 const STRONG: Style = Style { face: Face::Strong, size: 9.0, colour: TEXT };
 const TITLE: Style = Style { face: Face::Strong, size: 20.0, colour: TEXT };
 const SECTION: Style = Style { face: Face::Strong, size: 12.0, colour: TEXT };
 const HEADING: Style = Style { face: Face::Strong, size: 9.5, colour: TEXT };
-const SIGNATURE: Style = Style { face: Face::Text, size: 8.0, colour: MUTED };
+const SIGNATURE: Style = Style { face: Face::Text, size: 8.0, colour: MUTED_COLOUR };
 
 /// Width of the label in a label–value pair in points (45 mm).
 const LABEL_WIDTH: f32 = 127.6;
@@ -24,7 +24,7 @@ const LABEL_GAP: f32 = 11.3;
 /// Vertical distance between two label–value pairs, in points.
 const FACT_GAP: f32 = 2.5;
 /// Maximum number of lines in a label–value pair that is kept on one page.
-const KEPT_LINES: usize = 6;
+const MAX_UNBROKEN_FACT_LINES: usize = 6;
 /// Maximum line length of a paragraph, in points.
 const MAX_LINE_LENGTH: f32 = 425.2;
 /// Size of a drawing unit in points, unless the drawing would be wider than the page.
@@ -83,7 +83,7 @@ impl Flow<'_> {
         let count = labels.len().max(values.len());
         let lower = (BODY.size - style.size) * 1.05;
         // Keep a short label–value pair on one page.
-        self.ensure_space(count.min(KEPT_LINES) as f32 * BODY.line_height() + FACT_GAP);
+        self.ensure_space(count.min(MAX_UNBROKEN_FACT_LINES) as f32 * BODY.line_height() + FACT_GAP);
         for number in 0..count {
             self.ensure_space(BODY.line_height());
             if let Some(line) = labels.get(number) {

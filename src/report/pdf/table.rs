@@ -1,11 +1,11 @@
 //! Layout of a table: column widths, rows that are not split between pages, and a heading on each page.
 
-use super::canvas::{Colour, LINE, MUTED, TEXT};
+use super::canvas::{Colour, LINE, MUTED_COLOUR, TEXT};
 use super::flow::{Flow, MARGIN, Style, WIDTH};
 use super::typeface::Face;
 use crate::report::{CellStyle, Mark, Row, Table};
 
-const HEADING: Style = Style { face: Face::Text, size: 8.0, colour: MUTED };
+const HEADING: Style = Style { face: Face::Text, size: 8.0, colour: MUTED_COLOUR };
 /// Horizontal distance between two columns, in points.
 const GAP: f32 = 9.0;
 /// Distance between the text of a row and its rules, in points.
@@ -90,7 +90,7 @@ impl<'a> TableLayout<'a> {
             x += width + GAP;
         }
         flow.y = top + height;
-        flow.rule(MARGIN, flow.y, WIDTH, 0.6, MUTED);
+        flow.rule(MARGIN, flow.y, WIDTH, 0.6, MUTED_COLOUR);
     }
 
     fn place_row(&self, flow: &mut Flow<'_>, row: &Row, cells: &[Vec<String>]) {

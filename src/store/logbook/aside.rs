@@ -16,7 +16,7 @@ use super::schema;
 use crate::store::file_lock::wait_for;
 
 /// Suffixes of the additional files that SQLite creates.
-const ENDINGS: [&str; 2] = ["-wal", "-shm"];
+const SQLITE_FILE_SUFFIXES: [&str; 2] = ["-wal", "-shm"];
 /// Suffix of the new file before it replaces the damaged one.
 const NEW: &str = "-new";
 
@@ -31,11 +31,11 @@ pub(super) fn set_aside(path: &Path, patience: Duration) -> Result<Option<PathBu
     // A file must exist at all times, because without one the number of write cycles would be taken as zero.
     let copied = fs::hard_link(path, &kept).or_else(|_| fs::copy(path, &kept).map(drop));
     copied.map_err(|_| LogbookErrorKind::NoAccess)?;
-    let new = with_ending(path, NEW);
+    let new = with_name_suffix(path, NEW);
     let begun = create_replacement(&new, &kept, patience);
     begun.inspect_err(|_| drop(fs::remove_file(&kept)))?;
-    for ending in ENDINGS {
-        match fs::rename(with_ending(path, ending), with_ending(&kept, ending)) {
+    for ending in SQLITE_FILE_SUFFIXES {
+        match fs::rename(with_name_suffix(path, ending), with_name_suffix(&kept, ending)) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => tracing::warn!("{}: {error}", path.display()),
             _ => {}
         }
@@ -89,7 +89,7 @@ fn unused_name(path: &Path) -> PathBuf {
     free.next().unwrap_or_else(|| path.to_owned())
 }
 
-fn with_ending(path: &Path, ending: &str) -> PathBuf {
+fn with_name_suffix(path: &Path, ending: &str) -> PathBuf {
     let mut name = OsString::from(path);
     name.push(ending);
     PathBuf::from(name)

@@ -177,7 +177,7 @@ impl Origin {
     /// Returns the origin of entries made by this process.
     pub fn of_this_process() -> Self {
         Origin {
-            bench: this_bench().to_owned(),
+            bench: this_computer_name().to_owned(),
             user: user_name::of_this_process(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
         }
@@ -185,12 +185,12 @@ impl Origin {
 
     /// Returns the computer that made the entry, or `None` if it was this computer or is unknown.
     pub fn other_bench(&self) -> Option<&str> {
-        Some(self.bench.as_str()).filter(|bench| !bench.is_empty() && *bench != this_bench())
+        Some(self.bench.as_str()).filter(|bench| !bench.is_empty() && *bench != this_computer_name())
     }
 }
 
 /// Returns the name of this computer.
-fn this_bench() -> &'static str {
+fn this_computer_name() -> &'static str {
     static NAME: OnceLock<String> = OnceLock::new();
     NAME.get_or_init(|| whoami::hostname().unwrap_or_default())
 }

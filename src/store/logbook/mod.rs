@@ -32,7 +32,7 @@ pub use entry::{
 };
 pub use error::{LogbookError, LogbookErrorKind};
 pub use server::{
-    Contact, DeviceHold, KeyringError, LogbookServer, OtherHolder, Password, ServerAddress, ServerAddressError,
+    DeviceHold, KeyringError, LogbookServer, OtherHolder, Password, ServerAddress, ServerAddressError, ServerContact,
     ServerError, ServerErrorKind, Transferred, UnreachableCause,
 };
 pub use user_name::UserName;

@@ -18,17 +18,20 @@ pub enum UserName {
 
 /// The setting for all entries of this process, which belong to a single user. It is 0 until the settings have been
 /// read.
-static CHOICE: AtomicU8 = AtomicU8::new(0);
+static USER_NAME_SETTING: AtomicU8 = AtomicU8::new(0);
 
 impl UserName {
     /// Applies this setting to all further entries of this process.
     pub fn apply(self) {
-        CHOICE.store(self as u8, Ordering::Relaxed);
+        USER_NAME_SETTING.store(self as u8, Ordering::Relaxed);
     }
 
     fn applied() -> Self {
         let choices = [UserName::Full, UserName::Initials, UserName::Off];
-        choices.into_iter().find(|choice| *choice as u8 == CHOICE.load(Ordering::Relaxed)).unwrap_or_default()
+        choices
+            .into_iter()
+            .find(|choice| *choice as u8 == USER_NAME_SETTING.load(Ordering::Relaxed))
+            .unwrap_or_default()
     }
 
     fn of(self, user_name: Option<String>, real_name: Option<String>) -> Option<String> {

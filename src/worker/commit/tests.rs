@@ -64,13 +64,13 @@ impl Write for Spy {
 
     fn confirm_base(&mut self, _: &Plan<(), Op>) -> Result<(), ()> {
         self.steps.push("confirm");
-        assert!(self.store.backups().list_for("spy", "1").unwrap().is_empty());
+        assert!(self.store.backups().list_for_device("spy", "1").unwrap().is_empty());
         if self.refuses { Err(()) } else { Ok(()) }
     }
 
     fn begin(&mut self) -> Result<(), Cancelled> {
         self.steps.push("begin");
-        assert_eq!(self.store.backups().list_for("spy", "1").unwrap().len(), 1);
+        assert_eq!(self.store.backups().list_for_device("spy", "1").unwrap().len(), 1);
         assert_eq!(self.open_intents(), 1);
         Ok(())
     }

@@ -11,7 +11,7 @@ use encoder_studio::result_of;
 use encoder_studio::worker::Session;
 use serde_json::json;
 
-use super::jobs::{Change, Job, LIFE, Novo, Output as Came, Prepared};
+use super::jobs::{Change, Job, MAX_WRITE_CYCLES, Novo, Output as Came, Prepared};
 use super::profile::NovoProfile;
 use super::protocol::{ITEMS, KIND, name_of};
 use super::sim::Virtual;
@@ -107,5 +107,5 @@ fn shown(Prepared { plan, seen, .. }: &Prepared) -> plan::PlanReport {
         let (old, new) = (Some(op.from.to_string()), Some(op.to.to_string()));
         plan::PlanStep { item: op.name().to_owned(), old, new, write_cycles: op.write_cycles() }
     };
-    plan::PlanReport::from_plan(plan, plan.ops.iter().map(step).collect(), *seen, Some(LIFE))
+    plan::PlanReport::from_plan(plan, plan.ops.iter().map(step).collect(), *seen, Some(MAX_WRITE_CYCLES))
 }

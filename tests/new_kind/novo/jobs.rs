@@ -14,14 +14,14 @@ use encoder_studio::worker::open::{check_parameters, connect_simulated, open_byt
 use encoder_studio::worker::{self, Device, JobReport, OpenError, Progress, Session, SessionContext, WatchReply};
 
 use super::profile::{NovoPlan, NovoProfile, Op, plan};
-use super::protocol::{KIND, POSITION, REPLY, Request, SERIAL, Values, address_of, parse_reply};
+use super::protocol::{KIND, POSITION, REPLY, Request, SERIAL, Values, item_address, parse_reply};
 use super::sim::Virtual;
 use super::write::NovoWrite;
 
 /// Number of write cycles that the memory allows.
-pub(crate) const LIFE: u64 = 10_000;
+pub(crate) const MAX_WRITE_CYCLES: u64 = 10_000;
 const TRIES: u16 = 3;
-const PATIENCE: Duration = Duration::from_millis(300);
+const NOVO_REPLY_TIMEOUT: Duration = Duration::from_millis(300);
 
 /// A connected encoder.
 pub(crate) struct Novo(pub(crate) Box<dyn ByteLink>);
@@ -110,7 +110,7 @@ impl Novo {
             }
             trace.record_frame(clock.now(), Direction::Sent, MaskedBytes::unmasked(&request.emit()));
             wire.send(&request.emit())?;
-            let (until, mut heard) = (clock.now() + PATIENCE, Vec::new());
+            let (until, mut heard) = (clock.now() + NOVO_REPLY_TIMEOUT, Vec::new());
             while heard.len() < REPLY && clock.now() < until {
                 wire.receive(until, &mut heard)?;
             }
@@ -125,7 +125,7 @@ impl Novo {
         let serial = self.ask(context, Request::Read(SERIAL))?;
         let mut values = Values::default();
         for (item, value) in values.iter_mut().enumerate() {
-            *value = self.ask(context, Request::Read(address_of(item)))?;
+            *value = self.ask(context, Request::Read(item_address(item)))?;
         }
         Ok(NovoProfile { serial, values })
     }

@@ -57,7 +57,7 @@ pub(crate) fn parse_reply(request: Request, bytes: &[u8]) -> Option<u16> {
 }
 
 /// Returns the address of an item.
-pub(crate) fn address_of(item: usize) -> u8 {
+pub(crate) fn item_address(item: usize) -> u8 {
     ITEMS.iter().zip(FIRST..).nth(item).map_or(FIRST, |(_, address)| address)
 }
 

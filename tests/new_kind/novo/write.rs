@@ -5,9 +5,9 @@ use encoder_studio::store::{DeviceKey, EntryKind};
 use encoder_studio::worker::SessionContext;
 use encoder_studio::worker::commit::{PlanHeader, PlannedWrite, backup_document};
 
-use super::jobs::{Error, LIFE, Novo, Prepared, device_key};
+use super::jobs::{Error, MAX_WRITE_CYCLES, Novo, Prepared, device_key};
 use super::profile::{NovoPlan, NovoProfile, Op};
-use super::protocol::{Request, Values, address_of};
+use super::protocol::{Request, Values, item_address};
 
 pub(super) struct NovoWrite<'w> {
     pub(super) novo: &'w mut Novo,
@@ -31,7 +31,7 @@ impl Write for NovoWrite<'_> {
         _: &ConfirmedPlan<'_, (u16, Values), Op>,
         done: &mut WrittenChanges,
     ) -> Result<(), Error> {
-        let address = address_of(op.item);
+        let address = item_address(op.item);
         done.write_cycles += 1;
         self.novo.ask(self.context, Request::Write(address, op.to))?;
         if self.novo.ask(self.context, Request::Read(address))? != op.to {
@@ -56,7 +56,7 @@ impl PlannedWrite for Prepared {
     type Kind = ();
 
     fn header(&self) -> PlanHeader<'_, Self> {
-        PlanHeader { plan: &self.plan, kind: (), cycles_seen: self.seen, wear_limit: LIFE }
+        PlanHeader { plan: &self.plan, kind: (), cycles_seen: self.seen, wear_limit: MAX_WRITE_CYCLES }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {

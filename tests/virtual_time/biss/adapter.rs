@@ -32,7 +32,7 @@ fn reads_registers_and_position() {
 
 /// The clock is divided from 60 MHz: 60/9 MHz is the highest available clock below the requested one.
 #[test]
-fn clock_is_nearest_divider() {
+fn clock_rounds_down_to_divider() {
     let mut bus = Bus::new("");
     bus.station.clock_hz = 7_000_000;
     bus.master().position().unwrap();
@@ -131,7 +131,7 @@ fn distinguishes_missing_register_from_missing_encoder() {
 }
 
 #[test]
-fn each_stuck_wire_has_own_error() {
+fn line_faults_have_distinct_errors() {
     let cases = [
         ("line=open", "no encoder acknowledges on the bus (attempts: 5)"),
         ("line=low", "the data line stays low (attempts: 5)"),

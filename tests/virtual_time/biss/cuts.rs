@@ -13,7 +13,8 @@ use encoder_studio::devices::biss::protocol::{DeviceMode, PositionFilter, Preset
 use encoder_studio::link::{CancelToken, Direction};
 
 use super::hands::{
-    IN_OPERATION, TestOperator, assert_reported_state, calibration, data, exchanges, filter, preset, wiegand_test,
+    OPERATION_MODE_STATE, TestOperator, assert_reported_state, calibration, data, exchanges, filter, preset,
+    wiegand_test,
 };
 use super::support::{Bench, Transport};
 
@@ -102,10 +103,10 @@ fn assert_can_return_to_operation(
     context: &str,
 ) {
     let first = !steps.contains(&told.end_state.at);
-    let mut again = if first { bench.reconnected() } else { bench.reconnected_knowing() };
+    let mut again = if first { bench.reconnected() } else { bench.reconnected_with_known_encoder() };
     again.motor().set_rpm(0.0);
     again.return_to_operation().unwrap_or_else(|error| panic!("{context}: {error}"));
-    assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
+    assert_eq!(again.mode_and_password(), OPERATION_MODE_STATE, "{context}");
     if !first {
         return;
     }
@@ -115,7 +116,7 @@ fn assert_can_return_to_operation(
     hands.rpm = (500.0, 2000.0);
     again.commit(&prepared, &mut hands).unwrap_or_else(|error| panic!("{context}: {error}"));
     assert!((scene.is_done)(&again), "{context}");
-    assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
+    assert_eq!(again.mode_and_password(), OPERATION_MODE_STATE, "{context}");
 }
 
 /// Checks that the reported number of flash cycles is correct, or one too high if it is unknown whether the last cycle
@@ -144,11 +145,11 @@ fn cut_at_every_exchange(scene: &Scene, way: Transport) {
             match ended {
                 Ended::Done => {
                     assert_eq!(Some(&at), exchanges.last(), "{context}: it was not cut off");
-                    assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
+                    assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE, "{context}");
                 }
                 Ended::Refused(error) => {
                     assert!(error.is_lost(), "{context}: {error}");
-                    assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
+                    assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE, "{context}");
                     assert_eq!(bench.flash_cycles(), before, "{context}");
                 }
                 Ended::Interrupted(told) => {
@@ -224,7 +225,7 @@ fn power_loss_leaves_operation_mode() {
             });
             let spent = bench.flash_cycles() - before;
             match ended {
-                Ended::Done => assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}"),
+                Ended::Done => assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE, "{context}"),
                 Ended::Refused(error) => assert!(error.is_lost() && spent == 0, "{context}: {error}"),
                 Ended::Interrupted(told) => {
                     assert!(told.cause.is_lost(), "{context}: {told}");
@@ -234,7 +235,7 @@ fn power_loss_leaves_operation_mode() {
                     let warned = told.end_state.standing.as_ref().is_some_and(|own| own.activity == running);
                     assert!(!lost || warned, "{context}: {told:?}");
                     // The power has returned, and the encoder is in operation.
-                    let mut again = bench.reconnected_knowing();
+                    let mut again = bench.reconnected_with_known_encoder();
                     assert_eq!(again.return_to_operation().unwrap(), DeviceMode::OPERATION, "{context}");
                     assert_can_return_to_operation(&bench, scene, &told, &mut steps, &context);
                 }
@@ -276,7 +277,7 @@ fn cancelling_returns_to_operation() {
             let context = format!("{}, cancelled after {steps}", scene.name);
             let cancel = CancelToken::after_transactions(steps as u64);
             let (bench, ended) = disturbed(&original, &prepared, |bench| bench.session.set_cancel(cancel));
-            assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
+            assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE, "{context}");
             let spent = u64::from(bench.flash_cycles() - before);
             assert!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()), "{context}");
             match ended {
@@ -317,7 +318,7 @@ fn interrupted_mounting_reports_finished_operations() {
                 assert_eq!(told.done.outcomes.len(), told.done.ops, "{context}");
                 ops.push(told.done.ops);
                 assert!(bench.reconnected().return_to_operation().is_ok(), "{context}");
-                assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
+                assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE, "{context}");
             }
         }
     }

@@ -68,7 +68,7 @@ fn bad_line_survey_is_correct_or_fails() {
 }
 
 #[test]
-fn echo_and_byte_order_keep_values() {
+fn echo_and_byte_order_preserve_values() {
     let truth = timeless(survey(&mut Bench::new(Transport::ConfigPin, "")).unwrap());
     for query in ["echo=on", "order=high-first", "echo=on&order=high-first"] {
         let mut bench = Bench::new(Transport::ConfigPin, query);
@@ -98,7 +98,7 @@ fn silence_ends_survey_in_ten_seconds() {
 }
 
 #[test]
-fn lost_link_ends_everything() {
+fn lost_link_stops_all_requests() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         bench.tap().lost_from = Some(40);

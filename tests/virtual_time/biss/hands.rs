@@ -54,7 +54,7 @@ impl TestOperator {
     }
 
     /// Returns the job that executes a plan with this user operating the motor.
-    pub(crate) fn commit_of(&self, prepared: &Prepared) -> BissJob {
+    pub(crate) fn attended_commit_job(&self, prepared: &Prepared) -> BissJob {
         let attendance = OperatorPresence::Attended(self.seat.clone());
         let consent = Consent::to(prepared.plan.id());
         BissJob::Commit(Box::new(Commit {
@@ -125,14 +125,14 @@ impl Bench {
 
     /// Executes a plan with a simulated user operating the motor.
     pub(crate) fn commit(&mut self, prepared: &Prepared, hands: &mut TestOperator) -> Result<Committed, Box<JobError>> {
-        match self.run_watched(hands.commit_of(prepared), &mut |news| hands.hear(news))? {
+        match self.run_watched(hands.attended_commit_job(prepared), &mut |news| hands.hear(news))? {
             BissOutput::Committed(committed) => Ok(*committed),
             other => panic!("{other:?}"),
         }
     }
 
     /// Executes a plan without a user.
-    pub(crate) fn commit_alone(&mut self, prepared: &Prepared, patience: Duration) -> Result<Committed, JobError> {
+    pub(crate) fn commit_unattended(&mut self, prepared: &Prepared, patience: Duration) -> Result<Committed, JobError> {
         let attendance = OperatorPresence::Unattended(UnattendedOperator { patience });
         let consent = Consent::to(prepared.plan.id());
         let commit = Commit {
@@ -190,7 +190,7 @@ pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
     hands.rpm = (500.0, 2000.0);
     let sent = bench.counter();
     let mut begun: Vec<(usize, ProcedureStep)> = Vec::new();
-    let commit = hands.commit_of(prepared);
+    let commit = hands.attended_commit_job(prepared);
     let told = &mut |news: &ProcedureProgress| {
         hands.hear(news);
         if news.detail == StepDetail::Begins {
@@ -218,13 +218,13 @@ pub(crate) fn interrupted(error: JobError) -> InterruptedWrite {
     }
 }
 
-pub(crate) const IN_OPERATION: (DeviceMode, u8) = (DeviceMode::OPERATION, 0);
+pub(crate) const OPERATION_MODE_STATE: (DeviceMode, u8) = (DeviceMode::OPERATION, 0);
 
 /// Checks that the reported state matches the encoder.
 pub(crate) fn assert_reported_state(left: &EndState, bench: &Bench, context: &str) {
     let (mode, password) = bench.mode_and_password();
     match &left.standing {
-        None => assert_eq!((mode, password), IN_OPERATION, "{context}"),
+        None => assert_eq!((mode, password), OPERATION_MODE_STATE, "{context}"),
         Some(standing) => {
             assert!(standing.mode.may_equal(mode), "{context}: {mode} is not in {standing:?}");
             assert!(standing.password.may_equal(password != 0), "{context}: {password:02X}h is not in {standing:?}");

@@ -174,7 +174,7 @@ fn does_not_read_data_while_turning() {
 }
 
 #[test]
-fn saves_everything_restorable() {
+fn saves_all_restorable_values() {
     for way in WAYS {
         let mut bench = Bench::new(way, "serial=77&filter=dynamic");
         let profile = save(&mut bench).unwrap();
@@ -294,7 +294,7 @@ fn reports_device_id_without_description() {
 }
 
 #[test]
-fn reads_samples_and_watched_registers_singly() {
+fn reads_samples_and_watched_registers_individually() {
     for way in WAYS {
         let mut bench = Bench::new(way, "temperature=25&rpm=60");
         let Ok(PolledSample::Position(first)) = bench.session.take_sample() else { panic!("no position") };
@@ -409,7 +409,7 @@ fn reports_broken_descriptions_once() {
     let store = Store::at_root(root.path());
     fs::create_dir_all(store.device_folder("biss")).unwrap();
     fs::write(store.device_folder("biss").join("mine.ron"), "(name: 7)").unwrap();
-    let mut bench = Bench::in_store(Transport::ConfigPin, "", store);
+    let mut bench = Bench::bench_in_store(Transport::ConfigPin, "", store);
     for expected in [1, 0] {
         let mut remarks = Vec::new();
         bench.session.run(JobId::default(), BissJob::Identify, &mut |event| {

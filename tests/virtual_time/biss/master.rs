@@ -182,7 +182,7 @@ fn cancels_between_exchanges_outside_shield() {
 /// The encoder is silent for five seconds during calibration. A normal request returns an error, and one with a longer
 /// time limit returns the status.
 #[test]
-fn patience_tolerates_long_silence() {
+fn longer_reply_timeout_tolerates_silence() {
     let mut pin = Pin::new("rpm=-500&calibration=7");
     for (place, value) in [("0x6B", 0x2A), ("0x6A", 0x01), ("0x00:0x00", 0x01)] {
         pin.master().write(at(place), value).unwrap();
@@ -227,7 +227,7 @@ fn noisy_line_yields_no_wrong_values() {
 }
 
 #[test]
-fn noisy_writes_report_true_result() {
+fn noisy_writes_report_actual_result() {
     for noise in ["drop:0.03", "flip:0.03", "garbage:0.03"] {
         for seed in 0..20 {
             let mut pin = Pin::new(&format!("seed={seed}&fault={noise}"));

@@ -16,7 +16,7 @@ use encoder_studio::devices::biss::protocol::{
 };
 use encoder_studio::devices::biss::state::explain::job_error_texts;
 
-use super::hands::{IN_OPERATION, TestOperator, calibration, data, filter, interrupted, preset, wiegand_test};
+use super::hands::{OPERATION_MODE_STATE, TestOperator, calibration, data, filter, interrupted, preset, wiegand_test};
 use super::support::{Bench, Transport, at};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
@@ -35,7 +35,7 @@ fn assert_steps(bench: &mut Bench, change: Change) -> TestOperator {
         .flat_map(|(number, op)| operation_steps(op).into_iter().map(move |step| (number, step)))
         .collect();
     assert_eq!(hands.steps, listed);
-    assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
     hands
 }
 
@@ -67,7 +67,7 @@ fn calibration_costs_one_flash_cycle() {
             );
             assert!(hands.demands[1].advice.contains(&OperatorAdvice::TableAtRisk));
             assert!(!hands.demands[0].advice.contains(&OperatorAdvice::TableAtRisk));
-            assert_eq!(bench.mode_and_password(), IN_OPERATION, "{way:?} {silent}");
+            assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE, "{way:?} {silent}");
         }
     }
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), calibration());
@@ -92,7 +92,7 @@ fn wiegand_test_saves_results_on_request() {
             assert!(result.is_passed());
             let took = bench.now() - from;
             assert!((2.0 * 30.9..75.0).contains(&took.as_secs_f64()), "{took:?}");
-            assert_eq!(bench.mode_and_password(), IN_OPERATION);
+            assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
             // The value takes effect after a restart.
             bench.encoder(|encoder, now| encoder.power_cycle(now));
             bench.run(encoder_studio::devices::biss::jobs::BissJob::ReturnToOperation).unwrap();
@@ -119,7 +119,7 @@ fn writes_data_by_register_and_saves_once() {
             (bench.flash_bank(0x24)[0x10], bench.flash_bank(0x24)[0x3F], bench.flash_bank(0x25)[0]),
             (0xA1, 0xA3, 0xA4)
         );
-        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+        assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
         assert!(bench.prepare(data()).unwrap().plan.is_empty(), "{way:?}");
     }
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), data());
@@ -136,7 +136,7 @@ fn selects_filter_with_restart() {
         assert_eq!((bench.flash_cycles() - before, written.write_cycles, written.verified), (1, 1, 1));
         assert_eq!(bench.encoder(|encoder, _| encoder.flash().filter()), PositionFilter::Dynamic);
         assert!(bench.now() - from >= Duration::from_millis(500));
-        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+        assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
     }
     assert_steps(&mut Bench::new(Transport::ConfigPin, ""), filter());
 }
@@ -158,7 +158,7 @@ fn preset_takes_two_restarts() {
         assert_eq!(((from.turns, from.steps), (to.turns, to.steps)), ((1, 7), (2, 98_304)));
         let stored: Vec<u8> = (2..8).map(|at_| bench.encoder_reads(at(&format!("0x01:0x0{at_}"))).unwrap()).collect();
         assert_eq!(stored, [0x00, 0x80, 0x01, 0x02, 0x00, 0x00]);
-        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+        assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
         for (parts, place) in [(PresetParts::Singleturn, (2, 98_304)), (PresetParts::Multiturn, (2, 98_304))] {
             let only = Change::Preset { value: None, parts: Some(parts) };
             let written = bench.change(only).unwrap().written;
@@ -201,7 +201,7 @@ fn mounting_is_one_run_with_report() {
     ));
     assert_eq!(bench.flash_bank(0x24), [7; 64]);
     assert_eq!(bench.encoder(|encoder, now| encoder.position_at(now).unwrap().singleturn), 0);
-    assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
     let tasks: Vec<OperatorTask> = hands.demands.iter().map(|demand| demand.task).collect();
     let expected = [
         OperatorTask::Turn(MotorRun::CalibrationCounterclockwise),
@@ -231,7 +231,7 @@ fn can_skip_part_of_run() {
         assert_eq!((written.ops, written.write_cycles), (1, 0));
         assert_eq!(bench.flash_cycles(), before);
         assert!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()));
-        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+        assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
     }
 }
 
@@ -253,7 +253,7 @@ fn cancelling_at_motor_leaves_encoder_in_operation() {
             (told.cause, told.end_state.at, told.end_state.standing),
             (Failure::Device(Error::Cancelled), ProcedureStep::Await(task), None)
         );
-        assert_eq!(bench.mode_and_password(), IN_OPERATION, "{task:?}");
+        assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE, "{task:?}");
         assert!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()));
     }
 }
@@ -272,28 +272,28 @@ fn unattended_run_starts_only_when_ready() {
         let mut bench = Bench::new(Transport::ConfigPin, query);
         let prepared = bench.prepare(change).unwrap();
         let (before, from) = (bench.flash_cycles(), bench.now());
-        let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
+        let told = interrupted(bench.commit_unattended(&prepared, Duration::from_secs(5)).unwrap_err());
         let Failure::NotReady { blockers, .. } = &told.cause else { panic!("{query}: {told}") };
         assert_eq!((blockers.contains(&blocker), told.end_state.standing), (true, None), "{query}: {blockers:?}");
-        assert_eq!((bench.flash_cycles(), bench.mode_and_password()), (before, IN_OPERATION));
+        assert_eq!((bench.flash_cycles(), bench.mode_and_password()), (before, OPERATION_MODE_STATE));
         assert!(bench.now() - from < Duration::from_secs(7), "{query}");
     }
     // The motor reverses its direction when the encoder waits for it.
     let mut bench = Bench::new(Transport::ConfigPin, "rpm=-500&motor=reverse");
     let prepared = bench.prepare(calibration()).unwrap();
-    let written = bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap().written;
+    let written = bench.commit_unattended(&prepared, Duration::from_secs(5)).unwrap().written;
     assert!(matches!(written.outcomes.as_slice(), [Outcome::Calibrated(_)]));
     // This motor does not reverse, so the second direction never begins.
     let mut bench = Bench::new(Transport::ConfigPin, "rpm=1000");
     let prepared = bench.prepare(wiegand_test(true)).unwrap();
-    let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
+    let told = interrupted(bench.commit_unattended(&prepared, Duration::from_secs(5)).unwrap_err());
     assert_eq!(told.end_state.at, ProcedureStep::Await(OperatorTask::Turn(MotorRun::WiegandCounterclockwise)));
-    assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, IN_OPERATION));
+    assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, OPERATION_MODE_STATE));
     // These speeds are outside the limits: too slow for the test, and too fast for the calibration.
     for (query, change) in [("rpm=400", wiegand_test(false)), ("rpm=-900", calibration())] {
         let mut bench = Bench::new(Transport::ConfigPin, query);
         let prepared = bench.prepare(change).unwrap();
-        let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(3)).unwrap_err());
+        let told = interrupted(bench.commit_unattended(&prepared, Duration::from_secs(3)).unwrap_err());
         assert!(
             matches!(&told.cause, Failure::NotReady { blockers, .. }
             if matches!(blockers.as_slice(), [StartBlocker::Speed { .. }])),
@@ -317,7 +317,7 @@ fn failed_calibration_reports_reason() {
         let before = bench.flash_cycles();
         let (mut hands, motor) = (TestOperator::on(&bench), bench.motor());
         let (told, seat) = (&mut hands, &motor);
-        let commit = told.commit_of(&prepared);
+        let commit = told.attended_commit_job(&prepared);
         let error = bench
             .run_watched(commit, &mut |news| {
                 told.hear(news);
@@ -334,7 +334,7 @@ fn failed_calibration_reports_reason() {
         let told = interrupted(*error);
         assert_eq!(told.cause, Failure::Calibration { run, status });
         assert_eq!((told.end_state.at, told.end_state.standing), (ProcedureStep::Run(run), None));
-        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+        assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
         // The state of the encoder's flash is unknown, so a lost table counts as a write.
         let lost = run == MotorRun::CalibrationClockwise;
         assert_eq!((bench.flash_cycles(), told.done.write_cycles), (before, u64::from(lost)));
@@ -353,8 +353,8 @@ fn failed_calibration_reports_reason() {
 /// The encoder detects these errors itself, although the measured values were suitable just before.
 #[test]
 fn encoder_checks_direction_speed_and_temperature() {
-    type Spoil = fn(&mut encoder_studio::devices::biss::sim::Encoder, encoder_studio::units::Moment);
-    let cases: [(Spoil, CalibrationStatus); 3] = [
+    type DisturbFn = fn(&mut encoder_studio::devices::biss::sim::Encoder, encoder_studio::units::Moment);
+    let cases: [(DisturbFn, CalibrationStatus); 3] = [
         (|encoder, now| encoder.set_rpm(now, 500.0), CalibrationStatus::WrongDirection),
         (|encoder, now| encoder.set_rpm(now, -900.0), CalibrationStatus::Speed),
         (|encoder, _| encoder.set_temperature(60), CalibrationStatus::Temperature),
@@ -363,7 +363,7 @@ fn encoder_checks_direction_speed_and_temperature() {
         let mut bench = Bench::new(Transport::ConfigPin, "calibration-silent=off");
         let prepared = bench.prepare(calibration()).unwrap();
         let mut hands = TestOperator::on(&bench);
-        let commit = hands.commit_of(&prepared);
+        let commit = hands.attended_commit_job(&prepared);
         let encoder = bench.handle();
         let error = bench
             .run_watched(commit, &mut |news| {
@@ -377,18 +377,18 @@ fn encoder_checks_direction_speed_and_temperature() {
             .unwrap_err();
         let run = MotorRun::CalibrationCounterclockwise;
         assert_eq!(interrupted(*error).cause, Failure::Calibration { run, status });
-        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+        assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
     }
     // One case has a Wiegand sensor without pulses, the other a motor that continues to turn.
     let mut dead = Bench::new(Transport::ConfigPin, "pulses=0,0");
     let told = interrupted(dead.change(wiegand_test(true)).unwrap_err());
     let (run, status) = (MotorRun::WiegandClockwise, WiegandStatus::Failed);
     assert_eq!(told.cause, Failure::Wiegand { run, status, code: 1 });
-    assert_eq!(dead.mode_and_password(), IN_OPERATION);
+    assert_eq!(dead.mode_and_password(), OPERATION_MODE_STATE);
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(wiegand_test(true)).unwrap();
     let mut hands = TestOperator::on(&bench);
-    let (commit, motor) = (hands.commit_of(&prepared), bench.motor());
+    let (commit, motor) = (hands.attended_commit_job(&prepared), bench.motor());
     let error = bench
         .run_watched(commit, &mut |news| {
             hands.hear(news);
@@ -399,7 +399,7 @@ fn encoder_checks_direction_speed_and_temperature() {
         .unwrap_err();
     let (run, status) = (MotorRun::WiegandCounterclockwise, WiegandStatus::WrongDirection);
     assert_eq!(interrupted(*error).cause, Failure::Wiegand { run, status, code: 0 });
-    assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
 }
 
 #[test]
@@ -408,7 +408,7 @@ fn endless_run_times_out() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(wiegand_test(false)).unwrap();
     let mut hands = TestOperator::on(&bench);
-    let (commit, motor) = (hands.commit_of(&prepared), bench.motor());
+    let (commit, motor) = (hands.attended_commit_job(&prepared), bench.motor());
     let error = bench
         .run_watched(commit, &mut |news| {
             hands.hear(news);
@@ -419,7 +419,7 @@ fn endless_run_times_out() {
         .unwrap_err();
     let told = interrupted(*error);
     assert!(matches!(told.cause, Failure::TooLong { run: MotorRun::WiegandClockwise, seconds: 71..=73 }), "{told}");
-    assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, IN_OPERATION));
+    assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, OPERATION_MODE_STATE));
 }
 
 /// Obstacles known in advance are reported before anything is written.
@@ -446,7 +446,7 @@ fn rejects_impossible_procedures_beforehand() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(data()).unwrap();
     bench.motor().set_rpm(100.0);
-    let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
+    let error = bench.commit_unattended(&prepared, Duration::ZERO).unwrap_err();
     assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error}");
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
 }
@@ -473,7 +473,7 @@ fn returns_to_operation_first() {
             assert!(matches!(error, JobError::Device(Error::NotInOperation { mode }) if mode == found), "{error}");
             assert_eq!(bench.mode_and_password(), (found, 0x2A), "nothing was written");
             assert_eq!(bench.return_to_operation().unwrap(), found);
-            assert_eq!(bench.mode_and_password(), IN_OPERATION);
+            assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
             bench.change(data()).unwrap();
         }
     }
@@ -481,7 +481,7 @@ fn returns_to_operation_first() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     bench.encoder(|encoder, now| assert!(encoder.write(now, at("0x6B"), 0x2A)));
     bench.change(data()).unwrap();
-    assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
     assert_eq!(bench.return_to_operation().unwrap(), DeviceMode::OPERATION);
 }
 
@@ -495,12 +495,12 @@ fn return_to_operation_waits_for_calibration() {
         start(&bench, "0x6B", 0x2A);
         start(&bench, "0x6A", 1);
         start(&bench, "0x00:0x00", 1);
-        bench.clock_to(Duration::from_secs(6));
+        bench.advance_clock_to(Duration::from_secs(6));
         bench.motor().set_rpm(500.0);
         start(&bench, "0x00:0x00", 2);
         let before = bench.flash_cycles();
         bench.return_to_operation().unwrap();
-        assert_eq!(bench.mode_and_password(), IN_OPERATION, "{silent}");
+        assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE, "{silent}");
         assert_eq!(bench.flash_cycles() - before, 1, "it was saved");
         assert!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()));
     }
@@ -508,13 +508,13 @@ fn return_to_operation_waits_for_calibration() {
 
 /// The second confirmation of the motor data does not start the OEM data.
 #[test]
-fn duplicate_answer_starts_nothing() {
+fn duplicate_answer_does_not_start_next_operation() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let edit = |place: &str| (place.parse().unwrap(), vec![0x5A]);
     let prepared = bench.prepare(Change::Write(vec![edit("0x04:0x10"), edit("0x24:0x10")])).unwrap();
     assert_eq!(prepared.plan.ops.len(), 2);
     let hands = TestOperator::on(&bench);
-    let (commit, seat) = (hands.commit_of(&prepared), hands.seat);
+    let (commit, seat) = (hands.attended_commit_job(&prepared), hands.seat);
     let mut asked = 0;
     let error = bench
         .run_watched(commit, &mut |news| match &news.detail {

@@ -32,15 +32,15 @@ struct Stand {
 
 /// Returns an encoder on an adapter whose bus clock allows 20 000 frames per second.
 fn stand(query: &str) -> Stand {
-    stand_with(query, None)
+    stand_with_supply(query, None)
 }
 
 /// Returns the same as [`stand`], but with the encoder supplied by the adapter.
-fn stand_with(query: &str, supply: Option<Supply>) -> Stand {
-    stand_at(query, supply, 2_000_000)
+fn stand_with_supply(query: &str, supply: Option<Supply>) -> Stand {
+    stand_with_clock(query, supply, 2_000_000)
 }
 
-fn stand_at(query: &str, supply: Option<Supply>, clock_hz: u32) -> Stand {
+fn stand_with_clock(query: &str, supply: Option<Supply>, clock_hz: u32) -> Stand {
     let folder = tempfile::tempdir().unwrap();
     let clock = Arc::new(VirtualClock::default());
     let tap = Arc::<Mutex<Tap>>::default();
@@ -99,7 +99,7 @@ fn check(runs: &[ConsecutiveFrames]) {
         assert_eq!((run.first, run.lost, run.period_ns), (next, 0, 50_000));
         next = run.first + run.frames.len() as u64;
         for (moment, frame) in run.iter_with_times() {
-            let position = run.layout.steps_of(&frame.unwrap());
+            let position = run.layout.position_to_steps(&frame.unwrap());
             if let Some((earlier, from)) = before {
                 assert_eq!(moment.duration_since(earlier), FAST);
                 assert!((327..=328).contains(&(position - from)), "{from} to {position}");
@@ -185,7 +185,7 @@ fn restored_wire_starts_new_stream() {
 #[test]
 fn reports_clock_too_slow_for_interval() {
     for (clock_hz, period_ns, is_limited) in [(1_000_000, 70_000, true), (2_000_000, 50_000, false)] {
-        let mut stand = stand_at("rpm=60", None, clock_hz);
+        let mut stand = stand_with_clock("rpm=60", None, clock_hz);
         stand.session.set_sample_interval(Some(FAST));
         let run = stand.run();
         assert_eq!((run.period_ns, run.clock_hz, run.is_limited), (period_ns, clock_hz, is_limited));
@@ -198,7 +198,7 @@ fn reconfigures_adapter_after_reset() {
     let query = "supply=switched&rpm=60";
     let supply = Supply { millivolt: 5_000, measured: None };
     for by_job in [true, false] {
-        let mut stand = stand_with(query, Some(supply));
+        let mut stand = stand_with_supply(query, Some(supply));
         stand.session.set_sample_interval(Some(FAST));
         stand.runs(Duration::from_millis(100));
         *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap();
@@ -221,7 +221,7 @@ fn reconfigures_adapter_after_reset() {
 #[test]
 fn repowers_encoder_after_reset() {
     let supply = Supply { millivolt: 5_000, measured: None };
-    let mut stand = stand_with("supply=switched&rpm=60", Some(supply));
+    let mut stand = stand_with_supply("supply=switched&rpm=60", Some(supply));
     stand.session.set_sample_interval(Some(FAST));
     stand.run();
     stand.tap.lock().unwrap().mute_from = Some(0);

@@ -14,14 +14,14 @@ fn has_power(bench: &Bench) -> bool {
 }
 
 #[test]
-fn switches_off_own_supply() {
+fn session_leaves_supply_as_configured() {
     let mut bench = Bench::supplied(AsFound);
     // The supply before a session, the setting for its end, and whether the supply is on afterwards.
     for (found, after, left) in
         [(false, AsFound, false), (false, On, true), (true, AsFound, true), (true, Off, false), (false, Off, false)]
     {
         assert_eq!(has_power(&bench), found, "{after:?}");
-        bench = bench.supplied_again(after);
+        bench = bench.reconnected_with_supply(after);
         bench.run(BissJob::Status).unwrap();
         assert!(has_power(&bench), "{after:?}");
         bench.session.restore_state();
@@ -31,7 +31,7 @@ fn switches_off_own_supply() {
 
 /// A supply that streaming has switched on is switched off again. One that was already on stays on (issue 22.16).
 #[test]
-fn streaming_signals_restores_supply() {
+fn signal_streaming_restores_supply() {
     let volts = SupplyVoltage { least: 4_750, nominal: 5_000, greatest: 12_500 };
     let mut bench = Bench::supplied(On);
     assert!(bench.stream_signals(Some(volts)) && !has_power(&bench));
@@ -52,7 +52,7 @@ fn session_switches_off_only_its_supply() {
     let mut other = bench.reconnected();
     other.run(BissJob::Status).unwrap();
     other.session.restore_state();
-    bench.supplied_again(AsFound).session.restore_state();
+    bench.reconnected_with_supply(AsFound).session.restore_state();
     assert!(has_power(&bench));
 }
 
@@ -78,11 +78,11 @@ fn keeps_power_during_store_and_mode() {
 /// 22.16).
 #[test]
 fn silent_encoder_keeps_power() {
-    let mut bench = Bench::supplied_at("line=open", AsFound);
+    let mut bench = Bench::with_switched_supply("line=open", AsFound);
     bench.run(BissJob::Status).unwrap_err();
     bench.session.restore_state();
     assert!(has_power(&bench));
-    let mut bench = Bench::supplied_at("line=open", Off);
+    let mut bench = Bench::with_switched_supply("line=open", Off);
     bench.run(BissJob::Status).unwrap_err();
     bench.session.restore_state();
     assert!(has_power(&bench), "that it may be cut off is not said by a link");

@@ -155,7 +155,7 @@ impl Bench {
     }
 
     /// Creates a test bench whose session uses the given store.
-    pub(crate) fn in_store(way: Transport, query: &str, store: Store) -> Self {
+    pub(crate) fn bench_in_store(way: Transport, query: &str, store: Store) -> Self {
         Self::made(way, query, store, folder())
     }
 
@@ -211,11 +211,11 @@ impl Bench {
 
     /// Creates a test bench with an adapter that can switch the encoder's supply, which is initially off.
     pub(crate) fn supplied(after: SupplyAfterSession) -> Self {
-        Self::supplied_at("", after)
+        Self::with_switched_supply("", after)
     }
 
     /// Like [`supplied`](Self::supplied), but with additional adapter settings.
-    pub(crate) fn supplied_at(query: &str, after: SupplyAfterSession) -> Self {
+    pub(crate) fn with_switched_supply(query: &str, after: SupplyAfterSession) -> Self {
         let query = format!("supply=switched&{query}");
         let adapter = Adapter::from_pairs(&pairs(&query), attachable_kinds()).unwrap();
         let folder = Arc::new(folder());
@@ -238,7 +238,7 @@ impl Bench {
 
     /// Returns the same as [`reconnected`](Self::reconnected), with the supply switched on again and the given setting
     /// for the end of the session.
-    pub(crate) fn supplied_again(&self, after: SupplyAfterSession) -> Self {
+    pub(crate) fn reconnected_with_supply(&self, after: SupplyAfterSession) -> Self {
         Self::with_supply(self.end.clone(), after, self.clock.clone(), self.folder.clone())
     }
 
@@ -256,7 +256,7 @@ impl Bench {
     }
 
     /// Returns the same as [`reconnected`](Self::reconnected), in a session that already knows the identity.
-    pub(crate) fn reconnected_knowing(&self) -> Bench {
+    pub(crate) fn reconnected_with_known_encoder(&self) -> Bench {
         let known = self.session.station();
         let mut station = Station::new(known.transport, MARGIN);
         station.description.clone_from(&known.description);
@@ -278,7 +278,7 @@ impl Bench {
     }
 
     /// Returns a copy whose link has faults.
-    pub(crate) fn copied_with(&self, schedule: Arc<Mutex<Schedule>>) -> Bench {
+    pub(crate) fn copied_with_faults(&self, schedule: Arc<Mutex<Schedule>>) -> Bench {
         let mut bench = self.copied();
         let (supplied, clock) = (bench.handle(), bench.clock.clone());
         let cut_power = move |_| supplied.with(|encoder, now| encoder.power_cycle(now));
@@ -313,7 +313,7 @@ impl Bench {
     }
 
     /// Advances the clock to the given time after the start.
-    pub(crate) fn clock_to(&self, elapsed: Duration) {
+    pub(crate) fn advance_clock_to(&self, elapsed: Duration) {
         self.clock.sleep_until(Moment::from_elapsed(elapsed));
     }
 

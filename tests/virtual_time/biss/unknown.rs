@@ -14,7 +14,7 @@ use super::support::{Bus, Rig, Transport};
 use crate::support::MARGIN;
 
 /// An adapter with a 14-bit singleturn encoder, which replies immediately.
-struct Stranger {
+struct UnknownEncoder {
     layout: Layout,
     /// Number of steps between two frames.
     step: u32,
@@ -25,11 +25,11 @@ struct Stranger {
     inbox: Vec<u8>,
 }
 
-impl Stranger {
+impl UnknownEncoder {
     fn new(step: u32) -> Self {
         let crc = Crc::new(Crc::POSITION, 0, true).ok();
         let manufacturer = [(0x7E, b'X'), (0x7F, b'y')];
-        Stranger {
+        UnknownEncoder {
             layout: Layout::new(0, 14, true, true, crc).unwrap(),
             step,
             place: 100,
@@ -73,7 +73,7 @@ impl Stranger {
     }
 }
 
-impl ByteDevice for Stranger {
+impl ByteDevice for UnknownEncoder {
     fn on_bytes(&mut self, _now: Moment, bytes: &[u8]) {
         self.receiver.push(bytes);
         while let Some(packet) = self.receiver.next_packet() {
@@ -97,7 +97,7 @@ impl ByteDevice for Stranger {
 
 #[test]
 fn finds_frame_while_turning() {
-    let mut rig = Rig::with(Stranger::new(5), Transport::Adapter);
+    let mut rig = Rig::with(UnknownEncoder::new(5), Transport::Adapter);
     let identity = device::identify(&mut rig.master(), &Descriptions::built_in()).unwrap();
     assert_eq!(identity.description.name(), "BiSS C encoder");
     assert_eq!((identity.source, identity.layout.data_bits(), identity.layout.bits()), (FrameSource::Checksum, 16, 22));
@@ -119,7 +119,7 @@ fn finds_frame_while_turning() {
 
 #[test]
 fn survey_works_without_frame_at_rest() {
-    let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
+    let mut rig = Rig::with(UnknownEncoder::new(0), Transport::Adapter);
     let survey = device::read_all_registers(&mut rig.master(), &Descriptions::built_in(), &mut |_, _, _| {}).unwrap();
     assert_eq!((survey.identity.source, survey.status.position), (FrameSource::Assumed, None));
     assert_eq!(survey.identity.kind.manufacturer, *b"Xy");
@@ -131,7 +131,7 @@ fn survey_works_without_frame_at_rest() {
 /// 22.20).
 #[test]
 fn given_frame_converts_positions_to_angles() {
-    let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
+    let mut rig = Rig::with(UnknownEncoder::new(0), Transport::Adapter);
     rig.station = Station::from_query(&"mt=0&st=14".parse().unwrap(), Transport::Adapter, MARGIN).unwrap();
     let identity = device::identify(&mut rig.master(), &Descriptions::built_in()).unwrap();
     assert_eq!((identity.source, identity.layout.bits()), (FrameSource::Given, 22));

@@ -18,14 +18,15 @@ use encoder_studio::worker::commit::{ApprovedPlan, CycleCount};
 use jiff::Timestamp;
 
 use super::hands::{
-    IN_OPERATION, TestOperator, calibration, data, exchanges, filter, interrupted, preset, restore_of, wiegand_test,
+    OPERATION_MODE_STATE, TestOperator, calibration, data, exchanges, filter, interrupted, preset, restore_of,
+    wiegand_test,
 };
 use super::support::{Bench, Transport, at};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
 /// Returns the profile with the given bytes changed in a bank.
-fn with_bytes(profile: &BissProfile, number: u8, bytes: &[(usize, u8)]) -> BissProfile {
+fn with_bank_bytes(profile: &BissProfile, number: u8, bytes: &[(usize, u8)]) -> BissProfile {
     let mut wanted = profile.clone();
     let mut bank = profile.bank(number).unwrap();
     bytes.iter().for_each(|(place, byte)| bank.bytes[*place] = *byte);
@@ -42,7 +43,7 @@ fn history(bench: &mut Bench) -> Vec<Entry> {
 }
 
 /// Returns the UBICOM writes to the given banks, each with its global address and the written byte.
-fn writes_to(bench: &Bench, banks: std::ops::RangeInclusive<u8>) -> Vec<(u16, u8)> {
+fn writes_to_banks(bench: &Bench, banks: std::ops::RangeInclusive<u8>) -> Vec<(u16, u8)> {
     let is_write = |frame: &&Vec<u8>| frame[..3] == [0x80, 0x01, 0x02];
     let tap = bench.tap();
     let writes = tap.sent.iter().filter(is_write).map(|frame| (u16::from_le_bytes([frame[5], frame[6]]), frame[7]));
@@ -55,7 +56,7 @@ fn writes_to(bench: &Bench, banks: std::ops::RangeInclusive<u8>) -> Vec<(u16, u8
 fn three_bytes_take_one_save() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let saved = bench.save();
-    let wanted = with_bytes(&saved, 0x24, &[(0x10, 1), (0x11, 2), (0x30, 3)]);
+    let wanted = with_bank_bytes(&saved, 0x24, &[(0x10, 1), (0x11, 2), (0x30, 3)]);
     let prepared = bench.prepare(restore_of(&wanted)).unwrap();
     assert_eq!((prepared.plan.ops.len(), prepared.plan.write_cycles()), (1, 1));
     let Op::StoreData { registers, .. } = &prepared.plan.ops[0] else { panic!("{:?}", prepared.plan) };
@@ -63,10 +64,10 @@ fn three_bytes_take_one_save() {
     assert_eq!(prepared.unchanged, 1 + 6 + 64 * 64 - 3);
     let before = bench.flash_cycles();
     bench.tap().sent.clear();
-    let committed = bench.commit_alone(&prepared, Duration::ZERO).unwrap();
+    let committed = bench.commit_unattended(&prepared, Duration::ZERO).unwrap();
     // Bank 24h begins at address 0940h.
-    assert_eq!(writes_to(&bench, 0x04..=0x43), [(0x0950, 1), (0x0951, 2), (0x0970, 3)]);
-    let commands = writes_to(&bench, 0x00..=0x00);
+    assert_eq!(writes_to_banks(&bench, 0x04..=0x43), [(0x0950, 1), (0x0951, 2), (0x0970, 3)]);
+    let commands = writes_to_banks(&bench, 0x00..=0x00);
     assert_eq!(commands, [(0x005A, 2), (0x005A, 3)], "opened for OEM data, and saved once");
     assert_eq!(bench.flash_cycles() - before, 1);
     let written = committed.written;
@@ -96,14 +97,14 @@ fn restores_only_differences() {
     for way in WAYS {
         let mut bench = Bench::new(way, "position=0x20007");
         let saved = bench.save();
-        let mut wanted = with_bytes(&with_bytes(&saved, 0x05, &[(0, 9)]), 0x43, &[(0x3F, 8)]);
+        let mut wanted = with_bank_bytes(&with_bank_bytes(&saved, 0x05, &[(0, 9)]), 0x43, &[(0x3F, 8)]);
         wanted.filter = Some(PositionFilter::Dynamic);
         let value = PresetValue::new(0x18000, 3).unwrap();
         wanted.preset = Some(PresetSetting { value, unknown: Default::default() });
         let prepared = bench.prepare(restore_of(&wanted)).unwrap();
         assert_eq!(prepared.plan.write_cycles(), 4, "motor data, OEM data, filter, preset value");
         let before = bench.flash_cycles();
-        let written = bench.commit_alone(&prepared, Duration::ZERO).unwrap().written;
+        let written = bench.commit_unattended(&prepared, Duration::ZERO).unwrap().written;
         assert_eq!((written.ops, written.written, written.verified, written.write_cycles), (4, 4, 4, 4));
         assert_eq!(bench.flash_cycles() - before, 4);
         let now = bench.save();
@@ -113,7 +114,7 @@ fn restores_only_differences() {
         assert!(bench.prepare(restore_of(&wanted)).unwrap().plan.is_empty());
         bench.change(restore_of(&saved)).unwrap();
         assert_eq!(bench.save(), saved, "{way:?}");
-        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+        assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
     }
 }
 
@@ -121,7 +122,7 @@ fn restores_only_differences() {
 fn other_encoder_keeps_its_mounting() {
     let mut from = Bench::new(Transport::ConfigPin, "serial=1");
     from.change(preset(0x8000, 1)).unwrap();
-    let profile = with_bytes(&from.save(), 0x24, &[(0, 1)]);
+    let profile = with_bank_bytes(&from.save(), 0x24, &[(0, 1)]);
     let mut bench = Bench::new(Transport::ConfigPin, "serial=2");
     let error = bench.prepare(restore_of(&profile)).unwrap_err();
     assert!(matches!(error, JobError::Plan(PlanError::OtherDevice { .. })), "{error}");
@@ -150,14 +151,14 @@ fn changed_base_stops_plan() {
         let prepared = bench.prepare(change()).unwrap();
         meddle(&mut bench);
         let before = bench.flash_cycles();
-        let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
+        let error = bench.commit_unattended(&prepared, Duration::ZERO).unwrap_err();
         assert!(matches!(&error, JobError::Device(Error::Changed { item: own }) if own == item), "{error}");
         assert_eq!(bench.flash_cycles(), before);
     }
     // Another encoder with the same memory is connected to the same cable.
     let prepared = Bench::new(Transport::ConfigPin, "serial=1").prepare(data()).unwrap();
     let mut other = Bench::new(Transport::ConfigPin, "serial=2");
-    let error = other.commit_alone(&prepared, Duration::ZERO).unwrap_err();
+    let error = other.commit_unattended(&prepared, Duration::ZERO).unwrap_err();
     assert!(matches!(&error, JobError::Device(Error::Changed { item }) if item == "the encoder itself"), "{error}");
     assert_eq!(other.flash_bank(0x24), [0; 64]);
 }
@@ -184,7 +185,7 @@ fn unknown_wear_needs_force() {
     std::fs::create_dir_all(bench.store().logbook_path()).unwrap();
     let prepared = bench.prepare(filter()).unwrap();
     let (seen, before) = (prepared.cycles_seen, bench.flash_cycles());
-    let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
+    let error = bench.commit_unattended(&prepared, Duration::ZERO).unwrap_err();
     assert!(matches!(error, JobError::NotStarted(NotStarted::WearUnknown { .. })), "{error}");
     assert_eq!((seen, bench.flash_cycles()), (None, before));
     let consent = Consent::to(prepared.plan.id());
@@ -219,12 +220,12 @@ fn worn_encoder_needs_force() {
     let prepared = bench.prepare(preset(1, 1)).unwrap();
     assert_eq!(prepared.cycles_seen, Some(CycleCount::complete(999)));
     let before = bench.flash_cycles();
-    let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
+    let error = bench.commit_unattended(&prepared, Duration::ZERO).unwrap_err();
     assert!(matches!(error, JobError::NotStarted(NotStarted::Worn { seen: 999, cost: 2, limit: 1000 })), "{error}");
     assert_eq!(bench.flash_cycles(), before);
     // One write cycle is left.
     let one = bench.prepare(filter()).unwrap();
-    bench.commit_alone(&one, Duration::ZERO).unwrap();
+    bench.commit_unattended(&one, Duration::ZERO).unwrap();
     let prepared = bench.prepare(preset(1, 1)).unwrap();
     let consent = Consent::to(prepared.plan.id());
     let attendance =
@@ -259,9 +260,9 @@ fn tolerates_single_losses() {
                     "answer" => bench.tap().swallow_reply = Some(exchange),
                     _ => bench.tap().swallow_request = Some(exchange),
                 }
-                let ended = bench.commit_alone(&prepared, Duration::ZERO);
+                let ended = bench.commit_unattended(&prepared, Duration::ZERO);
                 let spent = bench.flash_cycles() - before;
-                assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
+                assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE, "{context}");
                 match ended {
                     Ok(committed) => {
                         assert_eq!(spent, cost, "{context}");
@@ -293,7 +294,7 @@ fn reports_unverifiable_results_as_unclear() {
         let mut bench = original.copied();
         let mut hands = TestOperator::on(&bench);
         let (tap, counter) = (bench.tap_handle(), bench.counter());
-        let commit = hands.commit_of(&prepared);
+        let commit = hands.attended_commit_job(&prepared);
         let error = bench
             .run_watched(commit, &mut |news| {
                 hands.hear(news);
@@ -309,7 +310,7 @@ fn reports_unverifiable_results_as_unclear() {
         let told = interrupted(*error);
         assert!(matches!(told.cause, Failure::Device(Error::Unclear { value: 5, .. })), "{lost}: {told}");
         assert_eq!((told.end_state.standing, told.done.write_cycles), (None, 1));
-        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+        assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE);
     }
 }
 
@@ -321,11 +322,11 @@ fn noisy_writes_are_correct_or_fail() {
             let mut quiet = Bench::new(Transport::ConfigPin, &format!("seed={seed}"));
             let prepared = quiet.prepare(data()).unwrap();
             let mut bench = Bench::new(Transport::ConfigPin, &format!("seed={seed}&fault={noise}"));
-            match bench.commit_alone(&prepared, Duration::ZERO) {
+            match bench.commit_unattended(&prepared, Duration::ZERO) {
                 Ok(_) => {
                     right += 1;
                     assert_eq!(bench.flash_bank(0x25)[0], 0xA4, "{noise}, seed {seed}");
-                    assert_eq!(bench.mode_and_password(), IN_OPERATION, "{noise}, seed {seed}");
+                    assert_eq!(bench.mode_and_password(), OPERATION_MODE_STATE, "{noise}, seed {seed}");
                 }
                 Err(JobError::Interrupted { interrupted, .. }) => {
                     told += 1;
@@ -349,11 +350,11 @@ fn writes_and_reads_back_single_register() {
     let write = |place: &str, byte| Change::Write(vec![(place.parse().unwrap(), vec![byte])]);
     let prepared = bench.prepare(write("0x40", 5)).unwrap();
     assert_eq!(prepared.plan.write_cycles(), 0);
-    let written = bench.commit_alone(&prepared, Duration::ZERO).unwrap().written;
+    let written = bench.commit_unattended(&prepared, Duration::ZERO).unwrap().written;
     assert_eq!((written.verified, written.write_cycles, bench.encoder_reads(at("0x40"))), (1, 0, Some(5)));
     // The kit encoder has no register at this address and rejects the write.
     let prepared = bench.prepare(write("0x50", 1)).unwrap();
-    let told = interrupted(bench.commit_alone(&prepared, Duration::ZERO).unwrap_err());
+    let told = interrupted(bench.commit_unattended(&prepared, Duration::ZERO).unwrap_err());
     assert!(matches!(told.cause, Failure::Device(Error::Refused { .. })), "{told}");
     assert_eq!((told.done.write_cycles, told.end_state.standing), (0, None));
     for place in ["0x6A", "0x6B", "0x00:0x1A", "0x01:0x02"] {
@@ -364,5 +365,5 @@ fn writes_and_reads_back_single_register() {
     assert!(matches!(error, JobError::Plan(PlanError::ReadOnly { .. })), "{error}");
     let nothing = bench.prepare(Change::Write(Vec::new())).unwrap();
     assert!(nothing.plan.is_empty());
-    assert!(bench.commit_alone(&nothing, Duration::ZERO).unwrap().backup.is_none());
+    assert!(bench.commit_unattended(&nothing, Duration::ZERO).unwrap().backup.is_none());
 }

@@ -9,9 +9,9 @@ use encoder_studio::devices::biss::protocol::{PositionFilter, PresetValue};
 use encoder_studio::link::Clock;
 use fastrand::Rng;
 
-use super::{End, Schedule, any_faults, assert_one_of, campaign};
+use super::{End, Schedule, assert_one_of, campaign, random_faults};
 use crate::biss::hands::{
-    IN_OPERATION, TestOperator, assert_reported_state, calibration, data, filter, preset, wiegand_test,
+    OPERATION_MODE_STATE, TestOperator, assert_reported_state, calibration, data, filter, preset, wiegand_test,
 };
 use crate::biss::support::{Bench, Handle, Transport};
 
@@ -49,7 +49,7 @@ fn case(name: &str, way: Transport, change: fn() -> Change) -> Case {
     let mut bench = Bench::new(way, "");
     let prepared = bench.prepare(change()).unwrap();
     let schedule = Arc::<Mutex<Schedule>>::default();
-    let mut followed = bench.copied_with(schedule.clone());
+    let mut followed = bench.copied_with_faults(schedule.clone());
     let course = Arc::new(Mutex::new(vec![state(&followed.handle())]));
     let (seen, encoder) = (course.clone(), followed.handle());
     *schedule.lock().unwrap() = Schedule::observed(move || {
@@ -78,16 +78,16 @@ fn case(name: &str, way: Transport, change: fn() -> Change) -> Case {
 }
 
 /// Returns whether each byte of a preset is from the old or the new preset.
-fn consists_of(preset: PresetValue, old: PresetValue, new: PresetValue) -> bool {
+fn has_only_old_or_new_bytes(preset: PresetValue, old: PresetValue, new: PresetValue) -> bool {
     let bytes = |own: PresetValue| [own.singleturn().to_le_bytes(), own.multiturn().to_le_bytes()].concat();
     bytes(preset).iter().zip(bytes(old).iter().zip(bytes(new))).all(|(own, (old, new))| own == old || *own == new)
 }
 
 fn run(cases: &[Case], rng: &mut Rng) -> End {
     let case = rng.choice(cases).unwrap();
-    let faults = any_faults(rng, case.requests, Duration::from_millis(5), false);
+    let faults = random_faults(rng, case.requests, Duration::from_millis(5), false);
     let context = format!("{} with {faults:?}", case.name);
-    let mut bench = case.bench.lock().unwrap().copied_with(Arc::new(Mutex::new(Schedule::with(faults))));
+    let mut bench = case.bench.lock().unwrap().copied_with_faults(Arc::new(Mutex::new(Schedule::with(faults))));
     let mut user = hands(&bench);
     let ended = bench.commit(&case.prepared, &mut user).map_err(|error| *error);
     let after = case.course.last().unwrap();
@@ -111,7 +111,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
                 // One byte did not arrive, and the others were saved. The error names it.
                 let mut mixed = left.clone();
                 mixed.1 = after.1;
-                assert!(consists_of(left.1, case.course[0].1, after.1), "{context}: {told}: {left:?}");
+                assert!(has_only_old_or_new_bytes(left.1, case.course[0].1, after.1), "{context}: {told}: {left:?}");
                 assert_one_of(&mixed, &course, &context);
             } else {
                 assert_one_of(&left, &course, &format!("{context}: {told}"));
@@ -130,12 +130,12 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
     let mut again = bench.reconnected();
     again.motor().set_rpm(0.0);
     again.return_to_operation().unwrap_or_else(|error| panic!("{context}: {error}"));
-    assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
+    assert_eq!(again.mode_and_password(), OPERATION_MODE_STATE, "{context}");
     let prepared = again.prepare((case.change)()).unwrap_or_else(|error| panic!("{context}: a second plan: {error}"));
     let mut user = hands(&again);
     again.commit(&prepared, &mut user).unwrap_or_else(|error| panic!("{context}: a second run: {error}"));
     assert_eq!(state(&again.handle()), *after, "{context}: after a second run");
-    assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
+    assert_eq!(again.mode_and_password(), OPERATION_MODE_STATE, "{context}");
     end
 }
 

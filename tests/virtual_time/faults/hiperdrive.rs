@@ -11,11 +11,11 @@ use encoder_studio::devices::hiperdrive::sim::{Config, Target};
 use encoder_studio::link::{Clock, VirtualClock};
 use fastrand::Rng;
 
-use super::{End, Fault, Schedule, any_faults, campaign};
+use super::{End, Fault, Schedule, campaign, random_faults};
 use crate::hiperdrive::support::{Stand, drive, image, number};
 
 /// Numbers of the parameters written by the tests.
-const WRITTEN: [u16; 8] = [24, 154, 156, 158, 160, 166, 186, 198];
+const WRITTEN_PARAMETERS: [u16; 8] = [24, 154, 156, 158, 160, 166, 186, 198];
 
 type State = Vec<Value>;
 
@@ -33,7 +33,10 @@ fn device() -> (Target, Arc<VirtualClock>) {
 
 fn state(stand: &Stand) -> State {
     let now = stand.clock.now();
-    WRITTEN.iter().map(|own| stand.target.with_station(|station| station.read(now, number(*own))).unwrap()).collect()
+    WRITTEN_PARAMETERS
+        .iter()
+        .map(|own| stand.target.with_station(|station| station.read(now, number(*own))).unwrap())
+        .collect()
 }
 
 /// Returns a session over a link without faults, and the schedule for adding them.
@@ -58,7 +61,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
     let case = rng.choice(cases).unwrap();
     let (mut stand, schedule) = session();
     let prepared = stand.prepare((case.change)()).unwrap();
-    let faults = any_faults(rng, case.requests, Duration::from_millis(5), true);
+    let faults = random_faults(rng, case.requests, Duration::from_millis(5), true);
     let loses_power = faults.values().any(|fault| matches!(fault, Fault::PowerLoss));
     let context = format!("{} with {faults:?}", case.name);
     *schedule.lock().unwrap() = Schedule::with(faults);

@@ -20,7 +20,7 @@ use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
 use fastrand::Rng;
 
-use super::{End, FaultyLink, Schedule, any_faults, assert_one_of, campaign};
+use super::{End, FaultyLink, Schedule, assert_one_of, campaign, random_faults};
 use crate::support::{Desk, bytes, folder, restore_of};
 
 /// The stored values and position of an encoder.
@@ -198,7 +198,7 @@ fn case(desk: &mut Desk, name: &'static str, change: Change) -> Case {
 
 /// Saves a profile of the encoder and checks that it matches the encoder.
 fn save(case: &Case, truth: &HiperfaceProfile, rng: &mut Rng) -> End {
-    let faults = any_faults(rng, 60, Duration::from_millis(20), false);
+    let faults = random_faults(rng, 60, Duration::from_millis(20), false);
     let context = format!("save with {faults:?}");
     let mut rig = Rig::new(case.bus.clone(), &case.clock, case.station.clone(), Schedule::with(faults));
     match rig.session.run_inline(HiperfaceJob::Save(Default::default())) {
@@ -224,7 +224,7 @@ fn run(cases: &[Case], truth: &HiperfaceProfile, rng: &mut Rng) -> End {
     if rng.u8(..5) == 0 {
         return save(case, truth, rng);
     }
-    let faults = any_faults(rng, case.requests, Duration::from_millis(20), false);
+    let faults = random_faults(rng, case.requests, Duration::from_millis(20), false);
     let context = format!("{} with {faults:?}", case.name);
     let mut rig = Rig::new(case.bus.clone(), &case.clock, case.station.clone(), Schedule::with(faults));
     let ended = rig.commit(case.prepared.clone());

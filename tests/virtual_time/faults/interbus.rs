@@ -16,7 +16,7 @@ use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
 use fastrand::Rng;
 
-use super::{End, Fault, FaultyLink, Schedule, any_faults, assert_one_of, campaign};
+use super::{End, Fault, FaultyLink, Schedule, assert_one_of, campaign, random_faults};
 use crate::interbus::support::{cam, gateway, program, station};
 use crate::support::folder;
 
@@ -179,7 +179,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
     let case = rng.choice(cases).unwrap();
     let mut rig = Rig::new();
     let job = rig.commit_job(case.change.clone()).unwrap();
-    let faults = any_faults(rng, case.requests, Duration::from_millis(5), true);
+    let faults = random_faults(rng, case.requests, Duration::from_millis(5), true);
     let loses_power = faults.values().any(|fault| matches!(fault, Fault::PowerLoss));
     let context = format!("{} with {faults:?}", case.name);
     rig.set_faults(Schedule::with(faults));

@@ -82,12 +82,17 @@ impl Drop for Named<'_> {
 
 /// Returns one or two faults at random requests below `requests`. A late reply takes about ten times the usual time,
 /// `usual`. On a stream, bytes are neither damaged nor inserted.
-pub(crate) fn any_faults(rng: &mut Rng, requests: usize, usual: Duration, is_stream: bool) -> BTreeMap<usize, Fault> {
+pub(crate) fn random_faults(
+    rng: &mut Rng,
+    requests: usize,
+    usual: Duration,
+    is_stream: bool,
+) -> BTreeMap<usize, Fault> {
     let count = rng.usize(1..=2);
-    (0..count).map(|_| (rng.usize(0..requests.max(1)), any_fault(rng, usual, is_stream))).collect()
+    (0..count).map(|_| (rng.usize(0..requests.max(1)), random_fault(rng, usual, is_stream))).collect()
 }
 
-fn any_fault(rng: &mut Rng, usual: Duration, is_stream: bool) -> Fault {
+fn random_fault(rng: &mut Rng, usual: Duration, is_stream: bool) -> Fault {
     let late = usual.mul_f64(5.0 + 10.0 * rng.f64());
     match rng.u8(..if is_stream { 6 } else { 14 }) {
         0 => Fault::LoseRequest,

@@ -41,7 +41,7 @@ fn requests() -> usize {
 }
 
 #[test]
-fn retries_single_loss_without_setting_twice() {
+fn retries_single_loss_without_duplicate_write() {
     for (cut, most) in [(REQUEST, 2), (REPLY, 1)] {
         for at in 0..requests() {
             let mut stand = Stand::new("");
@@ -148,15 +148,15 @@ fn cancels_between_operations() {
 /// only the limits would move the limits. The maximum speed is written between them.
 #[test]
 fn cancelling_keeps_scale_and_limits_together() {
-    const PLACE: [(u16, i64); 4] = [(154, 400), (156, 256), (158, -4_000), (160, 4_000)];
-    let change = || Change::Write(image(&[&[(24, 7), (166, 200)], &PLACE[..], &[(186, 30)]].concat()));
+    const SCALE_AND_LIMITS: [(u16, i64); 4] = [(154, 400), (156, 256), (158, -4_000), (160, 4_000)];
+    let change = || Change::Write(image(&[&[(24, 7), (166, 200)], &SCALE_AND_LIMITS[..], &[(186, 30)]].concat()));
     let mut seen = BTreeSet::new();
     cancel_at_each_request(change, |stand, label, _| {
-        let taken = PLACE.iter().filter(|(number, value)| stand.value(*number) == *value).count();
-        assert!(taken == 0 || taken == PLACE.len(), "{taken} of scale and limits, {label}");
+        let taken = SCALE_AND_LIMITS.iter().filter(|(number, value)| stand.value(*number) == *value).count();
+        assert!(taken == 0 || taken == SCALE_AND_LIMITS.len(), "{taken} of scale and limits, {label}");
         seen.insert(taken);
     });
-    assert!(seen.contains(&PLACE.len()), "behind them it can be ended: {seen:?}");
+    assert!(seen.contains(&SCALE_AND_LIMITS.len()), "behind them it can be ended: {seen:?}");
 }
 
 #[test]

@@ -45,7 +45,8 @@ fn bytes(text: &str) -> Vec<u8> {
 }
 
 /// The reply to RegisterSession from the reference, with session 12345678.
-const REGISTERED: &str = "65 00 04 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 01 00 00 00";
+const REGISTER_SESSION_REPLY: &str =
+    "65 00 04 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 01 00 00 00";
 
 fn frame(context: &[u8], status: u32, cip: &[u8]) -> Vec<u8> {
     let length = cip.len() as u16;
@@ -71,7 +72,7 @@ impl ByteLink for Wire {
         let context = &sent[12..20];
         if sent[0] == 0x65 {
             script.registered += 1;
-            let mut reply = bytes(REGISTERED);
+            let mut reply = bytes(REGISTER_SESSION_REPLY);
             reply.splice(12..20, context.iter().copied());
             script.answers.extend(reply);
             return Ok(());
@@ -124,10 +125,10 @@ impl Desk {
     }
 
     fn ask<T>(&mut self, work: impl FnOnce(&mut Master<'_>) -> T) -> T {
-        self.ask_until(CancelToken::default(), work)
+        self.ask_with_cancel(CancelToken::default(), work)
     }
 
-    fn ask_until<T>(&mut self, cancel: CancelToken, work: impl FnOnce(&mut Master<'_>) -> T) -> T {
+    fn ask_with_cancel<T>(&mut self, cancel: CancelToken, work: impl FnOnce(&mut Master<'_>) -> T) -> T {
         let mut trace = Trace::default();
         let ctx = Ctx { wire: &mut *self.wire, clock: &*self.clock, cancel: &cancel, trace: &mut trace };
         work(&mut Master::new(ctx, &mut self.station))
@@ -153,11 +154,11 @@ fn without_context(frame: &[u8]) -> Vec<u8> {
     frame
 }
 
-const AT_163840: &str = "8E 00 00 00 00 80 02 00";
+const POSITION_163840_REPLY: &str = "8E 00 00 00 00 80 02 00";
 
 #[test]
 fn requests_match_reference() {
-    let mut desk = Desk::with([Act::Reply(AT_163840), Act::Reply("8E 00 00 00 01 00")]);
+    let mut desk = Desk::with([Act::Reply(POSITION_163840_REPLY), Act::Reply("8E 00 00 00 01 00")]);
     assert_eq!(desk.read(107).unwrap(), Value::Number(163_840));
     assert_eq!(desk.read(47).unwrap(), Value::Number(1));
     let register = "65 00 04 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 01 00 00 00";
@@ -174,7 +175,7 @@ fn requests_match_reference() {
 
 #[test]
 fn skips_and_counts_unrelated_replies() {
-    let mut desk = Desk::with([Act::Stale("8E 00 00 00 FF FF FF FF"), Act::Silence, Act::Reply(AT_163840)]);
+    let mut desk = Desk::with([Act::Stale("8E 00 00 00 FF FF FF FF"), Act::Silence, Act::Reply(POSITION_163840_REPLY)]);
     assert_eq!(desk.read(107).unwrap(), Value::Number(163_840));
     assert_eq!(
         (desk.station.late_reply_count(), desk.sent().len()),
@@ -185,7 +186,7 @@ fn skips_and_counts_unrelated_replies() {
 
 #[test]
 fn reopens_forgotten_session() {
-    let mut desk = Desk::with([Act::Reply(AT_163840), Act::Status(0x64), Act::Reply("8E 00 00 00 05 00")]);
+    let mut desk = Desk::with([Act::Reply(POSITION_163840_REPLY), Act::Status(0x64), Act::Reply("8E 00 00 00 05 00")]);
     desk.read(107).unwrap();
     assert_eq!(desk.read(105).unwrap(), Value::Number(5));
     assert_eq!(desk.registered(), 2);
@@ -291,10 +292,10 @@ fn retries_corrupt_frames() {
         "6F 00 18 00 78 56",
         "55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA",
     ] {
-        let mut desk = Desk::with([Act::Bytes(broken), Act::Reply(AT_163840)]);
+        let mut desk = Desk::with([Act::Bytes(broken), Act::Reply(POSITION_163840_REPLY)]);
         assert_eq!(desk.read(107).unwrap(), Value::Number(163_840), "{broken}");
     }
-    let mut desk = Desk::with([Act::Reply("90 00 00 00"), Act::Reply(AT_163840)]);
+    let mut desk = Desk::with([Act::Reply("90 00 00 00"), Act::Reply(POSITION_163840_REPLY)]);
     assert_eq!(desk.read(107).unwrap(), Value::Number(163_840), "a reply to another service");
     let mut desk = Desk::with([]);
     let error = desk.read(107).unwrap_err();
@@ -308,10 +309,10 @@ fn can_cancel_reading_limits() {
     let mut desk = Desk::with([]);
     let cancel = CancelToken::default();
     cancel.request();
-    assert_eq!(desk.ask_until(cancel.clone(), |master| read_rules(master, drive(1))), Err(Error::Cancelled));
+    assert_eq!(desk.ask_with_cancel(cancel.clone(), |master| read_rules(master, drive(1))), Err(Error::Cancelled));
     assert_eq!(desk.clock.now(), Moment::START, "nothing was waited for");
     // After a write, the state must become known, so this reading ignores the cancellation.
-    let ended = desk.ask_until(cancel, |master| master.run_uncancellable(|master| read_rules(master, drive(1))));
+    let ended = desk.ask_with_cancel(cancel, |master| master.run_uncancellable(|master| read_rules(master, drive(1))));
     assert!(matches!(ended, Err(Error::NoReply { .. })), "{ended:?}");
 }
 

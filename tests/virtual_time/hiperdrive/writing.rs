@@ -48,7 +48,7 @@ fn writes_differences_and_saves_once() {
 
 /// The number of saves has no known limit but is counted. If it cannot be counted, a write must be forced (issue 22.4).
 #[test]
-fn uncountable_saves_need_force() {
+fn unreadable_save_count_needs_force() {
     let mut stand = Stand::new("serial=42");
     stand.block_logbook();
     let prepared = stand.prepare(Change::Write(image(&[(24, 7)]))).unwrap();
@@ -141,7 +141,7 @@ fn range_error_names_host_and_device_limits() {
 }
 
 #[test]
-fn rejects_read_only_and_motion_parameters_unsent() {
+fn rejects_read_only_and_motion_parameters_before_sending() {
     let mut stand = Stand::new("");
     for (own, why) in [
         (107, "parameter 107 (actual position) is read-only"),

@@ -53,7 +53,7 @@ const CAUSES: [(&str, Cause, ActionEnd); 7] = [
 ];
 
 #[test]
-fn all_causes_stop_alike() {
+fn stops_drive_alike_for_every_cause() {
     for wish in [to(9 * TURN), jog(Direction::Clockwise), jog(Direction::Counterclockwise)] {
         for (label, cause, ended) in CAUSES {
             // The event occurs at various times after the first word of the motion.
@@ -139,7 +139,7 @@ fn escalates_stop_while_moving() {
 
 /// Without further reports, the drive is assumed to be moving.
 #[test]
-fn stops_drive_without_reports() {
+fn stops_drive_if_reports_cease() {
     let mut bench = Bench::new();
     bench.act(to(9 * TURN));
     bench.run(1000);

@@ -15,7 +15,7 @@ use super::{FULL, TURN, to};
 
 const DEGREE: i32 = 183;
 /// Steps per interval at full speed: 35 rpm · 65536 steps / 60 s / 100 intervals per second, rounded up.
-const INTERVAL_AT_FULL_SPEED: i32 = 383;
+const FULL_SPEED_STEPS_PER_INTERVAL: i32 = 383;
 const LIMITS: (i32, i32) = (-TURN, TURN);
 
 fn jog(direction: Direction, effort: SpeedTorque, outward: bool) -> MotionRequest {
@@ -38,7 +38,7 @@ fn bench(defect: Option<DriveDefect>) -> Bench {
 
 /// Returns a drive at rest outside its limits. `beyond` is the number of steps above the upper limit, or below the
 /// lower one if negative.
-fn bench_outside(beyond: i32, defect: Option<DriveDefect>) -> Bench {
+fn bench_outside_limits(beyond: i32, defect: Option<DriveDefect>) -> Bench {
     let mut bench = bench(None);
     bench.act(to(if beyond > 0 { TURN } else { -TURN }));
     assert_eq!(bench.until_over(), ActionEnd::Arrived);
@@ -52,7 +52,7 @@ fn bench_outside(beyond: i32, defect: Option<DriveDefect>) -> Bench {
 
 /// Runs until the control word commands no motion. Returns the number of intervals since the first report of a position
 /// beyond `limit`, and the position at the end.
-fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
+fn intervals_past_limit(bench: &mut Bench, limit: i32) -> (u32, i32) {
     let mut past = None;
     for _ in 0..6000 {
         let position = bench.position();
@@ -71,17 +71,17 @@ fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
 /// The report shows a position beyond a limit. The next packet commands no motion, even though the drive continues
 /// (issue 21.4).
 #[test]
-fn next_packet_stops_drive_ignoring_limits() {
+fn next_packet_stops_drive_overrunning_limits() {
     for effort in [SpeedTorque::DEFAULT_JOG, FULL] {
         for (direction, limit) in [(Direction::Clockwise, TURN), (Direction::Counterclockwise, -TURN)] {
             for wish in [jog(direction, effort, false), MotionRequest::Run { direction, end: RunEnd::RangeEnd, effort }]
             {
                 let mut bench = bench(Some(DriveDefect::RunsOn));
                 bench.act(wish);
-                let (intervals, position) = intervals_past(&mut bench, limit);
+                let (intervals, position) = intervals_past_limit(&mut bench, limit);
                 assert_eq!(intervals, 0, "{wish:?}");
                 let beyond = (position - limit).abs();
-                assert!(beyond <= INTERVAL_AT_FULL_SPEED, "{wish:?}: {beyond} steps beyond");
+                assert!(beyond <= FULL_SPEED_STEPS_PER_INTERVAL, "{wish:?}: {beyond} steps beyond");
                 let (_, ended) = bench.man.last_end().unwrap();
                 let expected = if beyond <= DEGREE { ActionEnd::RangeEnd } else { ActionEnd::Beyond { position } };
                 assert_eq!(ended, expected, "{wish:?}");
@@ -99,7 +99,7 @@ fn bit_15_ends_run() {
     let mut bench = bench(Some(DriveDefect::RunsOn));
     bench.permit = Permit::for_range(-9 * TURN, 9 * TURN);
     bench.act(jog(Direction::Clockwise, FULL, false));
-    let (intervals, position) = intervals_past(&mut bench, TURN);
+    let (intervals, position) = intervals_past_limit(&mut bench, TURN);
     assert_eq!((intervals, bench.man.last_end().unwrap().1), (0, ActionEnd::Beyond { position }));
 }
 
@@ -132,7 +132,7 @@ fn allows_only_inward_motion_from_outside() {
         (-5000, Direction::Clockwise, Direction::Counterclockwise),
     ] {
         for wish in [jog(outward, FULL, false), run(outward, RunEnd::RangeEnd)] {
-            let mut bench = bench_outside(beyond, None);
+            let mut bench = bench_outside_limits(beyond, None);
             let (low, high) = bench.permit.limits.unwrap();
             bench.act(wish);
             let position = bench.position();
@@ -145,7 +145,7 @@ fn allows_only_inward_motion_from_outside() {
             assert_eq!(bench.position(), position, "{wish:?}");
         }
         for wish in [jog(inward, FULL, false), run(inward, RunEnd::RangeEnd)] {
-            let mut bench = bench_outside(beyond, None);
+            let mut bench = bench_outside_limits(beyond, None);
             bench.act(wish);
             bench.run(1500);
             assert!(matches!(bench.man.phase(), Phase::Moving(_)), "{wish:?}: {:?}", bench.man.last_end());
@@ -153,7 +153,7 @@ fn allows_only_inward_motion_from_outside() {
             assert!((low..=high).contains(&bench.position()), "{wish:?}: it is back in");
         }
         // A move to a target within the limits is also inward motion.
-        let mut bench = bench_outside(beyond, None);
+        let mut bench = bench_outside_limits(beyond, None);
         bench.act(to(0));
         assert_eq!(bench.until_over(), ActionEnd::Arrived);
     }
@@ -162,7 +162,7 @@ fn allows_only_inward_motion_from_outside() {
 /// Status bit 15 reports a drive as outside its limits although its position is well inside, so the way back is
 /// unknown. Nothing moves unless the user permits it for one press of the button (issue 21.4).
 #[test]
-fn bit_15_alone_needs_permission_to_move() {
+fn bit_15_alone_blocks_motion_without_permission() {
     let ways = [Direction::Clockwise, Direction::Counterclockwise];
     let jogs = ways.map(|way| jog(way, FULL, false));
     let runs = ways.map(|way| run(way, RunEnd::RangeEnd));
@@ -202,7 +202,7 @@ fn bit_15_alone_needs_permission_to_move() {
 /// Permitted outward motion is slow and weak, whatever is requested, and ends with that press (issue 21.4).
 #[test]
 fn permits_outward_motion_for_one_press() {
-    let mut bench = bench_outside(5000, None);
+    let mut bench = bench_outside_limits(5000, None);
     // The drive's own limit is further outside than the permitted one.
     bench.write(160, (2 * TURN).into());
     let stood = bench.position();
@@ -217,18 +217,21 @@ fn permits_outward_motion_for_one_press() {
     // The permission is not needed here: from inside, the limits apply.
     let mut bench = super::watch::bench(Some(DriveDefect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, true));
-    assert_eq!(intervals_past(&mut bench, TURN).0, 0);
+    assert_eq!(intervals_past_limit(&mut bench, TURN).0, 0);
 }
 
 /// The drive counts in the opposite direction, so it moves outward. It is stopped within a degree (issue 21.4).
 #[test]
-fn stops_inward_motion_turning_outward() {
-    let mut bench = bench_outside(5000, Some(DriveDefect::Reversed));
+fn stops_reversed_drive_moving_outward() {
+    let mut bench = bench_outside_limits(5000, Some(DriveDefect::Reversed));
     bench.write(160, (2 * TURN).into());
     let stood = bench.position();
     bench.act(jog(Direction::Counterclockwise, SpeedTorque::DEFAULT_JOG, false));
     let ActionEnd::WrongWay { position } = bench.until_over() else { panic!("{:?}", bench.man.last_end()) };
-    assert!(position > stood + DEGREE && position <= stood + DEGREE + INTERVAL_AT_FULL_SPEED / 10 + 1, "{position}");
+    assert!(
+        position > stood + DEGREE && position <= stood + DEGREE + FULL_SPEED_STEPS_PER_INTERVAL / 10 + 1,
+        "{position}"
+    );
     // With permission, the other direction moves the drive inward.
     bench.run(500);
     bench.act(jog(Direction::Clockwise, SpeedTorque::DEFAULT_JOG, true));
@@ -260,10 +263,10 @@ fn stops_move_in_wrong_direction() {
     for target in [TURN / 2, -TURN / 2] {
         let mut bench = bench(Some(DriveDefect::Reversed));
         bench.act(to(target));
-        let (intervals, _) = intervals_past(&mut bench, -target.signum() * DEGREE);
+        let (intervals, _) = intervals_past_limit(&mut bench, -target.signum() * DEGREE);
         assert_eq!(intervals, 0, "{target}");
         assert!(matches!(bench.man.last_end(), Some((_, ActionEnd::WrongWay { .. }))), "{:?}", bench.man.last_end());
-        assert!(bench.position().abs() <= DEGREE + 2 * INTERVAL_AT_FULL_SPEED, "{}", bench.position());
+        assert!(bench.position().abs() <= DEGREE + 2 * FULL_SPEED_STEPS_PER_INTERVAL, "{}", bench.position());
     }
 }
 
@@ -274,7 +277,7 @@ fn stops_jog_in_wrong_direction() {
         for wish in [jog(direction, FULL, false), run(direction, RunEnd::RangeEnd)] {
             let mut bench = bench(Some(DriveDefect::Reversed));
             bench.act(wish);
-            let (intervals, position) = intervals_past(&mut bench, -sign * DEGREE);
+            let (intervals, position) = intervals_past_limit(&mut bench, -sign * DEGREE);
             assert_eq!((intervals, bench.man.last_end().unwrap().1), (0, ActionEnd::WrongWay { position }), "{wish:?}");
         }
     }
@@ -288,7 +291,7 @@ fn stops_move_passing_target() {
         bench.act(to(target));
         // The drive's accuracy is 2.5°, so it may pass its target by three whole degrees, but a limit only by one.
         let degrees = if target.abs() == TURN { 1 } else { 3 };
-        let (intervals, position) = intervals_past(&mut bench, target + target.signum() * degrees * DEGREE);
+        let (intervals, position) = intervals_past_limit(&mut bench, target + target.signum() * degrees * DEGREE);
         assert_eq!(intervals, 0, "{target}: stopped at {position}");
         let beyond = ActionEnd::Beyond { position };
         let wrong_way = ActionEnd::WrongWay { position };

@@ -134,7 +134,7 @@ fn interrupted_write_reports_possible_state() {
                 Err(JobError::Device(error)) => assert!(error.is_lost() && spent == 0, "{at}: {error}"),
                 other => panic!("{at}: {other:?}"),
             }
-            assert!(stand.elapsed() - begun < LIMIT + CONFIRMED, "{at}: {:?}", stand.elapsed() - begun);
+            assert!(stand.elapsed() - begun < LIMIT + MAX_EXCHANGE_DURATION, "{at}: {:?}", stand.elapsed() - begun);
             // The cable is plugged in again, and the encoder can be returned to its mode.
             *stand.tap() = Tap::default();
             stand.run(InterbusJob::RestoreMode).unwrap();
@@ -145,7 +145,7 @@ fn interrupted_write_reports_possible_state() {
 }
 
 /// Maximum time for the exchange before the cut.
-const CONFIRMED: Duration = Duration::from_secs(8);
+const MAX_EXCHANGE_DURATION: Duration = Duration::from_secs(8);
 
 /// The simulated faults of the gateway do not affect the results.
 #[test]

@@ -19,7 +19,7 @@ const STEPS: u32 = 0x0200_00FF;
 const RUN: u32 = 0x8000_0000;
 
 /// Adds the replies when the parameters are read back: 255 steps, 1 turn, clockwise, preset 0.
-fn reading_back(script: Script) -> Script {
+fn with_readback_replies(script: Script) -> Script {
     let value = |number: u32, value: u32| (0x2021_0000 + number, [0xA000_0000 | value]);
     [value(1, 255), value(2, 1), value(3, 3), value(4, 0)].iter().fold(script, |script, (out, words)| {
         // The values are read once to check them and once for the gear.
@@ -41,7 +41,7 @@ fn sends_worked_example_word_by_word() {
         .on(0x0600_0003, &[0xC400_0001, 0xC600_0003])
         .on(0x0800_0000, &[0xC600_0003, 0xC800_0000])
         .on(0x8000_0000, &[0xC800_0000, 0xC800_0000, POSITION]);
-    let (ended, _, sent) = carry_out(reading_back(script), worked_example());
+    let (ended, _, sent) = carry_out(with_readback_replies(script), worked_example());
     assert_eq!(ended.unwrap(), WrittenChanges { ops: 1, written: 4, verified: 4, write_cycles: 1 });
     let own = &sent[..6];
     assert_eq!(own, [0x0200_00FF, 0x0400_0001, 0x0600_0003, 0x0800_0000, RUN, 0], "{sent:08X?}");
@@ -50,7 +50,7 @@ fn sends_worked_example_word_by_word() {
 
 /// The first replies are echoes with other data, busy words, and an echo that disappears in the next cycle.
 #[test]
-fn only_stable_exact_echo_counts() {
+fn accepts_only_stable_exact_echo() {
     let cases: [(&str, &[u32]); 6] = [
         ("busy", &[0xC000_0000, 0xC000_0000, 0xC000_0000, 0xC200_00FF]),
         ("busy with data", &[0xC000_00FF, 0xC000_00FF, 0xC000_00FF, 0xC200_00FF]),
@@ -60,7 +60,7 @@ fn only_stable_exact_echo_counts() {
         ("an error of one cycle", &[0x8200_0000, 0xC200_00FF]),
     ];
     for (label, words) in cases {
-        let script = reading_back(Script::new().on(STEPS, words));
+        let script = with_readback_replies(Script::new().on(STEPS, words));
         let (ended, steps, _) = carry_out(script, parameters(&[(Parameter::Steps, 255)]));
         assert_eq!(ended.unwrap().verified, 1, "{label}");
         let echoed = steps.iter().filter(|step| step.out == STEPS && step.reply == WordReply::Echoed).count();
@@ -129,12 +129,12 @@ fn echo_equal_to_busy_must_last_longer() {
 
 /// A gateway returns the same word until its next bus cycle. Reading it more often does not prove that it is stable.
 #[test]
-fn stability_depends_on_time_not_count() {
+fn repeated_reads_do_not_prove_stability() {
     let pace = Duration::from_millis(1);
     let cases: [(&str, u32, usize); 2] = [("an error", 0x8200_0000, 7), ("an echo of other data", 0xC200_0100, 60)];
     for (label, word, reads) in cases {
         let words: Vec<u32> = std::iter::repeat_n(word, reads).chain([0xC200_00FF]).collect();
-        let script = reading_back(Script { pace, ..Script::new() }.on(STEPS, &words));
+        let script = with_readback_replies(Script { pace, ..Script::new() }.on(STEPS, &words));
         let (ended, ..) = carry_out(script, parameters(&[(Parameter::Steps, 255)]));
         assert_eq!(ended.unwrap().verified, 1, "{label}");
     }
@@ -148,7 +148,7 @@ fn skips_stale_echo() {
     // manual's example.
     for (stale, looks) in [(0xC200_0100, 80), (0xC200_0100, 160), (0xE200_00FF, 160), (0xC600_0004, 120)] {
         let old: Vec<u32> = std::iter::repeat_n(stale, looks).chain([0xC800_0000]).collect();
-        let script = reading_back(Script::new().on(STEPS, &[0xC000_0000, 0xC200_00FF]).on(0x0800_0000, &old));
+        let script = with_readback_replies(Script::new().on(STEPS, &[0xC000_0000, 0xC200_00FF]).on(0x0800_0000, &old));
         let (ended, ..) = carry_out(script, parameters(&[(Parameter::Steps, 255), (Parameter::Preset, 0)]));
         assert_eq!(ended.unwrap().verified, 2, "{stale:08X}");
         // The old confirmation arrives while a value is requested.
@@ -171,7 +171,7 @@ fn timeout_names_persistent_echo() {
 /// The busy word may contain the sent data (manual 10.4, X; reference 6.11a). An encoder that is busy for `busy`
 /// milliseconds and then rejects the word has never accepted it (issue 22.1).
 #[test]
-fn processing_word_is_no_cam_0_echo() {
+fn processing_word_is_not_cam_0_echo() {
     for (word, echo) in
         [(0x4000_0015, 0xC000_0015), (0x6000_0020, 0xE000_0020), (0x2040_0001, 0xE040_0001), (0x2010_0008, 0xE010_0008)]
     {
@@ -181,7 +181,7 @@ fn processing_word_is_no_cam_0_echo() {
             if let [Op::Program(change)] = ops.as_mut_slice() {
                 change.shift = Some((WindowShift::default(), WindowShift::new(8).unwrap()));
             }
-            let script = reading_cams(Script::new()).on(word, &busy);
+            let script = with_cam_replies(Script::new()).on(word, &busy);
             let cause = carry_out(script, ops).0.unwrap_err().cause;
             assert!(
                 matches!(cause, Error::Refused { sent, .. } if sent.emit() == word),
@@ -193,7 +193,7 @@ fn processing_word_is_no_cam_0_echo() {
 
 /// Adds the replies for cam 0 of program 1 (15h to 20h), which is read before the program is left and again after
 /// `80000000`.
-fn reading_cams(script: Script) -> Script {
+fn with_cam_replies(script: Script) -> Script {
     [(0x2020_0010, 0xA000_0015), (0x2020_0020, 0xA000_0020)]
         .iter()
         .fold(script, |script, (out, value)| script.on(*out, &[*value]).on(*out, &[*value]))
@@ -203,7 +203,7 @@ fn reading_cams(script: Script) -> Script {
 /// for longer each time. If it is never accepted, no operation is reported as done (issue 22.1).
 #[test]
 fn reads_cam_0_before_leaving_program() {
-    let script = reading_cams(
+    let script = with_cam_replies(
         Script::new().on(0x2020_0010, &[0xA000_0000]).on(0x2020_0010, &[0xA000_0000]).on(0x2020_0000, &[0xA000_0001]),
     );
     let (ended, steps, sent) = carry_out(script, cams(0, 0x15, 0x20, 1));
@@ -375,7 +375,7 @@ fn ends_cam_readout_with_run() {
 
 /// Until the encoder has reported its mode, only the mode is requested.
 #[test]
-fn sends_no_word_ambiguous_in_mode() {
+fn requests_mode_before_anything_else() {
     let script = Script::in_mode(0x55);
     let sent = script.sent.clone();
     let mut station = station("");

@@ -14,11 +14,11 @@ use super::support::{Stand, cam, gateway, program, station};
 const K3: StartupMode = StartupMode::K3;
 
 /// An encoder with 4096 steps per turn, at a quarter of a turn.
-const QUARTER: &str = "steps=4096&revolutions=1&position=2048&serial=123456";
+const QUARTER_TURN_ENCODER: &str = "steps=4096&revolutions=1&position=2048&serial=123456";
 
 #[test]
 fn reading_in_word_writes_nothing() {
-    let mut stand = Stand::new(QUARTER);
+    let mut stand = Stand::new(QUARTER_TURN_ENCODER);
     for job in [InterbusJob::Hello, InterbusJob::Position] {
         let reading = match stand.run(job).unwrap() {
             InterbusOutput::Hello(reading) | InterbusOutput::Position(reading) => reading,
@@ -32,7 +32,7 @@ fn reading_in_word_writes_nothing() {
 
 #[test]
 fn identify_returns_to_position() {
-    let mut stand = Stand::new(QUARTER);
+    let mut stand = Stand::new(QUARTER_TURN_ENCODER);
     let stores = stand.stores();
     let identity = match stand.run(InterbusJob::Identify).unwrap() {
         InterbusOutput::Identity(identity) => *identity,

@@ -73,13 +73,13 @@ fn registers(request: &[u8], word: u32) -> Vec<u8> {
 }
 
 /// The result of a call, the requests sent, and the time taken.
-type Seen<T> = (Result<T, Error>, Vec<Vec<u8>>, Duration);
+type ObservedCall<T> = (Result<T, Error>, Vec<Vec<u8>>, Duration);
 
 fn with<T>(
     station: &mut Station,
     answer: impl FnMut(usize, &[u8]) -> Answer + Send + 'static,
     work: impl FnOnce(&mut Master<'_>) -> Result<T, Error>,
-) -> Seen<T> {
+) -> ObservedCall<T> {
     let (clock, cancel, mut trace) = (Arc::new(VirtualClock::default()), CancelToken::default(), Trace::default());
     let mut wire = Gateway::new(clock.clone(), answer);
     let ended = {
@@ -89,7 +89,7 @@ fn with<T>(
     (ended, wire.requests, clock.now().since_start())
 }
 
-fn read(query: &str, answer: impl FnMut(usize, &[u8]) -> Answer + Send + 'static) -> Seen<WordReading> {
+fn read(query: &str, answer: impl FnMut(usize, &[u8]) -> Answer + Send + 'static) -> ObservedCall<WordReading> {
     with(&mut station(query), answer, |master| master.read_in_word())
 }
 

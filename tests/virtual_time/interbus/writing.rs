@@ -312,7 +312,7 @@ fn reading_programs_counts_as_stores() {
 
 /// This encoder stores the number of steps minus one: 3599 means 3600 steps.
 #[test]
-fn steps_less_one_pass_unchanged() {
+fn steps_minus_one_is_passed_unchanged() {
     let mut stand = Stand::new("steps=3600&revolutions=1&steps-minus-one=on");
     let identity = match stand.run(InterbusJob::Identify).unwrap() {
         InterbusOutput::Identity(identity) => *identity,

@@ -40,10 +40,10 @@ fn wanted(desk: &mut Desk) -> HiperfaceProfile {
 }
 
 fn recorded(name: &str, change: Change) {
-    recorded_on(name, scene(), change);
+    compare_with_recording(name, scene(), change);
 }
 
-fn recorded_on(name: &str, original: Desk, change: Change) {
+fn compare_with_recording(name: &str, original: Desk, change: Change) {
     compare(&format!("hiperface/{name}"), None, &mut || {
         let mut desk = original.copied();
         desk.remember_code(2, 0x66);
@@ -94,12 +94,12 @@ fn other_writes_match_recording() {
     recorded("set-position", Change::SetPosition { wanted: 77, exact: false, synchronise: false, kit: false });
     recorded("set-position-exactly", Change::SetPosition { wanted: 77, exact: true, synchronise: false, kit: false });
     let synchronise = Change::SetPosition { wanted: 4096, exact: true, synchronise: true, kit: true };
-    recorded_on("synchronise", Desk::new("model=sel37"), synchronise);
+    compare_with_recording("synchronise", Desk::new("model=sel37"), synchronise);
     recorded("shift-position", Change::ShiftPosition { steps: -9 });
     recorded("set-address", Change::SetAddress(DeviceAddress::new(0x45).unwrap()));
     recorded("increment-counter", Change::IncrementCounter);
     let mut counted = scene();
     counted.change(Change::IncrementCounter).unwrap();
-    recorded_on("clear-counter", counted, Change::ClearCounter);
+    compare_with_recording("clear-counter", counted, Change::ClearCounter);
     recorded("configure", Change::Configure(LineSettings::from_byte(0xE5)));
 }

@@ -45,10 +45,10 @@ fn listen<D: Device>(session: &mut Session<D>) -> (Lines, CancelToken) {
 }
 
 /// A function that interrupts a write at the frame with the given number.
-type EarlyEnd = fn(&mut Tap, &CancelToken, usize);
+type InterruptFn = fn(&mut Tap, &CancelToken, usize);
 
 /// The ways to interrupt a write, with their names in the recordings.
-const EARLY: [(&str, EarlyEnd); 3] = [
+const INTERRUPTIONS: [(&str, InterruptFn); 3] = [
     ("cancelled", |tap, cancel, at| tap.cancel_at = Some((at, cancel.clone()))),
     ("lost", |tap, _, at| tap.lost_from = Some(at)),
     ("mute", |tap, _, at| tap.mute_from = Some(at)),
@@ -72,7 +72,7 @@ fn compare(name: &str, points: Option<&[usize]>, ready: &mut dyn FnMut() -> Read
     let mut text = whole.join("\n");
     let _ = writeln!(text, "\n= {ended}");
     let all: Vec<usize> = (0..frames).collect();
-    for (label, disturb) in EARLY {
+    for (label, disturb) in INTERRUPTIONS {
         for at in points.unwrap_or(&all) {
             let ready = ready();
             let first = ready.tap.lock().unwrap().sent.len();

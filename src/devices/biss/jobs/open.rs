@@ -23,7 +23,7 @@ const BRIDGE: &str = "bridge";
 
 parameters! {
     /// Link parameters for a configuration pin that is wired to the serial line of an adapter.
-    struct PinAtAdapter: UrlError {
+    struct AdapterPinParameters: UrlError {
         is_pin: bool = false, "pin" => SWITCH;
         /// Supply voltage that the adapter provides to the encoder, in millivolts, or `None` for no supply.
         millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(Supply::RANGE));
@@ -57,7 +57,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
         Ok(link)
     })?;
     if url.scheme == LinkScheme::Bridge && station.transport == Transport::ConfigPin {
-        let PinAtAdapter { millivolt, after, .. } = PinAtAdapter::read(url.query.pairs())?;
+        let AdapterPinParameters { millivolt, after, .. } = AdapterPinParameters::read(url.query.pairs())?;
         let supply = millivolt.map(|own| LineSupply { voltage: Supply::with_voltage(own), power_up: Supply::POWER_UP });
         let max_reply = Frame::OVERHEAD + MAX_PAYLOAD;
         let line = DeviceLine { format: station.format, margin: station.line.margin, max_reply };
@@ -75,7 +75,7 @@ fn read(url: &LinkUrl) -> Result<(Station, VirtualEncoder), OpenError> {
     } else {
         let mut known = way.parameters();
         known.extend((url.scheme == LinkScheme::Replay).then_some(BRIDGE));
-        let of_the_pin = if url.scheme == LinkScheme::Bridge { PinAtAdapter::KEYS } else { &[] };
+        let of_the_pin = if url.scheme == LinkScheme::Bridge { AdapterPinParameters::KEYS } else { &[] };
         // The bus has some of these parameters as well.
         known.extend(of_the_pin.iter().filter(|name| !way.parameters().contains(name)));
         check_parameters(&url.query, url.scheme, &known)?;
@@ -101,7 +101,7 @@ fn parse_transport(url: &LinkUrl) -> Result<Transport, OpenError> {
     const TRANSPORT_KEYWORDS: Keywords<Transport> =
         Keywords(&[("on", Transport::Adapter), ("off", Transport::ConfigPin)]);
     match url.scheme {
-        LinkScheme::Bridge if PinAtAdapter::read(url.query.pairs())?.is_pin => Ok(Transport::ConfigPin),
+        LinkScheme::Bridge if AdapterPinParameters::read(url.query.pairs())?.is_pin => Ok(Transport::ConfigPin),
         LinkScheme::Bridge => Ok(Transport::Adapter),
         LinkScheme::Serial | LinkScheme::Tcp => Ok(Transport::ConfigPin),
         LinkScheme::Modbus | LinkScheme::Enip => {

@@ -86,7 +86,7 @@ pub enum StatusBitMeaning {
 }
 
 const NUMBER: FieldMeaning = FieldMeaning::Number("");
-const TIME_OUT: FieldMeaning = FieldMeaning::Ticks { zero: EdsValue::Adaptive };
+const TIMEOUT_MEANING: FieldMeaning = FieldMeaning::Ticks { zero: EdsValue::Adaptive };
 
 const fn row(offset: u8, width: u8, default: Option<u32>, meaning: FieldMeaning, name: &'static str) -> EdsField {
     EdsField { offset, width, name, default, meaning }
@@ -98,8 +98,8 @@ const COMMON: [EdsField; 15] = [
     row(0x01, 1, Some(0x02),   FieldMeaning::Number("banks"), "EDS length"),
     row(0x02, 1, Some(0x04),   FieldMeaning::Bank,       "bank address user start"),
     row(0x03, 1, Some(0x43),   FieldMeaning::Bank,       "bank address user end"),
-    row(0x05, 1, Some(0x1C),   TIME_OUT,            "minimum BiSS timeout"),
-    row(0x06, 1, Some(0x30),   TIME_OUT,            "maximum BiSS timeout"),
+    row(0x05, 1, Some(0x1C),   TIMEOUT_MEANING,            "minimum BiSS timeout"),
+    row(0x06, 1, Some(0x30),   TIMEOUT_MEANING,            "maximum BiSS timeout"),
     row(0x0B, 1, None,         FieldMeaning::Ticks { zero: EdsValue::NoLimit }, "minimum cycle time"),
     row(0x0C, 1, Some(0x20),   FieldMeaning::Ticks { zero: EdsValue::Ticks(0) }, "maximum processing time SCD"),
     row(0x0E, 2, Some(0x01F4), FieldMeaning::Number("ms"), "maximum power-on delay until control communication is available"),

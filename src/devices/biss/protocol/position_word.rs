@@ -7,7 +7,7 @@ use crate::buses::ubicom::protocol::PositionWord;
 impl Layout {
     /// Returns the position word for a reading. Multiturn bits that exceed the width in the frame are dropped.
     pub fn position_word(&self, reading: &PositionData) -> PositionWord {
-        let [b0, b1, b2, b3, b4, ..] = self.steps_of(reading).to_le_bytes();
+        let [b0, b1, b2, b3, b4, ..] = self.position_to_steps(reading).to_le_bytes();
         PositionWord::parse([b0, b1, b2, b3, b4])
     }
 

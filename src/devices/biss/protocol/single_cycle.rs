@@ -184,12 +184,12 @@ impl Layout {
     }
 
     /// Returns the angle within the revolution in degrees, at least 0 and less than 360.
-    pub fn degrees_of(&self, reading: &PositionData) -> f64 {
+    pub fn position_to_degrees(&self, reading: &PositionData) -> f64 {
         f64::from(reading.singleturn) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
     /// Returns the multiturn and singleturn position as a single number of steps.
-    pub fn steps_of(&self, reading: &PositionData) -> u64 {
+    pub fn position_to_steps(&self, reading: &PositionData) -> u64 {
         u64::from(reading.multiturn) << self.singleturn_bits | u64::from(reading.singleturn)
     }
 
@@ -294,9 +294,9 @@ mod tests {
     fn angle_is_fraction_of_turn() {
         let layout = Layout::default();
         for (singleturn, degrees) in [(0, 0.0), (0x8000, 90.0), (0x10000, 180.0), (0x18000, 270.0)] {
-            assert_eq!(layout.degrees_of(&reading(7, singleturn, false, false)), degrees);
+            assert_eq!(layout.position_to_degrees(&reading(7, singleturn, false, false)), degrees);
         }
-        assert_eq!(layout.steps_of(&reading(1, 2, false, false)), 0x2_0002);
+        assert_eq!(layout.position_to_steps(&reading(1, 2, false, false)), 0x2_0002);
     }
 
     #[test]

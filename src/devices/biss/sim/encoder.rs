@@ -70,10 +70,10 @@ impl Encoder {
     /// Temperature in degrees Celsius at which the warning is set. The warning is cleared below 123 °C (manual 6.8).
     const HOT: i16 = 125;
     const COOLDOWN_CELSIUS: i16 = 123;
-    const DIAGNOSTICS_SINCE: Firmware = Firmware::new(1, 6, 0);
+    const MIN_DIAGNOSTICS_FIRMWARE: Firmware = Firmware::new(1, 6, 0);
     const PRESET_PARTS_SINCE: Firmware = Firmware::new(1, 6, 0);
-    const PRESET_SINCE: Firmware = Firmware::new(1, 2, 0);
-    const FILTER_SINCE: Firmware = Firmware::new(1, 1, 0);
+    const MIN_PRESET_FIRMWARE: Firmware = Firmware::new(1, 2, 0);
+    const MIN_FILTER_FIRMWARE: Firmware = Firmware::new(1, 1, 0);
 
     /// Creates an encoder that has been on for a long time.
     pub fn new(config: &Config) -> Self {
@@ -286,8 +286,8 @@ impl Encoder {
 
     fn change_mode(&mut self, mode: DeviceMode) -> bool {
         let there = match mode {
-            DeviceMode::FILTER => self.firmware >= Self::FILTER_SINCE,
-            DeviceMode::PRESET => self.firmware >= Self::PRESET_SINCE,
+            DeviceMode::FILTER => self.firmware >= Self::MIN_FILTER_FIRMWARE,
+            DeviceMode::PRESET => self.firmware >= Self::MIN_PRESET_FIRMWARE,
             _ => mode.is_known(),
         };
         let opened = self.password == DeviceMode::PASSWORD;

@@ -18,13 +18,13 @@ pub struct Flash {
 
 impl Flash {
     /// Size in bytes of a data area, which has 32 banks.
-    pub(super) const AREA: usize = 32 * 64;
+    pub(super) const AREA_BYTES: usize = 32 * 64;
 
     /// Creates a flash with factory content and the given number of write cycles.
     pub(super) fn factory_default(cycles: u32) -> Self {
         Flash {
-            motor_data: vec![0; Self::AREA],
-            oem_data: vec![0; Self::AREA],
+            motor_data: vec![0; Self::AREA_BYTES],
+            oem_data: vec![0; Self::AREA_BYTES],
             preset: PresetValue::default(),
             filter: PositionFilter::Balanced,
             wiegand: [0; 4],

@@ -67,7 +67,7 @@ impl Shaft {
             ..now
         };
         let range = self.position_count();
-        self.offset = (self.layout.steps_of(&wanted) % range + range - self.integer_steps(at)) % range;
+        self.offset = (self.layout.position_to_steps(&wanted) % range + range - self.integer_steps(at)) % range;
     }
 
     fn steps_per_turn(&self) -> u64 {

@@ -104,7 +104,7 @@ impl Encoder {
     /// Returns the part of an area that can be shown, which is the whole area of an encoder, or what a profile
     /// contains.
     pub fn visible_area(&self, area: &Area) -> Option<Area> {
-        if self.profile().is_some() { self.memory.readable_part(area) } else { Some(area.clone()) }
+        if self.profile().is_some() { self.memory.longest_readable_run(area) } else { Some(area.clone()) }
     }
 
     /// Returns the reason why an area cannot currently be edited, or `None` if it can be edited.

@@ -83,12 +83,12 @@ impl Encoder {
     /// Returns the profile with its edits, or `None` if this is an encoder.
     pub(crate) fn edited_profile(&self) -> Option<BissProfile> {
         let mut profile = self.profile()?.clone();
-        self.add_edits_to(&mut profile);
+        self.add_edits_to_profile(&mut profile);
         Some(profile)
     }
 
     /// Applies the edits to a profile.
-    pub(super) fn add_edits_to(&self, profile: &mut BissProfile) {
+    pub(super) fn add_edits_to_profile(&self, profile: &mut BissProfile) {
         for (at, byte) in self.memory.iter() {
             profile.set_register(at, byte);
         }

@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn only_link_loss_is_connection_loss() {
+    fn distinguishes_lost_link_from_other_errors() {
         let gone = Error::Link(LinkError::new("COM3", LinkErrorKind::Lost));
         let address = RegisterAddress::BANK_SELECT;
         let unclear = Error::Unclear { address, value: 1, cause: Box::new(gone.clone()) };

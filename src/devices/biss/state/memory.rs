@@ -85,7 +85,7 @@ impl Memory {
 
     /// Returns the longest run of banks in an area that were read completely, or `None` if there is none. A profile may
     /// contain only some of them.
-    pub fn readable_part(&self, area: &Area) -> Option<Area> {
+    pub fn longest_readable_run(&self, area: &Area) -> Option<Area> {
         let is_read = |bank: u8| {
             let mut places = (0..RegisterAddress::BANK_SIZE).map(|offset| RegisterAddress::in_bank(bank, offset));
             places.all(|at| at.is_some_and(|at| self.read(at).is_some()))
@@ -224,11 +224,11 @@ mod tests {
     }
 
     #[test]
-    fn shows_longest_readable_part() {
+    fn shows_longest_readable_bank_run() {
         let mut memory = Memory::default();
         let kit = kit();
         let area = kit.area_at(at("0x24:0x00")).unwrap();
-        let part = |memory: &Memory| memory.readable_part(area).map(|own| (own.first, own.last));
+        let part = |memory: &Memory| memory.longest_readable_run(area).map(|own| (own.first, own.last));
         memory.store_bytes(at("0x24:0x01"), &[0; 63]);
         assert_eq!(part(&memory), None, "not the whole bank");
         memory.store_bytes(at("0x25:0x00"), &[0; 64]);

@@ -182,7 +182,7 @@ impl HasProfile for Encoder {
 
     fn add_edits(&self, body: &mut Body) {
         if let Some(profile) = body.get_mut::<BissProfile>() {
-            self.add_edits_to(profile);
+            self.add_edits_to_profile(profile);
         }
     }
 

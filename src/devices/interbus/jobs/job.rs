@@ -10,7 +10,8 @@ use crate::devices::interbus::profile::{
     Image, InterbusPlan, InterbusProfile, Item, ItemValue, Parameters, PlanError, RestoreOptions, TypeMismatch,
 };
 use crate::devices::interbus::protocol::{
-    GUARANTEED_STORES, KIND, NOMINAL_STORES, Program, ProgramNumber, ReadOutNumber, StartupMode, Value, WindowShift,
+    DESIGN_WRITE_CYCLES, GUARANTEED_WRITE_CYCLES, KIND, Program, ProgramNumber, ReadOutNumber, StartupMode, Value,
+    WindowShift,
 };
 use crate::store::{DeviceKey, EntryKind};
 
@@ -18,9 +19,9 @@ use crate::store::{DeviceKey, EntryKind};
 /// cycles, and 500 at most (reference 3).
 pub const WEAR_WARNING: u64 = 150;
 /// Number of EEPROM write cycles above which the user has to confirm a second time.
-pub const WEAR_CONFIRMATION: u64 = NOMINAL_STORES as u64;
+pub const WEAR_CONFIRMATION: u64 = DESIGN_WRITE_CYCLES as u64;
 /// Maximum number of EEPROM write cycles that the manufacturer guarantees.
-pub const WEAR_GUARANTEE: u64 = GUARANTEED_STORES as u64;
+pub const WEAR_GUARANTEE: u64 = GUARANTEED_WRITE_CYCLES as u64;
 /// Number of EEPROM write cycles from which the EEPROM counts as worn out.
 pub const WEAR_LIMIT: u64 = 450;
 

@@ -34,7 +34,7 @@ pub(super) fn prepare_plan(
             plan_restore(profile, &device, *options)?
         }
         Change::Write(wanted) => {
-            device = state(&programs_to_read_for(wanted))?;
+            device = state(&required_programs(wanted))?;
             restore_from_plan(plan_edits(&device.image, wanted)?)
         }
         Change::Item(item, value) => {
@@ -79,7 +79,7 @@ pub(super) fn prepare_plan(
 
 /// Returns the programs that must be read before the given values can be planned. The window shift is read with any
 /// program.
-fn programs_to_read_for(wanted: &Image) -> Vec<ProgramNumber> {
+fn required_programs(wanted: &Image) -> Vec<ProgramNumber> {
     let known: Vec<ProgramNumber> = wanted.known_programs().map(|(number, _)| number).collect();
     match wanted.shift {
         Some(_) if known.is_empty() => ProgramNumber::all().take(1).collect(),

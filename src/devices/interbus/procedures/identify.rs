@@ -222,7 +222,7 @@ fn gear(steps: u32, revolutions: u32, flags: Flags) -> Result<Gear, ImplausibleV
 }
 
 /// Reads the position parameters that are not part of the identity. The identity must have been read in the same job.
-pub(super) fn read_other_parameters(master: &mut Master<'_>, identity: &Identity) -> Result<Parameters, Error> {
+pub(super) fn read_remaining_parameters(master: &mut Master<'_>, identity: &Identity) -> Result<Parameters, Error> {
     let Identity { steps, revolutions, direction, .. } = *identity;
     let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOutNumber::new(number))?.get());
     let [preset, zero_shift] = [read(4)?, read(5)?];

@@ -1,6 +1,8 @@
 //! Reads the values to be saved, displayed as an item, or used for a plan.
 
-use super::identify::{direction_from_read_out, programs, read_cam, read_image, read_other_parameters, read_survey};
+use super::identify::{
+    direction_from_read_out, programs, read_cam, read_image, read_remaining_parameters, read_survey,
+};
 use super::write::read_parameter;
 use super::{Error, Identity, Master, Survey};
 use crate::devices::interbus::profile::{
@@ -72,7 +74,7 @@ pub fn read_state(
 ) -> Result<DeviceState, Error> {
     identity.gear()?;
     master.run_guarded(|master| {
-        let parameters = read_other_parameters(master, identity)?;
+        let parameters = read_remaining_parameters(master, identity)?;
         let image = read_image(master, parameters, programs, progress)?;
         Ok(DeviceState { identity: identity.profile(), image })
     })

@@ -204,13 +204,17 @@ fn read_program(
         }
         program.set_cam(cam, Some(Cam { start: value(&mut entries, "start")?, stop: value(&mut entries, "stop")? }));
         names.set_cam(at, cam, entries.take_optional("name", AllowedValues::Text)?.unwrap_or_default());
-        add_unknown(&mut unknown.cams, (at, cam), entries.into_unknown()?);
+        insert_unknown_values(&mut unknown.cams, (at, cam), entries.into_unknown()?);
     }
-    add_unknown(&mut unknown.programs, at, entries.into_unknown()?);
+    insert_unknown_values(&mut unknown.programs, at, entries.into_unknown()?);
     Ok((at, program))
 }
 
-fn add_unknown<K: Ord>(kept: &mut std::collections::BTreeMap<K, UnknownValues>, place: K, unknown: UnknownValues) {
+fn insert_unknown_values<K: Ord>(
+    kept: &mut std::collections::BTreeMap<K, UnknownValues>,
+    place: K,
+    unknown: UnknownValues,
+) {
     if !unknown.is_empty() {
         kept.insert(place, unknown);
     }

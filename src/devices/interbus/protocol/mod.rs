@@ -34,9 +34,9 @@ mod word_order;
 pub const KIND: &str = "interbus";
 
 /// Number of EEPROM write cycles for which the encoder is designed (reference 3).
-pub const NOMINAL_STORES: u32 = 200;
+pub const DESIGN_WRITE_CYCLES: u32 = 200;
 /// Maximum number of EEPROM write cycles that the manufacturer guarantees (reference 3).
-pub const GUARANTEED_STORES: u32 = 500;
+pub const GUARANTEED_WRITE_CYCLES: u32 = 500;
 
 pub use cam::{Cam, CamNumber, Program, ProgramNumber};
 pub use cam_output::{CamBit, CamOutput, CamOutputError, WindowShift};

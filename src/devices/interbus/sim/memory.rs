@@ -2,7 +2,7 @@
 //! 500 at most (reference 3).
 
 use crate::devices::interbus::protocol::{
-    Cam, CamNumber, GUARANTEED_STORES, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,
+    Cam, CamNumber, GUARANTEED_WRITE_CYCLES, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,
 };
 
 /// The settings of an encoder, all of which can be stored in its EEPROM.
@@ -154,7 +154,7 @@ impl Eeprom {
         self.stores = self.stores.saturating_add(1);
         self.begun = self.begun.saturating_add(1);
         let died = self.die_in_store == Some(self.begun);
-        if !died && self.stores <= GUARANTEED_STORES {
+        if !died && self.stores <= GUARANTEED_WRITE_CYCLES {
             (self.kept, self.lost) = (memory.clone(), false);
             return StoreOutcome::Kept;
         }

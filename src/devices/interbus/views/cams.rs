@@ -10,7 +10,7 @@ mod window;
 use egui::{Label, RichText, Ui};
 
 use crate::app::Action;
-use crate::devices::interbus::protocol::{NOMINAL_STORES, ProgramNumber};
+use crate::devices::interbus::protocol::{DESIGN_WRITE_CYCLES, ProgramNumber};
 use crate::devices::interbus::state::cams::Chart;
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS};
 use crate::devices::interbus::views::translate;
@@ -73,7 +73,7 @@ fn unread_program_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: Pro
             return;
         }
         empty_placeholder(ui, theme, &translate(theme, "ib_cams.unread"), None);
-        let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);
+        let cost = TEXTS.text("ib_cams.read_cost").with("cycles", DESIGN_WRITE_CYCLES);
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         ui.vertical_centered(|ui| {
             ui.add(Label::new(RichText::new(theme.format_text(&cost)).color(theme.palette.warn)).wrap());

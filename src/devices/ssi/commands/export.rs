@@ -10,7 +10,7 @@ use super::profiles::{profile_document, write};
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result, Success};
 use crate::devices::ssi::protocol::{
-    ReadConditions, Times, TooWideError, bit_table, english_text, frame_drawing, generate_c99, scl_source,
+    ReadConditions, Times, WordWidthError, bit_table, english_text, frame_drawing, generate_c99, scl_source,
     settings_sheet, structured_text, structured_text_32, timing_drawing, to_linuxcnc,
 };
 use crate::devices::ssi::state::TEXTS;
@@ -27,8 +27,8 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
     let text = match format {
         SsiFormat::C => generate_c99(layout, title),
         SsiFormat::St => structured_text(layout, title),
-        SsiFormat::StDword => structured_text_32(layout, title).map_err(too_wide_failure)?,
-        SsiFormat::Scl => scl_source(layout, title).map_err(too_wide_failure)?,
+        SsiFormat::StDword => structured_text_32(layout, title).map_err(word_width_failure)?,
+        SsiFormat::Scl => scl_source(layout, title).map_err(word_width_failure)?,
         SsiFormat::Linuxcnc => to_linuxcnc(layout).map_err(|error| Failure::Failed(vec![format!("{error}.")]))? + "\n",
         SsiFormat::Csv => bit_table(layout, &english_text),
         SsiFormat::Sheet => settings_sheet(layout, times.as_ref(), title, &english_text),
@@ -54,7 +54,8 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
             for warning in timing.warnings {
                 output.print_message(&explain::timing_warning_text(&warning).terminal_text());
             }
-            timing_drawing(layout, times.as_ref().unwrap_or(&Times::GENERAL), &reads, title, &english_text).to_svg()
+            timing_drawing(layout, times.as_ref().unwrap_or(&Times::GENERAL_LIMITS), &reads, title, &english_text)
+                .to_svg()
         }
     };
     match file {
@@ -67,6 +68,6 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
     Ok(Success::Completed)
 }
 
-fn too_wide_failure(error: TooWideError) -> Failure {
-    Failure::Failed(vec![explain::too_wide_text(error).terminal_text()])
+fn word_width_failure(error: WordWidthError) -> Failure {
+    Failure::Failed(vec![explain::word_width_error_text(error).terminal_text()])
 }

@@ -8,7 +8,7 @@ use crate::cli::runner::to_failure;
 use crate::cli::{Failure, Result};
 use crate::devices::ssi::protocol::{FrameTextError, Layout, parse_frame};
 use crate::devices::ssi::state::{Frames, Origin, TEXTS, parse_frame_file, read_frames};
-use crate::store::MAX_TEXT;
+use crate::store::MAX_TEXT_BYTES;
 
 /// Argument that selects standard input instead of a file or a frame.
 const INPUT: &str = "-";
@@ -31,10 +31,10 @@ pub(super) fn read(output: &Output, path: &Path, clocks: u8) -> Result<Frames> {
 fn input() -> Result<String> {
     let mut text = String::new();
     let unreadable = |error: std::io::Error| Failure::Failed(vec![format!("Standard input cannot be read: {error}.")]);
-    std::io::stdin().lock().take(MAX_TEXT + 1).read_to_string(&mut text).map_err(unreadable)?;
-    if text.len() as u64 > MAX_TEXT {
+    std::io::stdin().lock().take(MAX_TEXT_BYTES + 1).read_to_string(&mut text).map_err(unreadable)?;
+    if text.len() as u64 > MAX_TEXT_BYTES {
         let too_large = TEXTS.text("ssi_capture.too_large").with("path", "Standard input");
-        return Err(to_failure(&too_large.with("megabytes", MAX_TEXT >> 20)));
+        return Err(to_failure(&too_large.with("megabytes", MAX_TEXT_BYTES >> 20)));
     }
     Ok(text)
 }

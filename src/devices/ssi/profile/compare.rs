@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_one_sided_values() {
+    fn lists_values_present_in_one_profile() {
         let comparison = compare(&profile("afs60s"), &SsiProfile { family: None, ..profile("afs60,err=none") });
         let bit = |at: usize| {
             ["name", "clock", "meaning", "active_low", "cleared_by_transfer"].map(|part| format!("errors[{at}].{part}"))

@@ -29,9 +29,9 @@ impl SsiProfile {
             "reading.cable_metres" => self.reading.cable_metres = from.reading.cable_metres,
             "reading.synchronous" => self.reading.synchronous = from.reading.synchronous,
             item => match (numbered(item, "errors"), numbered(item, "patterns")) {
-                (Some((index, part)), _) => take_error_part(&mut own.errors, &other.errors, index, part),
-                (_, Some((index, part))) => take_pattern_part(&mut own.patterns, &other.patterns, index, part),
-                (None, None) => own.range = with_range_part(own.range, other.range, item),
+                (Some((index, part)), _) => adopt_error_bit_property(&mut own.errors, &other.errors, index, part),
+                (_, Some((index, part))) => adopt_pattern_property(&mut own.patterns, &other.patterns, index, part),
+                (None, None) => own.range = with_range_property(own.range, other.range, item),
             },
         }
         self
@@ -44,7 +44,7 @@ fn numbered<'i>(item: &'i str, list: &str) -> Option<(usize, &'i str)> {
     Some((index.parse().ok()?, part))
 }
 
-fn take_error_part(own: &mut Vec<ErrorBit>, other: &[ErrorBit], index: usize, part: &str) {
+fn adopt_error_bit_property(own: &mut Vec<ErrorBit>, other: &[ErrorBit], index: usize, part: &str) {
     let Some((bit, from)) = own.get_mut(index).zip(other.get(index)) else {
         return other.clone_into(own);
     };
@@ -57,7 +57,7 @@ fn take_error_part(own: &mut Vec<ErrorBit>, other: &[ErrorBit], index: usize, pa
     }
 }
 
-fn take_pattern_part(own: &mut Vec<Pattern>, other: &[Pattern], index: usize, part: &str) {
+fn adopt_pattern_property(own: &mut Vec<Pattern>, other: &[Pattern], index: usize, part: &str) {
     let Some((pattern, from)) = own.get_mut(index).zip(other.get(index)) else {
         return other.clone_into(own);
     };
@@ -70,7 +70,7 @@ fn take_pattern_part(own: &mut Vec<Pattern>, other: &[Pattern], index: usize, pa
 
 /// Returns a range with one part replaced by that of another range. If the ranges are of different kinds, the other
 /// range is returned.
-fn with_range_part(own: Range, other: Range, part: &str) -> Range {
+fn with_range_property(own: Range, other: Range, part: &str) -> Range {
     match (own, other, part) {
         (Range::Bits { singleturn, .. }, Range::Bits { multiturn, .. }, "multiturn")
         | (Range::Bits { multiturn, .. }, Range::Bits { singleturn, .. }, "singleturn") => {
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn adopts_whole_range_of_other_kind() {
+    fn adopts_entire_range_if_kinds_differ() {
         let (bits, steps) = (profile("ahs36"), profile("ahs36,steps=360"));
         assert_eq!(bits.clone().with_item("steps", &steps).descriptor.range, steps.descriptor.range);
         let without = profile("afs60,err=none").with_item("errors[2].clock", &profile("afs60s"));

@@ -115,7 +115,7 @@ impl SsiProfile {
             let (name, clock, meaning) = (quote(&bit.name), bit.clock, bit.meaning);
             let low = if bit.active_low { ", active_low: true" } else { "" };
             let cleared = if bit.cleared_by_transfer { ", cleared_by_transfer: true" } else { "" };
-            let more = entries_text(&take_unknown_by_name(&mut kept, &bit.name));
+            let more = entries_text(&take_unknown_values_by_name(&mut kept, &bit.name));
             format!("(name: {name}, clock: {clock}, meaning: \"{meaning}\"{low}{cleared}{more})")
         };
         write_list(writer, "errors", self.descriptor.errors.iter().map(line));
@@ -130,7 +130,7 @@ impl SsiProfile {
                 Word::Ones => quote(ALL_ONES),
                 Word::Bits(bits) => format!("0x{bits:0digits$X}"),
             };
-            let more = entries_text(&take_unknown_by_name(&mut kept, &pattern.name));
+            let more = entries_text(&take_unknown_values_by_name(&mut kept, &pattern.name));
             format!("(name: {name}, word: {word}, meaning: \"{meaning}\"{more})")
         };
         write_list(writer, "patterns", self.descriptor.patterns.iter().map(line));
@@ -196,7 +196,7 @@ fn write_list(writer: &mut Writer, name: &str, lines: impl ExactSizeIterator<Ite
     }
 }
 
-fn take_unknown_by_name(kept: &mut VecDeque<&(String, UnknownValues)>, name: &str) -> UnknownValues {
+fn take_unknown_values_by_name(kept: &mut VecDeque<&(String, UnknownValues)>, name: &str) -> UnknownValues {
     let at = kept.iter().position(|(own, _)| own == name);
     at.and_then(|at| kept.remove(at)).map(|(_, unknown)| unknown.clone()).unwrap_or_default()
 }

@@ -14,13 +14,13 @@ mod tests;
 mod text;
 
 pub use c::generate_c99;
-pub use halves::{TooWideError, scl_source, structured_text_32};
+pub use halves::{WordWidthError, scl_source, structured_text_32};
 pub use linuxcnc::{FormatError, UnsupportedProperty, from_linuxcnc, to_linuxcnc};
 pub use sheet::settings_sheet;
 pub use structured_text::structured_text;
 pub use svg::{frame_drawing, timing_drawing};
 pub use table::bit_table;
-pub use text::{ExportText, ModuleObstacle, SettingMeaning, TranslateFn, english_text};
+pub use text::{ExportText, SettingMeaning, TranslateFn, UnsupportedModuleFeature, english_text};
 
 /// Converts a name to an identifier of letters, digits and underscores that does not start with a digit.
 fn identifier(name: &str) -> String {

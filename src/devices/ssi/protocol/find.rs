@@ -41,7 +41,7 @@ const WEIGHT_BITS: f64 = 8.0;
 /// omitted.
 const MAX_EXTRA_WEIGHT: f64 = 8.0;
 /// Minimum number of frames per thousand in which two interpretations must agree to be considered the same.
-const SAME_PERMILLE: usize = 995;
+const MIN_AGREEING_PERMILLE: usize = 995;
 /// Maximum number of bits by which an interpretation may need more information than the best one. Beyond this limit, it
 /// is not compared with families.
 const NEAR_BITS: f64 = 300.0;
@@ -266,5 +266,6 @@ fn is_same_motion(one: &Motion, other: &Motion) -> bool {
     // A disturbed bit may affect only one of the two readings.
     let disturbed = one.jumps.min(other.jumps) / 2;
     let most = even(one).max(even(other));
-    (all + disturbed) * 1000 >= SAME_PERMILLE * most && forwards.max(backwards) * 1000 >= SAME_PERMILLE * all
+    (all + disturbed) * 1000 >= MIN_AGREEING_PERMILLE * most
+        && forwards.max(backwards) * 1000 >= MIN_AGREEING_PERMILLE * all
 }

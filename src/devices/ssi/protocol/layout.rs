@@ -4,7 +4,7 @@ mod check;
 #[cfg(test)]
 mod tests;
 
-pub use check::{ClockUse, LayoutError, RepeatedPart, WordOperation};
+pub use check::{ClockUse, LayoutError, RepeatableElement, WordOperation};
 #[cfg(test)]
 pub(crate) use tests::layouts as any_layouts;
 
@@ -19,7 +19,7 @@ pub struct Layout {
     pub(super) descriptor: FrameDescriptor,
     pub(super) coding: PositionCode,
     /// Upper and lower part of the code word.
-    pub(super) parts: [BitPart; 2],
+    pub(super) parts: [BitSegment; 2],
     /// Whether the shift drops the lowest bit of the code word.
     pub(super) lost: bool,
     /// Number of bits in a word after the position area.
@@ -40,7 +40,7 @@ pub struct Layout {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct BitPart {
+pub(super) struct BitSegment {
     /// Number of bits in the word that follow this part.
     pub(super) in_word: u8,
     /// Number of bits in the code word that follow this part.
@@ -114,7 +114,7 @@ impl Default for Layout {
         Layout {
             descriptor: FrameDescriptor::binary(0, 1),
             coding: PositionCode::BIT,
-            parts: [BitPart::default(), BitPart { in_word: 0, in_code: 0, mask: 1 }],
+            parts: [BitSegment::default(), BitSegment { in_word: 0, in_code: 0, mask: 1 }],
             lost: false,
             behind_area: 0,
             gray: (0, 1),

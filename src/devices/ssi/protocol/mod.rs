@@ -28,9 +28,9 @@ pub use descriptor::{BitMeaning, ErrorBit, FrameDescriptor, GrayCoverage, Parity
 pub use edges::{BurstError, ExtractedFrames, LineLevels, extract_frames};
 pub use explain::{Cell, FrameFinding, Role};
 pub use export::{
-    ExportText, FormatError, ModuleObstacle, SettingMeaning, TooWideError, TranslateFn, UnsupportedProperty, bit_table,
-    english_text, frame_drawing, from_linuxcnc, generate_c99, scl_source, settings_sheet, structured_text,
-    structured_text_32, timing_drawing, to_linuxcnc,
+    ExportText, FormatError, SettingMeaning, TranslateFn, UnsupportedModuleFeature, UnsupportedProperty,
+    WordWidthError, bit_table, english_text, frame_drawing, from_linuxcnc, generate_c99, scl_source, settings_sheet,
+    structured_text, structured_text_32, timing_drawing, to_linuxcnc,
 };
 pub use family::{
     Alignment, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, ResolvedFrame, SettingAdvice,
@@ -41,7 +41,7 @@ pub use finding_counts::{CountedFinding, FindingCounts};
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]
 pub(crate) use layout::any_layouts;
-pub use layout::{ClockUse, Flags, FrameReading, Layout, LayoutError, RepeatedPart, WordOperation};
+pub use layout::{ClockUse, Flags, FrameReading, Layout, LayoutError, RepeatableElement, WordOperation};
 pub use range::{Direction, Fraction, Location, Range, RangeError};
 pub use spec::SpecError;
 pub use timing::{

@@ -168,17 +168,17 @@ pub enum Warning {
 }
 
 /// Cable lengths in metres, each with the maximum clock frequency in hertz up to this length. See the manual, 2.7.
-const CABLES: [(f64, u32); 4] = [(50.0, 400_000), (100.0, 300_000), (200.0, 200_000), (400.0, 100_000)];
+const CABLE_CLOCK_LIMITS: [(f64, u32); 4] = [(50.0, 400_000), (100.0, 300_000), (200.0, 200_000), (400.0, 100_000)];
 
 impl Times {
     /// Timing limits of SSI in general, for an encoder without a family. The interval between positions is unknown. See
     /// SICK SSI description 2.2 and reference section 1.
-    pub const GENERAL: Self =
+    pub const GENERAL_LIMITS: Self =
         Times { monoflop: (15.0, 25.0), most_hz: 2_000_000, asynchronous: None, synchronous: None, any_steps: None };
 
     /// Calculates the times for reading an encoder of an unknown family.
     pub fn for_any_encoder(reads: &ReadConditions) -> Timing {
-        let mut timing = Self::GENERAL.calculate_timing(reads);
+        let mut timing = Self::GENERAL_LIMITS.calculate_timing(reads);
         for warning in timing.warnings.iter_mut().filter(|own| **own == Warning::NoSynchronous) {
             *warning = Warning::SynchronousUnknown;
         }
@@ -211,7 +211,7 @@ impl Times {
         }
         let cable_hz = match reads.cable_metres {
             None => Some(most_hz),
-            Some(length) => CABLES.iter().find(|(shorter, _)| length < *shorter).map(|(_, hz)| *hz),
+            Some(length) => CABLE_CLOCK_LIMITS.iter().find(|(shorter, _)| length < *shorter).map(|(_, hz)| *hz),
         };
         match cable_hz {
             None => warnings.push(Warning::CableLong),

@@ -12,7 +12,7 @@ use crate::sim::ConfigError;
 use crate::sim::setting::query_pairs;
 
 /// Creates a host with the encoder on a test shaft.
-fn host_with_dial(query: &str) -> Host {
+fn host_with_test_device(query: &str) -> Host {
     Host::to(query, &[&AttachableEncoder::DEFAULT_ADAPTER, &TestBissDevice::SETTINGS])
 }
 
@@ -32,7 +32,7 @@ fn words_follow_code_preset_and_direction() {
         ("ssi=atm60,direction=ccw", (1 << 25) - natural),
         ("ssi=atm60,direction=ccw,preset=1", (1 << 25) - natural + 1),
     ] {
-        let mut host = host_with_dial(query);
+        let mut host = host_with_test_device(query);
         host.refuses(Request::SsiRead, ErrorCode::BAD_ARGUMENT);
         host.expect(SSI, Reply::SsiConfig { clock_hz: 500_000 });
         let Some(Message::Reply(Reply::SsiRead { raw, .. })) = host.ask(Request::SsiRead) else { panic!() };
@@ -46,7 +46,7 @@ fn words_follow_code_preset_and_direction() {
         });
         assert!(words.clone().count() > 900 && words.all(|raw| raw == word << 1), "{query}");
     }
-    let mut host = host_with_dial("");
+    let mut host = host_with_test_device("");
     for clocks in [0, 65] {
         let wrong = Request::SsiConfig { clocks, clock_hz: 500_000, pause_us: 30, flags: SsiFlags::FALLING_EDGE };
         host.refuses(wrong, ErrorCode::BAD_ARGUMENT);

@@ -38,7 +38,7 @@ impl Encoder {
             },
             SsiAction::Move(handle, to) => {
                 let layout = self.designer.layout();
-                let moved = strip::move_part(layout, handle, to, self.designer.error_bits_follow());
+                let moved = strip::move_part(layout, handle, to, self.designer.error_bits_follow_position());
                 self.apply_edit(Edit::Frame(Box::new(moved.descriptor().clone())));
             }
             SsiAction::AddErrorBit => {
@@ -105,7 +105,7 @@ impl Encoder {
     fn start_trial(&mut self, with: TrialInput) {
         let layout = self.designer.layout();
         // If the last word read is displayed, the trial starts with it.
-        if self.is_showing_live()
+        if self.is_showing_live_frame()
             && let Some(word) = self.record.last().map(|seen| seen.word)
         {
             self.trial.set_frame(word);

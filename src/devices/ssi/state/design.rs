@@ -149,7 +149,7 @@ impl LayoutDesigner {
 
     /// Returns whether error and parity bits move with the end of the position. The family settings determine this if
     /// there are any; otherwise, it depends on the frame.
-    pub fn error_bits_follow(&self) -> bool {
+    pub fn error_bits_follow_position(&self) -> bool {
         let settings = self.family().zip(self.now.settings.as_ref());
         match settings.and_then(|(family, settings)| settings.resolve(family).ok()) {
             Some(resolved) => resolved.errors == ErrorPlace::Following,

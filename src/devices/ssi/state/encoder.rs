@@ -63,11 +63,11 @@ impl Encoder {
     /// frame.
     pub fn displayed_frame(&self) -> Decoded {
         let live = || self.record.last().and_then(|seen| seen.decoded.clone());
-        self.is_showing_live().then(live).flatten().unwrap_or_else(|| self.trial.decode(self.designer.layout()))
+        self.is_showing_live_frame().then(live).flatten().unwrap_or_else(|| self.trial.decode(self.designer.layout()))
     }
 
     /// Returns whether the last word read is displayed.
-    pub fn is_showing_live(&self) -> bool {
+    pub fn is_showing_live_frame(&self) -> bool {
         self.follows && self.record.last().is_some_and(|seen| seen.decoded.is_some())
     }
 
@@ -154,7 +154,7 @@ impl Encoder {
 impl LayoutDesigner {
     /// Returns the timing limits of the family, or those of SSI in general if there is no family.
     pub fn applicable_times(&self) -> Times {
-        self.times().copied().unwrap_or(Times::GENERAL)
+        self.times().copied().unwrap_or(Times::GENERAL_LIMITS)
     }
 
     pub fn timing(&self) -> Timing {

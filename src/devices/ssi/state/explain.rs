@@ -23,7 +23,7 @@ pub use export::export_text;
 pub use family::{family_error_text, note_text};
 pub use rejection::{
     burst_error_text, entry_error_text, format_error_text, frame_text, layout_error_text, settings_error_text,
-    too_wide_text,
+    word_width_error_text,
 };
 
 /// Returns messages that explain why a job ended early. Each can be shown on a separate line.

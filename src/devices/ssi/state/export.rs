@@ -93,8 +93,10 @@ impl LayoutDesigner {
         Ok(match format {
             ExportFormat::C => generate_c99(layout, &title),
             ExportFormat::StructuredText => structured_text(layout, &title),
-            ExportFormat::StructuredText32 => structured_text_32(layout, &title).map_err(explain::too_wide_text)?,
-            ExportFormat::Scl => scl_source(layout, &title).map_err(explain::too_wide_text)?,
+            ExportFormat::StructuredText32 => {
+                structured_text_32(layout, &title).map_err(explain::word_width_error_text)?
+            }
+            ExportFormat::Scl => scl_source(layout, &title).map_err(explain::word_width_error_text)?,
             ExportFormat::LinuxCnc => to_linuxcnc(layout).map_err(|error| explain::format_error_text(&error))? + "\n",
             ExportFormat::Sheet => settings_sheet(layout, self.times(), &title, &say),
             ExportFormat::Table | ExportFormat::Frame | ExportFormat::Timing => bit_table(layout, &say),

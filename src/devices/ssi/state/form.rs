@@ -152,7 +152,7 @@ impl LayoutDesigner {
     pub fn form_groups(&self) -> Vec<Group> {
         let mut groups = match (self.family(), &self.design().settings) {
             (Some(family), Some(settings)) => family::family_groups(self, family, settings),
-            _ => free::free_groups(self),
+            _ => free::custom_frame_groups(self),
         };
         groups.push(counting_group(self));
         groups
@@ -197,10 +197,10 @@ impl LayoutDesigner {
         }
         match (self.family(), &self.design().settings) {
             (Some(family), Some(settings)) => {
-                let entered = family::settings_after_entry(self, family, settings, field, input);
+                let entered = family::settings_from_input(self, family, settings, field, input);
                 entered.map(|settings| Edit::Settings(Box::new(settings))).ok_or_else(wrong)
             }
-            _ => free::edit_after_entry(self, field, input).ok_or_else(wrong),
+            _ => free::edit_from_input(self, field, input).ok_or_else(wrong),
         }
     }
 

@@ -9,7 +9,7 @@ use crate::devices::ssi::protocol::{BitMeaning, Range};
 
 /// Returns the name of an entry of a profile, or `None` if a layout has no such entry.
 pub(super) fn item_name(item: &str) -> Option<Text> {
-    if let Some((number, part)) = numbered_part(item, "errors") {
+    if let Some((number, part)) = split_indexed_entry(item, "errors") {
         let part = TEXTS.text(match part {
             "name" => "ssi_form.error_name",
             "clock" => "ssi_form.error_clock",
@@ -20,7 +20,7 @@ pub(super) fn item_name(item: &str) -> Option<Text> {
         });
         return Some(TEXTS.text("ssi_name.error").with("number", number).with_text("part", part));
     }
-    if let Some((number, part)) = numbered_part(item, "patterns") {
+    if let Some((number, part)) = split_indexed_entry(item, "patterns") {
         let part = TEXTS.text(match part {
             "name" => "ssi_form.error_name",
             "word" => "ssi_name.bits",
@@ -98,7 +98,7 @@ pub(super) fn item_value(profile: &SsiProfile, item: &str, value: &str) -> Optio
             Some(metres) => with_unit(literal_text(metres), literal_text("m")),
             None => TEXTS.text("ssi_name.not_checked"),
         },
-        _ => match (numbered_part(item, "errors"), value) {
+        _ => match (split_indexed_entry(item, "errors"), value) {
             (Some((_, "meaning")), value) if value == BitMeaning::Invalid.to_string() => TEXTS.text("ssi_form.invalid"),
             (Some((_, "meaning")), _) => TEXTS.text("ssi_form.warning"),
             (_, "true") => Text::new("report.yes"),
@@ -114,7 +114,7 @@ fn with_unit(value: Text, unit: Text) -> Text {
 }
 
 /// Splits an entry name such as `errors[0].clock` into its number, counted from 1, and the part after it.
-fn numbered_part<'i>(item: &'i str, list: &str) -> Option<(usize, &'i str)> {
+fn split_indexed_entry<'i>(item: &'i str, list: &str) -> Option<(usize, &'i str)> {
     let (index, part) = item.strip_prefix(list)?.strip_prefix('[')?.split_once("].")?;
     Some((index.parse::<usize>().ok()?.checked_add(1)?, part))
 }

@@ -132,7 +132,7 @@ impl BurstDiagram {
     }
 
     /// Returns the duration in seconds that is omitted after a section. It is 0 after the last section.
-    pub fn gap_after(&self, piece: usize) -> f64 {
+    pub fn gap_after_piece(&self, piece: usize) -> f64 {
         let ends = self.pieces.get(piece).zip(self.pieces.get(piece + 1));
         ends.map_or(0.0, |(own, next)| next.from - own.to)
     }

@@ -188,7 +188,7 @@ fn strip_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiSta
         selected,
         toggles: true,
         movable: true,
-        following: encoder.designer.error_bits_follow(),
+        following: encoder.designer.error_bits_follow_position(),
     };
     match bit_strip(ui, theme, &model) {
         Some(StripEvent::Moved(handle, to)) => actions.push(Action::device(id, Ssi::Move(handle, to))),

@@ -42,7 +42,7 @@ pub(super) fn card_ui(
     actions: &mut Vec<Action>,
 ) {
     let shown = view.held.take().filter(|_| view.is_typing()).unwrap_or_else(|| encoder.displayed_frame());
-    let is_live = encoder.is_showing_live();
+    let is_live = encoder.is_showing_live_frame();
     let id = encoder.session.id;
     let mut action = None;
     let live = |ui: &mut Ui| {

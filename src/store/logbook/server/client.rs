@@ -28,13 +28,13 @@ const SESSION_OPTIONS: &str = "-c idle_in_transaction_session_timeout=6s -c stat
 
 /// A connection to the logbook server.
 pub(super) struct Client {
-    runtime: OwnRuntime,
+    runtime: NonBlockingRuntime,
     deadline: Instant,
     pub(super) postgres: tokio_postgres::Client,
 }
 
 /// A runtime that does not wait for a host name lookup when it is dropped.
-struct OwnRuntime(Option<Runtime>);
+struct NonBlockingRuntime(Option<Runtime>);
 
 impl Client {
     /// Connects to a server. The deadline applies to the connection and to all later calls.
@@ -43,7 +43,7 @@ impl Client {
         password: Option<&Password>,
         deadline: Instant,
     ) -> Result<Self, ServerErrorKind> {
-        let runtime = OwnRuntime::new()?;
+        let runtime = NonBlockingRuntime::new()?;
         let mut config = address.config.clone();
         // A missing password needs no special case, because the server rejects an empty one.
         config
@@ -61,7 +61,7 @@ impl Client {
                 Encryption::Verified(authorities) => {
                     let tls = MakeRustlsConnect::new(tls_config(authorities.as_deref())?);
                     let (client, connection) =
-                        config.ssl_mode(SslMode::Require).connect(tls).await.map_err(not_encrypted)?;
+                        config.ssl_mode(SslMode::Require).connect(tls).await.map_err(encryption_error)?;
                     tokio::spawn(connection);
                     Ok(client)
                 }
@@ -94,11 +94,11 @@ impl Client {
     }
 }
 
-impl OwnRuntime {
+impl NonBlockingRuntime {
     fn new() -> Result<Self, ServerErrorKind> {
         let runtime = Builder::new_current_thread().enable_all().build();
         runtime
-            .map(|runtime| OwnRuntime(Some(runtime)))
+            .map(|runtime| NonBlockingRuntime(Some(runtime)))
             .map_err(|error| ServerErrorKind::Unreachable { why: UnreachableCause::from_io(&error) })
     }
 
@@ -113,7 +113,7 @@ impl OwnRuntime {
     }
 }
 
-impl Drop for OwnRuntime {
+impl Drop for NonBlockingRuntime {
     fn drop(&mut self) {
         if let Some(runtime) = self.0.take() {
             runtime.shutdown_background();
@@ -160,7 +160,7 @@ fn tls_config(authorities: Option<&Path>) -> Result<ClientConfig, ServerErrorKin
 }
 
 /// Returns the reason why an encrypted connection failed. A server without TLS is reported as a distinct error.
-fn not_encrypted(error: tokio_postgres::Error) -> ServerErrorKind {
+fn encryption_error(error: tokio_postgres::Error) -> ServerErrorKind {
     match ServerErrorKind::from(error) {
         ServerErrorKind::Database { code: None, what } => ServerErrorKind::Encryption { why: what },
         problem => problem,

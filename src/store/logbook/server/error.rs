@@ -136,7 +136,7 @@ impl From<tokio_postgres::Error> for ServerErrorKind {
                 code if *code == SqlState::DISK_FULL => ServerErrorKind::DiskFull,
                 code if *code == SqlState::QUERY_CANCELED => ServerErrorKind::NoReply,
                 code if *code == SqlState::IDLE_IN_TRANSACTION_SESSION_TIMEOUT => ServerErrorKind::NoReply,
-                code if NOT_RUNNING.contains(&code.code()) => {
+                code if UNAVAILABLE_SERVER_CODES.contains(&code.code()) => {
                     ServerErrorKind::Unreachable { why: UnreachableCause::Other(what) }
                 }
                 code => ServerErrorKind::Database { code: Some(code.code().to_owned()), what },
@@ -154,7 +154,7 @@ impl From<tokio_postgres::Error> for ServerErrorKind {
 }
 
 /// Codes of a server that is starting up, is shutting down, has crashed or has no free connection.
-const NOT_RUNNING: [&str; 5] = ["57P01", "57P02", "57P03", "53300", "08006"];
+const UNAVAILABLE_SERVER_CODES: [&str; 5] = ["57P01", "57P02", "57P03", "53300", "08006"];
 
 fn from_io(error: &io::Error) -> ServerErrorKind {
     match error.kind() {

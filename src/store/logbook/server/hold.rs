@@ -9,7 +9,7 @@ use super::client::Client;
 use super::error::ServerErrorKind;
 
 /// Time after which a hold expires if the computer does not renew it.
-const VALID: Duration = Duration::from_secs(30);
+const HOLD_VALIDITY: Duration = Duration::from_secs(30);
 
 /// Another program that is connected to the same device.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,7 +58,7 @@ pub(super) fn renew(
     let kinds = texts(|device| &device.kind);
     let (types, numbers) = (texts(|device| &device.device_type), texts(|device| &device.serial_number));
     let Origin { bench, user, .. } = Origin::of_this_process();
-    let valid = VALID.as_secs_f64();
+    let valid = HOLD_VALIDITY.as_secs_f64();
     client.run(async |postgres| {
         let transaction = postgres.transaction().await?;
         transaction.execute("DELETE FROM hold WHERE program = $1 OR until < now()", &[&program]).await?;

@@ -30,7 +30,7 @@ use client::Client;
 const RETRY: Duration = Duration::from_millis(5);
 /// Time for which a failed attempt is not repeated, so that the steps of a command do not all wait for an unreachable
 /// server.
-const FAILURE_VALID: Duration = Duration::from_secs(5);
+const FAILURE_RETRY_DELAY: Duration = Duration::from_secs(5);
 
 /// The logbook server of this process, if any. Clones refer to the same server.
 #[derive(Clone, Default)]
@@ -46,7 +46,7 @@ struct Shared {
 #[derive(Default)]
 struct State {
     address: Option<Result<ServerAddress, ServerAddressError>>,
-    contact: Contact,
+    contact: ServerContact,
     failed: Option<(Instant, ServerError)>,
     /// Devices that are connected to this program.
     held: Vec<DeviceKey>,
@@ -62,7 +62,7 @@ struct Connection {
 
 /// The result of the last contact with the server.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Contact {
+pub struct ServerContact {
     /// Whether the last transfer was complete.
     pub is_reached: bool,
     /// Reason why the last transfer failed.
@@ -107,7 +107,7 @@ impl LogbookServer {
         self.state().is_announced
     }
 
-    pub fn contact(&self) -> Contact {
+    pub fn contact(&self) -> ServerContact {
         self.state().contact.clone()
     }
 
@@ -143,7 +143,7 @@ impl LogbookServer {
             (state.held.clone(), state.is_announced)
         };
         let announced = (is_announced || !held.is_empty()).then_some(held.as_slice());
-        let result = transfer_over(&mut connection, &address, path, announced, deadline);
+        let result = transfer_over_connection(&mut connection, &address, path, announced, deadline);
         let result = result.map_err(|problem| problem.into_error(&address.name()));
         let (result, others) = match result {
             Ok((done, others)) => {
@@ -164,10 +164,14 @@ impl LogbookServer {
     ///
     /// # Errors
     /// Returns an error if the server or the local file cannot be used.
-    pub fn transfer_unless_away(&self, path: &Path, limit: Duration) -> Option<Result<Transferred, ServerError>> {
+    pub fn transfer_unless_recently_failed(
+        &self,
+        path: &Path,
+        limit: Duration,
+    ) -> Option<Result<Transferred, ServerError>> {
         let failed = self.state().failed.clone();
         match failed {
-            Some((at, error)) if at.elapsed() < FAILURE_VALID => Some(Err(error)),
+            Some((at, error)) if at.elapsed() < FAILURE_RETRY_DELAY => Some(Err(error)),
             _ => self.transfer(path, limit),
         }
     }
@@ -186,7 +190,7 @@ impl LogbookServer {
         let now = Timestamp::now();
         match result {
             Ok(_) => {
-                state.contact = Contact { is_reached: true, others, ..Contact::default() };
+                state.contact = ServerContact { is_reached: true, others, ..ServerContact::default() };
                 state.failed = None;
             }
             Err(error) => {
@@ -210,7 +214,7 @@ fn program() -> &'static str {
 }
 
 /// Transfers entries and announces the devices in `held`, unless it is `None`.
-fn transfer_over(
+fn transfer_over_connection(
     connection: &mut Option<Connection>,
     address: &ServerAddress,
     path: &Path,

@@ -36,7 +36,7 @@ fn schema_5_logbook_links_new_entries() {
 }
 
 #[test]
-fn undo_names_its_entry_until_undone() {
+fn undo_links_to_entry_until_reverted() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     let mut write = |second, undoes: Option<EntryId>, outcome| {

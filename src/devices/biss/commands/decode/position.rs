@@ -42,7 +42,7 @@ pub(super) fn explain_position_word(raw: u64, shown: String) -> FrameExplanation
 
 /// Describes a position in turns, steps and degrees, and adds these values to the JSON output.
 fn describe_position(layout: &Layout, reading: &PositionData, raw: u64, more: &mut Map<String, Json>) -> String {
-    let (turns, steps, degrees) = (reading.multiturn, reading.singleturn, layout.degrees_of(reading));
+    let (turns, steps, degrees) = (reading.multiturn, reading.singleturn, layout.position_to_degrees(reading));
     let pairs = [("raw", json!(raw)), ("turns", json!(turns)), ("steps", json!(steps)), ("degrees", json!(degrees))];
     more.extend(pairs.map(|(key, value)| (key.to_owned(), value)));
     format!("turn {turns}, step {steps} of {}, {degrees:.6}°", 1u64 << layout.singleturn_bits())
@@ -53,7 +53,7 @@ pub(super) fn explain_fields(raw: u64, more: &mut Map<String, Json>) -> Result<V
     let layout = Layout::default();
     match layout.parse(raw) {
         Ok(reading) => {
-            let word = layout.steps_of(&reading);
+            let word = layout.position_to_steps(&reading);
             let mut lines = vec![describe_position(&layout, &reading, word, more)];
             let flags = [("error", reading.error), ("warning", reading.warning)];
             more.extend(flags.map(|(key, value)| (key.to_owned(), json!(value))));

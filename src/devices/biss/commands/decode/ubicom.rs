@@ -101,7 +101,7 @@ fn position_text(word: PositionWord) -> String {
         None => format!("position 0x{:X}, which has more than 33 bits", word.to_u64()),
         Some(reading) => {
             let (turns, steps) = (reading.multiturn, reading.singleturn);
-            format!("position: turn {turns}, step {steps} of 131072, {:.6}°", layout.degrees_of(&reading))
+            format!("position: turn {turns}, step {steps} of 131072, {:.6}°", layout.position_to_degrees(&reading))
         }
     }
 }

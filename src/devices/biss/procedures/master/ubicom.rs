@@ -128,7 +128,7 @@ impl Master<'_> {
             portion.clear();
             self.line.receive(until, &mut portion)?;
             if portion.is_empty() && !under_way {
-                return Ok(Err(self.finish_unanswered(received)));
+                return Ok(Err(self.finish_unanswered_exchange(received)));
             }
             if self.now() > deadline + NOISE {
                 return Err(Error::NeverSilent);
@@ -185,7 +185,7 @@ impl Master<'_> {
         }
     }
 
-    fn finish_unanswered(&mut self, received: ReceivedBytes) -> ExchangeError {
+    fn finish_unanswered_exchange(&mut self, received: ReceivedBytes) -> ExchangeError {
         let broken = received.raw.strip_prefix(&*received.sent).unwrap_or(&received.raw);
         let echo = if received.echo_heard { received.sent.len() } else { 0 };
         let bytes = received.bytes.saturating_sub(echo);

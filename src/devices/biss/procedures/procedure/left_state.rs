@@ -38,7 +38,7 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
         &self.0
     }
 
-    pub fn is_certainly(&self, value: T) -> bool {
+    pub fn must_equal(&self, value: T) -> bool {
         self.0 == [value]
     }
 
@@ -46,7 +46,7 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
         self.0.contains(&value)
     }
 
-    pub fn add_possible(&mut self, value: T) {
+    pub fn add_possible_value(&mut self, value: T) {
         if !self.may_equal(value) {
             self.0.push(value);
         }
@@ -58,7 +58,7 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
             Ok(()) => *self = PossibleValues::new(after),
             // The value was not sent or not accepted.
             Err(Error::Cancelled | Error::Refused { .. }) => {}
-            Err(_) => self.add_possible(after),
+            Err(_) => self.add_possible_value(after),
         }
     }
 }
@@ -74,7 +74,7 @@ impl LeftState {
 
     /// Returns whether the encoder is certainly in operation mode with the password cleared.
     pub fn is_in_operation(&self) -> bool {
-        self.mode.is_certainly(DeviceMode::OPERATION) && self.password.is_certainly(false)
+        self.mode.must_equal(DeviceMode::OPERATION) && self.password.must_equal(false)
     }
 
     /// Records that a restart command was sent. The encoder may not have received it.
@@ -86,8 +86,8 @@ impl LeftState {
     /// Records that the encoder can no longer be reached. If it loses power, it restarts in operation mode with the
     /// password cleared.
     pub(in crate::devices::biss::procedures) fn record_possible_power_loss(&mut self) {
-        self.mode.add_possible(DeviceMode::OPERATION);
-        self.password.add_possible(false);
+        self.mode.add_possible_value(DeviceMode::OPERATION);
+        self.password.add_possible_value(false);
     }
 }
 
@@ -101,16 +101,16 @@ mod tests {
         let lost = || Err(Error::Link(LinkError::new("x", LinkErrorKind::Lost)));
         let mut mode = PossibleValues::new(0);
         mode.update_after_write(1, &Ok(()));
-        assert!(mode.is_certainly(1));
+        assert!(mode.must_equal(1));
         mode.update_after_write(0, &Err(Error::Cancelled));
-        assert!(mode.is_certainly(1), "it was not sent");
+        assert!(mode.must_equal(1), "it was not sent");
         mode.update_after_write(0, &lost());
-        assert_eq!((mode.as_slice(), mode.is_certainly(1)), (&[1, 0][..], false));
+        assert_eq!((mode.as_slice(), mode.must_equal(1)), (&[1, 0][..], false));
         assert!(mode.may_equal(0) && mode.may_equal(1) && !mode.may_equal(2));
         mode.update_after_write(0, &lost());
         assert_eq!(mode.as_slice(), [1, 0]);
         mode.update_after_write(2, &Ok(()));
-        assert!(mode.is_certainly(2));
+        assert!(mode.must_equal(2));
     }
 
     #[test]

@@ -161,7 +161,7 @@ impl OperatorPrompt {
             (None, _) => blockers.push(StartBlocker::Measuring),
             (Some(motion), OperatorTask::Turn(run)) => blockers.extend(Self::motion_blocker(run, motion)),
             (Some(motion), OperatorTask::HoldStill | OperatorTask::HoldAtPresetAngle) => {
-                blockers.extend((!motion.is_still()).then_some(StartBlocker::Turning { rpm: motion.rpm }));
+                blockers.extend((!motion.is_shaft_at_rest()).then_some(StartBlocker::Turning { rpm: motion.rpm }));
             }
         }
         if let Some(celsius) = celsius.filter(|celsius| !Self::CELSIUS.contains(celsius)) {

@@ -30,14 +30,14 @@ impl ShaftMotion {
     /// Allowed jitter of a shaft at rest, in revolutions. The jitter is not documented (`U`).
     const REST_JITTER: f64 = 1.0 / 8192.0;
 
-    pub fn is_still(&self) -> bool {
+    pub fn is_shaft_at_rest(&self) -> bool {
         self.travel <= Self::REST_JITTER
     }
 }
 
 impl SpeedMonitor {
     /// Number of equal parts of the window in which the speed is measured separately.
-    const PARTS: i32 = 4;
+    const WINDOW_SECTION_COUNT: i32 = 4;
 
     pub(super) fn with_window(window: Duration) -> Self {
         let window = i64::try_from(window.as_nanos()).unwrap_or(i64::MAX).max(1);
@@ -73,9 +73,9 @@ impl SpeedMonitor {
         let places: Vec<(f64, f64)> =
             self.places.iter().map(|(time, steps)| (time.seconds_since(*first), self.to_turns(*steps))).collect();
         let rpm = slope(&places)? * 60.0;
-        let part = last.seconds_since(*first) / f64::from(Self::PARTS);
+        let part = last.seconds_since(*first) / f64::from(Self::WINDOW_SECTION_COUNT);
         let mut spread: f64 = 0.0;
-        for number in 0..Self::PARTS {
+        for number in 0..Self::WINDOW_SECTION_COUNT {
             let (from, to) = (part * f64::from(number), part * f64::from(number + 1));
             let own: Vec<(f64, f64)> = places.iter().copied().filter(|(at, _)| (from..=to).contains(at)).collect();
             if let Some(slope) = slope(&own) {
@@ -148,7 +148,7 @@ mod tests {
             let motion = measured(bits, |seconds| 0.25 + seconds * rpm / 60.0);
             assert!((motion.rpm - rpm).abs() < 0.01 && motion.spread < 0.02, "{bits} {rpm}: {motion:?}");
             assert!((motion.travel - f64::abs(rpm) / 60.0).abs() < 0.001, "{motion:?}");
-            assert!(!motion.is_still());
+            assert!(!motion.is_shaft_at_rest());
         }
     }
 
@@ -169,10 +169,10 @@ mod tests {
         let tremble = |steps: f64| {
             measured(16, move |seconds| 0.5 + if (seconds * 50.0) as i64 % 2 == 0 { steps / REVOLUTION } else { 0.0 })
         };
-        assert!(tremble(16.0).is_still(), "16 steps are 1/8192 of a revolution");
-        assert!(!tremble(18.0).is_still());
+        assert!(tremble(16.0).is_shaft_at_rest(), "16 steps are 1/8192 of a revolution");
+        assert!(!tremble(18.0).is_shaft_at_rest());
         // The shaft moves by half a degree per second.
-        assert!(!measured(16, |seconds| seconds / 720.0).is_still());
+        assert!(!measured(16, |seconds| seconds / 720.0).is_shaft_at_rest());
     }
 
     #[test]

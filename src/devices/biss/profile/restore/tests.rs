@@ -127,7 +127,7 @@ fn clears_bank_marked_empty() {
 
 /// Another kind of encoder must be allowed separately. Allowing another serial number is not sufficient (issue 22.9).
 #[test]
-fn other_kind_needs_permission() {
+fn different_encoder_kind_needs_permission() {
     let mut wanted = profile("1");
     set_bank_bytes(&mut wanted, 0x24, &[(0, 1)]);
     let now = device(&profile("2"));

@@ -202,7 +202,7 @@ fn omits_empty_banks() {
 }
 
 #[test]
-fn mark_covers_its_registers() {
+fn mounting_mark_covers_listed_registers() {
     let mut profile = profile(SHORT);
     let item = MountingItem::Registers("0x25:0x08+4".parse().unwrap());
     profile.mounting.push(MountingMark { item, meaning: String::new(), unknown: Default::default() });

@@ -93,7 +93,7 @@ impl Host {
     /// Abandons the request. The encoder discards it when it receives the zeros before the next request.
     pub fn abandon(&mut self) {
         self.waiting = None;
-        self.restart_zeros();
+        self.reset_to_rest();
     }
 
     /// Runs one cycle with the received CDS bit and returns the CDM bit that ends the cycle.
@@ -173,17 +173,17 @@ impl Host {
             self.state = State::Start { transfer, cycles: 0 };
             return Step { cdm: true, outcome: None };
         }
-        self.restart_zeros();
+        self.reset_to_rest();
         Step { cdm: false, outcome: Some(Ok(transfer.values)) }
     }
 
     fn fail_request(&mut self, error: ControlError) -> Step {
-        self.restart_zeros();
+        self.reset_to_rest();
         Step { cdm: false, outcome: Some(Err(error)) }
     }
 
     /// Restarts the count of zeros before the next request, because earlier zeros may have been data.
-    fn restart_zeros(&mut self) {
+    fn reset_to_rest(&mut self) {
         self.state = State::Rest;
         self.zeros = 0;
     }

@@ -9,7 +9,7 @@ const PRODUCTION_PULSES: [u8; 4] = [64, 60, 64, 59];
 impl Encoder {
     pub(super) fn direct_register(&self, address: u8) -> u8 {
         let [n0, n1, n2, n3] = self.serial_number.to_be_bytes();
-        let diagnoses = self.firmware >= Self::DIAGNOSTICS_SINCE;
+        let diagnoses = self.firmware >= Self::MIN_DIAGNOSTICS_FIRMWARE;
         match address {
             0x40 => self.bank,
             0x41 => EdsBank::Common.kit_number(),
@@ -24,7 +24,7 @@ impl Encoder {
             0x69 if diagnoses && self.hot => WarningRegister::TEMPERATURE.byte(),
             0x6A => self.mode.byte(),
             0x6B => self.password,
-            0x6E if self.firmware >= Self::FILTER_SINCE => self.flash.filter.byte(),
+            0x6E if self.firmware >= Self::MIN_FILTER_FIRMWARE => self.flash.filter.byte(),
             0x74 => self.firmware.major,
             0x75 => self.firmware.minor,
             0x76 => self.firmware.patch,

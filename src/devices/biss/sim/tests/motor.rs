@@ -90,7 +90,7 @@ fn failed_second_run_loses_table() {
 }
 
 #[test]
-fn second_run_needs_first() {
+fn second_run_requires_completed_first_run() {
     let mut host = Host::with("rpm=500");
     host.enter(0x01);
     assert!(!host.write("0x00:0x00", 0x02));

@@ -142,7 +142,7 @@ fn rejects_preset_beyond_range() {
 }
 
 #[test]
-fn power_fails_in_second_store() {
+fn loses_power_during_second_store() {
     let mut host = Host::with("fault=die-in-store:2");
     for _ in 0..2 {
         host.enter(0x04);

@@ -316,7 +316,7 @@ mod tests {
 
     fn left_state(modes: &[DeviceMode], password: bool, activity: Activity) -> Option<LeftState> {
         let mut mode = PossibleValues::new(modes[0]);
-        modes[1..].iter().for_each(|own| mode.add_possible(*own));
+        modes[1..].iter().for_each(|own| mode.add_possible_value(*own));
         Some(LeftState { mode, password: PossibleValues::new(password), activity })
     }
 

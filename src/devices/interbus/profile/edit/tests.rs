@@ -196,7 +196,7 @@ fn invalid_value_error_names_limits() {
 
 /// Cams that are not written may lie beyond the new range, unless they are active.
 #[test]
-fn shorter_range_rejects_cams_beyond_it() {
+fn shorter_range_rejects_cams_out_of_range() {
     let device = image();
     let shorter = image_with(&device, &[("steps", Number(750))]);
     // Cam 7 of program 1 ends at 750, and cam 7 of program 8 at 757.

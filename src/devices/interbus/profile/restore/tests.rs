@@ -82,7 +82,7 @@ fn profile_without_identity_fits_any_encoder() {
 }
 
 #[test]
-fn rejects_kept_preset_beyond_range() {
+fn rejects_out_of_range_device_preset() {
     let other = device("7654321", &[("steps", Number(8192)), ("preset", Number(5000))]);
     let options = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
     let left = PlanError::MountingLeft { item: Item::Preset, value: 5000, low: 0, high: 3599 };

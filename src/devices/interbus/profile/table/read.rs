@@ -58,7 +58,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
     }
     table.assign_cams(drafts);
     table.problems.sort_by_key(|problem| (problem.line, problem.column));
-    table.note_repeated_names();
+    table.note_multi_cam_names();
     table
 }
 
@@ -129,7 +129,7 @@ impl CamTable {
     }
 
     /// Adds a note for each name shared by several pulses, because each pulse uses a separate cam.
-    fn note_repeated_names(&mut self) {
+    fn note_multi_cam_names(&mut self) {
         for program in ProgramNumber::all() {
             let mut tracks: Vec<(String, String, Vec<CamNumber>)> = Vec::new();
             for row in self.rows.iter().filter(|row| row.program == program && !row.name.is_empty()) {

@@ -83,7 +83,7 @@ fn reports_rounded_edges() {
 }
 
 #[test]
-fn full_turn_pulse_ends_before_start() {
+fn full_turn_pulse_ends_one_step_early() {
     let degrees = options(Scale::in_degrees(1000.0, 0).unwrap(), 1000);
     for (text, start, stop) in [("0;360", 0, 999), ("90;450", 250, 249), ("-90;270", 750, 749), ("350;370", 972, 28)] {
         assert_eq!(rows(&degrees.read(text)), [(1, 0, "", start, stop)], "{text}");
@@ -103,7 +103,7 @@ fn two_pulses_per_track_use_two_cams() {
 }
 
 #[test]
-fn unnumbered_cams_take_free_numbers() {
+fn unnumbered_cams_take_unused_numbers() {
     let table = steps("cam;name;start;stop\n;a;1;2\n0;b;3;4\n;c;5;6\n2;d;7;8\n");
     assert_eq!(rows(&table), [(1, 1, "a", 1, 2), (1, 0, "b", 3, 4), (1, 3, "c", 5, 6), (1, 2, "d", 7, 8)]);
     let filled = table.to_programs();

@@ -58,7 +58,7 @@ fn emitted_profiles_round_trip() {
 }
 
 #[test]
-fn short_profile_leaves_rest_unset() {
+fn short_profile_omits_optional_values() {
     let read = parse(SHORT).unwrap();
     assert_eq!(read.image.parameters.direction, Direction::Counterclockwise);
     assert_eq!((read.image.shift, read.image.known_programs().count()), (None, 1));
@@ -129,7 +129,7 @@ fn change_edits_only_its_value() {
 
 /// When an entry is added or removed, no other line changes (issue 22.26).
 #[test]
-fn entry_change_affects_only_its_line() {
+fn entry_change_preserves_other_lines() {
     let (_, carried) = edit_profile(COMMENTED, |note, own: &mut InterbusProfile| {
         let program = own.image.program_mut(ProgramNumber::new(2).unwrap()).unwrap().as_mut().unwrap();
         program.set_cam(cam(1), None);

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::CamsUiState as Page;
 use crate::app::{Action, Language, Text};
-use crate::devices::interbus::protocol::{NOMINAL_STORES, ProgramNumber};
+use crate::devices::interbus::protocol::{DESIGN_WRITE_CYCLES, ProgramNumber};
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::translate;
 use crate::ui::controls::{
@@ -54,7 +54,7 @@ pub(super) fn bar_ui(
 
 fn reread_button_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     let ready = encoder.session.is_ready() && encoder.is_stopped();
-    let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);
+    let cost = TEXTS.text("ib_cams.read_cost").with("cycles", DESIGN_WRITE_CYCLES);
     let button = icon_button(ui, ready, icons::ARROW_CLOCKWISE, &translate(theme, "ib_cams.read_again"));
     if button.on_hover_text(theme.format_text(&cost)).clicked() {
         actions.push(Action::device(encoder.session.id, Interbus::ReadPrograms(vec![program])));

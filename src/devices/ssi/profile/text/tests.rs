@@ -123,7 +123,7 @@ const FULL: &str = r#"(
 "#;
 
 #[test]
-fn emits_profile_like_handwritten() {
+fn emitted_profile_matches_handwritten_text() {
     assert_eq!(document(full_profile()).emit(), FULL);
     assert_eq!(profile(FULL), full_profile());
     let cases = [

@@ -13,7 +13,7 @@ use crate::devices::ssi::protocol::range::Range;
 
 /// The reason why a layout has no 32-bit decoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum TooWideError {
+pub enum WordWidthError {
     /// The code word of a position exceeds 32 bits.
     #[error("the position has {bits} bits, and a number of the controller 32")]
     Position {
@@ -50,8 +50,8 @@ struct WordHalves {
 /// Returns the source of a structured text function block `SSI_DECODE`, which uses DWORD instead of LWORD.
 ///
 /// # Errors
-/// Returns a [`TooWideError`] if 32 bits are not sufficient.
-pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWideError> {
+/// Returns a [`WordWidthError`] if 32 bits are not sufficient.
+pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, WordWidthError> {
     let halves = SplitWordDialect::for_layout(layout, Language::StructuredText)?;
     let mut text = String::new();
     // Writing into a String does not fail.
@@ -73,8 +73,8 @@ pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWid
 /// Returns an SCL source file with a function block `SSI_DECODE`. TIA Portal imports it under *External source files*.
 ///
 /// # Errors
-/// Returns a [`TooWideError`] if 32 bits are not sufficient.
-pub fn scl_source(layout: &Layout, title: &str) -> Result<String, TooWideError> {
+/// Returns a [`WordWidthError`] if 32 bits are not sufficient.
+pub fn scl_source(layout: &Layout, title: &str) -> Result<String, WordWidthError> {
     let halves = SplitWordDialect::for_layout(layout, Language::Scl)?;
     let mut text = String::from("FUNCTION_BLOCK \"SSI_DECODE\"\n{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\n");
     let lines = decoder_statements(layout, &halves);
@@ -96,17 +96,19 @@ pub fn scl_source(layout: &Layout, title: &str) -> Result<String, TooWideError> 
 }
 
 impl SplitWordDialect {
-    fn for_layout(layout: &Layout, language: Language) -> Result<Self, TooWideError> {
+    fn for_layout(layout: &Layout, language: Language) -> Result<Self, WordWidthError> {
         let bits = layout.position_code().bits();
         if bits > HALF_BITS {
-            return Err(TooWideError::Position { bits });
+            return Err(WordWidthError::Position { bits });
         }
         if let Range::RoundAxis { steps, revolutions } = layout.descriptor().range {
             let (above, below) = (u64::from(revolutions.numerator), u64::from(revolutions.denominator));
             let steps = u64::from(steps);
             // The greatest intermediate values are position × above, and turns × steps × below + above.
             let greatest = (steps * above).checked_add(above).zip(steps.checked_mul(below));
-            greatest.filter(|(one, other)| (*one).max(*other) <= u64::from(u32::MAX)).ok_or(TooWideError::RoundAxis)?;
+            greatest
+                .filter(|(one, other)| (*one).max(*other) <= u64::from(u32::MAX))
+                .ok_or(WordWidthError::RoundAxis)?;
         }
         Ok(SplitWordDialect { language, is_wide: layout.clock_count() > HALF_BITS })
     }

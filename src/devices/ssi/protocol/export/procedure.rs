@@ -181,7 +181,7 @@ impl<D: Dialect> Writer<'_, D> {
         let d = self.dialect;
         let coding = layout.position_code();
         self.add_comment("the position's bits");
-        let part = |part: &crate::devices::ssi::protocol::layout::BitPart| {
+        let part = |part: &crate::devices::ssi::protocol::layout::BitSegment| {
             d.shift_left(
                 &d.and_expression(&d.shift_right(&d.name("word"), part.in_word), &d.hex(part.mask)),
                 part.in_code,

@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use super::svg::role_name;
-use super::text::{ExportText, ModuleObstacle, SettingMeaning, TranslateFn};
+use super::text::{ExportText, SettingMeaning, TranslateFn, UnsupportedModuleFeature};
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::GrayCoverage;
 use crate::devices::ssi::protocol::explain::Role;
@@ -113,14 +113,14 @@ enum Setting {
 }
 
 /// Returns the property of the frame that no module can decode, if any.
-fn unsupported_feature(layout: &Layout) -> Option<ModuleObstacle> {
+fn unsupported_feature(layout: &Layout) -> Option<UnsupportedModuleFeature> {
     let descriptor = layout.descriptor();
     match descriptor.code {
-        Code::GrayExcess => Some(ModuleObstacle::GrayExcess),
-        Code::Bcd => Some(ModuleObstacle::Bcd),
-        _ if descriptor.coded != GrayCoverage::Position => Some(ModuleObstacle::GrayOver),
-        _ if descriptor.inverted => Some(ModuleObstacle::Inverted),
-        _ if descriptor.between > 0 => Some(ModuleObstacle::Between),
+        Code::GrayExcess => Some(UnsupportedModuleFeature::GrayExcess),
+        Code::Bcd => Some(UnsupportedModuleFeature::Bcd),
+        _ if descriptor.coded != GrayCoverage::Position => Some(UnsupportedModuleFeature::GrayOver),
+        _ if descriptor.inverted => Some(UnsupportedModuleFeature::Inverted),
+        _ if descriptor.between > 0 => Some(UnsupportedModuleFeature::Between),
         _ => None,
     }
 }

@@ -40,7 +40,7 @@ pub enum ExportText {
         first: u8,
     },
     /// The reason why no module can decode the frame.
-    Obstacle(ModuleObstacle),
+    Obstacle(UnsupportedModuleFeature),
     /// Advice to read the frame as binary.
     ReadAsBinary,
     /// Label of the code type in the module TM PosInput.
@@ -90,7 +90,7 @@ pub enum ExportText {
 /// The reason why no module can decode a frame.
 #[expect(missing_docs, reason = "its English, below, says what each is")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ModuleObstacle {
+pub enum UnsupportedModuleFeature {
     GrayExcess,
     Bcd,
     /// Gray code that covers more than the position.
@@ -170,16 +170,18 @@ impl fmt::Display for ExportText {
             Self::NoParity => "none",
             Self::Monoflop => "Monoflop time (tm)",
             Self::HighestClock => "Highest clock",
-            Self::Obstacle(ModuleObstacle::GrayExcess) => {
+            Self::Obstacle(UnsupportedModuleFeature::GrayExcess) => {
                 "The modules support binary and Gray code but not Gray excess. If the value is read as Gray code, it is \
                  too high by a constant amount."
             }
-            Self::Obstacle(ModuleObstacle::Bcd) => "The modules support binary and Gray code but not BCD.",
-            Self::Obstacle(ModuleObstacle::GrayOver) => {
+            Self::Obstacle(UnsupportedModuleFeature::Bcd) => "The modules support binary and Gray code but not BCD.",
+            Self::Obstacle(UnsupportedModuleFeature::GrayOver) => {
                 "The Gray code covers more bits than the position, but the modules convert only the position."
             }
-            Self::Obstacle(ModuleObstacle::Inverted) => "The data wires are swapped. Connect them the other way round.",
-            Self::Obstacle(ModuleObstacle::Between) => {
+            Self::Obstacle(UnsupportedModuleFeature::Inverted) => {
+                "The data wires are swapped. Connect them the other way round."
+            }
+            Self::Obstacle(UnsupportedModuleFeature::Between) => {
                 "There is a gap between the turn bits and the step bits, but most modules can read only a position \
                  without gaps."
             }

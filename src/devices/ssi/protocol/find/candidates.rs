@@ -13,8 +13,8 @@ use crate::devices::ssi::protocol::layout::Layout;
 
 /// Weight of a frame that belongs to no family. A changed setting of a family, in comparison, has a weight of 0.8.
 pub(super) const NO_FAMILY_WEIGHT: f64 = 2.0;
-pub(super) const EXCHANGE_WEIGHT: f64 = 2.0;
-pub(super) const PADDED_WEIGHT: f64 = 1.5;
+pub(super) const SWAPPED_WIRES_WEIGHT: f64 = 2.0;
+pub(super) const GRAY_PADDING_WEIGHT: f64 = 1.5;
 const EVEN_ONLY_WEIGHT: f64 = 8.0;
 
 #[derive(Clone, Debug)]

@@ -2,7 +2,8 @@
 //! active at some time, or are unexplained become separate bits.
 
 use super::candidates::{
-    EXCHANGE_WEIGHT, NO_FAMILY_WEIGHT, PADDED_WEIGHT, TestCandidateFn, encoder_parity, find_ambiguous_parity, sum,
+    GRAY_PADDING_WEIGHT, NO_FAMILY_WEIGHT, SWAPPED_WIRES_WEIGHT, TestCandidateFn, encoder_parity,
+    find_ambiguous_parity, sum,
 };
 use super::frame_set::FrameSet;
 use super::plausible::{common_bit_splits, width_penalty};
@@ -59,13 +60,13 @@ pub(super) fn try_custom_frames(
             };
             let fixed = bits_outside_position(words, read, lead, inverted);
             let high = fixed.iter().filter(|bit| bit.active_low).count();
-            let weights = [(inverted, EXCHANGE_WEIGHT), (reading.parity.is_some(), PARITY)];
+            let weights = [(inverted, SWAPPED_WIRES_WEIGHT), (reading.parity.is_some(), PARITY)];
             let weight = NO_FAMILY_WEIGHT + weight + ALWAYS_HIGH_WEIGHT * high as f64 + sum(&weights);
             let base = FrameDescriptor { errors: fixed, ..base };
             let over =
                 find_ambiguous_parity(reading, inverted).into_iter().flat_map(|parity| parity_variants(&base, parity));
             let all: Vec<(FrameDescriptor, f64)> =
-                over.map(|frame| (frame, PADDED_WEIGHT)).chain([(base.clone(), 0.0)]).collect();
+                over.map(|frame| (frame, GRAY_PADDING_WEIGHT)).chain([(base.clone(), 0.0)]).collect();
             for (frame, more) in all {
                 let whole = match repeat {
                     None => frame,
@@ -100,7 +101,7 @@ fn possible_ranges(read: &FrameNumbers, bits: u8) -> Vec<(Range, f64)> {
         return per_turn.map(|per_turn| (Range::Steps { per_turn, turns: 1 }, unusual)).into_iter().collect();
     }
     if reading.code == Code::Bcd {
-        let per_turn = u32::try_from(reading.wrap_after()).ok();
+        let per_turn = u32::try_from(reading.wrap_period()).ok();
         return per_turn.map(|per_turn| (Range::Steps { per_turn, turns: 1 }, 1.0)).into_iter().collect();
     }
     if let Some((_, to)) = reading.gap {

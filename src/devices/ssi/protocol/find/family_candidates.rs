@@ -1,7 +1,7 @@
 //! Candidate layouts of an encoder family. Only settings whose position ends at the clock found in the recorded frames
 //! are tried.
 
-use super::candidates::{EXCHANGE_WEIGHT, PADDED_WEIGHT, TestCandidateFn, find_ambiguous_parity, sum};
+use super::candidates::{GRAY_PADDING_WEIGHT, SWAPPED_WIRES_WEIGHT, TestCandidateFn, find_ambiguous_parity, sum};
 use super::frame_set::FrameSet;
 use super::plausible::width_penalty;
 use super::reading::FrameNumbers;
@@ -12,7 +12,7 @@ use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
 /// Weight of a setting that differs from the factory setting.
-const CHANGE_WEIGHT: f64 = 0.8;
+const CHANGED_SETTING_WEIGHT: f64 = 0.8;
 
 /// Tries every frame that the family can send. Families earlier in the list are slightly preferred.
 pub(super) fn try_families(
@@ -76,8 +76,10 @@ pub(super) fn try_families(
                             Range::Bits { multiturn, singleturn } => width_penalty(multiturn, singleturn) / 2.0,
                             _ => 0.0,
                         };
-                        let weights = [(inverted, EXCHANGE_WEIGHT), (*coded != GrayCoverage::Position, PADDED_WEIGHT)];
-                        let weight = CHANGE_WEIGHT * changed as f64 + unusual + place as f64 * 0.01 + sum(&weights);
+                        let weights =
+                            [(inverted, SWAPPED_WIRES_WEIGHT), (*coded != GrayCoverage::Position, GRAY_PADDING_WEIGHT)];
+                        let weight =
+                            CHANGED_SETTING_WEIGHT * changed as f64 + unusual + place as f64 * 0.01 + sum(&weights);
                         take(Some((family.key.clone(), settings)), layout, weight);
                     }
                 }

@@ -9,9 +9,9 @@ use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 /// Maximum number of consecutive frames in which a bit deviates because of a disturbance or an error.
 const MAX_DISTURBED_FRAMES: usize = 2;
 /// Maximum percentage of frames in which a constant bit deviates from its usual value.
-const RARE_PERCENT: usize = 25;
+const MAX_DEVIATING_PERCENT: usize = 25;
 /// Maximum percentage of frames in which the repetition differs from the first word.
-const REPEAT_PERCENT: usize = 10;
+const MAX_REPEAT_MISMATCH_PERCENT: usize = 10;
 /// Minimum width of a repeated word in bits.
 const MIN_WORD_BITS: u8 = 4;
 
@@ -110,7 +110,7 @@ impl FrameSet {
     /// Returns whether two clocks carry equal bits in nearly all frames.
     fn are_equal(&self, one: u8, other: u8) -> bool {
         let differs = |word: &&u64| (*word >> (self.clocks - one) ^ *word >> (self.clocks - other)) & 1 == 1;
-        self.words.iter().filter(differs).count() * 100 <= REPEAT_PERCENT * self.words.len()
+        self.words.iter().filter(differs).count() * 100 <= MAX_REPEAT_MISMATCH_PERCENT * self.words.len()
     }
 }
 
@@ -130,7 +130,7 @@ impl Bit {
             usual,
             unusual,
             changes,
-            moves: longest > MAX_DISTURBED_FRAMES || unusual * 100 > RARE_PERCENT * words.len(),
+            moves: longest > MAX_DISTURBED_FRAMES || unusual * 100 > MAX_DEVIATING_PERCENT * words.len(),
         }
     }
 

@@ -24,14 +24,14 @@ const STEPS: [(u8, f64); 16] = [
 const TURNS: [(u8, f64); 9] =
     [(0, 0.0), (12, 0.0), (13, 0.6), (16, 0.6), (14, 1.0), (10, 1.4), (8, 1.4), (15, 1.6), (11, 1.6)];
 /// Minimum number of step bits in multiturn encoders.
-const FEW_STEPS: u8 = 8;
+const MIN_MULTITURN_STEP_BITS: u8 = 8;
 
 /// Returns the weight of a combination of turn bits and step bits. Less common combinations have a higher weight.
 pub(super) fn width_penalty(multiturn: u8, singleturn: u8) -> f64 {
     let of = |table: &[(u8, f64)], bits: u8, other: f64| {
         table.iter().find(|(known, _)| *known == bits).map_or(other, |(_, weight)| *weight)
     };
-    let few = if singleturn < FEW_STEPS { f64::from(FEW_STEPS - singleturn) } else { 0.0 };
+    let few = if singleturn < MIN_MULTITURN_STEP_BITS { f64::from(MIN_MULTITURN_STEP_BITS - singleturn) } else { 0.0 };
     let many = if multiturn == 0 && singleturn > 18 { 1.0 } else { 0.0 };
     of(&STEPS, singleturn, 2.5) + of(&TURNS, multiturn, 2.5) + few + many
 }

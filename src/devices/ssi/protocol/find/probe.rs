@@ -49,11 +49,14 @@ impl<'a> LayoutProbe<'a> {
             both && read.motion.is_even(*index)
         };
         let even: Vec<usize> = (0..read.motion.steps.len()).filter(fits).collect();
-        let ends =
-            even.iter().filter(|index| read.wraps_after(**index)).take(TRIAL_FRAMES / 4).map(|index| (*index, true));
+        let ends = even
+            .iter()
+            .filter(|index| read.wraps_after_frame(**index))
+            .take(TRIAL_FRAMES / 4)
+            .map(|index| (*index, true));
         let every = (even.len() / TRIAL_FRAMES).max(1);
         let mut pairs: Vec<(usize, bool)> =
-            even.iter().step_by(every).map(|index| (*index, read.wraps_after(*index))).chain(ends).collect();
+            even.iter().step_by(every).map(|index| (*index, read.wraps_after_frame(*index))).chain(ends).collect();
         pairs.sort_unstable();
         pairs.dedup();
         LayoutProbe { seen, read, pairs }

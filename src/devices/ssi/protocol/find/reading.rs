@@ -14,21 +14,21 @@ use crate::devices::ssi::protocol::descriptor::Parity;
 const FIRST_TEST_FRAMES: usize = 620;
 const RUN_LENGTH: usize = 31;
 /// Number of the best interpretations, which are tested with all frames.
-const BEST_READINGS: usize = 8;
+const BEST_READING_COUNT: usize = 8;
 /// Maximum number of bits by which an interpretation may need more information than the best one. Within this limit, it
 /// is also tested with other numbers of steps.
 const NEAR_BITS: f64 = 400.0;
 /// Minimum number of changes per thousand frames for a clock to be considered the lowest bit of the position.
-const LAST_PERMILLE: usize = 10;
+const MIN_LOWEST_BIT_CHANGE_PERMILLE: usize = 10;
 /// Minimum percentage of frames with correct parity for a bit to be considered a parity bit.
-const PARITY_PERCENT: usize = 85;
-const INVERTED_BITS: f64 = 2.0;
-const BCD_BITS: f64 = 6.0;
-const PARITY_BITS: f64 = 6.0;
-const GAP_BITS: f64 = 24.0;
-const END_BITS: f64 = 12.0;
-const UNUSUAL_END_BITS: f64 = 4.0;
-const UNEXPLAINED_BITS: f64 = 24.0;
+const MIN_PARITY_MATCH_PERCENT: usize = 85;
+const INVERSION_COST: f64 = 2.0;
+const BCD_COST: f64 = 6.0;
+const PARITY_COST: f64 = 6.0;
+const GAP_COST: f64 = 24.0;
+const END_COST: f64 = 12.0;
+const UNUSUAL_END_COST: f64 = 4.0;
+const UNEXPLAINED_BIT_COST: f64 = 24.0;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Reading {
@@ -65,7 +65,7 @@ impl Reading {
     }
 
     /// Returns the number after which positions wrap, or 0 for 64 bits.
-    pub(super) fn wrap_after(&self) -> u64 {
+    pub(super) fn wrap_period(&self) -> u64 {
         match (self.steps, self.code) {
             (Some((least, _)), _) => least,
             (None, Code::Bcd) => self.value_count(),
@@ -140,22 +140,22 @@ impl Reading {
         let mut unexplained = Vec::new();
         for (clock, bit) in seen.bits().filter(|(clock, _)| !self.uses_clock(*clock)) {
             if let Some(parity) = self.parity.filter(|parity| parity.clock == clock) {
-                bits += PARITY_BITS + binary_entropy(frames - parity_matches(seen, parity), frames);
+                bits += PARITY_COST + binary_entropy(frames - parity_matches(seen, parity), frames);
                 continue;
             }
             bits += bit.information_bits(frames);
             if bit.moves {
                 unexplained.push(clock);
-                bits += UNEXPLAINED_BITS;
+                bits += UNEXPLAINED_BIT_COST;
             }
         }
         let unusual = [
-            (self.inverted, INVERTED_BITS),
-            (self.code == Code::Bcd, BCD_BITS),
-            (self.gap.is_some(), GAP_BITS),
+            (self.inverted, INVERSION_COST),
+            (self.code == Code::Bcd, BCD_COST),
+            (self.gap.is_some(), GAP_COST),
             (
                 self.steps.is_some(),
-                END_BITS + UNUSUAL_END_BITS * self.steps.map_or(0.0, |(steps, _)| unusual_step_cost(steps).into()),
+                END_COST + UNUSUAL_END_COST * self.steps.map_or(0.0, |(steps, _)| unusual_step_cost(steps).into()),
             ),
         ];
         (bits + unusual.iter().filter(|(is, _)| *is).map(|(_, bits)| bits).sum::<f64>(), unexplained)
@@ -165,7 +165,7 @@ impl Reading {
     fn trailing_parity(&self, seen: &FrameSet) -> Option<Parity> {
         let clock = (self.last + 1..=seen.clocks).find(|clock| seen.bit(*clock).moves)?;
         let frames = seen.words().len();
-        let fits = |even| parity_matches(seen, Parity { clock, even }) * 100 >= PARITY_PERCENT * frames;
+        let fits = |even| parity_matches(seen, Parity { clock, even }) * 100 >= MIN_PARITY_MATCH_PERCENT * frames;
         [true, false].into_iter().find(|even| fits(*even)).map(|even| Parity { clock, even })
     }
 }
@@ -173,24 +173,25 @@ impl Reading {
 impl FrameNumbers {
     pub(super) fn new(seen: &FrameSet, reading: Reading) -> Self {
         let numbers = reading.read_numbers(seen.words(), seen.clocks);
-        let motion = Motion::from_numbers(&numbers, reading.wrap_after());
+        let motion = Motion::from_numbers(&numbers, reading.wrap_period());
         let (bits, unexplained) = reading.non_motion_information(seen);
         let mut read = FrameNumbers { bits: motion.bits + bits, reading, numbers, motion, unexplained, closed: false };
         // A disturbed frame does not prove that the end of the range was passed. At a real end, no higher bit changes,
         // not even briefly.
         let even = |index: usize| (index - 2..=index + 2).all(|index| read.motion.is_even(index));
         let usual = |index: usize| (index - 1..=index + 2).all(|index| read.reading.has_usual_bits(seen, index));
-        read.closed = (2..read.motion.steps.len()).any(|index| even(index) && read.wraps_after(index) && usual(index));
+        read.closed =
+            (2..read.motion.steps.len()).any(|index| even(index) && read.wraps_after_frame(index) && usual(index));
         read
     }
 
     /// Returns the total information content in bits without the penalty for unexplained clocks.
     pub(super) fn total_cost(&self) -> f64 {
-        self.bits - UNEXPLAINED_BITS * self.unexplained.len() as f64
+        self.bits - UNEXPLAINED_BIT_COST * self.unexplained.len() as f64
     }
 
     /// Returns whether the numbers wrap after the given frame while the motion continues.
-    pub(super) fn wraps_after(&self, index: usize) -> bool {
+    pub(super) fn wraps_after_frame(&self, index: usize) -> bool {
         let pair = self.numbers.get(index).copied().flatten().zip(self.numbers.get(index + 1).copied().flatten());
         let step = self.motion.steps.get(index).copied().flatten();
         pair.zip(step).is_some_and(|((one, other), step)| (other as i64).wrapping_sub(one as i64) != step)
@@ -211,13 +212,13 @@ pub(super) fn best_readings(seen: &FrameSet) -> Vec<FrameNumbers> {
         let runs = sample.chunks(RUN_LENGTH).map(|run| reading.read_numbers(run, seen.clocks));
         let numbers: Vec<Option<u64>> = runs.flat_map(|run| run.into_iter().chain([None])).collect();
         let whole =
-            Motion::from_numbers(&numbers, reading.wrap_after()).bits * frames as f64 / sample.len().max(1) as f64;
+            Motion::from_numbers(&numbers, reading.wrap_period()).bits * frames as f64 / sample.len().max(1) as f64;
         tried.push((whole + reading.non_motion_information(seen).0, reading));
     }
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut all: Vec<FrameNumbers> = Vec::new();
     let mut best = f64::INFINITY;
-    for (_, reading) in tried.into_iter().take(BEST_READINGS) {
+    for (_, reading) in tried.into_iter().take(BEST_READING_COUNT) {
         let plain = FrameNumbers::new(seen, reading);
         if lacks_highest_bit(seen, &plain) {
             continue;
@@ -236,7 +237,7 @@ pub(super) fn best_readings(seen: &FrameSet) -> Vec<FrameNumbers> {
 
 /// Returns whether a bit before the position changes whenever the numbers wrap. Such a bit is the true highest bit.
 fn lacks_highest_bit(seen: &FrameSet, read: &FrameNumbers) -> bool {
-    let round = read.reading.wrap_after();
+    let round = read.reading.wrap_period();
     let moving = (1..read.reading.first).rev().find(|clock| seen.bit(*clock).moves);
     let Some(clock) = moving.filter(|_| round != 0) else { return false };
     let near = 2 * read.motion.median.unsigned_abs() + read.motion.limit;
@@ -253,7 +254,7 @@ fn lacks_highest_bit(seen: &FrameSet, read: &FrameNumbers) -> bool {
 /// Returns all interpretations that begin at a possible first clock of the position and end at a possible lowest bit.
 fn possible_readings(seen: &FrameSet) -> Vec<Reading> {
     let moving: Vec<u8> = seen.bits().filter(|(_, bit)| bit.moves).map(|(clock, _)| clock).collect();
-    let often = LAST_PERMILLE * seen.words().len() / 1000;
+    let often = MIN_LOWEST_BIT_CHANGE_PERMILLE * seen.words().len() / 1000;
     let lowest: Vec<u8> =
         seen.bits().filter(|(_, bit)| bit.moves || bit.changes > often).map(|(clock, _)| clock).collect();
     let mut ways = Vec::new();

@@ -5,14 +5,14 @@ use super::motion::{Motion, median};
 use super::reading::{FrameNumbers, Reading};
 use crate::devices::ssi::protocol::code::Code;
 
-const MAX_TRIED_COUNTS: usize = 40;
+const MAX_STEP_COUNT_CANDIDATES: usize = 40;
 /// Maximum number of additional bits with which another number of steps is considered as good as the best one.
 const ALTERNATIVE_MARGIN_BITS: f64 = 10.0;
 
 /// Returns the possible codes, each with two possible numbers of steps: the most common one and the largest one that
 /// fits.
 pub(super) fn possible_codes(read: &FrameNumbers) -> Vec<(Code, (u64, u64))> {
-    let whole = read.reading.wrap_after();
+    let whole = read.reading.wrap_period();
     if whole == 0 || read.reading.steps.is_some() {
         return Vec::new();
     }
@@ -58,7 +58,7 @@ fn best_step_counts(read: &FrameNumbers, reading: &Reading, least: &[u64], whole
     let mut costs: Vec<(f64, u64)> = Vec::new();
     let mut add = |all: Vec<u64>| {
         for steps in all.iter().filter(|steps| fits(steps)) {
-            if costs.len() < MAX_TRIED_COUNTS && costs.iter().all(|(_, known)| known != steps) {
+            if costs.len() < MAX_STEP_COUNT_CANDIDATES && costs.iter().all(|(_, known)| known != steps) {
                 costs.push((Motion::from_numbers(&numbers(*steps), *steps).bits, *steps));
             }
         }
@@ -67,7 +67,7 @@ fn best_step_counts(read: &FrameNumbers, reading: &Reading, least: &[u64], whole
     let reach = 4 + 2 * read.motion.median.unsigned_abs();
     let near =
         |steps: u64| (1..=4).flat_map(|by| [steps.saturating_add(by), steps.saturating_sub(by)]).collect::<Vec<_>>();
-    if let Some(steps) = jump_size(&read.motion, whole) {
+    if let Some(steps) = step_count_from_jumps(&read.motion, whole) {
         add(common_step_counts(steps.saturating_sub(8)..=steps.saturating_add(8)));
         add([vec![steps], near(steps)].concat());
     }
@@ -101,7 +101,7 @@ fn best_step_counts(read: &FrameNumbers, reading: &Reading, least: &[u64], whole
 }
 
 /// Returns the number of steps derived from the most frequent jump size.
-fn jump_size(motion: &Motion, whole: u64) -> Option<u64> {
+fn step_count_from_jumps(motion: &Motion, whole: u64) -> Option<u64> {
     let mut jumps: Vec<u64> = motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     jumps.retain(|size| *size > motion.limit);
     jumps.sort_unstable();

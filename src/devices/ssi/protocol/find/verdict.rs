@@ -9,18 +9,18 @@ use super::{CLASSES, ClassEvidence, Group, LayoutClass, LayoutProposal, OpenQues
 use crate::devices::ssi::protocol::range::Range;
 
 /// Minimum lead of the best class over the next one, in bits.
-const LEAD_BITS: f64 = 100.0;
+const MIN_LEAD_BITS: f64 = 100.0;
 /// Maximum information content of steady motion, as a fraction of the bits in the position values.
 const STEADY_MOTION_INFORMATION: f64 = 0.7;
 /// Maximum information content of motion in a certain result, as a fraction of the bits in the position values.
-const CERTAIN_INFORMATION: f64 = 0.35;
+const MAX_INFORMATION_FOR_CERTAINTY: f64 = 0.35;
 /// Maximum percentage of frames that jump or have no valid number.
-const DISTURBED_PERCENT: usize = 15;
+const MAX_DISTURBED_PERCENT: usize = 15;
 /// Minimum number of frames before a result can be reported as certain.
-const CERTAIN_FRAMES: usize = 200;
-const CERTAIN_BITS: u8 = 5;
+const MIN_FRAMES_FOR_CERTAINTY: usize = 200;
+const MIN_WIDTH_FOR_CERTAINTY: u8 = 5;
 /// Minimum number of different frames before a result can be reported as certain.
-const CERTAIN_DIFFERENT_FRAMES: usize = 64;
+const MIN_DISTINCT_FRAMES_FOR_CERTAINTY: usize = 64;
 const MEMBERS: usize = 200;
 
 pub(super) fn uncertainty_reason(words: &FrameSet, groups: &[Group]) -> Option<UncertaintyReason> {
@@ -29,15 +29,17 @@ pub(super) fn uncertainty_reason(words: &FrameSet, groups: &[Group]) -> Option<U
     if !is_even(&first.read, frames, STEADY_MOTION_INFORMATION) {
         return Some(UncertaintyReason::Nothing);
     }
-    if groups.get(1).is_some_and(|next| next.bits - first.bits < LEAD_BITS) {
+    if groups.get(1).is_some_and(|next| next.bits - first.bits < MIN_LEAD_BITS) {
         return Some(UncertaintyReason::Close);
     }
-    let sure = frames >= CERTAIN_FRAMES && first.read.reading.width() >= CERTAIN_BITS;
-    let sure = sure && !has_uniform_jumps(&first.read) && words.distinct_count() >= CERTAIN_DIFFERENT_FRAMES;
+    let sure = frames >= MIN_FRAMES_FOR_CERTAINTY && first.read.reading.width() >= MIN_WIDTH_FOR_CERTAINTY;
+    let sure = sure && !has_uniform_jumps(&first.read) && words.distinct_count() >= MIN_DISTINCT_FRAMES_FOR_CERTAINTY;
     // The readings are compared here without the penalties for uncommon layouts.
-    let sure = sure && groups.iter().skip(1).all(|next| next.read.total_cost() - first.read.total_cost() >= LEAD_BITS);
-    let proven =
-        sure && is_even(&first.read, frames, CERTAIN_INFORMATION) && unproven_properties(words, first).is_empty();
+    let sure =
+        sure && groups.iter().skip(1).all(|next| next.read.total_cost() - first.read.total_cost() >= MIN_LEAD_BITS);
+    let proven = sure
+        && is_even(&first.read, frames, MAX_INFORMATION_FOR_CERTAINTY)
+        && unproven_properties(words, first).is_empty();
     (!proven).then_some(UncertaintyReason::Open)
 }
 
@@ -56,7 +58,7 @@ fn has_uniform_jumps(read: &FrameNumbers) -> bool {
 fn is_even(read: &FrameNumbers, frames: usize, part: f64) -> bool {
     let disturbed = read.motion.jumps / 2 + read.motion.nones;
     read.motion.bits < part * f64::from(read.reading.width()) * frames as f64
-        && disturbed * 100 <= DISTURBED_PERCENT * frames
+        && disturbed * 100 <= MAX_DISTURBED_PERCENT * frames
 }
 
 fn unproven_properties(words: &FrameSet, group: &Group) -> Vec<OpenQuestion> {
@@ -98,7 +100,7 @@ fn step_count_bounds(read: &FrameNumbers) -> Option<(u64, u64)> {
     let allowed = read.reading.allowed_step_counts();
     let (first, last) = match read.reading.steps {
         Some(_) => (*allowed.start(), *allowed.end()),
-        None => (0, read.reading.wrap_after().checked_sub(1)?),
+        None => (0, read.reading.wrap_period().checked_sub(1)?),
     };
     let good = (0..read.numbers.len()).filter(|frame| read.motion.is_good(*frame));
     let mut seen =

@@ -1,6 +1,6 @@
 //! Validates a descriptor, and calculates the shifts and masks of its layout.
 
-use super::{BitPart, Flags, Layout};
+use super::{BitSegment, Flags, Layout};
 use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode, low_bits_mask};
 use crate::devices::ssi::protocol::descriptor::{BitMeaning, FrameDescriptor, GrayCoverage, Parity, Word};
 use crate::devices::ssi::protocol::range::{Range, RangeError};
@@ -64,7 +64,7 @@ pub enum LayoutError {
     #[error("at most {limit} {what} are supported, not {count}")]
     Many {
         /// Part that occurs too often.
-        what: RepeatedPart,
+        what: RepeatableElement,
         /// Maximum number in a frame.
         limit: usize,
         /// Number in the description.
@@ -122,7 +122,7 @@ pub enum ClockUse {
 
 /// A part that may occur several times in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum RepeatedPart {
+pub enum RepeatableElement {
     /// Error bits.
     #[error("error bits")]
     ErrorBits,
@@ -222,8 +222,8 @@ pub(super) fn build_layout(descriptor: FrameDescriptor) -> Result<Layout, Layout
         (bit, low_bits_mask(word) & !(bit | (bit - 1)))
     });
     let used = errors.iter().fold(position | parity.0, |used, bit| used | bit);
-    check_count(RepeatedPart::ErrorBits, 8, descriptor.errors.len())?;
-    check_count(RepeatedPart::Patterns, 4, descriptor.patterns.len())?;
+    check_count(RepeatableElement::ErrorBits, 8, descriptor.errors.len())?;
+    check_count(RepeatableElement::Patterns, 4, descriptor.patterns.len())?;
     let patterns = descriptor.patterns.iter().map(|pattern| match pattern.word {
         Word::Ones => Ok(low_bits_mask(clocks)),
         Word::Bits(word) if word > low_bits_mask(clocks) => Err(LayoutError::Pattern { word, clocks }),
@@ -246,7 +246,7 @@ pub(super) fn build_layout(descriptor: FrameDescriptor) -> Result<Layout, Layout
 }
 
 /// Returns the locations of the upper and lower part of the code word within a word.
-fn word_parts(descriptor: &FrameDescriptor, coding: &PositionCode) -> Result<[BitPart; 2], LayoutError> {
+fn word_parts(descriptor: &FrameDescriptor, coding: &PositionCode) -> Result<[BitSegment; 2], LayoutError> {
     let bits = coding.bits();
     let lead = descriptor.lead.saturating_add(descriptor.between);
     let needed = u16::from(descriptor.lead) + u16::from(descriptor.between) + u16::from(bits);
@@ -265,22 +265,22 @@ fn word_parts(descriptor: &FrameDescriptor, coding: &PositionCode) -> Result<[Bi
         (_, None) => return Err(LayoutError::Between),
     };
     let behind = descriptor.clocks_per_word() - descriptor.lead - descriptor.between - bits;
-    let low = BitPart { in_word: behind, in_code: 0, mask: low_bits_mask(lower) };
+    let low = BitSegment { in_word: behind, in_code: 0, mask: low_bits_mask(lower) };
     // A part without bits has shifts of 0, because a shift by the full width would overflow.
     let high = if lower == bits {
-        BitPart::default()
+        BitSegment::default()
     } else {
-        BitPart { in_word: behind + lower + descriptor.between, in_code: lower, mask: low_bits_mask(bits - lower) }
+        BitSegment { in_word: behind + lower + descriptor.between, in_code: lower, mask: low_bits_mask(bits - lower) }
     };
     Ok([high, low])
 }
 
 /// Moves the bits of a code word to their places in a frame.
-fn code_bits_to_word(parts: &[BitPart; 2], code: u64) -> u64 {
+fn code_bits_to_word(parts: &[BitSegment; 2], code: u64) -> u64 {
     parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word)
 }
 
-fn check_count(what: RepeatedPart, limit: usize, count: usize) -> Result<(), LayoutError> {
+fn check_count(what: RepeatableElement, limit: usize, count: usize) -> Result<(), LayoutError> {
     if count > limit { Err(LayoutError::Many { what, limit, count }) } else { Ok(()) }
 }
 

@@ -2,7 +2,7 @@
 
 use super::code_text;
 use crate::app::Text;
-use crate::devices::ssi::protocol::{Code, ExportText, ModuleObstacle, SettingMeaning};
+use crate::devices::ssi::protocol::{Code, ExportText, SettingMeaning, UnsupportedModuleFeature};
 use crate::devices::ssi::state::TEXTS;
 
 pub fn export_text(text: &ExportText) -> Text {
@@ -31,11 +31,11 @@ pub fn export_text(text: &ExportText) -> Text {
         ExportText::ClockLimit { kilohertz } => own("ssi_sheet.clock_limit").with("khz", kilohertz),
         ExportText::Counting { first } => own("ssi_sheet.counting").with("first", first),
         ExportText::Obstacle(why) => own(match why {
-            ModuleObstacle::GrayExcess => "ssi_sheet.gray_excess",
-            ModuleObstacle::Bcd => "ssi_sheet.bcd",
-            ModuleObstacle::GrayOver => "ssi_sheet.gray_over",
-            ModuleObstacle::Inverted => "ssi_sheet.inverted",
-            ModuleObstacle::Between => "ssi_sheet.between",
+            UnsupportedModuleFeature::GrayExcess => "ssi_sheet.gray_excess",
+            UnsupportedModuleFeature::Bcd => "ssi_sheet.bcd",
+            UnsupportedModuleFeature::GrayOver => "ssi_sheet.gray_over",
+            UnsupportedModuleFeature::Inverted => "ssi_sheet.inverted",
+            UnsupportedModuleFeature::Between => "ssi_sheet.between",
         }),
         ExportText::ReadAsBinary => own("ssi_sheet.as_binary"),
         ExportText::CodeType => own("ssi_sheet.code_type"),
@@ -92,11 +92,11 @@ mod tests {
     fn both_languages_have_same_content() {
         let codes = [Code::Binary, Code::Gray, Code::GrayExcess, Code::Bcd].map(ExportText::CodeName);
         let obstacles = [
-            ModuleObstacle::GrayExcess,
-            ModuleObstacle::Bcd,
-            ModuleObstacle::GrayOver,
-            ModuleObstacle::Inverted,
-            ModuleObstacle::Between,
+            UnsupportedModuleFeature::GrayExcess,
+            UnsupportedModuleFeature::Bcd,
+            UnsupportedModuleFeature::GrayOver,
+            UnsupportedModuleFeature::Inverted,
+            UnsupportedModuleFeature::Between,
         ];
         let values = [
             SettingMeaning::Gray,

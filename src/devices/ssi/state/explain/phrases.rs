@@ -7,7 +7,7 @@ use crate::app::explain::{assert_in_both_languages, profile_error_text, url_erro
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::ssi::procedures::Station;
 use crate::devices::ssi::profile::SsiProfile;
-use crate::devices::ssi::protocol::{ClockUse, LayoutError, RepeatedPart};
+use crate::devices::ssi::protocol::{ClockUse, LayoutError, RepeatableElement};
 use crate::devices::ssi::state::Encoder;
 use crate::devices::ssi::state::explain::layout_error_text;
 use crate::link::UrlQuery;
@@ -80,7 +80,7 @@ fn translates_nested_phrases_to_german() {
             "Takt 30 mit dem Paritätsbit liegt hinter den 15 Takten",
         ),
         (
-            LayoutError::Many { what: RepeatedPart::Patterns, limit: 32, count: 33 },
+            LayoutError::Many { what: RepeatableElement::Patterns, limit: 32, count: 33 },
             "höchstens 32 Muster sind möglich, nicht 33",
         ),
     ];

@@ -4,8 +4,8 @@ use crate::app::Text;
 use crate::app::explain::literal_text;
 use crate::devices::ssi::profile::EntryError;
 use crate::devices::ssi::protocol::{
-    BurstError, ClockUse, CodeError, FormatError, FrameTextError, LayoutError, RangeError, RepeatedPart, SettingName,
-    SettingsError, TooWideError, UnsupportedProperty, WordOperation,
+    BurstError, ClockUse, CodeError, FormatError, FrameTextError, LayoutError, RangeError, RepeatableElement,
+    SettingName, SettingsError, UnsupportedProperty, WordOperation, WordWidthError,
 };
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
@@ -75,10 +75,10 @@ pub fn format_error_text(error: &FormatError) -> Text {
 }
 
 /// Returns the message for a layout that has no decoder for 32-bit controllers.
-pub fn too_wide_text(error: TooWideError) -> Text {
+pub fn word_width_error_text(error: WordWidthError) -> Text {
     match error {
-        TooWideError::Position { bits } => TEXTS.text("ssi.wide_position").with("bits", bits),
-        TooWideError::RoundAxis => TEXTS.text("ssi.wide_round"),
+        WordWidthError::Position { bits } => TEXTS.text("ssi.wide_position").with("bits", bits),
+        WordWidthError::RoundAxis => TEXTS.text("ssi.wide_round"),
     }
 }
 
@@ -158,8 +158,8 @@ pub(super) fn layout_error_reason(error: &LayoutError) -> Text {
             .with("clocks", clocks),
         LayoutError::Many { what, limit, count } => {
             let what = TEXTS.text(match what {
-                RepeatedPart::ErrorBits => "ssi_reason.error_bits",
-                RepeatedPart::Patterns => "ssi_reason.patterns",
+                RepeatableElement::ErrorBits => "ssi_reason.error_bits",
+                RepeatableElement::Patterns => "ssi_reason.patterns",
             });
             TEXTS.text("ssi_reason.many").with("limit", limit).with_text("what", what).with("count", count)
         }

@@ -31,7 +31,7 @@ pub(super) fn family_groups(designer: &LayoutDesigner, family: &Family, settings
 }
 
 /// Returns the family settings after a field was changed, or `None` if the field is not a family setting.
-pub(super) fn settings_after_entry(
+pub(super) fn settings_from_input(
     designer: &LayoutDesigner,
     family: &Family,
     settings: &Settings,

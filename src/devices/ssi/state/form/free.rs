@@ -8,7 +8,7 @@ use crate::devices::ssi::state::design::{Edit, LayoutDesigner};
 const KINDS: [RangeKind; 4] = [RangeKind::Bits, RangeKind::Steps, RangeKind::RoundAxis, RangeKind::Length];
 const MAX_ERRORS: usize = 8;
 
-pub(super) fn free_groups(designer: &LayoutDesigner) -> Vec<Group> {
+pub(super) fn custom_frame_groups(designer: &LayoutDesigner) -> Vec<Group> {
     let descriptor = &designer.design().profile.descriptor;
     let position = position_rows(&KINDS, true, descriptor);
     let mut groups = vec![
@@ -71,7 +71,7 @@ fn error(index: usize, bit: &ErrorBit) -> Group {
 }
 
 /// Returns the edit for a changed field of a frame without a family, or `None` if such a frame does not have the field.
-pub(super) fn edit_after_entry(designer: &LayoutDesigner, field: Field, input: &FieldInput) -> Option<Edit> {
+pub(super) fn edit_from_input(designer: &LayoutDesigner, field: Field, input: &FieldInput) -> Option<Edit> {
     let before = &designer.design().profile.descriptor;
     if let Some(range) = apply_range_input(&before.range, field, input) {
         return Some(Edit::Position(range, before.code));

@@ -70,7 +70,7 @@ fn cleared_count_survives_layout_change() {
 }
 
 #[test]
-fn last_word_belongs_to_session() {
+fn new_session_has_no_last_word() {
     let mut record = Record::new(layout("afs60"));
     record.add_words(vec![run(0, &[GOOD])], 0);
     assert!(record.last().is_some());

@@ -168,7 +168,7 @@ fn invalid_recording_error_names_remedy() {
 fn rejects_huge_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("capture.csv");
-    std::fs::File::create(&path).unwrap().set_len(crate::store::MAX_TEXT + 1).unwrap();
+    std::fs::File::create(&path).unwrap().set_len(crate::store::MAX_TEXT_BYTES + 1).unwrap();
     let why = read_frames(&path, 27).unwrap_err();
     assert_eq!(why.id(), "ssi_capture.too_large");
     assert!(why.terminal_text().contains("16 MB"), "{}", why.terminal_text());

@@ -189,7 +189,7 @@ fn error_bits_can_follow_step_end() {
 
 /// An ATM60 frame with 25 clocks, 8 turn bits and 8 step bits, in both tree formats and right-aligned.
 #[test]
-fn moved_boundaries_yield_manual_formats() {
+fn moved_boundaries_reproduce_documented_formats() {
     let position = 0xA5 << 8 | 0x3C;
     let whole = Strip::from_layout(&Layout::new(FrameDescriptor::binary(12, 13)).unwrap());
     let tree = whole.with_moved_part(Handle::LeadEnd, 4, true).with_moved_part(Handle::StepsEnd, 20, true);

@@ -84,8 +84,8 @@ fn draws_long_pause_with_break() {
     // second one begins with the same margin before the next burst.
     let pieces: Vec<_> = diagram.sections().iter().map(|piece| (micros(piece.from), micros(piece.to))).collect();
     assert_eq!(pieces, [(0.0, 140.5), (82_549.5, 82_588.75)]);
-    assert_eq!(skipped_operations(diagram.gap_after(0)).to_string_in(Language::German), "82,41 ms ausgelassen");
-    assert_eq!(diagram.gap_after(1), 0.0);
+    assert_eq!(skipped_operations(diagram.gap_after_piece(0)).to_string_in(Language::German), "82,41 ms ausgelassen");
+    assert_eq!(diagram.gap_after_piece(1), 0.0);
 }
 
 #[test]

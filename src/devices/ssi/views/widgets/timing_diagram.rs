@@ -70,7 +70,7 @@ fn diagram_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let axis = Axis::new(diagram.sections(), room);
 
     let breaks = axis.break_ranges();
-    let left_out = (0..breaks.len()).map(|piece| caption(&skipped_operations(diagram.gap_after(piece)), muted));
+    let left_out = (0..breaks.len()).map(|piece| caption(&skipped_operations(diagram.gap_after_piece(piece)), muted));
     let moments = diagram.marks().iter().map(|mark| (axis.x(mark.at), caption(&mark.event.to_text(), text)));
     let mut flags: Vec<(f32, Arc<Galley>, bool)> = moments.map(|(x, galley)| (x, galley, true)).collect();
     flags.extend(breaks.iter().zip(left_out).map(|(gap, galley)| (gap.center(), galley, false)));

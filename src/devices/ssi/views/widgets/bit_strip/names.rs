@@ -46,7 +46,7 @@ struct OverflowingName {
 
 impl OverflowingName {
     /// Places the name in a free space beside the names that have already been placed.
-    fn place_next_to(self, tags: &[NameTag]) -> NameTag {
+    fn place_beside_tags(self, tags: &[NameTag]) -> NameTag {
         let width = self.galley.size().x;
         let middle = self.x - width / 2.0;
         let is_in = (-NAME_SPACING..=self.room + NAME_SPACING - width).contains(&middle);
@@ -166,7 +166,7 @@ pub(super) fn name_tags(
     }
     let (begin, end): (Vec<OverflowingName>, Vec<OverflowingName>) = narrow.into_iter().partition(|own| own.begins);
     for narrow in end.into_iter().chain(begin.into_iter().rev()) {
-        tags.push(narrow.place_next_to(&tags));
+        tags.push(narrow.place_beside_tags(&tags));
     }
     let levels = (0..rows.count(strip.layout().clock_count())).map(|line| {
         let own = tags.iter().filter(|tag| tag.line == line);
@@ -187,7 +187,7 @@ pub(super) const fn meaning_verdict(meaning: BitMeaning) -> Verdict {
 /// Returns the widest run of a field and the line that contains it.
 pub(super) fn widest_run(rows: &Rows, field: &Field) -> (Rect, usize) {
     let runs = rows.range_rects(field.first, field.last);
-    let line = rows.line_of(field.first);
+    let line = rows.line_for_clock(field.first);
     let widest = runs.into_iter().enumerate().rev().max_by(|(_, a), (_, b)| a.width().total_cmp(&b.width()));
     widest.map_or((rows.cell_rect(field.first), line), |(number, run)| (run, line + number))
 }

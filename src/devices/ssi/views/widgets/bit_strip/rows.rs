@@ -72,7 +72,7 @@ impl Rows {
         Vec2::new(self.width(clocks) + 2.0 * SIDE_MARGIN, self.tops.last().copied().unwrap_or(LINE_GAP) - LINE_GAP)
     }
 
-    pub(super) fn line_of(&self, clock: u8) -> usize {
+    pub(super) fn line_for_clock(&self, clock: u8) -> usize {
         usize::from(clock.saturating_sub(1) / self.columns)
     }
 
@@ -82,7 +82,7 @@ impl Rows {
 
     pub(super) fn cell_rect(&self, clock: u8) -> Rect {
         let column = f32::from(clock.saturating_sub(1) % self.columns);
-        let at = pos2(self.origin.x + column * self.cell, self.line_top(self.line_of(clock)) + NUMBER_HEIGHT);
+        let at = pos2(self.origin.x + column * self.cell, self.line_top(self.line_for_clock(clock)) + NUMBER_HEIGHT);
         Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL_HEIGHT))
     }
 
@@ -96,7 +96,10 @@ impl Rows {
         let mut runs: Vec<Rect> = Vec::new();
         for clock in first..=last {
             let cell = self.cell_rect(clock);
-            match runs.last_mut().filter(|_| clock > first && self.line_of(clock) == self.line_of(clock - 1)) {
+            match runs
+                .last_mut()
+                .filter(|_| clock > first && self.line_for_clock(clock) == self.line_for_clock(clock - 1))
+            {
                 Some(run) => *run = run.union(cell),
                 None => runs.push(cell),
             }

@@ -80,7 +80,7 @@ fn keys_move_boundaries() {
 }
 
 #[test]
-fn focus_follows_zeros_between_fields() {
+fn focus_follows_split_and_merged_boundaries() {
     let mut harness = tree();
     focus(&mut harness, "Start of the step bits");
     press(&mut harness, &[(NONE, Key::ArrowRight)]);
@@ -124,7 +124,7 @@ fn drags_boundaries() {
 }
 
 #[test]
-fn cancelled_drag_only_previews() {
+fn cancelled_drag_emits_only_previews() {
     let mut harness = tree();
     let from = harness.get_by_label("End of the position bits").rect().center();
     harness.drag_at(from);
