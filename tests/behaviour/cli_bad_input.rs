@@ -162,7 +162,7 @@ fn other_biss_encoder_needs_permission() {
     let restore = ["restore", &file, "--dry-run", "--allow-other-device", "--link", "sim:", "--json"];
     bench.run(&restore).fails(1, &["--allow-other-type", "nothing was written"]);
     let allowed = bench.run(&[&restore[..], &["--allow-other-type"]].concat());
-    assert!(allowed.status == Some(0) && allowed.err.contains("may have a different meaning"), "{allowed:?}");
+    assert!(allowed.status == Some(0) && allowed.err.contains("may have different meanings"), "{allowed:?}");
 }
 
 /// The message names the other type, and the restore is rejected unless the user permits it explicitly (issue 22.9).

@@ -25,8 +25,7 @@ fn broken_settings_count_as_unreachable_server() {
     let bench = bench_with_settings("(\n    user_name: Initials,\n    logbook: postgres,\n)");
     let ran = bench.run(&IDENTIFY);
     assert_eq!(ran.status, Some(0), "{ran:?}");
-    for words in
-        ["settings.ron could not be read completely: line 3, column ", "not known whether the logbook is shared"]
+    for words in ["settings.ron could not be read completely: line 3, column ", "unknown whether the logbook is shared"]
     {
         assert_eq!(ran.err.matches(words).count(), 1, "{words}: {ran:?}");
     }

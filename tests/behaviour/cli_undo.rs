@@ -127,7 +127,7 @@ fn undo_names_its_entry() {
     let file = device.bench.file("r.html");
     assert_eq!(device.run(&["report", "hiperface", "-o", &file, "--language", "en"]).status, Some(0));
     let report = device.bench.read("r.html");
-    for mark in ["Undoes the write of 20", "Undone on 20"] {
+    for mark in ["Undoes the write from 20", "Undone on 20"] {
         assert_eq!(report.matches(mark).count(), 1, "{mark}");
     }
     // With the undo undone, the values of the write are in the device again.

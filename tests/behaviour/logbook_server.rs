@@ -90,7 +90,7 @@ fn entries_wait_for_server() {
     let ran = bench.run_with_server(&server.url(), &WRITE);
     assert_eq!(ran.status, Some(0), "{ran:?}");
     let name = format!("127.0.0.1:{}/logs", server.port);
-    for words in [name.as_str(), "cannot be reached", "sent later", "Entries that wait to be sent: 2."] {
+    for words in [name.as_str(), "cannot be reached", "sent later", "Entries waiting to be sent: 2."] {
         assert!(ran.err.contains(words), "{words}: {ran:?}");
     }
     assert_eq!(ran.err.matches(&name).count(), 1, "said once: {ran:?}");
@@ -237,7 +237,7 @@ fn explains_server_problems() {
     check(
         "postgres://bench@no-such-host.invalid/logs",
         PASSWORD,
-        &["no-such-host.invalid", "not found in the network"],
+        &["no-such-host.invalid", "not found on the network"],
     );
     check(&format!("{url}?sslmode=verify-full"), PASSWORD, &["encrypted connection", "sslrootcert"]);
     check(&format!("{url}?sslmode=prefer"), PASSWORD, &["sslmode=prefer", "verify-full"]);
@@ -245,13 +245,17 @@ fn explains_server_problems() {
     for account in ["bench:wr0ng/x", "bench:wr0ng?x", "bench:x@wr0ng"] {
         check(&format!("postgres://{account}@127.0.0.1:{port}/logs"), "", &["%40, %2F and %3F"]);
     }
-    check(&format!("{url}?hostaddr=10.0.0.5"), PASSWORD, &["hostaddr", "not supported"]);
+    check(&format!("{url}?hostaddr=10.0.0.5"), PASSWORD, &["hostaddr", "unsupported"]);
     server.sql("CREATE ROLE guest LOGIN PASSWORD 'k3y-of-the-bench'");
-    check(&format!("postgres://guest@127.0.0.1:{port}/logs"), PASSWORD, &["lacks a right", "schema public"]);
+    check(
+        &format!("postgres://guest@127.0.0.1:{port}/logs"),
+        PASSWORD,
+        &["does not have the required permission", "schema public"],
+    );
     // The tables, then a newer and an older schema.
     check(&url, PASSWORD, &[]);
     let guest = format!("postgres://guest@127.0.0.1:{port}/logs");
-    check(&guest, PASSWORD, &["lacks a right", "logbook"]);
+    check(&guest, PASSWORD, &["does not have the required permission", "logbook"]);
     server.sql(
         "CREATE FUNCTION full_disk() RETURNS trigger LANGUAGE plpgsql AS
          $$ BEGIN RAISE 'could not extend file' USING ERRCODE = 'disk_full'; END $$;
@@ -260,7 +264,7 @@ fn explains_server_problems() {
     check(&url, PASSWORD, &["disk of the logbook server", "is full", "sent later"]);
     server.sql("DROP FUNCTION full_disk CASCADE");
     server.sql("UPDATE logbook SET schema = 99");
-    check(&url, PASSWORD, &["schema 99", "newer version", "Update the program"]);
+    check(&url, PASSWORD, &["schema 99", "newer program version", "Update the program"]);
     server.sql(
         "UPDATE logbook SET schema = 1; DROP TABLE hold; ALTER TABLE event DROP COLUMN undoes;
          GRANT SELECT ON logbook TO guest",

@@ -154,7 +154,7 @@ fn only_print_time_varies() {
     let page = texts(&bench.read("3.html"));
     let at = page.iter().position(|text| text == "Data field 0, byte 0x00").unwrap();
     assert_eq!(&page[at + 1..at + 3], ["58", "45"]);
-    assert!(page.iter().any(|text| text == "Differences to a.ron"), "{page:?}");
+    assert!(page.iter().any(|text| text == "Differences from a.ron"), "{page:?}");
     // The asset is part of the content.
     assert_ne!(report("4.html", &["--asset", "Axis 1"]).json()["sha256"], first["sha256"]);
 }

@@ -249,10 +249,10 @@ fn comparison_leads_to_review() {
     screen.harness.get_by_label(&screen.say("comparison.only_differences")).click();
     screen.steps();
     assert!(screen.shows("Status of data field 0"));
-    screen.harness.get_by_label("Edit the right side to this value: Data field 0, byte 0x00").click();
+    screen.harness.get_by_label("Copy to the right side as an edit: Data field 0, byte 0x00").click();
     screen.steps();
     assert_eq!(screen.encoder().staged.byte(0, 0), Some(b'X'));
-    assert!(screen.shows("With 1 edit that is not written yet"));
+    assert!(screen.shows("With 1 edit not yet written"));
     screen.act(Action::Comparison(ComparisonAction::Close));
     screen.command(DeviceCommand::RevertAll);
     screen.command(compare_with(&path));

@@ -192,7 +192,7 @@ fn starts_holds_and_stops_virtual_encoder() {
         let slider = screen.words(&encoder_studio::app::explain::signal::setting_name(Quantity::Noise));
         assert!(screen.harness.query_all_by_role_and_label(egui::Role::Slider, &slider).next().is_some());
         screen.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 7.0)));
-        assert!(screen.shows("Amplitude: 7 is outside the range from 0 to 2 V."));
+        assert!(screen.shows("Amplitude: 7 is outside the range 0 to 2 V."));
         screen.click("virtual.hold");
         assert!(screen.studio().signals().source().is_frozen());
         screen.click("virtual.go_on");

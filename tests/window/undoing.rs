@@ -47,7 +47,7 @@ fn plan(desk: &mut Desk, action: impl FnOnce(encoder_studio::app::SessionId) -> 
     until_ready(desk);
 }
 
-const EXACT_UNDO_TEXT: &str = "The logbook can undo this write exactly.";
+const EXACT_UNDO_TEXT: &str = "This write can be fully undone from the logbook.";
 
 #[test]
 fn undo_has_announced_effect() {
@@ -97,7 +97,7 @@ fn review_announces_undo() {
     // The backup does not contain the device address 40h.
     plan(&mut desk, hiperface(HiperfaceChange::SetAddress(DeviceAddress::new(0x45).unwrap())));
     let [text] = undo_texts(&desk).try_into().unwrap();
-    assert!(text.starts_with("Undo of ") && text.contains("write 40 again (write cycles: 1)"), "{text}");
+    assert!(text.starts_with("To undo ") && text.contains("write 40 again (write cycles: 1)"), "{text}");
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn procedure_review_lists_remaining_steps() {
     let mut desk = case_for_tab(tabs::INTERBUS).desk();
     plan(&mut desk, |id| Action::device(id, Interbus::Plan(Box::new(InterbusChange::Default))));
     let [text] = undo_texts(&desk).try_into().unwrap();
-    assert!(text.starts_with("Undo of ") && text.ends_with(": restore the backup."), "{text}");
+    assert!(text.starts_with("To undo ") && text.ends_with(", restore the backup."), "{text}");
     plan(&mut desk, |id| Action::device(id, Interbus::Plan(Box::new(InterbusChange::Preset { value: 7 }))));
     assert!(undo_texts(&desk).iter().any(|text| text.ends_with("Set the position again.")), "{:?}", undo_texts(&desk));
 

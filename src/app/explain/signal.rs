@@ -309,16 +309,13 @@ mod tests {
         assert_eq!(
             said(Quantity::GainRatio, 0.1234),
             [
-                "Gain ratio of cosine to sine: 0.123 is outside the range from 0.2 to 5.",
+                "Cosine-to-sine gain ratio: 0.123 is outside the range 0.2 to 5.",
                 "Verstärkungsverhältnis Kosinus zu Sinus: 0,123 liegt außerhalb des Bereichs von 0,2 bis 5."
             ]
         );
         assert_eq!(
             said(Quantity::Amplitude, 3.0),
-            [
-                "Amplitude: 3 is outside the range from 0 to 2 V.",
-                "Amplitude: 3 liegt außerhalb des Bereichs von 0 bis 2 V."
-            ]
+            ["Amplitude: 3 is outside the range 0 to 2 V.", "Amplitude: 3 liegt außerhalb des Bereichs von 0 bis 2 V."]
         );
         assert_eq!(
             said(Quantity::Periods, 16.5)[0],

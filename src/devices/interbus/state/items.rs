@@ -88,7 +88,7 @@ mod tests {
             ("shift", "Window shift", "Fensterverschiebung"),
             ("cam-mask:2", "Program 2, active cams", "Programm 2, aktive Nocken"),
             ("cam:2:5", "Program 2, cam 5", "Programm 2, Nocken 5"),
-            ("cam:2:5 stop", "Program 2, end of cam 5", "Programm 2, Ende von Nocken 5"),
+            ("cam:2:5 stop", "Program 2, cam 5, stop", "Programm 2, Nocken 5, Ende"),
             ("temperature", "Temperature", "Temperatur"),
             ("default", "All parameters", "Alle Parameter"),
         ] {
