@@ -25,19 +25,14 @@ const RECEIVE_INTERVAL: Duration = Duration::from_secs(10);
 const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Returns the server address from the environment, or else from the settings. Returns `None` if neither contains one.
+/// If the setting could not be read, the server counts as unreachable.
 pub(super) fn server_address(settings: &Settings) -> Option<Result<ServerAddress, ServerAddressError>> {
     match server_from_environment() {
         Some(address) => Some(ServerAddress::from_environment(&address)),
         None if settings.logbook.trim().is_empty() => None,
+        None if settings.logbook == Settings::UNKNOWN_LOGBOOK => Some(Err(ServerAddressError::SettingsUnreadable)),
         None => Some(ServerAddress::from_setting(&settings.logbook)),
     }
-}
-
-/// Returns the server address from the environment while the settings cannot be read. Without it, the server counts as
-/// unreachable.
-pub(super) fn server_address_without_settings() -> Option<Result<ServerAddress, ServerAddressError>> {
-    let unknown = || Err(ServerAddressError::SettingsUnreadable);
-    Some(server_from_environment().map_or_else(unknown, |address| ServerAddress::from_environment(&address)))
 }
 
 fn server_from_environment() -> Option<String> {

@@ -50,7 +50,8 @@ pub struct Settings {
     /// How the logbook refers to the user.
     #[serde(skip_serializing_if = "is_default")]
     pub user_name: UserName,
-    /// Address of the server for a shared logbook, empty without a server. It contains no password.
+    /// Address of the server for a shared logbook, empty without a server, or [`UNKNOWN_LOGBOOK`](Self::UNKNOWN_LOGBOOK).
+    /// It contains no password.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub logbook: String,
     /// Paths of the profiles opened or saved most recently, newest first.
@@ -88,6 +89,10 @@ impl Settings {
         Settings { tab: kinds.first_tab(), ..Settings::default() }
     }
 
+    /// Value of [`logbook`](Self::logbook) after the setting could not be read. It also replaces the unreadable value in the
+    /// file, because the logbook may be shared until the user enters an address or none.
+    pub const UNKNOWN_LOGBOOK: &str = "unknown";
+
     /// Maximum number of links of a tab, and of recent profiles.
     const MAX_RECENT_ENTRIES: usize = 12;
 
@@ -97,6 +102,12 @@ impl Settings {
     /// Returns the place of the first error if the text is not in the form that [`emit`](Self::emit) writes.
     pub fn parse(text: &str) -> Result<Self, SpannedError> {
         ron::from_str(text)
+    }
+
+    /// Returns the settings that apply while the file cannot be read. They name no user and assume a logbook server,
+    /// because the file may require both.
+    pub(super) fn unread(kinds: KindRegistry) -> Self {
+        Settings { tab: kinds.first_tab(), ..Self::parse_partial("") }
     }
 
     /// Returns the readable part of a file that [`parse`](Self::parse) rejects. Entries are read one by one, so an
@@ -140,7 +151,14 @@ impl Settings {
                 // The rules of the plant may forbid names.
                 ron::from_str::<Own>(text).map_or(UserName::Off, |own| own.user_name)
             },
-            logbook: entry!(logbook: String, usual.logbook),
+            logbook: {
+                #[derive(Deserialize)]
+                struct Own {
+                    #[serde(default)]
+                    logbook: String,
+                }
+                ron::from_str::<Own>(text).map_or_else(|_| Self::UNKNOWN_LOGBOOK.to_owned(), |own| own.logbook)
+            },
             recent_profiles: entry!(recent_profiles: Vec<String>, usual.recent_profiles),
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
@@ -207,16 +225,6 @@ impl Settings {
             ron::Value::String(name) if !known.contains(&name.as_str()) => Some(name.clone()),
             _ => None,
         })
-    }
-
-    /// Returns whether a file contains a readable server address or none at all.
-    pub(super) fn is_logbook_readable(text: &str) -> bool {
-        #[derive(Deserialize)]
-        struct Own {
-            #[serde(default, rename = "logbook")]
-            _logbook: String,
-        }
-        ron::from_str::<Own>(text).is_ok()
     }
 
     pub fn emit(&self) -> String {

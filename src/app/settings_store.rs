@@ -14,11 +14,11 @@ use jiff::Zoned;
 
 use super::action::{Action, TaskResult};
 use super::kinds::KindRegistry;
-use super::logbook_server::{server_address, server_address_without_settings};
+use super::logbook_server::server_address;
 use super::services::Services;
 use super::{Settings, Severity, Text, explain};
 use crate::profile::find_location;
-use crate::store::{FileError, FileErrorKind, ServerAddress, ServerAddressError, UserName, read_text, update_text};
+use crate::store::{FileError, FileErrorKind, ServerAddress, ServerAddressError, read_text, update_text};
 
 /// Maximum time to wait for the settings when the program starts.
 const START_TIMEOUT: Duration = Duration::from_millis(300);
@@ -103,6 +103,7 @@ impl SettingsStore {
             Ok(read) => store.adopt(read, &mut settings, services),
             Err(_) => {
                 drop(receiver);
+                apply_to_logbook(&Settings::unread(kinds), services);
                 services.notify(Severity::Warning, vec![Text::new("session.settings_slow")], None);
             }
         }
@@ -134,14 +135,12 @@ impl SettingsStore {
             LoadedSettings::Unreadable(error) => {
                 let text = Text::new("session.settings_unread").with_text("why", explain::file_error_text(&error));
                 services.notify(Severity::Warning, vec![text], None);
-                UserName::Off.apply();
-                services.world.store.logbook_server().set_address(server_address_without_settings());
+                apply_to_logbook(&Settings::unread(kinds), services);
                 return;
             }
         };
         *settings = found.clone().with_changes(&Settings::initial(kinds), settings);
-        settings.user_name.apply();
-        services.world.store.logbook_server().set_address(server_address(settings));
+        apply_to_logbook(settings, services);
         self.known = found;
     }
 
@@ -252,11 +251,11 @@ impl CommandSettings {
                 let settings = Settings::default();
                 CommandSettings { server: server_address(&settings), settings, problem: None }
             }
-            Err(error) => CommandSettings {
-                settings: Settings::parse_partial(""),
-                server: server_address_without_settings(),
-                problem: Some(Text::new("settings.unread").with_text("why", explain::file_error_text(&error))),
-            },
+            Err(error) => {
+                let settings = Settings::parse_partial("");
+                let problem = Text::new("settings.unread").with_text("why", explain::file_error_text(&error));
+                CommandSettings { server: server_address(&settings), settings, problem: Some(problem) }
+            }
         }
     }
 
@@ -274,13 +273,17 @@ impl CommandSettings {
             Err(error) => error,
         };
         let settings = Settings::parse_partial(text);
-        let is_readable = Settings::is_logbook_readable(text);
-        let server = if is_readable { server_address(&settings) } else { server_address_without_settings() };
         let place = error.span.start;
         let why = explain::syntax_error_text(place.line, place.col, explain::literal_text(&error.code));
         let problem = Text::new("settings.broken").with("path", path.display()).with_text("why", why);
-        CommandSettings { settings, server, problem: Some(problem) }
+        CommandSettings { server: server_address(&settings), settings, problem: Some(problem) }
     }
+}
+
+/// Applies the settings that concern new entries of the logbook.
+fn apply_to_logbook(settings: &Settings, services: &Services) {
+    settings.user_name.apply();
+    services.world.store.logbook_server().set_address(server_address(settings));
 }
 
 /// Reads the settings. An invalid file is copied to another name in the same folder.
@@ -311,9 +314,7 @@ fn parse_settings(text: Result<String, FileError>, kinds: KindRegistry) -> Resul
         }
         Err(FileError { problem: FileErrorKind::NotFound, .. }) => Ok(None),
         Err(FileError { problem: FileErrorKind::NotUtf8 { .. } | FileErrorKind::TooLarge { .. }, .. }) => {
-            let mut settings = Settings::initial(kinds);
-            settings.user_name = UserName::Off;
-            Ok(Some((settings, false)))
+            Ok(Some((Settings::unread(kinds), false)))
         }
         Err(error) => Err(error),
     }

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use encoder_studio::app::{Action, ColorScheme, Language, Settings, Severity};
-use encoder_studio::store::UserName;
+use encoder_studio::app::{Action, ColorScheme, Language, ServerAction, Settings, Severity, Studio};
+use encoder_studio::store::{ServerAddressError, ServerErrorKind, UserName};
 
 use crate::support::{Desk, OTHER_PORT, PORT};
 
@@ -78,11 +78,41 @@ fn keeps_broken_settings_until_change() {
         expected.language = language;
         // Unless the file says how the user is named in the logbook, the name is left out.
         expected.user_name = if broken.starts_with(b"(") { UserName::Full } else { UserName::Off };
+        if !broken.starts_with(b"(") {
+            expected.logbook = Settings::UNKNOWN_LOGBOOK.to_owned();
+        }
         assert_eq!(desk.studio.settings, expected);
         assert_eq!(fs::read(&path).unwrap(), broken);
         desk.act(Action::SetTheme(ColorScheme::Light));
         kept(&mut desk);
         assert_eq!(fs::read(&aside).unwrap(), broken);
+    }
+}
+
+/// A setting that could not be read may name a server, so write cycles of other benches may be missing.
+#[test]
+fn broken_settings_count_as_unreachable_server() {
+    for broken in [b"(\n    logbook: postgres,\n)".as_slice(), b"(logbook: \"postgres://db.plant/logs\"", b"\xFF\xFE"] {
+        let desk = Desk::fresh("");
+        let path = desk.outside.store().settings_path();
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, broken).unwrap();
+        let mut desk = restarted(desk);
+        let is_unknown = |studio: &Studio| {
+            let unread = ServerErrorKind::Address(ServerAddressError::SettingsUnreadable);
+            let exchange = studio.server_exchange();
+            exchange.and_then(|own| own.contact.problem.as_ref()).is_some_and(|own| own.problem == unread)
+        };
+        desk.until("the server is unknown", is_unknown);
+        // The next start must not take the rewritten file for one without a server.
+        desk.act(Action::SetTheme(ColorScheme::Light));
+        kept(&mut desk);
+        let mut desk = restarted(desk);
+        desk.until("the server is still unknown", is_unknown);
+        desk.act(Action::Server(ServerAction::Save { address: String::new(), password: None }));
+        assert!(desk.studio.server_exchange().is_none(), "the user has decided");
+        kept(&mut desk);
+        assert!(restarted(desk).studio.server_exchange().is_none());
     }
 }
 
@@ -113,6 +143,7 @@ fn applies_settings_loaded_late() {
     assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
     let mut desk = restarted(desk);
     assert_eq!(desk.notice_ids(Severity::Warning), ["session.settings_slow"]);
+    assert!(desk.studio.server_exchange().is_some(), "the settings may name a server of the logbook");
     desk.act(Action::SetLanguage(Language::German));
     desk.settle();
     assert!(!path.is_file(), "nothing was written in its place");
@@ -120,6 +151,7 @@ fn applies_settings_loaded_late() {
     fs::remove_file(&path).unwrap();
     desk.until("they are read", |studio| studio.settings.theme == ColorScheme::Light);
     assert!(desk.studio.services.log.current().is_none(), "they are here");
+    assert!(desk.studio.server_exchange().is_none(), "they name no server");
     settings.language = Language::German;
     assert_eq!(desk.studio.settings, settings);
     kept(&mut desk);
