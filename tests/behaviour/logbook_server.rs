@@ -243,7 +243,7 @@ fn explains_server_problems() {
     check(&format!("{url}?sslmode=prefer"), PASSWORD, &["sslmode=prefer", "verify-full"]);
     check("mysql://db.plant/logs", PASSWORD, &["postgres://USER@HOST/DATABASE"]);
     for account in ["bench:wr0ng/x", "bench:wr0ng?x", "bench:x@wr0ng"] {
-        check(&format!("postgres://{account}@127.0.0.1:{port}/logs"), "", &["%40, %2F and %3F"]);
+        check(&format!("postgres://{account}@127.0.0.1:{port}/logs"), "", &["%40, %2F, %3F and %26"]);
     }
     check(&format!("{url}?hostaddr=10.0.0.5"), PASSWORD, &["hostaddr", "unsupported"]);
     server.sql("CREATE ROLE guest LOGIN PASSWORD 'k3y-of-the-bench'");

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use tokio_postgres::Config;
 use tokio_postgres::config::Host;
 
-const DEFAULT_PORT: u16 = 5432;
+pub(super) const DEFAULT_PORT: u16 = 5432;
 
 const PASSWORD: &str = "password";
 
@@ -58,7 +58,7 @@ pub enum ServerAddressError {
     #[error("the address is not of the form postgres://USER@HOST/DATABASE")]
     NotAnAddress,
     /// A name or password contains a character that separates the parts of an address.
-    #[error("the address contains one of the characters @ / ? within a name or a password")]
+    #[error("the address contains one of the characters @ / ? & within a name or a password")]
     Ambiguous,
     #[error("the parameter {name} is not supported")]
     UnknownParameter { name: String },
@@ -102,11 +102,14 @@ impl ServerAddress {
             return Err(ServerAddressError::Ambiguous);
         }
         let (place, query) = rest.split_once('?').unwrap_or((rest, ""));
-        let pairs =
-            query.split('&').filter(|pair| !pair.is_empty()).map(|pair| pair.split_once('=').unwrap_or((pair, "")));
-        let pairs: Vec<(&str, &str)> = pairs.collect();
+        let pairs = query.split('&').filter(|pair| !pair.is_empty()).map(|pair| pair.split_once('='));
+        // A part without a name may be the end of a password with &.
+        let pairs: Vec<(&str, &str)> = pairs.collect::<Option<_>>().ok_or(ServerAddressError::Ambiguous)?;
+        // What follows a password may belong to it, so no message contains it.
+        let hides_password = pairs.iter().any(|(name, _)| *name == PASSWORD);
+        let reject = |error| if hides_password { ServerAddressError::Ambiguous } else { error };
         if let Some((name, _)) = pairs.iter().find(|(name, _)| *name != PASSWORD && !PARAMETERS.contains(name)) {
-            return Err(ServerAddressError::UnknownParameter { name: (*name).to_owned() });
+            return Err(reject(ServerAddressError::UnknownParameter { name: (*name).to_owned() }));
         }
         let parameter = |name: &str| pairs.iter().find(|(own, _)| *own == name).map(|(_, value)| *value);
         let parsed =
@@ -119,7 +122,7 @@ impl ServerAddress {
         let encryption = match parameter("sslmode") {
             Some("disable") => Encryption::Off,
             Some("require" | "verify-ca" | "verify-full") => Encryption::Verified(authorities),
-            Some(found) => return Err(ServerAddressError::UnknownEncryption { found: found.to_owned() }),
+            Some(found) => return Err(reject(ServerAddressError::UnknownEncryption { found: found.to_owned() })),
             None if authorities.is_none() && config.get_hosts().iter().all(is_local_host) => Encryption::Off,
             None => Encryption::Verified(authorities),
         };
@@ -241,8 +244,13 @@ mod tests {
     #[test]
     fn password_characters_are_unambiguous() {
         let printable = || (0x21..0x7fu8).map(char::from);
-        for (first, second) in printable().flat_map(|first| printable().map(move |second| (first, second))) {
-            let given = format!("postgres://bench:k{first}3{second}y@db.plant/logs");
+        let pairs = printable().flat_map(|first| printable().map(move |second| (first, second)));
+        let places = pairs.flat_map(|(first, second)| {
+            let password = format!("k{first}3{second}y");
+            [format!("bench:{password}@db.plant/logs"), format!("bench@db.plant/logs?password={password}")]
+                .map(|rest| (first, second, format!("postgres://{rest}")))
+        });
+        for (first, second, given) in places {
             match ServerAddress::from_environment(&given) {
                 Ok(address) => {
                     let shown = format!("{address} {} {address:?}", address.name());
@@ -250,11 +258,13 @@ mod tests {
                     assert!(address.has_password() && !shown.contains(&format!("k{first}3")), "{given}: {shown}");
                 }
                 Err(error) => {
-                    assert!([first, second].iter().any(|own| ['@', '/', '?'].contains(own)), "{given}: {error}");
+                    assert!([first, second].iter().any(|own| ['@', '/', '?', '&'].contains(own)), "{given}: {error}");
                     assert_eq!(error, ServerAddressError::Ambiguous, "{given}");
                 }
             }
         }
+        let mode = "postgres://bench@db.plant/logs?password=k3y&sslmode=s3cret";
+        assert_eq!(ServerAddress::from_environment(mode), Err(ServerAddressError::Ambiguous));
         let escaped = ServerAddress::from_environment("postgres://bench:p%40%2F%3Fw@db.plant/logs").unwrap();
         assert_eq!(escaped.password.unwrap().reveal(), "p@/?w");
     }

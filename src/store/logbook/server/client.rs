@@ -13,10 +13,8 @@ use tokio_postgres::config::{Host, SslMode};
 use tokio_postgres::{Config, NoTls};
 use tokio_postgres_rustls::MakeRustlsConnect;
 
-use super::address::{Encryption, Password, ServerAddress};
+use super::address::{DEFAULT_PORT, Encryption, Password, ServerAddress};
 use super::error::{ServerErrorKind, UnreachableCause};
-
-const DEFAULT_PORT: u16 = 5432;
 
 /// Maximum time for a call, regardless of the deadline for all of them.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(5);
