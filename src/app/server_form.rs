@@ -117,6 +117,7 @@ impl Studio {
         self.server_form = None;
         self.settings.logbook = address.as_ref().map(ToString::to_string).unwrap_or_default();
         if !is_server_given() {
+            LogbookServer::retry_keyring();
             self.services.world.store.logbook_server().set_address(address.clone().map(Ok));
         }
         if let Some(address) = address.filter(ServerAddress::has_password) {

@@ -1,7 +1,6 @@
 //! The user's files, and the logbook server from the settings or the environment.
 
 use std::sync::Once;
-use std::time::Duration;
 
 use super::Result;
 use super::args::CommonArgs;
@@ -9,9 +8,6 @@ use super::output::{Output, write_stderr};
 use super::runner::to_failure;
 use crate::app::{CommandSettings, Text, explain};
 use crate::store::{Logbook, LogbookServer, ServerAddressError, ServerErrorKind, Store};
-
-/// Maximum time for an exchange with the logbook server.
-const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Ensures that a settings problem is reported once, although a command may read the settings several times.
 static SETTINGS_REPORTED: Once = Once::new();
@@ -32,7 +28,7 @@ pub(super) fn user_store(common: &CommonArgs) -> Result<Store> {
 
 /// Exchanges entries with the logbook server, if any. An unavailable server is reported at the end of the command.
 pub(super) fn exchange_entries(store: &Store) {
-    store.logbook_server().transfer_unless_recently_failed(&store.logbook_path(), SERVER_TIMEOUT);
+    store.logbook_server().transfer_unless_recently_failed(&store.logbook_path(), LogbookServer::TIMEOUT);
 }
 
 /// Reports the other programs that have the device of this command open. Only the first such report is printed.

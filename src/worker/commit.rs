@@ -9,7 +9,6 @@ mod undo;
 
 use std::hash::Hash;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use jiff::Timestamp;
 
@@ -21,11 +20,9 @@ use crate::profile::{
     Body, ChangedItem, ConfirmedPlan, Consent, Operation, OperationError, Plan, ProfileDocument, Write,
     WriteInterruption, WriteRecord,
 };
-use crate::store::{DeviceKey, EntryId, EntryKind, EntryUid, FileError, Intent, Logbook, LogbookError, Outcome, Store};
-
-/// Maximum time for an exchange with the logbook server. If it fails, only the write cycles known to this computer
-/// count.
-const SERVER_TIMEOUT: Duration = Duration::from_secs(2);
+use crate::store::{
+    DeviceKey, EntryId, EntryKind, EntryUid, FileError, Intent, Logbook, LogbookError, LogbookServer, Outcome, Store,
+};
 
 /// Highest limit of write cycles at which a memory is considered to wear out quickly. Write cycles missing from the
 /// logbook could then use up all that are left.
@@ -241,7 +238,8 @@ pub fn is_incomplete(seen: Option<CycleCount>, cost: u64, limit: u64) -> bool {
 pub fn cycles_seen(log: &SessionLog, store: &Store, device: &DeviceKey) -> Option<CycleCount> {
     log.record_identity(store, device);
     let path = store.logbook_path();
-    let transferred = store.logbook_server().transfer_unless_recently_failed(&path, SERVER_TIMEOUT);
+    // If the exchange fails, only the write cycles known to this computer count.
+    let transferred = store.logbook_server().transfer_unless_recently_failed(&path, LogbookServer::TIMEOUT);
     count_cycles(&path, device, transferred.is_none_or(|result| result.is_ok()))
 }
 

@@ -74,14 +74,20 @@ pub struct ServerContact {
 }
 
 impl LogbookServer {
-    /// Sets or removes the server. An invalid address is treated as an unreachable server. The keyring may be accessed
-    /// again, because the user may have changed it.
+    /// Maximum time for a transfer for which the user waits.
+    pub const TIMEOUT: Duration = Duration::from_secs(2);
+
+    /// Sets or removes the server. An invalid address is treated as an unreachable server.
     pub fn set_address(&self, address: Option<Result<ServerAddress, ServerAddressError>>) {
-        keyring::allow_request();
         let mut state = self.state();
         if state.address != address {
             *state = State { address, held: std::mem::take(&mut state.held), ..State::default() };
         }
+    }
+
+    /// Permits another access to the keyring, because the user may have changed it.
+    pub fn retry_keyring() {
+        keyring::allow_request();
     }
 
     /// Tests the connection to a server without changing anything there. Returns the number of entries, or `None` if
