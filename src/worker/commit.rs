@@ -258,7 +258,7 @@ fn count_cycles(path: &Path, device: &DeviceKey, is_complete: bool) -> Option<Cy
     let read = |logbook: Logbook| Ok((logbook.write_cycles(device)?, logbook.damaged_file()?));
     match Logbook::open(path).and_then(read) {
         // The damaged file may contain any number of write cycles, until the user has dealt with it.
-        Ok((_, Some(damaged))) if damaged.exists() => None,
+        Ok((_, Some(damaged))) if damaged.try_exists().unwrap_or(true) => None,
         Ok((seen, damaged)) => Some(CycleCount { seen, is_complete: is_complete && damaged.is_none() }),
         Err(error) => {
             tracing::warn!("{error}");

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 use rusqlite::config::DbConfig;
-use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension};
+use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::error::LogbookErrorKind;
 use super::schema;
@@ -17,6 +17,8 @@ use crate::store::file_lock::wait_for;
 
 /// Suffixes of the additional files that SQLite creates.
 const SQLITE_FILE_SUFFIXES: [&str; 2] = ["-wal", "-shm"];
+/// Beginning and end of the names of damaged files.
+const NAME: (&str, &str) = ("logbook-damaged-", ".sqlite");
 /// Suffix of the new file before it replaces the damaged one.
 const NEW: &str = "-new";
 
@@ -48,18 +50,38 @@ fn create_replacement(new: &Path, kept: &Path, patience: Duration) -> Result<(),
     // A program that was killed at this point may have left a file behind.
     let _ = fs::remove_file(new);
     let database = schema::open(new, patience)?;
-    let row = (Timestamp::now().to_string(), kept.to_string_lossy());
+    let name = kept.file_name().unwrap_or_default().to_string_lossy();
+    let row = (Timestamp::now().to_string(), name);
     database.execute("INSERT INTO damage (at, kept) VALUES (?1, ?2)", row)?;
     // Closing the database moves everything into the file itself.
     database.close().map_err(|(_, error)| error)?;
     Ok(())
 }
 
-/// Returns the most recent damaged file, whose entries are missing from this logbook.
-pub(super) fn latest_damaged_file(database: &Connection) -> rusqlite::Result<Option<PathBuf>> {
-    let sql = "SELECT kept FROM damage ORDER BY rowid DESC LIMIT 1";
-    let kept = database.query_row(sql, [], |row| row.get::<_, String>(0)).optional()?;
-    Ok(kept.map(PathBuf::from))
+/// Returns a damaged file whose entries are missing from this logbook: one that still exists, or else the most recent
+/// one. `path` is the path of the logbook.
+pub(super) fn damaged_file(database: &Connection, path: &Path) -> rusqlite::Result<Option<PathBuf>> {
+    let mut statement = database.prepare("SELECT kept FROM damage ORDER BY rowid DESC")?;
+    let kept = statement.query_map([], |row| row.get::<_, String>(0))?.collect::<Result<Vec<_>, _>>()?;
+    // The folder may have been moved. Earlier versions recorded the whole path.
+    let recorded = kept.iter().filter_map(|kept| Some(path.with_file_name(Path::new(kept).file_name()?)));
+    let mut files: Vec<PathBuf> = recorded.collect();
+    let Some(latest) = files.first().cloned() else { return Ok(None) };
+    // A logbook that was damaged in turn may have replaced another one.
+    files.extend(damaged_files_beside(path));
+    Ok(files.into_iter().find(|file| may_exist(file)).or(Some(latest)))
+}
+
+/// Returns whether a file exists, or may exist because its folder cannot be read.
+fn may_exist(file: &Path) -> bool {
+    file.try_exists().unwrap_or(true)
+}
+
+fn damaged_files_beside(path: &Path) -> Vec<PathBuf> {
+    let Some(entries) = path.parent().and_then(|folder| fs::read_dir(folder).ok()) else { return Vec::new() };
+    let is_damaged = |name: &str| name.starts_with(NAME.0) && name.ends_with(NAME.1);
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    paths.filter(|file| file.file_name().and_then(|name| name.to_str()).is_some_and(is_damaged)).collect()
 }
 
 /// Returns whether an error means that the file itself is damaged, rather than a value in it.
@@ -82,8 +104,8 @@ fn is_damaged(path: &Path) -> bool {
 fn unused_name(path: &Path) -> PathBuf {
     let time = Timestamp::now().strftime("%Y%m%dT%H%M%SZ");
     let names = (1..).map(|number: u32| match number {
-        1 => path.with_file_name(format!("logbook-damaged-{time}.sqlite")),
-        _ => path.with_file_name(format!("logbook-damaged-{time}-{number}.sqlite")),
+        1 => path.with_file_name(format!("{}{time}{}", NAME.0, NAME.1)),
+        _ => path.with_file_name(format!("{}{time}-{number}{}", NAME.0, NAME.1)),
     });
     let mut free = names.filter(|name| !matches!(name.try_exists(), Ok(true)));
     free.next().unwrap_or_else(|| path.to_owned())
@@ -93,4 +115,31 @@ fn with_name_suffix(path: &Path, ending: &str) -> PathBuf {
     let mut name = OsString::from(path);
     name.push(ending);
     PathBuf::from(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::Logbook;
+
+    #[test]
+    fn remembers_every_damaged_file() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("before/logbook.sqlite");
+        drop(Logbook::open(&path).unwrap());
+        let damage = || {
+            fs::write(&path, "no database").unwrap();
+            Logbook::open(&path).unwrap().damaged_file().unwrap().unwrap()
+        };
+        let (first, second) = (damage(), damage());
+        assert_ne!(first, second);
+        fs::remove_file(second).unwrap();
+        let moved = root.path().join("after");
+        fs::rename(root.path().join("before"), &moved).unwrap();
+        let logbook = Logbook::open(&moved.join("logbook.sqlite")).unwrap();
+        let first = moved.join(first.file_name().unwrap());
+        assert_eq!(logbook.damaged_file().unwrap().as_ref(), Some(&first));
+        fs::remove_file(&first).unwrap();
+        assert!(logbook.damaged_file().unwrap().is_some_and(|gone| !may_exist(&gone)));
+    }
 }

@@ -240,13 +240,13 @@ impl Logbook {
         outbox::count_waiting(&self.database).map_err(|error| self.database_error(error))
     }
 
-    /// Returns the path of the damaged file that this logbook replaced, if any. Its entries and write cycles are
-    /// missing from this logbook.
+    /// Returns the path of a damaged file that this logbook replaced, if any. Its entries and write cycles are missing
+    /// from this logbook. A file that still exists is preferred to one that was removed.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
     pub fn damaged_file(&self) -> Result<Option<PathBuf>, LogbookError> {
-        aside::latest_damaged_file(&self.database).map_err(|error| self.database_error(error))
+        aside::damaged_file(&self.database, &self.path).map_err(|error| self.database_error(error))
     }
 
     /// Converts a database error to the one reported. If the file is damaged, a new file is created for the next use.
