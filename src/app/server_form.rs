@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::action::{Action, TaskResult};
 use super::logbook_server::is_server_given;
 use super::studio::Studio;
-use super::{Severity, Text, explain};
+use super::{Settings, Severity, Text, explain};
 use crate::store::{KeyringError, LogbookServer, Password, ServerAddress, ServerError};
 
 /// Maximum duration of a connection test.
@@ -18,6 +18,10 @@ pub struct ServerForm {
     /// Number of the running test. Results of earlier tests are ignored.
     test: u64,
     is_testing: bool,
+    /// Address from the settings, without a password.
+    address: String,
+    /// Password found in the address of the settings.
+    password: Option<Password>,
     outcome: Option<Result<Text, Text>>,
 }
 
@@ -39,6 +43,27 @@ pub enum ServerAction {
 }
 
 impl ServerForm {
+    /// Creates a form with the server from the settings.
+    fn new(settings: &Settings) -> Self {
+        let setting = &settings.logbook;
+        let (address, password) = match ServerAddress::from_environment(setting) {
+            Ok(address) => (address.to_string(), address.password().cloned()),
+            Err(_) if setting == Settings::UNKNOWN_LOGBOOK => (String::new(), None),
+            Err(_) => (setting.clone(), None),
+        };
+        ServerForm { address, password, ..ServerForm::default() }
+    }
+
+    /// Returns the initial address, which contains no password.
+    pub fn address(&self) -> &str {
+        &self.address
+    }
+
+    /// Returns the initial password.
+    pub fn password(&self) -> Option<&Password> {
+        self.password.as_ref()
+    }
+
     pub fn is_testing(&self) -> bool {
         self.is_testing
     }
@@ -68,7 +93,7 @@ impl Studio {
 
     pub(super) fn apply_server_action(&mut self, action: ServerAction) {
         match action {
-            ServerAction::Open => self.server_form = Some(ServerForm::default()),
+            ServerAction::Open => self.server_form = Some(ServerForm::new(&self.settings)),
             ServerAction::Close => self.server_form = None,
             ServerAction::Test { address, password } => self.test_server(&address, password),
             ServerAction::Save { address, password } => self.save_server(&address, password),

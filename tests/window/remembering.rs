@@ -117,6 +117,18 @@ fn broken_settings_count_as_unreachable_server() {
 }
 
 #[test]
+fn server_form_hides_password_from_settings() {
+    let desk = Desk::fresh("");
+    let path = desk.outside.store().settings_path();
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    fs::write(&path, "(logbook: \"postgres://bench:k3y@db.plant/logs\")").unwrap();
+    let mut desk = restarted(desk);
+    desk.act(Action::Server(ServerAction::Open));
+    let form = desk.studio.server_form().unwrap();
+    assert_eq!((form.address(), form.password().is_some()), ("postgres://bench@db.plant/logs", true));
+}
+
+#[test]
 fn does_not_overwrite_unreadable_settings() {
     let desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();

@@ -38,7 +38,11 @@ pub(in crate::ui) fn server_ui(
         }
         return;
     };
-    let begin = || Typed { address: studio.settings.logbook.clone(), password: String::new(), entry: None };
+    let begin = || Typed {
+        address: form.address().to_owned(),
+        password: form.password().map(|password| password.reveal().to_owned()).unwrap_or_default(),
+        entry: None,
+    };
     let typed = view.typed.get_or_insert_with(begin);
     modal(ctx, theme, "server", WIDTH, |ui| {
         ui.label(theme.heading(theme.translate("server_form.title")));

@@ -144,6 +144,10 @@ impl ServerAddress {
         ServerAddress { password: password.or(self.password), ..self }
     }
 
+    pub(crate) fn password(&self) -> Option<&Password> {
+        self.password.as_ref()
+    }
+
     pub fn has_password(&self) -> bool {
         self.password.is_some()
     }
@@ -180,7 +184,7 @@ impl Password {
         Some(text).filter(|text| !text.is_empty()).map(Password)
     }
 
-    pub(super) fn reveal(&self) -> &str {
+    pub(crate) fn reveal(&self) -> &str {
         &self.0
     }
 }
