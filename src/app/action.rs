@@ -4,7 +4,7 @@ use std::any::Any;
 use std::path::PathBuf;
 
 use super::company_form::CompanyAction;
-use super::comparison::{ComparisonAction, ComparisonCandidates, Side};
+use super::comparison::{ComparisonAction, ComparisonCandidates};
 use super::devices::{AnyDevice, DeviceCommand, OpenProfile};
 use super::diverged::{ConflictResolution, ProfileConflict};
 use super::file_question::FileQuestion;
@@ -145,7 +145,8 @@ pub enum TaskResult {
     },
     /// A profile for one side of the comparison was read, or could not be read.
     Compare {
-        side: Side,
+        /// Number of the task.
+        reading: u32,
         path: PathBuf,
         result: Result<Box<ProfileDocument>, ReadError>,
     },

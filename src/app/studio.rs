@@ -351,7 +351,7 @@ impl Studio {
                 }
             }
             TaskResult::Read { file, result, open } => self.read(file, result, open),
-            TaskResult::Compare { side, path, result } => self.show_compared_profile(side, path, result),
+            TaskResult::Compare { reading, path, result } => self.show_compared_profile(reading, &path, result),
             TaskResult::LibraryRead(number, listing) => self.show_library(number, listing),
             TaskResult::ComparisonCandidates(candidates) => self.show_candidates(*candidates),
             TaskResult::Waited(what) => self.waited = self.waited.max(Some(what)),

@@ -97,6 +97,17 @@ fn comparison_lists_differences_only() {
     assert!(desk.studio.comparison().is_none(), "it ends with its session");
 }
 
+/// A side that is still being read moves with its source.
+#[test]
+fn sides_swap_during_reading() {
+    let (mut desk, path) = encoder_and_changed_profile();
+    desk.command(compare_with(&path));
+    desk.act(Action::Comparison(ComparisonAction::Swap));
+    desk.until("it is compared", is_compared);
+    let [row] = differing(&desk.studio).try_into().unwrap();
+    assert_eq!((&row.left, &row.right), (&bytes(b"E"), &bytes(b"X")));
+}
+
 #[test]
 fn compares_files_offline() {
     let mut desk = Desk::fresh("");

@@ -8,7 +8,7 @@ pub(in crate::app) use rows::compare_documents;
 pub use rows::{ComparedGroup, ComparedRow, ComparedRows, ItemValue, ItemValues};
 pub use side::{ComparedSide, ComparisonSource, Side};
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use super::action::{Action, ReadError, TaskResult};
 use super::documents::{read_error, read_profile};
@@ -172,30 +172,31 @@ impl Studio {
     }
 
     fn choose_side(&mut self, side: Side, source: ComparisonSource) {
+        let reading = self.next_number();
         let Some(view) = &mut self.comparison else { return };
         let path = source.path().map(ToOwned::to_owned);
-        *view.side_mut(side) = ComparedSide::new(source);
+        *view.side_mut(side) = ComparedSide::new(source, reading);
         (view.rows, view.refusal) = (None, None);
         let Some(path) = path else { return };
         let formats = self.services.world.kinds.formats;
         self.services.tasks.run("compare", move || {
             let result = read_profile(&path, formats).map(Box::new);
-            Action::Done(TaskResult::Compare { side, path, result })
+            Action::Done(TaskResult::Compare { reading, path, result })
         });
     }
 
     /// Shows the profile that was read for a side. If another file has been chosen since, the result is ignored.
     pub(super) fn show_compared_profile(
         &mut self,
-        side: Side,
-        path: PathBuf,
+        reading: u32,
+        path: &Path,
         result: Result<Box<ProfileDocument>, ReadError>,
     ) {
         let kinds = self.services.world.kinds;
         let Some(view) = &mut self.comparison else { return };
-        let own = view.side_mut(side);
-        if own.path() == Some(path.as_path()) {
-            own.set_content(result.map_err(|error| vec![read_error(&path, &error, kinds)]));
+        if let Some(side) = Side::BOTH.into_iter().find(|side| view.side(*side).reading() == reading) {
+            let content = result.map_err(|error| vec![read_error(path, &error, kinds)]);
+            view.side_mut(side).set_content(content);
             view.rows = None;
             self.refresh_comparison();
         }

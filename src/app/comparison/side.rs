@@ -48,11 +48,13 @@ pub struct ComparedSide {
     /// Profile to compare, or the reasons why there is none. `None` while a file is being read.
     content: Option<Result<Box<ProfileDocument>, Vec<Text>>>,
     edits: usize,
+    /// Number of the task that reads the file. It stays with the side when the sides are swapped.
+    reading: u32,
 }
 
 impl ComparedSide {
-    pub(super) fn new(source: ComparisonSource) -> Self {
-        ComparedSide { source: Some(source), content: None, edits: 0 }
+    pub(super) fn new(source: ComparisonSource, reading: u32) -> Self {
+        ComparedSide { source: Some(source), content: None, edits: 0, reading }
     }
 
     /// Returns the chosen source, if any.
@@ -84,6 +86,10 @@ impl ComparedSide {
     /// Returns the number of unwritten edits that are included in the comparison.
     pub fn edit_count(&self) -> usize {
         self.edits
+    }
+
+    pub(super) fn reading(&self) -> u32 {
+        self.reading
     }
 
     pub(super) fn set_content(&mut self, content: Result<Box<ProfileDocument>, Vec<Text>>) {
