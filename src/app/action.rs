@@ -169,8 +169,9 @@ pub enum TaskResult {
         path: PathBuf,
         result: Result<Result<(), FileError>, Text>,
     },
-    /// The company name and logo were checked for use in reports. Contains the reason if they cannot be used.
-    CompanyChecked(Box<Settings>, Result<(), Text>),
+    /// The company name and logo were checked for use in reports. Contains the number of the check, and the reason if
+    /// they cannot be used.
+    CompanyChecked(u32, Box<Settings>, Result<(), Text>),
     /// A picture, a report or a trace was saved, or could not be saved. `message` names what was saved.
     FileSaved {
         message: Text,
@@ -191,7 +192,7 @@ pub enum TaskResult {
     LogbookRead(u64, Result<LogbookMatches, LogbookError>),
     NoteAdded(Result<(), LogbookError>),
     /// A connection test has ended. Contains the number of the test and the number of entries on the server.
-    ServerTested(u64, Result<Option<u64>, ServerError>),
+    ServerTested(u32, Result<Option<u64>, ServerError>),
     /// The server password was saved in the keyring, or could not be saved.
     PasswordSaved(Result<(), KeyringError>),
     /// Entries were exchanged with the logbook server, or the exchange failed.

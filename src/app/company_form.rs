@@ -13,7 +13,8 @@ use super::{Settings, Text};
 pub struct CompanyForm {
     /// Path of a logo chosen in the file dialog, until the form has displayed it.
     chosen: Option<PathBuf>,
-    is_checking: bool,
+    /// Number of the running check. Results of other checks are ignored.
+    check: Option<u32>,
     problem: Option<Text>,
 }
 
@@ -38,7 +39,7 @@ impl CompanyForm {
     }
 
     pub fn is_checking(&self) -> bool {
-        self.is_checking
+        self.check.is_some()
     }
 
     /// Returns the reason why the logo cannot be used, if any.
@@ -75,27 +76,27 @@ impl Studio {
 
     /// Starts a task that checks the logo. If the logo can be used, the form is saved.
     fn check_company(&mut self, name: &str, logo: &str) {
+        let number = self.next_number();
         let Some(form) = &mut self.company_form else { return };
-        form.is_checking = true;
+        form.check = Some(number);
         let text = |text: &str| Some(text.trim().to_owned()).filter(|text| !text.is_empty());
         let mut wanted = Settings::default();
         (wanted.company, wanted.company_logo) = (text(name), text(logo));
         self.services.tasks.run("company", move || {
             let result = check_company(&wanted);
-            Action::Done(TaskResult::CompanyChecked(Box::new(wanted), result))
+            Action::Done(TaskResult::CompanyChecked(number, Box::new(wanted), result))
         });
     }
 
-    pub(super) fn save_company(&mut self, wanted: Settings, checked: Result<(), Text>) {
-        match (checked, &mut self.company_form) {
-            (Ok(()), Some(_)) => {
+    pub(super) fn save_company(&mut self, number: u32, wanted: Settings, checked: Result<(), Text>) {
+        let Some(form) = self.company_form.as_mut().filter(|form| form.check == Some(number)) else { return };
+        match checked {
+            Ok(()) => {
                 let Settings { company, company_logo, .. } = wanted;
                 (self.settings.company, self.settings.company_logo) = (company, company_logo);
                 self.company_form = None;
             }
-            (Err(why), Some(form)) => (form.is_checking, form.problem) = (false, Some(why)),
-            // The form has been closed in the meantime.
-            (_, None) => {}
+            Err(why) => (form.check, form.problem) = (None, Some(why)),
         }
     }
 }

@@ -15,13 +15,12 @@ const TEST_TIMEOUT: Duration = Duration::from_secs(5);
 /// State of the open form.
 #[derive(Debug, Default)]
 pub struct ServerForm {
-    /// Number of the running test. Results of earlier tests are ignored.
-    test: u64,
-    is_testing: bool,
     /// Address from the settings, without a password.
     address: String,
     /// Password found in the address of the settings.
     password: Option<Password>,
+    /// Number of the running test. Results of other tests are ignored.
+    test: Option<u32>,
     outcome: Option<Result<Text, Text>>,
 }
 
@@ -65,7 +64,7 @@ impl ServerForm {
     }
 
     pub fn is_testing(&self) -> bool {
-        self.is_testing
+        self.test.is_some()
     }
 
     /// Returns the result of the last test, or the reason why the address is invalid.
@@ -101,13 +100,12 @@ impl Studio {
     }
 
     fn test_server(&mut self, address: &str, password: Option<Password>) {
+        let number = self.next_number();
         let Some(form) = &mut self.server_form else { return };
         match parse(address, password) {
-            Err(why) => form.outcome = Some(Err(why)),
+            Err(why) => (form.test, form.outcome) = (None, Some(Err(why))),
             Ok(address) => {
-                form.test += 1;
-                (form.is_testing, form.outcome) = (true, None);
-                let number = form.test;
+                (form.test, form.outcome) = (Some(number), None);
                 self.services.tasks.run("server test", move || {
                     let result = LogbookServer::test(&address, TEST_TIMEOUT);
                     Action::Done(TaskResult::ServerTested(number, result))
@@ -116,9 +114,9 @@ impl Studio {
         }
     }
 
-    pub(super) fn show_server_test(&mut self, number: u64, result: Result<Option<u64>, ServerError>) {
-        let Some(form) = self.server_form.as_mut().filter(|form| form.test == number) else { return };
-        form.is_testing = false;
+    pub(super) fn show_server_test(&mut self, number: u32, result: Result<Option<u64>, ServerError>) {
+        let Some(form) = self.server_form.as_mut().filter(|form| form.test == Some(number)) else { return };
+        form.test = None;
         form.outcome = Some(match result {
             Ok(Some(count)) => Ok(Text::new("server_form.reached").with("count", count)),
             Ok(None) => Ok(Text::new("server_form.reached_empty")),
@@ -133,7 +131,7 @@ impl Studio {
                 Ok(address) => Some(address),
                 Err(why) => {
                     if let Some(form) = &mut self.server_form {
-                        form.outcome = Some(Err(why));
+                        (form.test, form.outcome) = (None, Some(Err(why)));
                     }
                     return;
                 }

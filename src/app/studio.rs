@@ -362,7 +362,7 @@ impl Studio {
             }
             TaskResult::TargetChecked { question, path, exists: false } => self.handle_chosen_path(question, path),
             TaskResult::TableWritten(owner, exported) => self.finish_table_export(owner, exported),
-            TaskResult::CompanyChecked(wanted, checked) => self.save_company(*wanted, checked),
+            TaskResult::CompanyChecked(number, wanted, checked) => self.save_company(number, *wanted, checked),
             TaskResult::ReportWritten { path, result } => self.finish_report(&path, result),
             TaskResult::FileSaved { message, path, result } => self.finish_file_save(message, &path, result),
             // It has been handled by polling.

@@ -1,10 +1,13 @@
 //! Tests of the logbook server form, and of the line on the page that shows whether entries are shared.
 
+use std::net::TcpListener;
+
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::{Action, LOGBOOK_TAB, Language, ServerAction, Studio};
 
 use crate::screen::Screen;
+use crate::support::Desk;
 
 const SIZE: [f32; 2] = [1024.0, 640.0];
 /// A port on which no server listens. It is reserved for system services.
@@ -59,6 +62,23 @@ fn enters_tests_and_saves_server() {
     // Without an address, the logbook is on this computer only.
     screen.act(Action::Server(ServerAction::Save { address: String::new(), password: None }));
     assert!(screen.studio().server_exchange().is_none());
+}
+
+/// The result of a test that outlasted its form is not taken for one of the next form.
+#[test]
+fn form_ignores_earlier_test() {
+    let mut desk = Desk::fresh("");
+    let silent = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = format!("postgres://bench@{}/logs", silent.local_addr().unwrap());
+    let test = |address: &str| Action::Server(ServerAction::Test { address: address.to_owned(), password: None });
+    desk.act(Action::Server(ServerAction::Open));
+    desk.act(test(CLOSED));
+    desk.act(Action::Server(ServerAction::Close));
+    desk.act(Action::Server(ServerAction::Open));
+    desk.act(test(&address));
+    desk.settle();
+    let form = desk.studio.server_form().unwrap();
+    assert!(form.is_testing() && form.outcome().is_none());
 }
 
 #[test]

@@ -205,6 +205,23 @@ fn form_sets_company() {
     assert!(page.contains("Miller GmbH") && page.contains("data:image/png;base64,iVBOR"));
 }
 
+/// The result of a check that outlasted its form is not taken for one of the next form.
+#[test]
+fn company_form_ignores_earlier_check() {
+    let mut desk = Desk::fresh("");
+    let save = |name: &str| Action::Company(CompanyAction::Save { name: name.to_owned(), logo: String::new() });
+    desk.act(Action::Company(CompanyAction::Open));
+    desk.act(save("Old"));
+    desk.act(Action::Company(CompanyAction::Close));
+    desk.act(Action::Company(CompanyAction::Open));
+    desk.settle();
+    assert!(desk.studio.company_form().is_some_and(|form| !form.is_checking()));
+    assert_eq!(desk.studio.settings.company, None);
+    desk.act(save("New"));
+    desk.until("it is saved", |studio| studio.company_form().is_none());
+    assert_eq!(desk.studio.settings.company.as_deref(), Some("New"));
+}
+
 #[test]
 fn failed_report_names_reason() {
     let mut desk = Desk::new_form("");
