@@ -80,8 +80,10 @@ pub enum Action {
     Library(LibraryAction),
     /// Show the logbook entries that match a filter.
     SearchLogbook(EntryFilter),
-    /// Add a note about a device to the logbook.
-    AddNote(DeviceKey, String),
+    /// Set the text of an unfinished note about a device.
+    EditNote(DeviceKey, String),
+    /// Add the unfinished note about a device to the logbook.
+    AddNote(DeviceKey),
     Recorder(RecorderOwner, recorder::RecorderAction),
     /// Clear a recording. The user is asked first if the recording is long.
     AskClearRecording(RecorderOwner),

@@ -1,5 +1,6 @@
 //! The logbook page: the filter, the matching entries and the user's notes. The file is read and written in tasks.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 
 use jiff::Timestamp;
@@ -28,7 +29,10 @@ pub struct LogbookPage {
     is_searching: bool,
     /// Whether entries may have been added since the last search.
     is_stale: bool,
-    is_saving_note: bool,
+    /// Unfinished notes by device.
+    notes: HashMap<DeviceKey, String>,
+    /// Note being added, as it was typed.
+    added_note: Option<(DeviceKey, String)>,
     exchange: ServerExchange,
 }
 
@@ -67,7 +71,16 @@ impl LogbookPage {
     }
 
     pub fn is_saving_note(&self) -> bool {
-        self.is_saving_note
+        self.added_note.is_some()
+    }
+
+    /// Returns the text of the unfinished note about a device.
+    pub fn note(&self, device: &DeviceKey) -> &str {
+        self.notes.get(device).map_or("", String::as_str)
+    }
+
+    pub(super) fn edit_note(&mut self, device: DeviceKey, note: String) {
+        self.notes.insert(device, note);
     }
 
     pub(super) fn exchange(&self) -> &ServerExchange {
@@ -195,23 +208,28 @@ impl Studio {
         }
     }
 
-    /// Starts a task that adds a note about a device. Empty notes are ignored.
-    pub(super) fn add_note(&mut self, device: DeviceKey, note: &str) {
-        let note: String = note.trim().chars().take(MAX_NOTE_CHARS).collect();
-        if note.is_empty() || self.logbook.is_saving_note {
+    /// Starts a task that adds the unfinished note about a device. Empty notes are ignored.
+    pub(super) fn add_note(&mut self, device: DeviceKey) {
+        let typed = self.logbook.note(&device).to_owned();
+        let note: String = typed.trim().chars().take(MAX_NOTE_CHARS).collect();
+        if note.is_empty() || self.logbook.is_saving_note() {
             return;
         }
-        self.logbook.is_saving_note = true;
+        self.logbook.added_note = Some((device.clone(), typed));
         let (at, path) = (self.services.current_time().timestamp(), self.services.world.store.logbook_path());
         let add = move |at: Timestamp| Logbook::open(&path)?.add_note(at, &device, &note);
         self.services.tasks.run("note", move || Action::Done(TaskResult::NoteAdded(add(at))));
     }
 
     pub(super) fn finish_note(&mut self, result: Result<(), LogbookError>) {
-        self.logbook.is_saving_note = false;
-        self.logbook.mark_stale();
-        if let Err(error) = result {
-            notify_note_failure(&mut self.services, &error);
+        let page = &mut self.logbook;
+        page.mark_stale();
+        let Some((device, typed)) = page.added_note.take() else { return };
+        match result {
+            // Text typed since then belongs to the next note.
+            Ok(()) if page.note(&device) == typed => drop(page.notes.remove(&device)),
+            Ok(()) => {}
+            Err(error) => notify_note_failure(&mut self.services, &error),
         }
     }
 }

@@ -100,7 +100,8 @@ impl Studio {
             Action::ShowTab(tab) => self.show_tab(tab),
             Action::New(tab) => self.new_profile(tab),
             Action::SearchLogbook(filter) => self.search_logbook(filter),
-            Action::AddNote(device, note) => self.add_note(device, &note),
+            Action::EditNote(device, note) => self.logbook.edit_note(device, note),
+            Action::AddNote(device) => self.add_note(device),
             Action::SetTheme(theme) => self.settings.theme = theme,
             Action::SetLanguage(language) => self.settings.language = language,
             Action::SetUserName(name) => {

@@ -243,6 +243,30 @@ fn adds_note_to_device_of_entry() {
     assert!(!screen.is_enabled("logbook.add_note"), "the entry is empty again");
 }
 
+/// A note is not lost if another entry is selected or if it cannot be saved.
+#[test]
+fn unsaved_note_is_kept() {
+    let mut screen = screen_after_write();
+    select_first_entry(&mut screen);
+    let device = recorded_entries(&screen)[0].device.clone();
+    let word = screen.say("logbook.note_text");
+    screen.harness.get_by_label(&word).focus();
+    screen.steps();
+    screen.harness.get_by_label(&word).type_text("Kupplung ersetzt");
+    screen.steps();
+    screen.act(Action::EditNote(DeviceKey::new("biss", "6129", "7", false), "Lager".to_owned()));
+    assert_eq!(screen.studio().logbook().note(&device), "Kupplung ersetzt");
+    let other = rusqlite::Connection::open(screen.outside.store().logbook_path()).unwrap();
+    other.execute_batch("BEGIN IMMEDIATE").unwrap();
+    screen.click("logbook.add_note");
+    screen.until("the note is refused", |studio| !studio.logbook().is_saving_note());
+    other.execute_batch("ROLLBACK").unwrap();
+    assert_eq!(screen.studio().logbook().note(&device), "Kupplung ersetzt");
+    screen.click("logbook.add_note");
+    screen.until("the note is in the list", |studio| entry_count(studio) == Some(3));
+    assert_eq!(screen.studio().logbook().note(&device), "");
+}
+
 #[test]
 fn filter_survives_tab_change() {
     let mut screen = screen_after_write();

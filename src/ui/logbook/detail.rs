@@ -64,7 +64,7 @@ pub(super) fn entry_ui(
         );
         theme.add_gap(ui);
         card(ui, theme, "logbook.note", |ui| {
-            note_ui(ui, theme, studio, &mut view.note, &entry.device, actions);
+            note_ui(ui, theme, studio, &entry.device, actions);
         });
     });
 }
@@ -183,29 +183,24 @@ fn push_device_command(device: &AnyDevice, command: DeviceCommand, actions: &mut
     actions.push(device.command(command));
 }
 
-fn note_ui(
-    ui: &mut Ui,
-    theme: &Theme,
-    studio: &Studio,
-    note: &mut Option<(DeviceKey, String)>,
-    device: &DeviceKey,
-    actions: &mut Vec<Action>,
-) {
-    let mut text = note.take().filter(|(about, _)| about == device).map(|(_, text)| text).unwrap_or_default();
+fn note_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &DeviceKey, actions: &mut Vec<Action>) {
+    let mut text = studio.logbook().note(device).to_owned();
     let word = theme.translate("logbook.note_text");
     let entry = text_entry(ui, &mut text, ui.available_width(), &word, &word);
+    if entry.changed() {
+        actions.push(Action::EditNote(device.clone(), text.clone()));
+    }
     let entered = entry.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
     ui.horizontal(|ui| {
         let can_add =
             !text.trim().is_empty() && text.chars().count() <= MAX_NOTE_CHARS && !studio.logbook().is_saving_note();
         let add = enabled_button(ui, can_add, icons::PLUS, &theme.translate("logbook.add_note"));
         if can_add && (add.clicked() || entered) {
-            actions.push(Action::AddNote(device.clone(), std::mem::take(&mut text)));
+            actions.push(Action::AddNote(device.clone()));
         }
         if text.chars().count() > MAX_NOTE_CHARS {
             let words = Text::new("logbook.note_too_long").with("most", MAX_NOTE_CHARS);
             ui.label(RichText::new(theme.format_text(&words)).color(theme.palette.bad));
         }
     });
-    *note = Some((device.clone(), text)).filter(|(_, text)| !text.is_empty());
 }

@@ -43,8 +43,6 @@ pub(super) struct LogbookView {
     selected: Option<EntryId>,
     /// Whether the list must scroll to the selected entry.
     scrolls_to_selected: bool,
-    /// Note being written, with the device to which it belongs.
-    note: Option<(DeviceKey, String)>,
 }
 
 pub(super) fn logbook_ui(
