@@ -11,6 +11,8 @@ pub struct FileSearch {
     extension: &'static str,
     /// Number of files that may still be found.
     files_left: usize,
+    /// Total size in bytes of the files that may still be found.
+    bytes_left: u64,
     /// Number of entries of folders that may still be examined.
     entries_left: usize,
     searched: BTreeSet<PathBuf>,
@@ -21,11 +23,12 @@ impl FileSearch {
     /// Maximum number of entries examined in all folders.
     const ENTRIES: usize = 50_000;
 
-    /// Creates a search that finds at most `limit` files.
-    pub fn new(extension: &'static str, limit: usize) -> Self {
+    /// Creates a search that finds at most `files` files with a total size of at most `bytes`.
+    pub fn new(extension: &'static str, files: usize, bytes: u64) -> Self {
         FileSearch {
             extension,
-            files_left: limit,
+            files_left: files,
+            bytes_left: bytes,
             entries_left: Self::ENTRIES,
             searched: BTreeSet::new(),
             is_truncated: false,
@@ -38,7 +41,7 @@ impl FileSearch {
     pub fn find(&mut self, folder: &Path, levels: usize, skips: &dyn Fn(&Path) -> bool) -> Vec<PathBuf> {
         let mut found = Vec::new();
         let mut waiting = vec![(folder.to_owned(), levels)];
-        while let Some((folder, levels)) = waiting.pop() {
+        'search: while let Some((folder, levels)) = waiting.pop() {
             if levels == 0 || skips(&folder) || !self.searched.insert(folder.clone()) {
                 continue;
             }
@@ -46,7 +49,7 @@ impl FileSearch {
             for entry in entries.flatten() {
                 if self.files_left == 0 || self.entries_left == 0 {
                     self.is_truncated = true;
-                    break;
+                    break 'search;
                 }
                 self.entries_left -= 1;
                 let (path, is_hidden) = (entry.path(), entry.file_name().as_encoded_bytes().starts_with(b"."));
@@ -55,8 +58,15 @@ impl FileSearch {
                 }
                 if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
                     waiting.push((path, levels - 1));
-                } else if self.has_extension(&path) && path.is_file() {
-                    self.files_left -= 1;
+                } else if self.has_extension(&path)
+                    && let Ok(file) = fs::metadata(&path)
+                    && file.is_file()
+                {
+                    let Some(bytes_left) = self.bytes_left.checked_sub(file.len()) else {
+                        self.is_truncated = true;
+                        continue;
+                    };
+                    (self.files_left, self.bytes_left) = (self.files_left - 1, bytes_left);
                     found.push(path);
                 }
             }
@@ -98,13 +108,13 @@ mod tests {
     fn finds_files_down_to_maximum_depth() {
         let root =
             folder_with(&["b.ron", "a/c.RON", "a/b/d.ron", "a/b/c/e.ron", "a/b.txt", ".hidden/f.ron", "own/g.ron"]);
-        let mut search = FileSearch::new("ron", 100);
+        let mut search = FileSearch::new("ron", 100, 100);
         let found = search.find(root.path(), 3, &|path| path.ends_with("own"));
         assert_eq!(names(&root, found), ["a/b/d.ron", "a/c.RON", "b.ron"]);
         assert!(search.find(&root.path().join("a"), 3, &|_| false).is_empty(), "it was searched before");
         assert!(search.find(&root.path().join("none"), 3, &|_| false).is_empty());
         assert!(!search.is_truncated());
-        let found = FileSearch::new("ron", 100).find(root.path(), 1, &|_| false);
+        let found = FileSearch::new("ron", 100, 100).find(root.path(), 1, &|_| false);
         assert_eq!(names(&root, found), ["b.ron"]);
     }
 
@@ -112,10 +122,33 @@ mod tests {
     fn search_stops_at_file_limit() {
         let root = folder_with(&["a.ron", "b.ron", "c.ron"]);
         for (limit, is_truncated) in [(3, false), (2, true)] {
-            let mut search = FileSearch::new("ron", limit);
+            let mut search = FileSearch::new("ron", limit, 100);
             assert_eq!(search.find(root.path(), 1, &|_| false).len(), limit);
             assert_eq!(search.is_truncated(), is_truncated);
         }
+    }
+
+    #[test]
+    fn search_ends_in_all_folders() {
+        let root = folder_with(&["a/b.ron", "c/d.ron", "e/f.ron", "g/h.ron"]);
+        let mut search = FileSearch::new("ron", 1, 100);
+        assert_eq!(search.find(root.path(), 2, &|_| false).len(), 1);
+        assert_eq!((search.searched.len(), search.is_truncated()), (3, true), "the folder itself and two more");
+        let mut search = FileSearch { entries_left: 5, ..FileSearch::new("ron", 100, 100) };
+        assert_eq!(search.find(root.path(), 2, &|_| false).len(), 1, "the folder itself has four entries");
+        assert!(search.is_truncated());
+    }
+
+    #[test]
+    fn size_of_all_files_is_limited() {
+        let root = folder_with(&["a.ron", "b.ron", "c.ron"]);
+        fs::write(root.path().join("b.ron"), "x".repeat(101)).unwrap();
+        for name in ["a.ron", "c.ron"] {
+            fs::write(root.path().join(name), "x".repeat(50)).unwrap();
+        }
+        let mut search = FileSearch::new("ron", 100, 100);
+        let found = search.find(root.path(), 1, &|_| false);
+        assert_eq!((names(&root, found), search.is_truncated()), (vec!["a.ron".to_owned(), "c.ron".to_owned()], true));
     }
 
     #[cfg(unix)]
@@ -124,7 +157,7 @@ mod tests {
         let root = folder_with(&["a/b.ron"]);
         std::os::unix::fs::symlink(root.path(), root.path().join("a/again")).unwrap();
         std::os::unix::fs::symlink(root.path().join("a/b.ron"), root.path().join("c.ron")).unwrap();
-        let found = FileSearch::new("ron", 100).find(root.path(), 9, &|_| false);
+        let found = FileSearch::new("ron", 100, 100).find(root.path(), 9, &|_| false);
         assert_eq!(names(&root, found), ["a/b.ron", "c.ron"]);
     }
 }

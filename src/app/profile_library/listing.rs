@@ -160,12 +160,14 @@ pub(super) struct LibrarySource {
 impl LibrarySource {
     /// Maximum number of files in folders.
     const MAX_FOLDER_FILES: usize = 2_000;
+    /// Maximum total size in bytes of these files.
+    const MAX_FOLDER_BYTES: u64 = 64 << 20;
     /// Number of levels of folders, including the first one.
     const LEVELS: usize = 3;
     const EXTENSION: &'static str = "ron";
 
     pub(super) fn read(&self) -> LibraryListing {
-        let mut search = FileSearch::new(Self::EXTENSION, Self::MAX_FOLDER_FILES);
+        let mut search = FileSearch::new(Self::EXTENSION, Self::MAX_FOLDER_FILES, Self::MAX_FOLDER_BYTES);
         let skips = |folder: &Path| self.store.contains(folder);
         let ready_made = self.ready_made.iter().find(|folder| folder.is_dir());
         let ready_made = ready_made.map(|folder| search.find(folder, Self::LEVELS, &skips)).unwrap_or_default();

@@ -36,7 +36,7 @@ pub enum LibraryAction {
     AskFile,
 }
 
-/// State of the library. The search and the selection remain when it is closed.
+/// State of the library. The search and the selection remain when it is closed. The profiles are then released.
 #[derive(Debug, Default)]
 pub struct ProfileLibrary {
     is_open: bool,
@@ -131,7 +131,10 @@ impl Studio {
 
     /// Closes the library. Returns whether it was open.
     pub(super) fn close_library(&mut self) -> bool {
-        std::mem::take(&mut self.library.is_open)
+        let library = &mut self.library;
+        (library.listing, library.preview) = (LibraryListing::default(), None);
+        library.matches.clear();
+        std::mem::take(&mut library.is_open)
     }
 
     /// Remembers a profile that was opened or saved. The program's own files, such as backups, are not remembered.
@@ -186,7 +189,7 @@ impl Studio {
 
     pub(super) fn show_library(&mut self, number: u64, listing: LibraryListing) {
         let library = &mut self.library;
-        if number == library.reading {
+        if library.is_open && number == library.reading {
             (library.is_reading, library.listing) = (false, listing);
             library.filter();
             // The selected file may have changed.
