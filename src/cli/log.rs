@@ -1,4 +1,4 @@
-//! `log`: the logbook of this computer.
+//! `log`: the logbook, with the entries of all computers that share it.
 
 use std::path::{Path, PathBuf};
 

@@ -32,7 +32,8 @@ pub enum PdfError {
 
 /// Checks that a logo can be used in a PDF document.
 ///
-/// # Errors Returns [`PdfError::Logo`] if the logo is not a PNG file.
+/// # Errors
+/// Returns [`PdfError::Logo`] if the logo is not a PNG file.
 pub fn check_logo(bytes: Vec<u8>) -> Result<(), PdfError> {
     decode_logo(bytes).map(drop)
 }

@@ -235,7 +235,7 @@ impl Event {
 /// A logbook entry. The entry for a write also contains the result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Identifier of the entry. Later entries have greater identifiers.
+    /// Number of the entry. An entry received from another computer may be older than entries with a lower number.
     pub id: EntryId,
     pub uid: EntryUid,
     pub kind: EntryKind,

@@ -152,9 +152,9 @@ impl Logbook {
         }
     }
 
-    /// Returns the number of write cycles that this program has used on a device. An intent without a result counts
-    /// with its planned cycles, because the program may have ended after the last byte was sent. Writes by other
-    /// programs are not included, so the count is a minimum.
+    /// Returns the number of write cycles of a device in the entries of all computers that share the logbook. An intent
+    /// without a result counts with its planned cycles, because the program may have ended after the last byte was sent.
+    /// Writes by other software are not included, so the count is a minimum.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.

@@ -1,5 +1,5 @@
-//! The logbook page, which lists all entries of this computer, newest first. The selected entry is shown next to the
-//! list with its old and new values, its backup and its origin.
+//! The logbook page, which lists all entries, also those of other computers that share the logbook, newest first. The
+//! selected entry is shown next to the list with its old and new values, its backup and its origin.
 
 mod detail;
 mod sharing;
