@@ -128,7 +128,7 @@ impl Command {
     pub(super) fn asset(&self) -> Option<&AssetName> {
         match self {
             Command::Save(save) => save.asset.name.as_ref(),
-            Command::Restore(restore) => restore.asset.name.as_ref(),
+            Command::Restore(restore) => restore.asset.name.as_ref().filter(|_| !restore.dry_run),
             Command::Write(write) => write.asset.name.as_ref(),
             Command::Do(act) => act.asset.name.as_ref(),
             Command::Report(report) => report.asset.as_ref(),

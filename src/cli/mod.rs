@@ -160,14 +160,14 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
         Command::Report(report) => {
             let done = report::report(common, output, report)?;
             if common.link.is_some() {
-                report_unrecorded_asset(common, output, command);
+                assign_asset(common, output, command);
             }
             return Ok(done);
         }
         Command::Verify(verify) => return profiles::verify_profile(common, output, &verify.file),
         Command::Restore(restore) => {
             let done = profiles::restore(common, output, restore)?;
-            report_unrecorded_asset(common, output, command);
+            assign_asset(common, output, command);
             return Ok(done);
         }
         Command::Find(find) => (CommandId::Find, &find.device, &find.own),
@@ -199,13 +199,14 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
         }
         _ => run(),
     }?;
-    report_unrecorded_asset(common, output, command);
+    assign_asset(common, output, command);
     Ok(done)
 }
 
-fn report_unrecorded_asset(common: &CommonArgs, output: &Output, command: &Command) {
+/// Assigns the device to the asset of a command that has succeeded.
+fn assign_asset(common: &CommonArgs, output: &Output, command: &Command) {
     common.log.complete();
-    if command.asset().is_some() && !common.log.is_assigned() {
+    if command.asset().is_some_and(|asset| !common.log.assign(asset)) {
         output
             .print_message("The asset was not recorded: the device was not identified, or the logbook cannot be used.");
     }

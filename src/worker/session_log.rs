@@ -23,12 +23,8 @@ pub struct SessionLog(Arc<Mutex<State>>);
 
 #[derive(Debug, Default)]
 struct State {
-    /// Asset to which identified devices are assigned.
-    asset: Option<AssetName>,
     /// The device that was identified last.
-    device: Option<DeviceKey>,
-    /// Whether the last device is assigned to the asset.
-    is_assigned: bool,
+    last: Option<Connection>,
     /// Claim that shows other computers that the last device is connected here.
     hold: Option<DeviceHold>,
     /// Connections still to be recorded because the logbook was in use, oldest first.
@@ -36,33 +32,32 @@ struct State {
 }
 
 /// A device that was identified.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Connection {
     store: Store,
     at: Timestamp,
     device: DeviceKey,
-    asset: Option<AssetName>,
 }
 
 impl SessionLog {
-    /// Assigns the session's devices to an asset as soon as they are identified.
-    pub fn assign(&self, asset: AssetName) {
-        self.state().asset = Some(asset);
+    /// Assigns the last identified device to an asset, starting when it was identified: what was recorded since belongs
+    /// to the asset. Returns whether the device is assigned.
+    pub fn assign(&self, asset: &AssetName) -> bool {
+        let last = self.state().last.clone();
+        // Devices without a serial number cannot be distinguished.
+        last.filter(|last| !last.device.serial_number.is_empty()).is_some_and(|Connection { store, at, device }| {
+            write(&store, |logbook| logbook.assign(at, &device, asset)).is_some()
+        })
     }
 
     /// Returns the device that was identified last in this session.
     pub fn device(&self) -> Option<DeviceKey> {
-        self.state().device.clone()
+        self.state().last.as_ref().map(|last| last.device.clone())
     }
 
     /// Releases the device, so that the next transfer reports it as no longer connected.
     pub fn release_device(&self) {
         self.state().hold = None;
-    }
-
-    /// Returns whether the last identified device is assigned to the session's asset.
-    pub fn is_assigned(&self) -> bool {
-        self.state().is_assigned
     }
 
     /// Records the pending connections. Waits for the logbook for as long as a write does.
@@ -79,15 +74,12 @@ impl SessionLog {
     /// logbook is in use, the connection is recorded later, because the first reading must not wait.
     pub fn record_identity(&self, store: &Store, device: &DeviceKey) {
         let mut state = self.state();
-        if state.device.as_ref() == Some(device) {
+        if state.last.as_ref().is_some_and(|last| last.device == *device) {
             return;
         }
-        state.device = Some(device.clone());
         state.hold = store.logbook_server().hold(device);
-        // Devices without a serial number cannot be distinguished.
-        let asset = state.asset.clone().filter(|_| !device.serial_number.is_empty());
-        state.is_assigned = false;
-        let connection = Connection { store: store.clone(), at: Timestamp::now(), device: device.clone(), asset };
+        let connection = Connection { store: store.clone(), at: Timestamp::now(), device: device.clone() };
+        state.last = Some(connection.clone());
         state.pending.push_back(connection);
         state.record_pending(|path| Logbook::open_with_timeout(path, LOGBOOK_TIMEOUT));
     }
@@ -129,10 +121,7 @@ impl State {
             match open(&path).and_then(|mut logbook| connection.record(&mut logbook)) {
                 Err(LogbookError { problem: LogbookErrorKind::Locked, .. }) => return,
                 Err(error) => tracing::warn!("{error}"),
-                Ok(()) => {
-                    let is_last = self.device.as_ref() == Some(&connection.device);
-                    self.is_assigned |= is_last && connection.asset.is_some();
-                }
+                Ok(()) => {}
             }
             self.pending.pop_front();
         }
@@ -143,16 +132,16 @@ impl Drop for State {
     fn drop(&mut self) {
         self.record_pending(|path| Logbook::open_with_timeout(path, LOGBOOK_TIMEOUT));
         for Connection { device, .. } in &self.pending {
-            tracing::warn!("the connection of {device:?} was not recorded, because the logbook is in use");
+            let DeviceKey { kind, device_type, serial_number, .. } = device;
+            tracing::warn!(
+                "the connection of {kind} {device_type} {serial_number} was not recorded, because the logbook is in use"
+            );
         }
     }
 }
 
 impl Connection {
     fn record(&self, logbook: &mut Logbook) -> Result<(), LogbookError> {
-        if let Some(asset) = &self.asset {
-            logbook.assign(self.at, &self.device, asset)?;
-        }
         logbook.record(self.at, &self.device, &Event::new(EntryKind::Connected, "identified")).map(drop)
     }
 }
@@ -187,15 +176,16 @@ mod tests {
         let other = rusqlite::Connection::open(&path).unwrap();
         other.execute_batch("BEGIN IMMEDIATE").unwrap();
         let log = SessionLog::default();
-        log.assign("motor 17".parse().unwrap());
         let began = Instant::now();
         log.record_identity(&store, &DeviceKey::new("hiperface", "37h", "1", false));
         assert!(began.elapsed() < Duration::from_secs(1), "{:?}", began.elapsed());
         log.try_to_complete();
-        assert_eq!((kinds(), log.is_assigned()), (vec![], false));
+        assert_eq!(kinds(), []);
         other.execute_batch("ROLLBACK").unwrap();
         log.try_to_complete();
         log.complete();
-        assert_eq!((kinds(), log.is_assigned()), (vec![EntryKind::Connected, EntryKind::Assigned], true));
+        assert_eq!(kinds(), [EntryKind::Connected]);
+        assert!(log.assign(&"motor 17".parse().unwrap()));
+        assert_eq!(kinds(), [EntryKind::Assigned, EntryKind::Connected]);
     }
 }

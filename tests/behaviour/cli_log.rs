@@ -154,16 +154,16 @@ fn filters_entries_by_asset() {
     write("0001", &[]);
     write("0002", &["--asset", "Achse 3 · Süd"]);
     write("0003", &[]);
-    assert_eq!(kinds(&bench, &[]), ["connected", "write", "assigned", "connected", "write", "connected", "write"]);
+    assert_eq!(kinds(&bench, &[]), ["connected", "write", "connected", "assigned", "write", "connected", "write"]);
     let of = |asset: &str| lines(&bench.run(&["log", "--json", "--asset", asset]).out);
     let entries = of("Achse 3 · Süd");
-    assert_eq!(entries.len(), 5, "an assignment is valid until the next one");
+    assert_eq!(entries.len(), 4, "an assignment is valid until the next one");
     assert!(entries.iter().all(|entry| entry["asset"] == "Achse 3 · Süd"));
-    assert_eq!(entries[4]["items"], json!([{"item": "asset", "name": null, "old": null, "new": "Achse 3 · Süd"}]));
+    assert_eq!(entries[3]["items"], json!([{"item": "asset", "name": null, "old": null, "new": "Achse 3 · Süd"}]));
     assert_eq!(of("Achse 3").len(), 0);
     let identify = bench.run(&["do", "hiperface", "check", "--asset", "shelf", "--link", "sim:"]);
     assert_eq!(identify.status, Some(0), "{identify:?}");
-    assert_eq!((of("shelf").len(), of("Achse 3 · Süd").len()), (3, 5));
+    assert_eq!((of("shelf").len(), of("Achse 3 · Süd").len()), (2, 5));
     assert!(bench.run(&["log"]).out.contains("GB0450179 (virtual) at shelf: check"));
     for (bad, words) in [("", "empty"), ("a\nb", "control character"), (&"x".repeat(81), "at most 80")] {
         bench.run(&["save", "hiperface", "-o", "x.ron", "--asset", bad, "--link", "sim:"]).fails(2, &[words]);
@@ -175,6 +175,27 @@ fn filters_entries_by_asset() {
 fn settings_choose_user_name() {
     let bench = Bench::new();
     std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
+#[test]
+fn failed_commands_assign_no_asset() {
+    let bench = Bench::new();
+    let profile = bench.path("saved.ron");
+    let profile = profile.to_str().unwrap();
+    assert_eq!(bench.run(&["save", "hiperface", "-o", profile, "--link", "sim:"]).status, Some(0));
+    let missing = bench.path("missing/report.html");
+    let missing = missing.to_str().unwrap();
+    let cases: [(&[&str], i32); 4] = [
+        (&["restore", profile, "--dry-run"], 0),
+        (&["write", "hiperface", "field:0@3000+2", "0001", "--yes"], 1),
+        (&["save", "hiperface", "-o", missing], 1),
+        (&["report", "hiperface", "-o", missing], 1),
+    ];
+    for (command, status) in cases {
+        let ran = bench.run(&[command, &["--asset", "M-17", "--link", "sim:"]].concat());
+        assert_eq!(ran.status, Some(status), "{ran:?}");
+        assert!(!kinds(&bench, &[]).contains(&"assigned".to_owned()), "{command:?}");
+    }
+}
+
     let user_with = |settings: &str| {
         bench.write("config/encoder-studio/settings.ron", settings);
         assert_eq!(bench.run(&["identify", "hiperface", "--link", "sim:"]).status, Some(0));

@@ -45,11 +45,6 @@ fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Err
         None if matches.subcommand_name().is_some() => Some(ParsedCommand::Shared(Command::from_arg_matches(matches)?)),
         None => None,
     };
-    if let Some(ParsedCommand::Shared(command)) = &command
-        && let Some(asset) = command.asset()
-    {
-        common.log.assign(asset.clone());
-    }
     Ok(Arguments { common, profile, command })
 }
 
