@@ -1,4 +1,4 @@
-//! Damaged logbook files. Such a file is renamed, and the new file that replaces it records this, because the write
+//! New and damaged logbook files. A damaged file is renamed, and the new file that replaces it records this, because the write
 //! cycles in the damaged file are no longer counted.
 
 use std::ffi::OsString;
@@ -46,16 +46,38 @@ pub(super) fn set_aside(path: &Path, patience: Duration) -> Result<Option<PathBu
     Ok(Some(kept))
 }
 
+/// Creates the file of a first start. It appears complete: an empty file is a damaged one.
+pub(super) fn create_missing(path: &Path, patience: Duration) -> Result<(), LogbookErrorKind> {
+    let _lock = wait_for(path).map_err(LogbookErrorKind::Folder)?;
+    // Another program may have created it in the meantime.
+    if path.exists() {
+        return Ok(());
+    }
+    let new = with_name_suffix(path, NEW);
+    close(create_new(&new, patience)?)?;
+    // SQLite would apply changes left by a deleted file to the new one.
+    for ending in SQLITE_FILE_SUFFIXES {
+        let _ = fs::remove_file(with_name_suffix(path, ending));
+    }
+    fs::rename(&new, path).map_err(|_| LogbookErrorKind::NoAccess)
+}
+
 fn create_replacement(new: &Path, kept: &Path, patience: Duration) -> Result<(), LogbookErrorKind> {
+    let database = create_new(new, patience)?;
+    let row = (Timestamp::now().to_string(), kept.to_string_lossy());
+    database.execute("INSERT INTO damage (at, kept) VALUES (?1, ?2)", row)?;
+    close(database)
+}
+
+fn create_new(new: &Path, patience: Duration) -> Result<Connection, LogbookErrorKind> {
     // A program that was killed at this point may have left a file behind.
     let _ = fs::remove_file(new);
-    let database = schema::open(new, patience)?;
-    let name = kept.file_name().unwrap_or_default().to_string_lossy();
-    let row = (Timestamp::now().to_string(), name);
-    database.execute("INSERT INTO damage (at, kept) VALUES (?1, ?2)", row)?;
-    // Closing the database moves everything into the file itself.
-    database.close().map_err(|(_, error)| error)?;
-    Ok(())
+    schema::create(new, patience)
+}
+
+/// Closes the database, which moves everything into the file itself.
+fn close(database: Connection) -> Result<(), LogbookErrorKind> {
+    database.close().map_err(|(_, error)| error.into())
 }
 
 /// Returns a damaged file whose entries are missing from this logbook: one that still exists, or else the most recent
@@ -91,6 +113,9 @@ pub(super) fn is_corruption_error(error: &rusqlite::Error) -> bool {
 }
 
 fn is_damaged(path: &Path) -> bool {
+    if path.metadata().is_ok_and(|found| schema::is_empty_file(&found)) {
+        return true;
+    }
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let Ok(database) = Connection::open_with_flags(path, flags) else { return false };
     // The damaged file must stay unchanged.

@@ -1,5 +1,7 @@
 //! The tables of the logbook, and migration from older versions. `user_version` contains the schema number.
 
+use std::fs::{self, Metadata};
+use std::io;
 use std::path::Path;
 use std::time::Duration;
 
@@ -8,7 +10,7 @@ use rusqlite::config::DbConfig;
 use rusqlite::types::Type;
 use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior};
 
-use super::LogbookErrorKind;
+use super::{LogbookErrorKind, aside};
 use crate::store::files::create_folder;
 
 /// Migrations from each schema to the next. Existing migrations must never change, because logbooks created by them
@@ -147,12 +149,34 @@ pub(super) const STEPS: [&str; 7] = [
 
 pub(super) const SCHEMA_VERSION: i64 = STEPS.len() as i64;
 
+/// Opens the file, creating it and its folder if missing.
 pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, LogbookErrorKind> {
     if let Some(folder) = path.parent() {
         create_folder(folder).map_err(LogbookErrorKind::Folder)?;
     }
+    match fs::metadata(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => aside::create_missing(path, patience)?,
+        // SQLite would take it as a new database.
+        Ok(found) if is_empty_file(&found) => {
+            return Err(LogbookErrorKind::Damaged { what: "the file is empty".to_owned() });
+        }
+        _ => {}
+    }
+    open_with_flags(path, patience, OpenFlags::empty())
+}
+
+pub(super) fn is_empty_file(found: &Metadata) -> bool {
+    found.is_file() && found.len() == 0
+}
+
+/// Creates a file that no other program opens yet.
+pub(super) fn create(path: &Path, patience: Duration) -> Result<Connection, LogbookErrorKind> {
+    open_with_flags(path, patience, OpenFlags::SQLITE_OPEN_CREATE)
+}
+
+fn open_with_flags(path: &Path, patience: Duration, further: OpenFlags) -> Result<Connection, LogbookErrorKind> {
     // SQLITE_OPEN_URI is not set, because a file may be called "file:x?mode=memory".
-    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX | further;
     let mut database = Connection::open_with_flags(path, flags)?;
     database.busy_timeout(patience)?;
     // The version is checked before any change, including that of the journal mode.

@@ -207,6 +207,7 @@ fn sets_damaged_logbook_aside() {
     let mut shredded = whole.clone();
     shredded[100..].fill(0xA5);
     let cases = [
+        ("empty", Vec::new()),
         ("two bytes", b"xy".to_vec()),
         ("a text", b"this is a text, and not a short one at that. ".repeat(30)),
         ("a header only", whole[..100].to_vec()),
