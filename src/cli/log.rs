@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use jiff::Timestamp;
-use jiff::civil::Date;
+use jiff::civil::DateTime;
 use jiff::tz::TimeZone;
+use jiff::{Timestamp, Zoned};
 use serde_json::{Value as Json, json};
 
 use super::args::{CommonArgs, LogArgs};
@@ -15,11 +15,13 @@ use super::{Failure, Result, Success};
 use crate::app::{Text, explain};
 use crate::store::{Entry, EntryFilter, EntryId, EntryKind, LinkedEntry, Logbook, Outcome};
 
-/// Parses a time with its UTC offset, or a date, which means midnight in the system's time zone.
+/// Parses a time with its UTC offset or time zone. Without one, the time is in the system's time zone. A date means
+/// midnight.
 pub(super) fn parse_date(text: &str) -> std::result::Result<Timestamp, String> {
-    let midnight = |date: Date| Some(date.to_zoned(TimeZone::system()).ok()?.timestamp());
-    let date = || text.parse().ok().and_then(midnight);
-    text.parse().ok().or_else(date).ok_or_else(|| "enter a date such as 2026-11-27".to_owned())
+    let zoned = || text.parse::<Zoned>().ok();
+    let local = || text.parse::<DateTime>().ok()?.to_zoned(TimeZone::system()).ok();
+    let time = || zoned().or_else(local).map(|time| time.timestamp());
+    text.parse().ok().or_else(time).ok_or_else(|| "enter a date such as 2026-11-27".to_owned())
 }
 
 pub(super) fn parse_entry(text: &str) -> std::result::Result<EntryId, String> {

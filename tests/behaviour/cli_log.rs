@@ -61,6 +61,11 @@ fn newest_entry_comes_first() {
     assert_eq!(devices(&["--search", "LOWER limit"]), ["hiperdrive"]);
     assert_eq!(devices(&["--since", "2020-01-01"]).len(), 4);
     assert_eq!(devices(&["--since", "2999-12-31T23:59:59Z"]), [] as [String; 0]);
+    let hour_ahead = jiff::Zoned::now().checked_add(jiff::Span::new().hours(1)).unwrap();
+    for form in ["%Y-%m-%dT%H:%M", "%Y-%m-%d %H:%M:%S"] {
+        let local = hour_ahead.strftime(form).to_string();
+        assert_eq!(devices(&["--since", &local]), [] as [String; 0], "{local}");
+    }
     bench.run(&["log", "--since", "yesterday"]).fails(2, &["--since", "2026-11-27"]);
     bench.run(&["log", "--device", "toaster"]).fails(2, &["toaster", "hiperface"]);
 }
@@ -170,11 +175,6 @@ fn filters_entries_by_asset() {
     }
 }
 
-/// A company's rules may forbid user names in the logbook.
-#[test]
-fn settings_choose_user_name() {
-    let bench = Bench::new();
-    std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
 #[test]
 fn failed_commands_assign_no_asset() {
     let bench = Bench::new();
@@ -196,6 +196,11 @@ fn failed_commands_assign_no_asset() {
     }
 }
 
+/// A company's rules may forbid user names in the logbook.
+#[test]
+fn settings_choose_user_name() {
+    let bench = Bench::new();
+    std::fs::create_dir_all(bench.path("config/encoder-studio")).unwrap();
     let user_with = |settings: &str| {
         bench.write("config/encoder-studio/settings.ron", settings);
         assert_eq!(bench.run(&["identify", "hiperface", "--link", "sim:"]).status, Some(0));
