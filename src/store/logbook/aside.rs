@@ -1,5 +1,5 @@
-//! New and damaged logbook files. A damaged file is renamed, and the new file that replaces it records this, because the write
-//! cycles in the damaged file are no longer counted.
+//! New and damaged logbook files. A damaged file is renamed, and the new file that replaces it records this, because
+//! the write cycles in the damaged file are no longer counted.
 
 use std::ffi::OsString;
 use std::fs;
